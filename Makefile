@@ -1,0 +1,65 @@
+# The front door: `make` builds, `make help` lists the rest. CMake and Ninja do the work.
+
+PRESET ?= default
+PREFIX ?= /usr/local
+WARNINGS_AS_ERRORS ?= $(if $(filter dev,$(PRESET)),ON,OFF)
+BUILD := $(if $(filter default,$(PRESET)),build,build/$(PRESET))
+
+# As many jobs as cores, but no more than the free memory holds compilers (1.5 GB each).
+JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
+	fit=$$(awk '/^MemAvailable:/ {print int($$2 / 1500000)}' /proc/meminfo 2>/dev/null); \
+	[ "$${fit:-$$cores}" -ge 1 ] || fit=1; [ "$${fit:-$$cores}" -lt "$$cores" ] && echo $$fit || echo $$cores)
+
+# All from Debian bookworm. OpenCV's two small packages instead of libopencv-dev, which draws in two hundred others.
+PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
+	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
+	zlib1g-dev gnuplot-nox fonts-dejavu-core libgtest-dev libgmock-dev libbenchmark-dev
+LINT_PACKAGES := clang-format clang-tidy
+
+ROOMS := render analysis cuda studies
+SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
+TIDY_SOURCES = $(shell find $(ROOMS) -name '*.cpp')
+
+.PHONY: build test demo bench lint format install clean help packages configure
+.DEFAULT_GOAL := build
+
+build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
+	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone
+
+test: configure  ## build and run every test; only some: ctest --test-dir build -R medium/
+	cmake --build $(BUILD) --parallel $(JOBS)
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+
+demo: build  ## the seed's experiment from setup to error report, into out/demo
+	$(BUILD)/bin/gladstone demo -o out/demo
+
+bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--benchmark_filter=...'
+	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
+	$(BUILD)/bin/gladstone_bench $(BENCH)
+
+lint: PACKAGES += $(LINT_PACKAGES)
+lint: configure  ## check the format (clang-format) and the code (clang-tidy)
+	clang-format --dry-run -Werror $(SOURCES)
+	@printf '%s\n' $(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 clang-tidy -p $(BUILD) --quiet
+
+format:  ## rewrite the sources in the project's format
+	@cmake/install_packages.sh clang-format
+	clang-format -i $(SOURCES)
+
+install: configure  ## programs, libraries, headers, cases and CMake package; where: PREFIX=/usr/local
+	cmake --build $(BUILD) --parallel $(JOBS)
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+clean:  ## remove what was built
+	rm -rf $(BUILD)
+
+packages:
+	@cmake/install_packages.sh $(PACKAGES)
+
+configure: packages
+	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' Makefile
+	@echo 'PRESET=default|cuda|dev picks the build (build, build/cuda, build/dev); JOBS=N its parallel jobs;'
+	@echo 'CMAKE_OPTIONS="-D..." goes to CMake.'

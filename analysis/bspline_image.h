@@ -1,0 +1,175 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <functional>
+#include <vector>
+
+#include "render/base/contracts.h"
+#include "render/base/host_device.h"
+#include "render/base/parallel.h"
+
+namespace gladstone {
+
+/// Weights of the degree + 1 B-splines that are not zero at `t` past a node, 0 <= t < 1, from the leftmost on.
+/// Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821, eq. 2.3, written out in powers of t.
+template <int degree, class T>
+GLADSTONE_HD void bspline_weights(T t, T* w) {
+  static_assert(degree == 3 || degree == 5);
+  T const s = T(1) - t;
+  T const t2 = t * t;
+  if constexpr (degree == 3) {
+    w[0] = s * s * s / T(6);
+    w[1] = (T(4) + t2 * (T(3) * t - T(6))) / T(6);
+    w[2] = (T(1) + t * (T(3) + t * (T(3) - T(3) * t))) / T(6);
+    w[3] = t2 * t / T(6);
+  } else {
+    T const c = T(1) / T(120);
+    w[0] = c * s * s * s * s * s;
+    w[1] = c * (T(26) + t * (T(-50) + t * (T(20) + t * (T(20) + t * (T(-20) + T(5) * t)))));
+    w[2] = c * (T(66) + t2 * (T(-60) + t2 * (T(30) - T(10) * t)));
+    w[3] = c * (T(26) + t * (T(50) + t * (T(20) + t * (T(-20) + t * (T(-20) + T(10) * t)))));
+    w[4] = c * (T(1) + t * (T(5) + t * (T(10) + t * (T(10) + t * (T(5) - T(5) * t)))));
+    w[5] = c * t2 * t2 * t;
+  }
+}
+
+/// B-spline coefficients of an image with a margin of mirrored ones, so that evaluation needs no test at the border.
+template <class T>
+struct BsplineView {
+  static constexpr int margin_before = 4;  ///< columns and rows in front of pixel 0
+  static constexpr int margin_after = 8;   ///< and behind the last one
+  static constexpr int lanes = 8;          ///< taps read per row: degree + 1 rounded up, the rest with weight 0
+
+  T const* coefficients;
+  int stride;
+  int columns;
+  int rows;
+
+  /// The spline at (column + dx, row + dy) [px]. Pixel and remainder come apart so that float coordinates stay exact on
+  /// large images; positions more than a pixel outside the image are moved back to its edge.
+  template <int degree>
+  GLADSTONE_HD T sample(int column, int row, T dx, T dy) const {
+    using std::floor;
+    T const floor_x = floor(dx), floor_y = floor(dy);
+    int const base_x = clamp(column + static_cast<int>(floor_x), columns);
+    int const base_y = clamp(row + static_cast<int>(floor_y), rows);
+    T weight_x[lanes] = {}, weight_y[degree + 1];
+    bspline_weights<degree>(dx - floor_x, weight_x);
+    bspline_weights<degree>(dy - floor_y, weight_y);
+    constexpr int before = (degree - 1) / 2;
+    T const* c = coefficients + static_cast<long long>(base_y - before + margin_before) * stride +
+                 (base_x - before + margin_before);
+    T sum[lanes] = {};
+    for (int j = 0; j <= degree; ++j, c += stride)
+      for (int i = 0; i < lanes; ++i) sum[i] += weight_y[j] * c[i];
+    for (int i = 0; i < lanes; ++i) sum[i] *= weight_x[i];
+    return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+  }
+
+ private:
+  GLADSTONE_HD static int clamp(int base, int count) { return base < -1 ? -1 : (base > count - 1 ? count - 1 : base); }
+};
+
+/// An image as an interpolating B-spline: it passes through every pixel and has degree - 1 continuous derivatives. The
+/// image is continued by reflection at the centres of its outermost pixels. Unser et al. (1993), the recursive filter
+/// of their eqs. 3.5 to 3.9; away from the border it reproduces polynomials up to its degree.
+template <class T>
+class BsplineImage {
+ public:
+  /// @param pixel value at (column, row), called once each @param degree 3 or 5
+  BsplineImage(int columns, int rows, int degree, std::function<double(int column, int row)> const& pixel)
+      : columns_(columns), rows_(rows), stride_(columns + View::margin_before + View::margin_after) {
+    GLADSTONE_EXPECTS(columns > 0 && rows > 0 && (degree == 3 || degree == 5));
+    coefficients_.resize(static_cast<std::size_t>(stride_) * (rows + View::margin_before + View::margin_after));
+    filter_rows(degree, pixel);
+    filter_columns(degree);
+    mirror_rows();
+  }
+
+  using View = BsplineView<T>;
+  View view() const { return {coefficients_.data(), stride_, columns_, rows_}; }
+
+ private:
+  static constexpr int block = 8;  // lines filtered together
+
+  T* row(int j) { return coefficients_.data() + static_cast<std::size_t>(j + View::margin_before) * stride_; }
+
+  /// Index of the pixel that reflection puts at i.
+  static int mirrored(int i, int count) {
+    if (count == 1) return 0;
+    int const period = 2 * (count - 1);
+    int const k = std::abs(i) % period;
+    return k < count ? k : period - k;
+  }
+
+  /// Turns `count` samples of `block` interleaved lines into coefficients.
+  static void filter_lines(double* c, int count, int degree) {
+    if (count == 1) return;
+    static constexpr std::array<double, 1> cubic{-0.26794919243112270647};  // sqrt(3) - 2
+    static constexpr std::array<double, 2> quintic{-0.43057534709997377, -0.04309628820326465};
+    double const* poles = degree == 3 ? cubic.data() : quintic.data();
+    int const pole_count = degree == 3 ? 1 : 2;
+    for (int p = 0; p < pole_count; ++p) {
+      double const z = poles[p];
+      double const gain = (1.0 - z) * (1.0 - 1.0 / z);
+      for (int i = 0; i < count * block; ++i) c[i] *= gain;
+      // first causal value: the reflected signal summed until z^k is below rounding
+      int const horizon = static_cast<int>(std::ceil(std::log(1e-17) / std::log(std::abs(z))));
+      for (int l = 0; l < block; ++l) {
+        double sum = 0.0, power = 1.0;
+        for (int k = 0; k < horizon; ++k, power *= z) sum += power * c[mirrored(k, count) * block + l];
+        c[l] = sum;
+      }
+      for (int i = 1; i < count; ++i)
+        for (int l = 0; l < block; ++l) c[i * block + l] += z * c[(i - 1) * block + l];
+      double* last = c + (count - 1) * block;
+      for (int l = 0; l < block; ++l) last[l] = z / (z * z - 1.0) * (last[l] + z * last[l - block]);
+      for (int i = count - 2; i >= 0; --i)
+        for (int l = 0; l < block; ++l) c[i * block + l] = z * (c[(i + 1) * block + l] - c[i * block + l]);
+    }
+  }
+
+  void filter_rows(int degree, std::function<double(int, int)> const& pixel) {
+    parallel_chunks(static_cast<std::size_t>(rows_), block, [&](std::size_t begin, std::size_t end) {
+      int const first = static_cast<int>(begin), used = static_cast<int>(end - begin);
+      std::vector<double> lines(static_cast<std::size_t>(columns_) * block);
+      for (int l = 0; l < used; ++l)
+        for (int i = 0; i < columns_; ++i) lines[static_cast<std::size_t>(i) * block + l] = pixel(i, first + l);
+      filter_lines(lines.data(), columns_, degree);
+      for (int l = 0; l < used; ++l) {
+        T* out = row(first + l);
+        for (int i = -View::margin_before; i < columns_ + View::margin_after; ++i)
+          out[i + View::margin_before] =
+              static_cast<T>(lines[static_cast<std::size_t>(mirrored(i, columns_)) * block + l]);
+      }
+    });
+  }
+
+  void filter_columns(int degree) {
+    parallel_chunks(static_cast<std::size_t>(stride_), block, [&](std::size_t begin, std::size_t end) {
+      std::vector<double> lines(static_cast<std::size_t>(rows_) * block);
+      for (int j = 0; j < rows_; ++j)
+        for (std::size_t i = begin; i < end; ++i) lines[static_cast<std::size_t>(j) * block + (i - begin)] = row(j)[i];
+      filter_lines(lines.data(), rows_, degree);
+      for (int j = 0; j < rows_; ++j)
+        for (std::size_t i = begin; i < end; ++i)
+          row(j)[i] = static_cast<T>(lines[static_cast<std::size_t>(j) * block + (i - begin)]);
+    });
+  }
+
+  void mirror_rows() {
+    for (int j = -View::margin_before; j < rows_ + View::margin_after; ++j)
+      if (j < 0 || j >= rows_) std::copy_n(row(mirrored(j, rows_)), stride_, row(j));
+  }
+
+  int columns_;
+  int rows_;
+  int stride_;
+  std::vector<T> coefficients_;
+};
+
+}  // namespace gladstone

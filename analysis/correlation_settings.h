@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/base/setup_table.h"
+
+namespace gladstone {
+
+/// Table [correlate] of a setup: how displacement is measured.
+struct CorrelationSettings {
+  std::vector<int> window_px{64, 32, 16};  ///< nominal window of every pass [px]; even, 4 .. 512, never growing
+  double overlap = 0.5;                    ///< part of a window shared with the next, [0, 0.95]
+  std::string method = "scc";              ///< a name of correlation_methods()
+  std::string subpixel = "gauss3";         ///< three-point Gaussian
+  std::string weighting = "gaussian";      ///< "gaussian" over twice the window, or "uniform" over the window
+  std::string deformation = "quintic";     ///< B-spline that deforms the images between passes: "cubic" or "quintic"
+  int final_passes = 1;                    ///< times the last pass is run, 1 .. 5; more sharpen detail and noise alike
+  double median_threshold = 2.0;           ///< normalised median residual of a spurious vector
+  double median_epsilon_px = 0.1;          ///< noise level in that residual [px]
+};
+
+/// Reads the table [correlate]; problems are collected in its document.
+CorrelationSettings read_correlation_settings(SetupTable table);
+
+/// Why these settings do not suit an image of that size (a window larger than the image), as
+/// "problem (why); suggestion"; empty where they do.
+std::string window_problem(CorrelationSettings const& settings, int columns, int rows);
+
+}  // namespace gladstone

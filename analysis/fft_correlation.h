@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "analysis/interrogation_grid.h"
+#include "analysis/window_deformation.h"
+#include "analysis/window_ops.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+/// What the correlation of one window gave.
+struct WindowCorrelation {
+  enum class Outcome { measured, no_signal, masked };
+  Outcome outcome = Outcome::no_signal;
+  int peaks = 0;                 ///< candidates found, at most 3
+  std::array<Vec2d, 3> shift{};  ///< subpixel positions of the highest peaks, highest first [px]
+  double peak_ratio = 0.0;       ///< height of the highest over the second highest peak, at most 1000
+};
+
+/// Correlates every window of a grid: weighted mean removed, weighted, cross-correlated by Fourier transform over a
+/// square of twice the nominal window (so that shifts up to half a window never wrap), peaks by three-point Gaussian.
+/// The fall-off of the plane with the shift that the weights cause is divided out before the fit, else it would pull
+/// every peak towards zero. Windows go through the transform in pairs, and the pairs depend on the grid alone: the
+/// result is the same for any number of threads.
+/// @param search_radius_px largest shift looked for along either axis, at most half a window
+/// @param label            of the progress bar
+std::vector<WindowCorrelation> correlate_windows(ImagePair const& pair, InterrogationGrid const& grid,
+                                                 WindowWeighting weighting, int search_radius_px,
+                                                 std::string const& label);
+
+}  // namespace gladstone

@@ -1,0 +1,27 @@
+# Language level, build type, flags and output folders that hold for every target.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+# The commit that the program names in its files is read when CMake runs: run it again after every commit.
+if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
+endif()
+
+# What changes results or the layout of Eigen's types: the same for the libraries and for whoever uses their headers.
+set(GLADSTONE_USAGE_FLAGS -fno-math-errno)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND GLADSTONE_ARCHITECTURE)
+  list(APPEND GLADSTONE_USAGE_FLAGS -march=${GLADSTONE_ARCHITECTURE})
+endif()
+
+# For our own targets alone.
+add_library(gladstone_flags INTERFACE)
+target_compile_options(gladstone_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow ${GLADSTONE_USAGE_FLAGS}>)
+if(GLADSTONE_WARNINGS_AS_ERRORS)
+  target_compile_options(gladstone_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
+endif()

@@ -1,0 +1,31 @@
+# cmake --install: the program, the rooms as static libraries with their headers, the cases and data, and the package
+# for find_package(gladstone).
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(rooms GLOBAL PROPERTY GLADSTONE_ROOMS)
+target_compile_options(gladstone_base INTERFACE
+  $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${GLADSTONE_USAGE_FLAGS}>>)
+install(TARGETS ${rooms} EXPORT gladstoneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TARGET gladstone)
+  install(TARGETS gladstone RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+# headers keep their paths: #include "render/base/vec.h"
+install(DIRECTORY render analysis cuda studies DESTINATION include/gladstone
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.cuh" PATTERN "cases" EXCLUDE)
+install(DIRECTORY ${CMAKE_BINARY_DIR}/generated/ DESTINATION include/gladstone FILES_MATCHING PATTERN "*.h")
+
+# cases and data keep their paths too, since cases name their data relative to themselves
+install(DIRECTORY studies/cases DESTINATION share/gladstone/studies OPTIONAL)
+install(DIRECTORY data DESTINATION share/gladstone)
+install(FILES LICENSE DESTINATION share/gladstone)
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gladstone)
+configure_package_config_file(cmake/gladstoneConfig.cmake.in ${CMAKE_BINARY_DIR}/gladstoneConfig.cmake
+                              INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/gladstoneConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/gladstoneConfig.cmake ${CMAKE_BINARY_DIR}/gladstoneConfigVersion.cmake
+              cmake/GladstoneDependencies.cmake cmake/FindOpenCVModules.cmake
+        DESTINATION ${package})
+install(EXPORT gladstoneTargets NAMESPACE gladstone:: DESTINATION ${package})

@@ -1,0 +1,463 @@
+#include "render/base/hdf5_file.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <numeric>
+
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+#include "render/base/nearest_name.h"
+#include "render/base/output_file.h"
+#include "render/base/version.h"
+
+namespace gladstone {
+namespace {
+
+/// Debian's HDF5 is not thread-safe: one call at a time in the whole program.
+std::recursive_mutex& library_lock() {
+  static std::recursive_mutex lock;
+  return lock;
+}
+using Lock = std::lock_guard<std::recursive_mutex>;
+
+/// An HDF5 identifier that closes itself.
+class Id {
+ public:
+  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Id() { reset(); }
+  Id(Id&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = H5I_INVALID_HID; }
+  Id& operator=(Id&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  operator hid_t() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+  void reset() {
+    if (valid()) close_(id_);
+    id_ = H5I_INVALID_HID;
+  }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::size_t product(std::vector<std::size_t> const& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+std::string class_name(H5T_class_t type) {
+  switch (type) {
+    case H5T_STRING:
+      return "text";
+    case H5T_COMPOUND:
+      return "compound records";
+    case H5T_ENUM:
+      return "enumerated values";
+    case H5T_ARRAY:
+      return "arrays";
+    case H5T_VLEN:
+      return "lists of varying length";
+    default:
+      return "something else";
+  }
+}
+
+/// "/a/b/c" to {"a", "b", "c"}
+std::vector<std::string> steps(std::string const& path) {
+  std::vector<std::string> parts;
+  for (auto const& part : std::filesystem::path(path)) {
+    if (part != "/" && !part.empty()) parts.push_back(part.string());
+  }
+  return parts;
+}
+
+herr_t collect_dataset(hid_t, char const* name, H5O_info_t const* info, void* names) {
+  if (info->type == H5O_TYPE_DATASET) static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+std::vector<std::string> all_datasets(hid_t file) {
+  std::vector<std::string> names;
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, collect_dataset, &names);
+  return names;
+}
+
+}  // namespace
+
+struct Hdf5Reader::Handle {
+  Id file;
+  std::string rows_name;  ///< the dataset that read_rows last read from, kept open for its cache
+  Id rows{H5I_INVALID_HID, H5Dclose};
+
+  /// Opens a dataset of numbers. @throws DataError
+  Id open(std::string const& path, std::string const& dataset, bool integers_only = false) const;
+  /// Opens a dataset to be read row by row: with a cache for the chunks that share its rows, so that each chunk is
+  /// decompressed once, whatever the count of rows asked for (as long as they fit into 128 MiB).
+  hid_t open_rows(std::string const& path, std::string const& dataset);
+};
+
+namespace {
+
+std::vector<std::size_t> shape_of(hid_t dataset) {
+  Id const space(H5Dget_space(dataset), H5Sclose);
+  int const rank = H5Sget_simple_extent_ndims(space);
+  std::vector<hsize_t> sizes(static_cast<std::size_t>(std::max(rank, 0)));
+  if (rank > 0) H5Sget_simple_extent_dims(space, sizes.data(), nullptr);
+  return {sizes.begin(), sizes.end()};
+}
+
+template <class Value>
+std::vector<Value> read_whole(hid_t dataset, hid_t type, std::string const& path, std::string const& name) {
+  std::vector<Value> values(product(shape_of(dataset)));
+  if (!values.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    throw DataError(path, "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
+  }
+  return values;
+}
+
+}  // namespace
+
+Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset, bool integers_only) const {
+  Id opened(H5Dopen2(file, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!opened.valid()) {
+    auto names = all_datasets(file);
+    std::string message = "has no dataset \"" + dataset + '"';
+    if (names.empty()) throw DataError(path, message + "; it has none at all");
+    if (auto const nearest = nearest_name(dataset, names)) message += "; did you mean \"" + *nearest + "\"?";
+    constexpr std::size_t most = 20;
+    bool const cut = names.size() > most;
+    if (cut) names.resize(most);
+    throw DataError(path, message + " It has " + quoted_list(names) + (cut ? " and more" : ""));
+  }
+  Id const type(H5Dget_type(opened), H5Tclose);
+  H5T_class_t const kind = H5Tget_class(type);
+  if (kind != H5T_INTEGER && (kind != H5T_FLOAT || integers_only)) {
+    std::string const held = kind == H5T_FLOAT ? "floating-point numbers" : class_name(kind);
+    throw DataError(path, "dataset \"" + dataset + "\" holds " + held + "; " + (integers_only ? "whole " : "") +
+                              "numbers are needed");
+  }
+  return opened;
+}
+
+hid_t Hdf5Reader::Handle::open_rows(std::string const& path, std::string const& dataset) {
+  if (rows.valid() && rows_name == dataset) return rows;
+  Id opened = open(path, dataset);
+  Id const created(H5Dget_create_plist(opened), H5Pclose);
+  auto const shape = shape_of(opened);
+  if (H5Pget_layout(created) == H5D_CHUNKED && !shape.empty()) {
+    std::vector<hsize_t> chunk(shape.size());
+    H5Pget_chunk(created, static_cast<int>(chunk.size()), chunk.data());
+    Id const type(H5Dget_type(opened), H5Tclose);
+    std::size_t bytes = H5Tget_size(type) * chunk[0];
+    for (std::size_t axis = 1; axis < shape.size(); ++axis) {
+      bytes *= (shape[axis] + chunk[axis] - 1) / chunk[axis] * chunk[axis];
+    }
+    constexpr std::size_t slots = 12289, most = 128 * 1024 * 1024;
+    Id const access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    H5Pset_chunk_cache(access, slots, std::clamp<std::size_t>(bytes, 1024 * 1024, most), 1.0);
+    opened.reset();
+    opened = Id(H5Dopen2(file, dataset.c_str(), access), H5Dclose);
+  }
+  rows = std::move(opened);
+  rows_name = dataset;
+  return rows;
+}
+
+Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
+  Lock const lock(library_lock());
+  silence();
+  std::error_code error;
+  auto const status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw DataError(path, "does not exist; check the name");
+  if (std::filesystem::is_directory(status)) throw DataError(path, "is a folder; name an HDF5 file");
+  if (FILE* const file = std::fopen(path.c_str(), "rb")) {
+    std::fclose(file);
+  } else {
+    throw DataError(path, std::string("cannot be opened (") + std::strerror(errno) + ')');
+  }
+  if (H5Fis_hdf5(path.c_str()) <= 0) throw DataError(path, "is not an HDF5 file");
+  Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+  H5Pset_file_locking(access, false, true);  // we only read, perhaps from a file system without locks
+#endif
+  Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
+  if (!file.valid()) throw DataError(path, "cannot be opened as HDF5 (it is damaged or cut short); copy it again");
+  handle_ = std::unique_ptr<Handle>(new Handle{.file = std::move(file), .rows_name = {}});
+}
+
+Hdf5Reader::~Hdf5Reader() {
+  Lock const lock(library_lock());
+  handle_.reset();
+}
+Hdf5Reader::Hdf5Reader(Hdf5Reader&&) noexcept = default;
+
+bool Hdf5Reader::has(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  std::string below;
+  for (auto const& step : steps(dataset)) {
+    below += '/' + step;
+    if (H5Lexists(handle_->file, below.c_str(), H5P_DEFAULT) <= 0) return false;
+  }
+  Id const object(H5Oopen(handle_->file, dataset.c_str(), H5P_DEFAULT), H5Oclose);
+  return object.valid() && H5Iget_type(object) == H5I_DATASET;
+}
+
+std::vector<std::string> Hdf5Reader::dataset_names() const {
+  Lock const lock(library_lock());
+  auto names = all_datasets(handle_->file);
+  std::erase_if(names, [](std::string const& name) { return name.find('/') != std::string::npos; });
+  return names;
+}
+
+std::vector<std::size_t> Hdf5Reader::shape(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  return shape_of(handle_->open(path_, dataset));
+}
+
+std::vector<double> Hdf5Reader::read(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  return read_whole<double>(handle_->open(path_, dataset), H5T_NATIVE_DOUBLE, path_, dataset);
+}
+
+std::vector<std::int64_t> Hdf5Reader::read_integers(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  return read_whole<std::int64_t>(handle_->open(path_, dataset, true), H5T_NATIVE_INT64, path_, dataset);
+}
+
+void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::size_t count,
+                           std::span<float> out) const {
+  Lock const lock(library_lock());
+  hid_t const opened = handle_->open_rows(path_, dataset);
+  auto const shape = shape_of(opened);
+  GLADSTONE_EXPECTS(!shape.empty() && first + count <= shape[0]);
+  GLADSTONE_EXPECTS(out.size() == count * (product(shape) / std::max<std::size_t>(shape[0], 1)));
+  if (out.empty()) return;
+  std::vector<hsize_t> start(shape.size(), 0), size(shape.begin(), shape.end());
+  start[0] = first;
+  size[0] = count;
+  Id const on_disk(H5Dget_space(opened), H5Sclose);
+  H5Sselect_hyperslab(on_disk, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+  Id const in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  if (H5Dread(opened, H5T_NATIVE_FLOAT, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
+    throw DataError(path_, "dataset \"" + dataset + "\" cannot be read (the file is damaged or cut short)");
+  }
+}
+
+std::string Hdf5Reader::attribute(std::string const& name) const {
+  Lock const lock(library_lock());
+  if (H5Aexists(handle_->file, name.c_str()) <= 0) return {};
+  Id const opened(H5Aopen(handle_->file, name.c_str(), H5P_DEFAULT), H5Aclose);
+  Id const type(H5Aget_type(opened), H5Tclose);
+  Id const space(H5Aget_space(opened), H5Sclose);
+  hssize_t const count = H5Sget_simple_extent_npoints(space);
+  if (count != 1) return {};
+  H5T_class_t const kind = H5Tget_class(type);
+  if (kind == H5T_STRING && H5Tis_variable_str(type) > 0) {
+    char* text = nullptr;
+    Id const memory(H5Tcopy(type), H5Tclose);
+    if (H5Aread(opened, memory, &text) < 0 || !text) return {};
+    std::string const value = text;
+    H5free_memory(text);
+    return value;
+  }
+  if (kind == H5T_STRING) {
+    std::string value(H5Tget_size(type), '\0');
+    if (H5Aread(opened, type, value.data()) < 0) return {};
+    return value.substr(0, value.find('\0'));
+  }
+  if (kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE) {
+    std::uint64_t value = 0;
+    return H5Aread(opened, H5T_NATIVE_UINT64, &value) < 0 ? std::string() : std::to_string(value);
+  }
+  if (kind == H5T_INTEGER) {
+    std::int64_t value = 0;
+    return H5Aread(opened, H5T_NATIVE_INT64, &value) < 0 ? std::string() : std::to_string(value);
+  }
+  if (kind != H5T_FLOAT) return {};
+  double value = 0.0;
+  if (H5Aread(opened, H5T_NATIVE_DOUBLE, &value) < 0) return {};
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+/// The file grows in memory and goes to disk in close(), by calls whose errors we see: HDF5 itself cannot get out of a
+/// full disk (it tries again to flush whenever it is asked to close, and at exit).
+struct Hdf5Writer::Handle {
+  OutputFile output;
+  Id file;
+};
+
+namespace {
+
+void check(bool good, std::string const& path, std::string const& what) {
+  if (!good) throw OutputError(path, what + " cannot be written to the file (out of memory?)");
+}
+
+/// Deflate from this size on; below, chunks cost more than they save.
+constexpr std::size_t compressed_from_bytes = 64 * 1024;
+constexpr std::size_t chunk_bytes = 1024 * 1024;
+
+void compress(hid_t properties, std::vector<hsize_t> const& sizes, std::size_t value_bytes) {
+  std::vector<hsize_t> chunk = sizes;
+  auto const bytes = [&] {
+    return std::accumulate(chunk.begin(), chunk.end(), value_bytes, std::multiplies<std::size_t>());
+  };
+  for (std::size_t axis = 0; axis < chunk.size() && bytes() > chunk_bytes;) {
+    if (chunk[axis] == 1) {
+      ++axis;
+    } else {
+      chunk[axis] = (chunk[axis] + 1) / 2;
+    }
+  }
+  H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data());
+  H5Pset_shuffle(properties);
+  H5Pset_deflate(properties, 4);
+}
+
+void write_attribute(hid_t object, std::string const& path, std::string const& name, hid_t type, void const* value) {
+  if (H5Aexists(object, name.c_str()) > 0) H5Adelete(object, name.c_str());
+  Id const space(H5Screate(H5S_SCALAR), H5Sclose);
+  Id const created(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  check(created.valid() && H5Awrite(created, type, value) >= 0, path, "attribute \"" + name + '"');
+}
+
+void write_attribute(hid_t object, std::string const& path, std::string const& name, std::string const& value) {
+  Id const type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, H5T_VARIABLE);  // kept outside the object's header, where 64 KiB would be the limit
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  char const* const text = value.c_str();
+  write_attribute(object, path, name, type, &text);
+}
+
+/// Makes the groups above a dataset, without the time of day, so that equal input gives equal files.
+void make_groups(hid_t file, std::string const& path, std::string const& dataset) {
+  auto parts = steps(dataset);
+  parts.pop_back();
+  std::string group;
+  for (auto const& part : parts) {
+    group += '/' + part;
+    if (H5Lexists(file, group.c_str(), H5P_DEFAULT) > 0) continue;
+    Id const properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+    H5Pset_obj_track_times(properties, false);
+    Id const made(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+    check(made.valid(), path, "group \"" + group + '"');
+  }
+}
+
+void write_dataset(hid_t file, std::string const& path, std::string const& dataset, hid_t type, void const* data,
+                   std::size_t value_bytes, std::vector<std::size_t> const& shape, std::string const& units,
+                   std::string const& description, std::string const& axes) {
+  make_groups(file, path, dataset);
+  std::vector<hsize_t> const sizes(shape.begin(), shape.end());
+  Id const space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
+  Id const properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  if (product(shape) * value_bytes > compressed_from_bytes) compress(properties, sizes, value_bytes);
+  Id const created(H5Dcreate2(file, dataset.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose);
+  bool good = created.valid();
+  if (good && product(shape) > 0) good = H5Dwrite(created, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+  check(good, path, "dataset \"" + dataset + '"');
+  write_attribute(created, path, "units", units);
+  write_attribute(created, path, "description", description);
+  write_attribute(created, path, "axes", axes);
+}
+
+/// The time now, ISO 8601, UTC.
+std::string date_and_time() {
+  std::time_t const now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+}  // namespace
+
+Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin) : path_(path) {
+  Lock const lock(library_lock());
+  silence();
+  Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access, chunk_bytes, false);
+  Id const properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_obj_track_times(properties, false);
+  handle_.reset(new Handle{OutputFile(path), Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties, access), H5Fclose)});
+  check(handle_->file.valid(), path, "the HDF5 structure");
+  hid_t const root = handle_->file;
+  std::int64_t const format_version = origin.version;
+  write_attribute(root, path, "filetype", origin.filetype);
+  write_attribute(root, path, "version", H5T_NATIVE_INT64, &format_version);
+  write_attribute(root, path, "software_version", std::string(gladstone::version));
+  write_attribute(root, path, "git_sha1", std::string(gladstone::git_sha1));
+  write_attribute(root, path, "date_and_time", date_and_time());
+  write_attribute(root, path, "setup", origin.setup);
+  write_attribute(root, path, "seed", H5T_NATIVE_UINT64, &origin.seed);
+  write_attribute(root, path, "device", origin.device);
+}
+
+Hdf5Writer::~Hdf5Writer() {
+  Lock const lock(library_lock());
+  handle_.reset();
+}
+
+void Hdf5Writer::write(std::string const& dataset, std::span<double const> data, std::vector<std::size_t> const& shape,
+                       std::string const& units, std::string const& description, std::string const& axes) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
+  write_dataset(handle_->file, path_, dataset, H5T_NATIVE_DOUBLE, data.data(), sizeof(double), shape, units,
+                description, axes);
+}
+
+void Hdf5Writer::write(std::string const& dataset, std::span<std::int64_t const> data,
+                       std::vector<std::size_t> const& shape, std::string const& units, std::string const& description,
+                       std::string const& axes) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ && product(shape) == data.size());
+  write_dataset(handle_->file, path_, dataset, H5T_NATIVE_INT64, data.data(), sizeof(std::int64_t), shape, units,
+                description, axes);
+}
+
+void Hdf5Writer::attribute(std::string const& object, std::string const& name, std::string const& value) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ != nullptr);
+  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
+  write_attribute(opened, path_, name, value);
+}
+
+void Hdf5Writer::attribute(std::string const& object, std::string const& name, double value) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ != nullptr);
+  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
+  write_attribute(opened, path_, name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void Hdf5Writer::close() {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ != nullptr);
+  check(H5Fflush(handle_->file, H5F_SCOPE_GLOBAL) >= 0, path_, "the HDF5 structure");
+  ssize_t const size = H5Fget_file_image(handle_->file, nullptr, 0);
+  check(size > 0, path_, "the HDF5 structure");
+  std::vector<char> image(static_cast<std::size_t>(size));
+  check(H5Fget_file_image(handle_->file, image.data(), image.size()) == size, path_, "the HDF5 structure");
+  handle_->file.reset();
+  handle_->output.write(image.data(), image.size());
+  handle_->output.commit();
+  handle_.reset();
+}
+
+}  // namespace gladstone

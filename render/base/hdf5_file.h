@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gladstone {
+
+/// What every HDF5 file of ours says about itself, as root attributes.
+struct FileOrigin {
+  std::string filetype;  ///< "gladstone truth", "gladstone vectors", ...
+  int version = 1;
+  std::string setup;  ///< full text of the resolved setup
+  std::uint64_t seed = 0;
+  std::string device = "cpu";
+};
+
+/// The one place where the HDF5 C library is called. Errors are DataError (reading) and OutputError (writing), with
+/// the file and the dataset named; HDF5's own messages are silenced.
+class Hdf5Reader {
+ public:
+  explicit Hdf5Reader(std::string const& path);
+  ~Hdf5Reader();
+  Hdf5Reader(Hdf5Reader&&) noexcept;
+
+  bool has(std::string const& dataset) const;
+  /// Names of the datasets in the root group, for messages.
+  std::vector<std::string> dataset_names() const;
+  std::vector<std::size_t> shape(std::string const& dataset) const;
+  /// A whole dataset converted to double / integers; a dataset of another type class (string, compound) is an error.
+  std::vector<double> read(std::string const& dataset) const;
+  std::vector<std::int64_t> read_integers(std::string const& dataset) const;
+  /// Rows [first, first + count) of the leading axis, as float; `out` has exactly their size.
+  void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<float> out) const;
+  /// A text or numeric attribute of the root as text; empty where there is none.
+  std::string attribute(std::string const& name) const;
+
+ private:
+  std::string path_;
+  struct Handle;
+  std::unique_ptr<Handle> handle_;
+};
+
+/// Writes one file; nothing is on disk under its final name before close() returns.
+class Hdf5Writer {
+ public:
+  Hdf5Writer(std::string const& path, FileOrigin const& origin);
+  ~Hdf5Writer();
+
+  /// @param dataset absolute name; groups on the way are made
+  /// @param shape   product equals data.size()
+  /// @param axes    e.g. "dot, component (u, v)"
+  void write(std::string const& dataset, std::span<double const> data, std::vector<std::size_t> const& shape,
+             std::string const& units, std::string const& description, std::string const& axes);
+  void write(std::string const& dataset, std::span<std::int64_t const> data, std::vector<std::size_t> const& shape,
+             std::string const& units, std::string const& description, std::string const& axes);
+  void attribute(std::string const& object, std::string const& name, std::string const& value);
+  void attribute(std::string const& object, std::string const& name, double value);
+  /// Flushes, checks that everything arrived on disk, renames to the final name.
+  void close();
+
+ private:
+  std::string path_;
+  struct Handle;
+  std::unique_ptr<Handle> handle_;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "render/base/image.h"
+
+namespace gladstone {
+
+/// What a TIFF of ours says about itself.
+struct ImageMetadata {
+  int bit_depth = 16;          ///< significant bits; values are stored unshifted in 16
+  double pixel_pitch_m = 0.0;  ///< also as X/YResolution
+  std::string description;     ///< e.g. the resolved setup, as ImageDescription
+};
+
+/// Reads any picture that OpenImageIO knows (TIFF, PNG, EXR; 8, 16 bit, float) as raw values in double:
+/// 0..255, 0..65535 or as stored. Colour becomes luminance (Rec. 709). @throws DataError
+Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
+
+/// Writes a 16-bit grey TIFF at exactly `path` (the caller stages). @throws OutputError
+void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);
+
+}  // namespace gladstone

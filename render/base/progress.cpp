@@ -1,0 +1,54 @@
+#include "render/base/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace gladstone {
+namespace {
+
+bool enabled = true;
+
+}  // namespace
+
+void Progress::enable(bool on) { enabled = on; }
+
+Progress::Progress(std::string label, std::size_t total)
+    : label_(std::move(label)),
+      total_(total),
+      start_(std::chrono::steady_clock::now()),
+      shown_(enabled && total > 0 && isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (drawn_) {
+    draw(done_, true);
+    std::fputc('\n', stderr);
+  }
+}
+
+void Progress::advance(std::size_t done) {
+  std::size_t const now_done = done_.fetch_add(done, std::memory_order_relaxed) + done;
+  if (!shown_) return;
+  auto const elapsed = std::chrono::steady_clock::now() - start_;
+  long long const ms = std::chrono::duration_cast<std::chrono::milliseconds>(elapsed).count();
+  long long due = next_draw_ms_.load(std::memory_order_relaxed);
+  if (ms < due || !next_draw_ms_.compare_exchange_strong(due, ms + 100)) return;
+  draw(now_done, false);
+}
+
+void Progress::draw(std::size_t done, bool last) {
+  std::lock_guard const lock(mutex_);
+  constexpr int width = 30;
+  double const fraction = static_cast<double>(done) / static_cast<double>(total_);
+  double const elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  int const filled = static_cast<int>(fraction * width);
+  std::string bar(static_cast<std::size_t>(filled), '#');
+  bar.resize(width, '.');
+  double const seconds = last ? elapsed : (fraction > 0 ? elapsed * (1 - fraction) / fraction : 0);
+  std::fprintf(stderr, "\r%-24s [%s] %3d %%  %4.0f s %s ", label_.c_str(), bar.c_str(), static_cast<int>(100 * fraction),
+               seconds, last ? "in all" : "left  ");
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+}  // namespace gladstone

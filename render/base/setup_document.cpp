@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <tuple>
+
+#include "render/base/nearest_name.h"
+#include "render/base/setup_state.h"
+
+namespace gladstone {
+namespace {
+
+bool is_index(std::string const& step) { return step.size() > 2 && step.front() == '[' && step.back() == ']'; }
+
+std::size_t index_of(std::string const& step) {
+  std::size_t index = 0;
+  std::from_chars(step.data() + 1, step.data() + step.size() - 1, index);
+  return index;
+}
+
+/// "[lens]", or "the setup" for the root.
+std::string table_name(std::vector<std::string> const& path) {
+  return path.empty() ? "the setup" : '[' + dotted_path(path) + ']';
+}
+
+/// Line and column behind the file's name in "file:line:column"; --set comes after all lines.
+std::tuple<int, int, int> sort_key(std::string const& where) {
+  if (where.starts_with("--set")) return {2, 0, 0};
+  auto const last = where.rfind(':');
+  auto const first = last == std::string::npos || last == 0 ? last : where.rfind(':', last - 1);
+  if (last == std::string::npos || first == std::string::npos) return {1, 0, 0};
+  int line = 0, column = 0;
+  auto const* const text = where.data();
+  bool const placed = std::from_chars(text + first + 1, text + last, line).ptr == text + last &&
+                      std::from_chars(text + last + 1, text + where.size(), column).ptr == text + where.size();
+  return placed ? std::tuple{0, line, column} : std::tuple{1, 0, 0};
+}
+
+/// What to do about a key that nobody read.
+std::string unread_message(SetupDocument::State const& state, std::vector<std::string> const& table,
+                           SetupRecord const& record, std::string const& key, SetupNode const& node) {
+  bool const is_table = node.kind == SetupNode::Kind::table;
+  auto const named = [&](std::string const& name) {
+    auto path = table;
+    path.push_back(name);
+    return is_table ? '[' + dotted_path(path) + ']' : '"' + name + '"';
+  };
+  std::string const place = is_table ? "" : " in " + table_name(table);
+  if (record.find(key)) return named(key) + place + " has no effect with the other settings; remove it";
+
+  std::string const message = "unknown " + std::string(is_table ? "table " : "key ") + named(key) + place;
+  auto const known = record.keys();
+  if (auto const nearest = nearest_name(key, known)) return message + "; did you mean " + named(*nearest) + '?';
+  std::string const elsewhere = state.record.table_with(key);
+  if (elsewhere != "?") {
+    return message + "; it belongs " + (elsewhere.empty() ? "before the first table" : "in [" + elsewhere + ']');
+  }
+  if (known.empty()) return message + "; remove it (nothing is read here)";
+  return message + "; known are " + quoted_list(known);
+}
+
+void collect_unread(SetupDocument::State& state, SetupNode const& node, SetupRecord const& record,
+                    std::vector<std::string>& path) {
+  for (auto const& [key, value] : node.members) {
+    auto const* const entry = record.find(key);
+    if (!entry || !entry->read) {
+      state.problems.push_back({state.where(value.place), unread_message(state, path, record, key, value)});
+      continue;
+    }
+    path.push_back(key);
+    if (value.kind == SetupNode::Kind::table && !entry->tables.empty()) {
+      collect_unread(state, value, entry->tables.front(), path);
+    } else if (value.kind == SetupNode::Kind::array) {
+      for (std::size_t i = 0; i < std::min(value.elements.size(), entry->tables.size()); ++i) {
+        path.push_back('[' + std::to_string(i) + ']');
+        collect_unread(state, value.elements[i], entry->tables[i], path);
+        path.pop_back();
+      }
+    }
+    path.pop_back();
+  }
+}
+
+void set_place(SetupNode& node, SetupPlace const& place) {
+  node.place = place;
+  for (auto& element : node.elements) set_place(element, place);
+  for (auto& member : node.members) set_place(member.second, place);
+}
+
+std::vector<std::string> split_path(std::string const& text) {
+  std::vector<std::string> steps{""};
+  for (char const c : text) {
+    if (c == '.') {
+      steps.emplace_back();
+    } else if (c != ' ' && c != '\t') {
+      steps.back() += c;
+    }
+  }
+  return steps;
+}
+
+}  // namespace
+
+SetupNode const* SetupDocument::State::find(std::vector<std::string> const& path) const {
+  SetupNode const* node = &root;
+  for (auto const& step : path) {
+    if (is_index(step) && node->kind == SetupNode::Kind::array) {
+      std::size_t const index = index_of(step);
+      node = index < node->elements.size() ? &node->elements[index] : nullptr;
+    } else {
+      node = node->find(step);
+    }
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
+SetupRecord& SetupDocument::State::record_of(std::vector<std::string> const& path) {
+  SetupRecord* table = &record;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    auto& entry = table->entry(path[i]);
+    entry.read = true;
+    bool const element = i + 1 < path.size() && is_index(path[i + 1]);
+    std::size_t const index = element ? index_of(path[++i]) : 0;
+    if (element) entry.array = true;
+    while (entry.tables.size() <= index) entry.tables.emplace_back();
+    table = &entry.tables[index];
+  }
+  return *table;
+}
+
+std::string SetupDocument::State::where(SetupPlace const& place) const {
+  if (!place.assignment.empty()) return "--set " + place.assignment;
+  return name + ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
+}
+
+std::string SetupDocument::State::where(std::vector<std::string> const& path) const {
+  for (auto above = path;; above.pop_back()) {
+    auto const* const node = find(above);
+    if (node && (node->place.known() || above.empty())) return where(node->place);
+  }
+}
+
+std::string dotted_path(std::vector<std::string> const& path) {
+  std::string text;
+  for (auto const& step : path) {
+    if (!text.empty() && !is_index(step)) text += '.';
+    text += is_index(step) ? step : toml_key(step);
+  }
+  return text;
+}
+
+SetupDocument::SetupDocument(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SetupDocument::SetupDocument(SetupDocument&&) noexcept = default;
+SetupDocument& SetupDocument::operator=(SetupDocument&&) noexcept = default;
+SetupDocument::~SetupDocument() = default;
+
+SetupDocument SetupDocument::from_file(std::string const& path) {
+  auto const unreadable = [&](std::string const& why) {
+    return SetupError({{path, "cannot be read (" + why + "); give the name of a setup file"}});
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw unreadable("it is a folder");
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw unreadable(std::strerror(errno ? errno : EIO));
+  std::string const text{std::istreambuf_iterator<char>(file), {}};
+  if (file.bad()) throw unreadable(std::strerror(errno ? errno : EIO));
+  auto const folder = std::filesystem::absolute(path).parent_path();
+  return from_text(text, path, folder.string());
+}
+
+SetupDocument SetupDocument::from_text(std::string_view text, std::string const& name, std::string const& folder) {
+  auto state = std::make_unique<State>();
+  state->name = name;
+  state->folder = folder;
+  state->root = parse_toml(text, name);
+  state->record.present = true;
+  return SetupDocument(std::move(state));
+}
+
+void SetupDocument::override_key(std::string const& assignment) {
+  std::string const where = "--set " + assignment;
+  auto const equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    add_problem(where, "has no \"=\"; write --set key.path=value");
+    return;
+  }
+  auto const path = split_path(assignment.substr(0, equals));
+  if (std::find(path.begin(), path.end(), "") != path.end()) {
+    add_problem(where, "has an empty key; write --set key.path=value");
+    return;
+  }
+  std::string const text = assignment.substr(equals + 1);
+  if (text.find_first_not_of(" \t") == std::string::npos) {
+    add_problem(where, "has no value; write --set key.path=value");
+    return;
+  }
+  SetupNode value;
+  if (auto parsed = parse_toml_value(text)) {
+    value = std::move(*parsed);
+  } else {
+    value.kind = SetupNode::Kind::text;
+    value.text = text;
+  }
+  set_place(value, {0, 0, assignment});
+
+  // Walk to the table, making those that are absent.
+  SetupNode* table = &state_->root;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    SetupNode* next = table->find(path[i]);
+    if (!next) {
+      next = &table->members.emplace_back(path[i], SetupNode{}).second;
+      next->place.assignment = assignment;
+    }
+    if (next->kind != SetupNode::Kind::table) {
+      std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      bool const array = next->kind == SetupNode::Kind::array;
+      add_problem(where, dotted_path(here) + " is " + kind_name(*next) + ", not a table" +
+                             (array ? "; change its elements in the file" : "; set a key of a table"));
+      return;
+    }
+    table = next;
+  }
+  if (SetupNode* const old = table->find(path.back())) {
+    *old = std::move(value);
+  } else {
+    table->members.emplace_back(path.back(), std::move(value));
+  }
+}
+
+SetupTable SetupDocument::root() { return SetupTable(state_.get(), {}); }
+
+void SetupDocument::add_problem(std::string where, std::string message) {
+  state_->problems.push_back({std::move(where), std::move(message)});
+}
+
+bool SetupDocument::has_problems() const { return !state_->problems.empty(); }
+
+void SetupDocument::finish() {
+  auto& problems = state_->problems;
+  std::vector<std::string> path;
+  collect_unread(*state_, state_->root, state_->record, path);
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](SetupProblem const& a, SetupProblem const& b) { return sort_key(a.where) < sort_key(b.where); });
+  std::vector<SetupProblem> distinct;
+  for (auto const& problem : problems) {
+    auto const same = [&](SetupProblem const& other) {
+      return other.where == problem.where && other.message == problem.message;
+    };
+    if (std::none_of(distinct.begin(), distinct.end(), same)) distinct.push_back(problem);
+  }
+  problems = distinct;
+  if (!problems.empty()) throw SetupError(distinct);
+}
+
+std::string SetupDocument::resolved() const { return resolved_toml(state_->record); }
+
+std::string const& SetupDocument::folder() const { return state_->folder; }
+
+}  // namespace gladstone

@@ -1,0 +1,184 @@
+#include "render/base/setup_node.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+SetupPlace place_of(toml::source_region const& region) {
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), {}};
+}
+
+template <class Date>
+std::string date_text(Date const& date) {
+  std::ostringstream text;
+  text << date;
+  return text.str();
+}
+
+SetupNode converted(toml::node const& source) {
+  SetupNode node;
+  node.place = place_of(source.source());
+  using Kind = SetupNode::Kind;
+  if (auto const* table = source.as_table()) {
+    node.kind = Kind::table;
+    for (auto&& [key, value] : *table) {
+      auto& member = node.members.emplace_back(std::string(key.str()), converted(value)).second;
+      if (key.source().begin.line > 0) member.place = place_of(key.source());
+    }
+  } else if (auto const* array = source.as_array()) {
+    node.kind = Kind::array;
+    for (auto const& element : *array) node.elements.push_back(converted(element));
+  } else if (auto const* text = source.as_string()) {
+    node.kind = Kind::text;
+    node.text = text->get();
+  } else if (auto const* integer = source.as_integer()) {
+    node.kind = Kind::integer;
+    node.integer = integer->get();
+  } else if (auto const* number = source.as_floating_point()) {
+    node.kind = Kind::number;
+    node.number = number->get();
+  } else if (auto const* boolean = source.as_boolean()) {
+    node.kind = Kind::boolean;
+    node.boolean = boolean->get();
+  } else {
+    node.kind = Kind::date;
+    if (auto const* date = source.as_date()) node.text = date_text(date->get());
+    if (auto const* time = source.as_time()) node.text = date_text(time->get());
+    if (auto const* date_time = source.as_date_time()) node.text = date_text(date_time->get());
+  }
+  return node;
+}
+
+bool is_bare_key(std::string const& key) {
+  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
+}  // namespace
+
+SetupNode const* SetupNode::find(std::string const& key) const {
+  if (kind != Kind::table) return nullptr;
+  for (auto const& [name, node] : members) {
+    if (name == key) return &node;
+  }
+  return nullptr;
+}
+
+SetupNode* SetupNode::find(std::string const& key) { return const_cast<SetupNode*>(std::as_const(*this).find(key)); }
+
+SetupNode parse_toml(std::string_view text, std::string const& name) {
+  try {
+    SetupNode root = converted(toml::parse(text));
+    root.place = {1, 1, {}};
+    return root;
+  } catch (toml::parse_error const& error) {
+    auto const begin = error.source().begin;
+    throw SetupError({{name + ':' + std::to_string(begin.line) + ':' + std::to_string(begin.column),
+                       "is not TOML: " + std::string(error.description())}});
+  }
+}
+
+std::optional<SetupNode> parse_toml_value(std::string_view text) {
+  try {
+    toml::table const table = toml::parse("value = " + std::string(text));
+    if (table.size() != 1) return std::nullopt;
+    return converted(table.begin()->second);
+  } catch (toml::parse_error const&) {
+    return std::nullopt;
+  }
+}
+
+std::string toml_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (char const c : text) {
+    auto const code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (c == '\n') {
+      quoted += "\\n";
+    } else if (c == '\t') {
+      quoted += "\\t";
+    } else if (code < 0x20 || code == 0x7f) {
+      constexpr char digits[] = "0123456789abcdef";
+      quoted += "\\u00";
+      quoted += digits[code >> 4];
+      quoted += digits[code & 15];
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + '"';
+}
+
+std::string toml_text(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0.0 ? "inf" : "-inf";
+  char buffer[32];
+  auto const end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  std::string text(buffer, end);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string toml_text(SetupNode const& node) {
+  using Kind = SetupNode::Kind;
+  switch (node.kind) {
+    case Kind::text:
+      return toml_text(std::string_view(node.text));
+    case Kind::integer:
+      return std::to_string(node.integer);
+    case Kind::number:
+      return toml_text(node.number);
+    case Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case Kind::date:
+      return node.text;
+    case Kind::array: {
+      std::string text;
+      for (auto const& element : node.elements) text += (text.empty() ? "" : ", ") + toml_text(element);
+      return '[' + text + ']';
+    }
+    case Kind::table:
+      break;
+  }
+  std::string text;
+  for (auto const& [key, value] : node.members) {
+    text += (text.empty() ? " " : ", ") + toml_key(key) + " = " + toml_text(value);
+  }
+  return '{' + text + (text.empty() ? "}" : " }");
+}
+
+std::string toml_key(std::string const& key) { return is_bare_key(key) ? key : toml_text(std::string_view(key)); }
+
+std::string kind_name(SetupNode const& node) {
+  using Kind = SetupNode::Kind;
+  switch (node.kind) {
+    case Kind::text:
+      return "a text";
+    case Kind::integer:
+      return "a whole number";
+    case Kind::number:
+      return "a number";
+    case Kind::boolean:
+      return "true or false";
+    case Kind::date:
+      return "a date";
+    case Kind::array:
+      return "an array";
+    case Kind::table:
+      return "a table";
+  }
+  return {};
+}
+
+}  // namespace gladstone

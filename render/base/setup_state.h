@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/base/setup_node.h"
+#include "render/base/setup_record.h"
+#include "render/base/setup_table.h"
+
+namespace gladstone {
+
+/// What a SetupDocument and its SetupTables share. Paths: keys from the root; "[2]" for an element of an array of
+/// tables.
+struct SetupDocument::State {
+  std::string name;    ///< of the file, for messages
+  std::string folder;  ///< relative file names refer to it
+  SetupNode root;
+  SetupRecord record;
+  std::vector<SetupProblem> problems;
+
+  /// The value at a path; null where there is none.
+  SetupNode const* find(std::vector<std::string> const& path) const;
+  /// The record of the table at a path, made where it is new.
+  SetupRecord& record_of(std::vector<std::string> const& path);
+  std::string where(SetupPlace const& place) const;
+  /// Where the value at the path stands; where it is absent, the nearest table above it.
+  std::string where(std::vector<std::string> const& path) const;
+};
+
+/// "medium.field[0].kind"
+std::string dotted_path(std::vector<std::string> const& path);
+
+}  // namespace gladstone

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+
+#include "render/base/host_device.h"
+
+namespace gladstone {
+
+/// Largest number of points of a sequence of ours.
+inline constexpr std::uint64_t sobol_points = std::uint64_t{1} << 32;
+inline constexpr int sobol_dimensions = 4;
+
+namespace detail {
+
+GLADSTONE_HD constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+  x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+  x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+  x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+  return (x >> 16) | (x << 16);
+}
+
+/// Direction numbers m_k of the first four dimensions (Joe & Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, new-joe-kuo-6):
+/// primitive polynomials 1 (van der Corput), x + 1, x^2 + x + 1, x^3 + x + 1.
+struct SobolDirections {
+  std::uint32_t v[sobol_dimensions][32];
+};
+
+constexpr SobolDirections make_sobol_directions() {
+  SobolDirections d{};
+  for (int k = 0; k < 32; ++k) d.v[0][k] = 1u << (31 - k);
+  constexpr int degree[4] = {0, 1, 2, 3};
+  constexpr std::uint32_t coefficients[4] = {0, 0, 1, 1};
+  constexpr std::uint32_t initial[4][3] = {{}, {1}, {1, 3}, {1, 3, 1}};
+  for (int dimension = 1; dimension < sobol_dimensions; ++dimension) {
+    int const s = degree[dimension];
+    auto& v = d.v[dimension];
+    for (int k = 0; k < s; ++k) v[k] = initial[dimension][k] << (31 - k);
+    for (int k = s; k < 32; ++k) {
+      v[k] = v[k - s] ^ (v[k - s] >> s);
+      for (int i = 1; i < s; ++i) {
+        if ((coefficients[dimension] >> (s - 1 - i)) & 1u) v[k] ^= v[k - i];
+      }
+    }
+  }
+  return d;
+}
+
+}  // namespace detail
+
+/// Coordinate of point `index` of the Sobol sequence, as 32 bits of a binary fraction.
+GLADSTONE_HD inline std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
+  constexpr detail::SobolDirections directions = detail::make_sobol_directions();
+  std::uint32_t x = 0;
+  for (int k = 0; index != 0; index >>= 1, ++k) {
+    if (index & 1u) x ^= directions.v[dimension][k];
+  }
+  return x;
+}
+
+/// Owen's nested uniform scrambling by hashing (Laine & Karras 2011 as improved by Vegdahl; Burley, JCGT 9(4) (2020)):
+/// every bit is flipped by a hash of the bits above it. Equal seeds give equal scramblings.
+GLADSTONE_HD constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  x = detail::reverse_bits(x);
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return detail::reverse_bits(x);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,22 @@
+#pragma once
+
+namespace gladstone {
+
+inline constexpr double pi = 3.14159265358979323846;
+
+/// SI inside; text becomes SI once, where it is read.
+namespace unit {
+inline constexpr double metre = 1.0;
+inline constexpr double millimetre = 1e-3;
+inline constexpr double micrometre = 1e-6;
+inline constexpr double nanometre = 1e-9;
+inline constexpr double degree = pi / 180.0;
+}  // namespace unit
+
+/// Physical constants.
+namespace constant {
+/// Ratio of specific heats of dry air near room temperature (NACA Report 1135, 1953).
+inline constexpr double gamma_air = 1.4;
+}  // namespace constant
+
+}  // namespace gladstone

@@ -1,0 +1,178 @@
+#include "render/light/dot_pattern.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+#include "render/base/interrupt.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+/// Centres sorted into cells no smaller than a diameter, so that whatever overlaps is at most one cell away, and no
+/// more of them than about one per dot, so that memory follows the number of dots.
+class OccupiedCells {
+ public:
+  OccupiedCells(Vec2d extent, double diameter, std::size_t count)
+      : extent_(extent),
+        diameter_(diameter),
+        side_(std::max(diameter, std::sqrt(extent.x / static_cast<double>(count) * extent.y))),
+        columns_(1 + static_cast<std::ptrdiff_t>(std::min(extent.x / side_, static_cast<double>(count)))),
+        rows_(1 + static_cast<std::ptrdiff_t>(std::min(extent.y / side_, static_cast<double>(count)))),
+        latest_(static_cast<std::size_t>(columns_ * rows_), none) {
+    earlier_.reserve(count);
+  }
+
+  /// Adds p, which becomes centres[centres.size()], unless it overlaps one of the centres.
+  bool add(Vec2d p, std::vector<Vec2d> const& centres) {
+    std::ptrdiff_t const column = cell(p.x + extent_.x / 2, columns_), row = cell(p.y + extent_.y / 2, rows_);
+    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, row - 1); j <= std::min(rows_ - 1, row + 1); ++j) {
+      for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, column - 1); i <= std::min(columns_ - 1, column + 1); ++i) {
+        for (std::uint32_t other = latest_[static_cast<std::size_t>(j * columns_ + i)]; other != none;
+             other = earlier_[other]) {
+          if (length(centres[other] - p) < diameter_) return false;
+        }
+      }
+    }
+    std::uint32_t& latest = latest_[static_cast<std::size_t>(row * columns_ + column)];
+    earlier_.push_back(latest);
+    latest = static_cast<std::uint32_t>(centres.size());
+    return true;
+  }
+
+ private:
+  std::ptrdiff_t cell(double from_edge, std::ptrdiff_t count) const {
+    return std::min(count - 1, static_cast<std::ptrdiff_t>(from_edge / side_));
+  }
+
+  static constexpr std::uint32_t none = 0xffffffffu;
+  Vec2d extent_;
+  double diameter_;
+  double side_;
+  std::ptrdiff_t columns_;
+  std::ptrdiff_t rows_;
+  std::vector<std::uint32_t> latest_;   // newest dot of a cell
+  std::vector<std::uint32_t> earlier_;  // the one before it in the same cell
+};
+
+}  // namespace
+
+std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter, std::uint64_t seed) {
+  double const coverage = static_cast<double>(count) * pi / 4 * diameter * diameter / (extent.x * extent.y);
+  if (coverage > 0.5) {
+    throw DataError("target",
+                    fmt::format("{} dots of {:.4g} mm would cover {:.0f} % of the target (random discs without "
+                                "overlap reach about 50 %); use fewer or smaller dots, or arrangement = \"regular\"",
+                                count, diameter / unit::millimetre, 100 * coverage));
+  }
+  KeyedEngine engine(seed, RandomStream::target, 0);
+  auto const draw = [&] {
+    double const x = (to_unit(engine()) - 0.5) * extent.x;
+    return Vec2d{x, (to_unit(engine()) - 0.5) * extent.y};
+  };
+  std::vector<Vec2d> centres;
+  centres.reserve(count);
+  if (diameter == 0) {
+    while (centres.size() < count) centres.push_back(draw());
+    return centres;
+  }
+  OccupiedCells cells(extent, diameter, count);
+  std::size_t misses = 0;
+  while (centres.size() < count) {
+    Vec2d const p = draw();
+    if (cells.add(p, centres)) {
+      centres.push_back(p);
+      misses = 0;
+    } else if (++misses > 100000) {
+      throw DataError("target", fmt::format("only {} of {} dots of {:.4g} mm found room; use fewer or smaller dots",
+                                            centres.size(), count, diameter / unit::millimetre));
+    }
+    if ((misses & 1023u) == 1023u) throw_if_interrupted();
+  }
+  return centres;
+}
+
+std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter) {
+  double const pitch = 1 / std::sqrt(per_area);
+  if (pitch < diameter) {
+    throw DataError("target",
+                    fmt::format("dots of {:.4g} mm overlap on a lattice of {:.4g} mm; use fewer or smaller dots",
+                                diameter / unit::millimetre, pitch / unit::millimetre));
+  }
+  auto const columns = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(std::floor(extent.x / pitch + 1e-9)));
+  auto const rows = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(std::floor(extent.y / pitch + 1e-9)));
+  std::vector<Vec2d> centres;
+  centres.reserve(static_cast<std::size_t>(columns * rows));
+  for (std::ptrdiff_t j = 0; j < rows; ++j) {
+    for (std::ptrdiff_t i = 0; i < columns; ++i) {
+      centres.push_back({(static_cast<double>(i) - 0.5 * static_cast<double>(columns - 1)) * pitch,
+                         (static_cast<double>(j) - 0.5 * static_cast<double>(rows - 1)) * pitch});
+    }
+  }
+  return centres;
+}
+
+std::vector<Vec2d> dots_from_csv(std::string const& path) {
+  std::ifstream file(path);
+  if (!file) throw DataError(path, "cannot be opened (missing or not readable); check target.file");
+  std::string line;
+  std::getline(file, line);
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  if (line != "x_mm,y_mm") {
+    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", line));
+  }
+  std::vector<Vec2d> centres;
+  for (std::size_t number = 2; std::getline(file, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) continue;
+    double value[2] = {};
+    char const* at = line.data();
+    char const* const end = at + line.size();
+    bool good = true;
+    for (int i = 0; i < 2 && good; ++i) {
+      auto const [rest, error] = std::from_chars(at, end, value[i]);
+      good = error == std::errc() && std::isfinite(value[i]) && (i == 1 ? rest == end : rest != end && *rest == ',');
+      at = rest + 1;
+    }
+    if (!good) {
+      throw DataError(fmt::format("{}:{}", path, number),
+                      fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", line));
+    }
+    centres.push_back({value[0] * unit::millimetre, value[1] * unit::millimetre});
+  }
+  if (centres.empty()) throw DataError(path, "holds no dots (a line x_mm,y_mm for each is needed)");
+  return centres;
+}
+
+DotPattern picture_target(std::string const& path, Vec2d extent) {
+  Image<double> const picture = read_image(path);
+  double const white = picture.empty() ? 0.0 : *std::max_element(picture.begin(), picture.end());
+  if (!(white > 0)) throw DataError(path, "is black all over (no pixel sends light)");
+  double const side = extent.x / picture.columns();
+  if (std::abs(side * picture.rows() - extent.y) > 0.5 * side) {
+    throw DataError(
+        path, fmt::format("is {} x {} pixels but the target is {:.4g} x {:.4g} mm (pixels must be square); "
+                          "set target.extent_mm to the picture's proportions",
+                          picture.columns(), picture.rows(), extent.x / unit::millimetre, extent.y / unit::millimetre));
+  }
+  DotPattern pattern;
+  pattern.shape = SourceShape::square;
+  pattern.half_size = side / 2;
+  for (int row = 0; row < picture.rows(); ++row) {
+    for (int column = 0; column < picture.columns(); ++column) {
+      if (!(picture(column, row) > 0)) continue;
+      pattern.centre.push_back(
+          {(column - 0.5 * (picture.columns() - 1)) * side, (0.5 * (picture.rows() - 1) - row) * side});
+      pattern.radiance.push_back(picture(column, row) / white);
+    }
+  }
+  return pattern;
+}
+
+}  // namespace gladstone

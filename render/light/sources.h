@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+
+#include "render/base/host_device.h"
+#include "render/base/random.h"
+#include "render/base/ray.h"
+#include "render/base/sobol.h"
+
+namespace gladstone {
+
+/// Outline of the sources of a target.
+enum class SourceShape : int {
+  disc,    ///< a uniform disc; of zero size: a point
+  square,  ///< a uniform square: one pixel of a picture
+};
+
+/// The sources on the target's plane, as rays see them: a view that owns nothing.
+template <class T>
+struct SourcesView {
+  Vec2<T> const* centre = nullptr;  ///< [m], world X and Y
+  T const* radiance = nullptr;      ///< relative to a white target [1]; null: all one
+  std::uint64_t count = 0;
+  T plane_z{};                      ///< [m]
+  T half_size{};                    ///< radius of a disc, half the side of a square [m]
+  SourceShape shape = SourceShape::disc;
+};
+
+enum class PupilSampling : int { sobol, random };
+
+/// Which points of a source and of the pupil a ray joins. Both frames use the same points.
+template <class T>
+struct BundleView {
+  T lens_z{};          ///< plane of the pupil [m]
+  T pupil_radius{};    ///< of the disc that rays are sent to: the stop's and a margin; 0: chief rays [m]
+  std::uint64_t seed = 0;
+  PupilSampling sampling = PupilSampling::sobol;
+};
+
+/// A ray as it leaves its source.
+template <class T>
+struct EmittedRay {
+  Ray<T> ray;
+  Vec2<T> pupil;  ///< where the straight ray meets the lens plane [m]
+  T weight{};     ///< radiance cos^4 [1]: what a Lambertian source sends through equal areas of the pupil
+};
+
+/// Four coordinates in [0, 1) of ray j of source i: pupil radius^2 and angle, source radius^2 and angle.
+template <class T>
+GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t source, std::uint64_t ray,
+                                     T (&u)[sobol_dimensions]) {
+  if (bundle.sampling == PupilSampling::random) {
+    for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
+      std::uint64_t const bits = random_bits(bundle.seed, RandomStream::pupil, source,
+                                             ray * sobol_dimensions + static_cast<std::uint64_t>(dimension));
+      u[dimension] = T(to_unit(bits));
+      if (u[dimension] >= T(1)) u[dimension] = T(0);  // only single precision rounds up to one
+    }
+    return;
+  }
+  std::uint64_t const low = random_bits(bundle.seed, RandomStream::pupil, source, 0);
+  std::uint64_t const high = random_bits(bundle.seed, RandomStream::pupil, source, 1);
+  std::uint32_t const seeds[sobol_dimensions] = {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(low >> 32),
+                                                 static_cast<std::uint32_t>(high),
+                                                 static_cast<std::uint32_t>(high >> 32)};
+  for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
+    std::uint32_t const x = owen_scramble(sobol_bits(static_cast<std::uint32_t>(ray), dimension), seeds[dimension]);
+    if constexpr (sizeof(T) > sizeof(float)) {
+      u[dimension] = T((static_cast<double>(x) + 0.5) * 0x1p-32);
+    } else {
+      u[dimension] = (static_cast<T>(x >> 8) + T(0.5)) * T(0x1p-24);
+    }
+  }
+}
+
+/// Sends ray j of source i towards the pupil.
+template <class T>
+GLADSTONE_HD EmittedRay<T> emit(SourcesView<T> const& sources, BundleView<T> const& bundle, std::uint64_t source,
+                                std::uint64_t ray) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  constexpr double two_pi = 6.28318530717958647693;
+  T u[sobol_dimensions];
+  sample_coordinates(bundle, source, ray, u);
+
+  Vec2<T> offset;
+  if (sources.shape == SourceShape::disc) {
+    T const radius = sources.half_size * sqrt(u[2]);
+    T const angle = T(two_pi) * u[3];
+    offset = {radius * cos(angle), radius * sin(angle)};
+  } else {
+    offset = {sources.half_size * (T(2) * u[2] - T(1)), sources.half_size * (T(2) * u[3] - T(1))};
+  }
+  T const pupil_radius = bundle.pupil_radius * sqrt(u[0]);
+  T const pupil_angle = T(two_pi) * u[1];
+
+  EmittedRay<T> emitted;
+  emitted.pupil = {pupil_radius * cos(pupil_angle), pupil_radius * sin(pupil_angle)};
+  Vec2<T> const start = sources.centre[source] + offset;
+  Vec3<T> const way{emitted.pupil.x - start.x, emitted.pupil.y - start.y, bundle.lens_z - sources.plane_z};
+  T const far = length(way);
+  emitted.ray = {{start.x, start.y, sources.plane_z}, way / far};
+  T const cosine2 = emitted.ray.direction.z * emitted.ray.direction.z;
+  T const radiance = sources.radiance ? sources.radiance[source] : T(1);
+  emitted.weight = radiance * cosine2 * cosine2;
+  return emitted;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,54 @@
+#include "render/light/target_setup.h"
+
+#include <filesystem>
+#include <limits>
+
+#include "render/base/units.h"
+
+namespace gladstone {
+
+TargetSetup read_target_setup(SetupTable table) {
+  TargetSetup setup;
+  std::string const kind = table.word("kind", "dots", {"dots", "grid", "points", "image"});
+  if (kind == "points") setup.kind = TargetKind::points;
+  if (kind == "image") setup.kind = TargetKind::image;
+  if (setup.kind == TargetKind::dots) {
+    setup.dots_per_32px_window =
+        table.number("dots_per_32px_window", setup.dots_per_32px_window, Range::positive(1024.0));
+    if (kind == "grid") {
+      setup.arrangement = DotArrangement::regular;
+    } else if (table.word("arrangement", "random", {"random", "regular"}) == "regular") {
+      setup.arrangement = DotArrangement::regular;
+    }
+  } else {
+    setup.file = table.required_path("file");
+    if (!setup.file.empty() && !std::filesystem::exists(setup.file)) {
+      table.problem("file", "there is no file " + setup.file + "; relative names start at the setup file's folder");
+    }
+  }
+  if (setup.kind != TargetKind::image) {
+    if (table.has("dot_diameter_mm")) {
+      if (table.has("dot_diameter_px")) {
+        table.problem("dot_diameter_mm", "stands beside dot_diameter_px (one size is enough); remove one of them");
+        table.number("dot_diameter_px", 3.0);
+      }
+      setup.dot_diameter_m = table.number("dot_diameter_mm", 0.0, Range::at_least(0.0)) * unit::millimetre;
+      setup.dot_diameter_px.reset();
+    } else {
+      setup.dot_diameter_px = table.number("dot_diameter_px", 3.0, Range::at_least(0.0, 1e4));
+    }
+  }
+  if (setup.kind == TargetKind::image) {
+    table.refuse("polarity", "does not apply to a picture (its grey values are the radiance); remove it");
+  } else if (table.word("polarity", "bright", {"bright", "dark"}) == "dark") {
+    setup.polarity = Polarity::dark;
+  }
+  if (table.has("extent_mm") && setup.kind != TargetKind::points) {
+    auto const extent = table.numbers("extent_mm", {}, 2, Range::positive());
+    if (extent.size() == 2) setup.extent_m = Vec2d{extent[0] * unit::millimetre, extent[1] * unit::millimetre};
+  }
+  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 7, 0, std::numeric_limits<long long>::max()));
+  return setup;
+}
+
+}  // namespace gladstone

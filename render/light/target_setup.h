@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "render/base/setup_table.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+enum class TargetKind { dots, points, image };
+enum class DotArrangement { random, regular };
+enum class Polarity { bright, dark };
+
+/// Table [target] of a setup, in SI.
+struct TargetSetup {
+  TargetKind kind = TargetKind::dots;
+  double dots_per_32px_window = 20.0;
+  std::optional<double> dot_diameter_px = 3.0;  ///< of the geometric image; else dot_diameter_m
+  std::optional<double> dot_diameter_m;         ///< on the target [m]
+  DotArrangement arrangement = DotArrangement::random;
+  Polarity polarity = Polarity::bright;
+  std::optional<Vec2d> extent_m;  ///< width and height, centred on the axis [m]; else view plus one window all round
+  std::string file;               ///< points: CSV x_mm,y_mm; image: a picture
+  std::uint64_t seed = 7;
+};
+
+TargetSetup read_target_setup(SetupTable table);
+
+}  // namespace gladstone

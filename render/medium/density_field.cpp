@@ -1,0 +1,46 @@
+#include "render/medium/density_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/medium/density_readers/jhtdb.h"
+#include "render/medium/density_readers/nrrd.h"
+
+namespace gladstone {
+namespace {
+
+struct FieldFormat {
+  char const* extension;
+  std::unique_ptr<FieldSource> (*open)(std::string const& path, std::string const& dataset);
+};
+
+/// One row per format: its reader and how its files are called.
+constexpr std::array field_formats{
+    FieldFormat{".h5", open_jhtdb},
+    FieldFormat{".hdf5", open_jhtdb},
+    FieldFormat{".nrrd", open_nrrd},
+    FieldFormat{".nhdr", open_nrrd},
+};
+
+}  // namespace
+
+std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset) {
+  std::error_code error;
+  auto const status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw DataError(path, "does not exist; check the name");
+  if (std::filesystem::is_directory(status)) throw DataError(path, "is a folder; name a field file");
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string known;
+  for (auto const& format : field_formats) {
+    if (extension == format.extension) return format.open(path, dataset);
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw DataError(path, "is of no format that is read here; known are " + known);
+}
+
+}  // namespace gladstone

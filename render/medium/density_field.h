@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/base/regular_grid.h"
+
+namespace gladstone {
+
+/// A gridded field in a file, before it is read: its grid is known, its values are read slab by slab straight into
+/// their final place, so that a volume is never held twice.
+class FieldSource {
+ public:
+  virtual ~FieldSource() = default;
+
+  /// Nodes and spacing as the file has them [file units times `spacing_scale`, see the reader]; the origin is that of
+  /// the file; the y index runs upwards.
+  virtual RegularGrid const& grid() const = 0;
+  /// What the numbers are called in the file ("Density_0001"), for messages.
+  virtual std::string const& name() const = 0;
+  /// Reads planes [first_plane, first_plane + count) of constant z, x fastest, as raw file values.
+  /// @throws DataError for holes (JHTDB's -999.9, with their count in what was read), NaN and truncated data
+  virtual void read_planes(int first_plane, int count, std::span<float> out) = 0;
+};
+
+/// Opens a field file: one row per format in density_field.cpp (.h5 JHTDB cut-out, .nrrd, .nhdr).
+/// @param dataset name inside the file; empty: the only suitable one
+/// @throws DataError naming the file, the dataset and what to do
+std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset);
+
+}  // namespace gladstone

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "render/medium/density_field.h"
+
+namespace gladstone {
+
+/// A FieldSource that refuses values no field has: JHTDB's -999.9 where it has no data, nan and inf. Readers give the
+/// raw values; where one is bad the whole field is read once more, to say how many there are.
+class CheckedSource : public FieldSource {
+ public:
+  CheckedSource(std::string path, std::string name) : path_(std::move(path)), name_(std::move(name)) {}
+
+  RegularGrid const& grid() const override { return grid_; }
+  std::string const& name() const override { return name_; }
+  void read_planes(int first_plane, int count, std::span<float> out) final;
+
+ protected:
+  virtual void read_raw_planes(int first_plane, int count, std::span<float> out) = 0;
+
+  std::string path_;
+  std::string name_;
+  RegularGrid grid_;
+};
+
+}  // namespace gladstone

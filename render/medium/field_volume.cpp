@@ -1,0 +1,162 @@
+#include "render/medium/field_volume.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/medium/density_field.h"
+
+namespace gladstone {
+namespace {
+
+/// The world grid of a file's field; checks that it fits the setup.
+RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
+  RegularGrid grid = source.grid();
+  if (field.extrude && grid.nodes[2] != 1) {
+    throw DataError(field.file, fmt::format("{} has {} planes along z (extrude = true takes a single plane); set "
+                                            "medium.field.extrude = false",
+                                            source.name(), grid.nodes[2]));
+  }
+  if (!field.extrude && grid.nodes[2] < 2) {
+    throw DataError(field.file, fmt::format("{} is a single plane (a volume needs at least two); set "
+                                            "medium.field.extrude = true to stack it over thickness_mm",
+                                            source.name()));
+  }
+  if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
+    throw DataError(field.file, fmt::format("{} has {} x {} nodes (at least 2 x 2 are needed)", source.name(),
+                                            grid.nodes[0], grid.nodes[1]));
+  }
+  grid.spacing = field.spacing ? *field.spacing : grid.spacing * unit::millimetre;
+  grid.periodic = field.periodic;
+  if (field.extrude) grid.periodic[2] = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    double const span = grid.spacing[axis] * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
+    grid.origin[axis] = field.center[axis] - span / 2;
+  }
+  return grid;
+}
+
+template <class Stored, int Dimensions>
+BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldSource& source) {
+  using Volume = RefractiveIndexVolume<Stored>;
+  FieldSetup const& field = setup.field;
+  bool const spline = setup.interpolation == FieldInterpolation::cubic_bspline;
+  double const scale = field.scale * (field.quantity == FieldQuantity::density ? setup.gladstone_dale : 1.0);
+  double const shift = field.quantity == FieldQuantity::refractive_index ? -1.0 : 0.0;
+  auto const volume = std::make_shared<Volume const>(
+      grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
+      [&](int first, int count, std::span<float> out) { source.read_planes(first, count, out); });
+  if (volume->lowest() <= -0.5 || volume->highest() >= 3.0) {
+    throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no such medium); check "
+                                            "medium.field.quantity and scale",
+                                            source.name(), 1 + volume->lowest(), 1 + volume->highest()));
+  }
+  BuiltMedium built;
+  double const half = setup.thickness / 2;
+  double const low = field.center.z - half, high = field.center.z + half;
+  if (spline) {
+    built.view = volume->template view<double, CubicBspline, Dimensions>(low, high);
+  } else {
+    built.view = volume->template view<double, Linear, Dimensions>(low, high);
+  }
+  built.owner = volume;
+  built.grid = grid;
+  built.steepest = volume->steepest();
+  built.finest = std::min(grid.spacing.x, grid.spacing.y);
+  if (Dimensions == 3) built.finest = std::min(built.finest, grid.spacing.z);
+  double const depth = Dimensions == 3 ? grid.spacing.z * grid.nodes[2] : setup.thickness;
+  built.coarsest_step = spline ? (Dimensions == 3 ? 2 * built.finest : depth / 4) : built.finest / 4;
+  return built;
+}
+
+template <class Field>
+Field slab(MediumSetup const& setup) {
+  Field field;
+  field.half_thickness = setup.thickness / 2;
+  field.gladstone_dale = setup.gladstone_dale;
+  field.ambient_density = setup.ambient_density;
+  return field;
+}
+
+BuiltMedium build_analytic(MediumSetup const& setup) {
+  FieldSetup const& field = setup.field;
+  BuiltMedium built;
+  built.finest = setup.thickness;
+  switch (field.kind) {
+    case FieldKind::uniform_gradient: {
+      auto medium = slab<UniformGradient<double>>(setup);
+      medium.gradient = field.gradient;
+      built.view = medium;
+      built.steepest = setup.gladstone_dale * length(field.gradient);
+      break;
+    }
+    case FieldKind::sinusoid: {
+      auto medium = slab<Sinusoid<double>>(setup);
+      medium.amplitude = field.amplitude;
+      medium.wavevector = field.direction * (2 * pi / field.wavelength);
+      medium.phase = field.phase;
+      built.view = medium;
+      built.finest = field.wavelength / 4;
+      built.steepest = setup.gladstone_dale * std::abs(field.amplitude) * 2 * pi / field.wavelength;
+      break;
+    }
+    case FieldKind::gaussian_plume: {
+      auto medium = slab<GaussianPlume<double>>(setup);
+      medium.amplitude = field.amplitude;
+      medium.radius = field.radius;
+      built.view = medium;
+      built.finest = field.radius / 2;
+      break;
+    }
+    case FieldKind::gaussian_blob: {
+      auto medium = slab<GaussianBlob<double>>(setup);
+      medium.amplitude = field.amplitude;
+      medium.radius = field.radius;
+      built.view = medium;
+      built.finest = field.radius / 2;
+      break;
+    }
+    case FieldKind::normal_shock: {
+      auto medium = slab<NormalShock<double>>(setup);
+      medium.upstream = field.upstream_density;
+      medium.jump = field.upstream_density * (shock_density_ratio(field.mach, constant::gamma_air) - 1);
+      medium.thickness = field.shock_thickness;
+      medium.position = field.position;
+      medium.normal_x = std::cos(field.tilt);
+      medium.normal_z = std::sin(field.tilt);
+      built.view = medium;
+      built.finest = field.shock_thickness / 4;
+      built.steepest = setup.gladstone_dale * medium.jump / field.shock_thickness;
+      break;
+    }
+    case FieldKind::none:
+    case FieldKind::file: break;
+  }
+  if (field.kind == FieldKind::gaussian_plume || field.kind == FieldKind::gaussian_blob) {
+    // largest slope of A exp(-r^2/a^2): sqrt(2/e) A / a
+    built.steepest = setup.gladstone_dale * std::abs(field.amplitude) * 0.85776388496 / field.radius;
+  }
+  built.coarsest_step = std::min(built.finest, setup.thickness / 4);
+  return built;
+}
+
+}  // namespace
+
+std::size_t medium_bytes_needed(MediumSetup const& setup) {
+  if (setup.field.kind != FieldKind::file) return 0;
+  auto const source = open_field(setup.field.file, setup.field.dataset);
+  RegularGrid const& grid = source->grid();
+  return grid.nodes[2] == 1 ? RefractiveIndexVolume<double>::bytes_needed(grid)
+                            : RefractiveIndexVolume<float>::bytes_needed(grid);
+}
+
+BuiltMedium build_medium(MediumSetup const& setup) {
+  if (setup.field.kind != FieldKind::file) return build_analytic(setup);
+  auto const source = open_field(setup.field.file, setup.field.dataset);
+  RegularGrid const grid = world_grid(setup.field, *source);
+  return setup.field.extrude ? build_grid<double, 2>(setup, grid, *source) : build_grid<float, 3>(setup, grid, *source);
+}
+
+}  // namespace gladstone

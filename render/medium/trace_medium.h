@@ -1,0 +1,247 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "render/base/host_device.h"
+#include "render/base/ray.h"
+#include "render/medium/ray_equation.h"
+
+namespace gladstone {
+
+/// What a ray does at the faces of the medium.
+enum class Faces : int {
+  matched,  ///< the surroundings are index-matched: the direction goes on unchanged
+  refract,  ///< Snell's law against the ambient index n_0
+};
+
+/// How rays are carried through a medium; the same for all rays of a launch.
+template <class T>
+struct TracingOptions {
+  T step{};                   ///< largest step, as arc length [m]
+  T ambient_refractivity{};   ///< n_0 - 1 [1]
+  Integrator integrator = Integrator::rk4;
+  Faces faces = Faces::matched;
+};
+
+/// A ray's way through a medium, kept as its departure from the straight ray it would have been: with t the sum of
+/// Sharma's steps, R = entry + T_0 t + shift and T = T_0 + turn, T_0 along the incoming ray. A uniform medium gives exact zeros.
+template <class T>
+struct MediumPassage {
+  RayStatus status = RayStatus::alive;
+  bool crossed = false;        ///< false: the ray missed the medium and comes back as it went in
+  Vec3<T> straight{};          ///< T_0 [1]
+  T entry{};                   ///< way from the ray's start to the medium, divided by |T_0| [m]
+  T t{};                       ///< [m]
+  Vec3<T> shift{};             ///< [m]
+  Vec3<T> turn{};              ///< [1]
+  T optical_path{};            ///< from the ray's start to where it leaves the medium [m]
+};
+
+/// Where the ray leaves the medium [m].
+template <class T>
+GLADSTONE_HD Vec3<T> exit_position(Ray<T> const& start, MediumPassage<T> const& way) {
+  return start.position + way.straight * (way.entry + way.t) + way.shift;
+}
+
+/// Unit direction in which the ray leaves; exactly the incoming one where nothing turned it.
+template <class T>
+GLADSTONE_HD Vec3<T> exit_direction(Ray<T> const& start, MediumPassage<T> const& way) {
+  // unit(T) - d = (turn - d (|T| - |T_0|)) / |T|, without the cancellation
+  T const before = length(way.straight);
+  T const after = length(way.straight + way.turn);
+  T const growth = (T(2) * dot(way.straight, way.turn) + dot(way.turn, way.turn)) / (after + before);
+  return start.direction + (way.turn - start.direction * growth) / after;
+}
+
+/// The straight ray that a camera takes the bent one for: the outgoing line, followed back to the plane z = z of the start
+/// (a dot's apparent place). @pre the ray leaves with a z component
+template <class T>
+GLADSTONE_HD Ray<T> apparent_ray(Ray<T> const& start, MediumPassage<T> const& way) {
+  if (!way.crossed) return start;
+  T const S = way.entry + way.t;
+  Vec3<T> const outgoing = way.straight + way.turn;
+  T const rise = way.straight.z * S + way.shift.z;
+  // exit - outgoing rise / outgoing.z - start, with the terms that cancel taken out
+  Vec3<T> const numerator = way.straight * (S * way.turn.z - way.shift.z) - way.turn * rise;
+  Vec3<T> const moved = way.shift + numerator / outgoing.z;
+  return {{start.position.x + moved.x, start.position.y + moved.y, start.position.z}, exit_direction(start, way)};
+}
+
+namespace detail {
+
+/// Where a straight line is inside a box: [enter, leave] in multiples of the direction; enter >= leave: it misses.
+template <class T>
+struct Chord {
+  T enter;
+  T leave;
+  int entry_axis;  ///< axis of the face it enters through; -1: it starts inside
+};
+
+template <class T>
+GLADSTONE_HD Chord<T> chord_in(Bounds<T> const& box, Vec3<T> p, Vec3<T> d) {
+  Chord<T> chord{T(0), T(unbounded), -1};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (d[axis] == T(0)) {
+      if (p[axis] < box.low[axis] || p[axis] > box.high[axis]) return {T(1), T(0), -1};
+      continue;
+    }
+    T const to_low = (box.low[axis] - p[axis]) / d[axis];
+    T const to_high = (box.high[axis] - p[axis]) / d[axis];
+    T const near = to_low < to_high ? to_low : to_high;
+    T const far = to_low < to_high ? to_high : to_low;
+    if (near > chord.enter) {
+      chord.enter = near;
+      chord.entry_axis = axis;
+    }
+    if (far < chord.leave) chord.leave = far;
+  }
+  return chord;
+}
+
+/// Way to the next face along T from R, in units of t, and the face's axis.
+template <class T>
+struct WayOut {
+  T t;
+  int axis;
+};
+
+template <class T>
+GLADSTONE_HD WayOut<T> way_out(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
+  WayOut<T> out{T(unbounded), 2};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == T(0)) continue;
+    T const face = direction[axis] > T(0) ? box.high[axis] : box.low[axis];
+    T const t = (face - R[axis]) / direction[axis];
+    if (t < out.t) out = {t, axis};
+  }
+  return out;
+}
+
+template <class T>
+GLADSTONE_HD bool outside(Bounds<T> const& box, Vec3<T> R) {
+  return R.x < box.low.x || R.x > box.high.x || R.y < box.low.y || R.y > box.high.y || R.z < box.low.z ||
+         R.z > box.high.z;
+}
+
+/// Change of the optical direction's component along a face's normal when the index goes from |T| = n_from to n_to and
+/// the tangential components stay (Snell's law). @return false: total internal reflection
+template <class T>
+GLADSTONE_HD bool refract_component(Vec3<T> direction, T from_n2, T to_n2, int axis, T& change) {
+  using std::sqrt;
+  T const normal = direction[axis];
+  T const squared = normal * normal + (to_n2 - from_n2);
+  if (squared < T(0)) return false;
+  T const root = normal < T(0) ? -sqrt(squared) : sqrt(squared);
+  change = (to_n2 - from_n2) / (root + normal);
+  return true;
+}
+
+}  // namespace detail
+
+/// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step (first
+/// and last step partial and equally long on a straight ray, so that a reversed ray meets the same points), exactly to the
+/// face where it leaves.
+/// @param start any ray in the ambient [m, unit direction]; one that starts inside starts at full index there
+/// @return the passage; status total_internal_reflection or lost_in_medium (trapped) where it does not come out
+template <class T, class Medium>
+GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<T> const& options,
+                                           Ray<T> const& start) {
+  MediumPassage<T> way;
+  Bounds<T> const box = medium.bounds();
+  detail::Chord<T> const chord = detail::chord_in(box, start.position, start.direction);
+  way.straight = start.direction;
+  if (!(chord.leave > chord.enter)) return way;
+  way.crossed = true;
+
+  Vec3<T> const entry_point = start.position + start.direction * chord.enter;
+  T const n_entry = T(1) + medium.sample(entry_point).refractivity;
+  T const n_ambient = T(1) + options.ambient_refractivity;
+  bool const refracting = options.faces == Faces::refract;
+  T const n_straight = refracting && chord.entry_axis >= 0 ? n_ambient : n_entry;
+  way.straight = start.direction * n_straight;
+  way.entry = chord.enter / n_straight;
+  way.optical_path = n_ambient * chord.enter;
+  if (refracting && chord.entry_axis >= 0) {
+    T change = T(0);
+    if (!detail::refract_component(way.straight, n_ambient * n_ambient, n_entry * n_entry, chord.entry_axis, change)) {
+      way.status = RayStatus::total_internal_reflection;
+      return way;
+    }
+    way.turn[chord.entry_axis] = change;
+  }
+
+  // whole steps, with what remains of the chord halved between the first and the last one
+  using std::floor;
+  T const chord_t = (chord.leave - chord.enter) / n_entry;
+  T const whole_step = options.step / n_entry;
+  T const whole_steps = floor(chord_t / whole_step + T(1e-6));
+  T const rest = chord_t - whole_steps * whole_step;
+  T dt = rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
+  int const most_steps = 64 + 16 * static_cast<int>(whole_steps < T(1e7) ? whole_steps : T(1e7));
+
+  T const tiny = T(16) * std::numeric_limits<T>::epsilon();
+  for (int taken = 0; taken < most_steps; ++taken) {
+    Vec3<T> const R = start.position + way.straight * (way.entry + way.t) + way.shift;
+    Vec3<T> const direction = way.straight + way.turn;
+    Vec3<T> const where =
+        options.integrator == Integrator::straight ? start.position + way.straight * (way.entry + way.t) : R;
+    Vec3<T> const along = options.integrator == Integrator::straight ? way.straight : direction;
+    detail::WayOut<T> out = detail::way_out(box, where, along);
+    bool landing = out.t <= dt * (T(1) + tiny);
+    T step = landing ? out.t : dt;
+    StepIncrement<T> add = step_increment(medium, options.integrator, where, along, step);
+    if (!landing) {
+      Vec3<T> const reached = where + along * step + add.position;
+      if (options.integrator != Integrator::straight && detail::outside(box, reached)) {
+        // a curved ray left in mid-step: land on the face that it crossed
+        landing = true;
+        for (int axis = 0; axis < 3; ++axis) {
+          if (reached[axis] < box.low[axis] || reached[axis] > box.high[axis]) out.axis = axis;
+        }
+      }
+    }
+    if (landing && options.integrator != Integrator::straight) {
+      // Newton on the step length; what remains is closed by the Taylor series of the last step's end
+      for (int trial = 0; trial < 12; ++trial) {
+        T const speed = direction[out.axis] + add.optical_direction[out.axis];
+        T const position = R[out.axis] + direction[out.axis] * step + add.position[out.axis];
+        T const face = speed > T(0) ? box.high[out.axis] : box.low[out.axis];
+        T const miss = (face - position) / speed;
+        bool const close = (miss < T(0) ? -miss : miss) <= T(1e-4) * (step > T(0) ? step : dt);
+        if (close || trial == 11) {
+          Vec3<T> const end = direction + add.optical_direction;
+          add.position += (T(0.5) * miss * miss) * add.last_force + add.optical_direction * miss;
+          add.optical_direction += add.last_force * miss;
+          add.optical_path += dot(end, end) * miss;
+          step += miss;
+          break;
+        }
+        step = step + miss > T(0) ? step + miss : T(0.5) * step;
+        add = step_increment(medium, options.integrator, where, along, step);
+      }
+    }
+    way.shift += way.turn * step + add.position;
+    way.turn += add.optical_direction;
+    way.optical_path += add.optical_path;
+    way.t += step;
+    if (landing) {
+      if (refracting) {
+        Vec3<T> const leaving = way.straight + way.turn;
+        T change = T(0);
+        T const n2 = dot(leaving, leaving);
+        if (!detail::refract_component(leaving, n2, n_ambient * n_ambient, out.axis, change)) {
+          way.status = RayStatus::total_internal_reflection;
+          return way;
+        }
+        way.turn[out.axis] += change;
+      }
+      return way;
+    }
+    dt = whole_step;
+  }
+  way.status = RayStatus::lost_in_medium;
+  return way;
+}
+
+}  // namespace gladstone

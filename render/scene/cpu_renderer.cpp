@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+#include "render/scene/dot_exposure.h"
+#include "render/scene/renderer.h"
+#include "render/scene/theory.h"
+#include "render/scene/trace_pair.h"
+
+namespace gladstone {
+namespace {
+
+/// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
+template <class Medium>
+void record_theory(Scene const& scene, SceneView<double> const& view, Medium const& medium, std::size_t dot,
+                   std::uint64_t rays, GroundTruth& truth) {
+  double const step = std::min(scene.step, scene.medium.coarsest_step);
+  double const n0 = scene.setup.ambient_index();
+  auto const displacement = [&](Vec2d integral, double lever) {
+    return theory_displacement(integral, lever, scene.imaging.magnification, n0, scene.setup.camera.pixel_pitch);
+  };
+  Vec2d const centre = view.sources.centre[dot];
+  Vec3d const start{centre.x, centre.y, view.sources.plane_z};
+  Ray<double> const chief{start, normalized(Vec3d{-centre.x, -centre.y, view.bundle.lens_z - start.z})};
+  GradientIntegral<double> const along = integrate_gradient(medium, chief, step);
+  truth.eq9_px[dot] = displacement(along.plain, scene.setup.z_d);
+  truth.chief_px[dot] = displacement(along.levered, 1.0);
+
+  Vec2d sum{};
+  double weight = 0;
+  for (std::uint64_t ray = 0; ray < rays; ++ray) {
+    EmittedRay<double> const emitted = emit(view.sources, view.bundle, dot, ray);
+    if (view.lens.stop_radius >= 0 && length(emitted.pupil) > view.lens.stop_radius) continue;
+    sum += emitted.weight * integrate_gradient(medium, emitted.ray, step).levered;
+    weight += emitted.weight;
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  truth.eq9_cone_px[dot] = weight > 0 ? displacement(sum / weight, 1.0) : Vec2d{nan, nan};
+}
+
+struct Pass {
+  Rendering rendering;
+  double largest_bend = 0;
+};
+
+template <class Medium>
+Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
+               RenderTheory theory) {
+  TracePair<double, Medium> const pair{scene.view(sources), medium};
+  std::size_t const count = sources.centre.size();
+  double const light_per_ray = scene.light_per_ray(sources);
+  Pass pass;
+  pass.rendering.truth.resize(count);
+  std::optional<LightImage> images[frame_count];
+  LightImage* targets[frame_count] = {};
+  for (int frame = 0; spot && frame < frame_count; ++frame) {
+    targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+  }
+  std::mutex merge;
+  Progress progress(spot ? "tracing rays" : "tracing truth", count);
+  parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
+    DotExposure exposure(spot);
+    GroundTruth& truth = pass.rendering.truth;
+    for (std::size_t dot = begin; dot < end; ++dot) {
+      Vec2d const centre = sources.centre[dot];
+      truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
+      exposure.begin(scene.to_pixel(centre), targets, light_per_ray);
+      for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) pair({dot, ray}, exposure);
+      exposure.finish(truth, dot);
+      if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);
+    }
+    progress.advance(end - begin);
+    std::lock_guard const lock(merge);
+    pass.largest_bend = std::max(pass.largest_bend, exposure.largest_bend());
+    for (std::size_t frame = 0; frame < 2; ++frame) {
+      for (std::size_t status = 0; status < ray_status_count; ++status) {
+        pass.rendering.statuses[frame][status] += exposure.statuses()[frame][status];
+      }
+    }
+  });
+  pass.rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
+  if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
+  return pass;
+}
+
+}  // namespace
+
+Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  std::optional<AiryTable> airy;
+  SpotView const spot = make_spot(scene, airy);
+  while (true) {
+    Pass pass = std::visit(
+        [&](auto const& medium) {
+          return trace_all(scene, sources, medium, images == RenderImages::yes ? &spot : nullptr, theory);
+        },
+        scene.medium.view);
+    bool const complete = scene.chief_rays_only() || pass.largest_bend <= scene.pupil_margin;
+    if (complete) {
+      if (images == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {
+        Image<double> const white = white_light(scene);
+        for (Image<double>* frame : {&pass.rendering.light.reference, &pass.rendering.light.flow}) {
+          std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
+                         [](double paper, double dots) { return paper - dots; });
+        }
+      }
+      return std::move(pass.rendering);
+    }
+    scene.pupil_margin = 1.02 * pass.largest_bend;
+  }
+}
+
+Image<double> white_light(Scene const& scene) {
+  Image<double> light(scene.setup.camera.columns, scene.setup.camera.rows);
+  for (int row = 0; row < light.rows(); ++row) {
+    for (int column = 0; column < light.columns(); ++column) {
+      double const x = (column - 0.5 * (light.columns() - 1)) * scene.setup.camera.pixel_pitch;
+      double const y = (row - 0.5 * (light.rows() - 1)) * scene.setup.camera.pixel_pitch;
+      double const z = scene.imaging.image_distance;
+      double const cosine2 = z * z / (z * z + x * x + y * y);
+      light(column, row) = cosine2 * cosine2;
+    }
+  }
+  return light;
+}
+
+}  // namespace gladstone

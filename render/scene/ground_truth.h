@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "render/base/displacement_field.h"
+#include "render/base/ray.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+/// What a camera sees of every dot (ray truth), and what theory says of it; all in px, flow minus reference.
+struct GroundTruth {
+  std::vector<Vec3d> position_m;
+  std::vector<Vec2d> reference_px;         ///< radiance-weighted centroid of the rays that pass the stop; NaN: none does
+  std::vector<Vec2d> displacement_px;      ///< flow centroid minus reference centroid
+  std::vector<Vec2d> displacement_std_px;  ///< weighted standard deviation of the flow hits
+  std::vector<Vec2d> flux;                 ///< light in the reference (x) and the flow (y) frame [fully lit px]
+  std::vector<std::array<std::int64_t, 2>> rays;  ///< counted in each frame
+  std::vector<Vec2d> eq9_px;               ///< Rajendran et al. eq. 9 along the chief ray, lever Z_D
+  std::vector<Vec2d> chief_px;             ///< the same with each slice's own lever
+  std::vector<Vec2d> eq9_cone_px;          ///< averaged over the disc and the stop's pupil, own levers
+
+  std::size_t size() const { return position_m.size(); }
+  void resize(std::size_t count);
+};
+
+/// Weighted sums of one dot's hits in one frame, about an origin near them so that no digits are lost.
+template <class T>
+struct CentroidSum {
+  T weight{};
+  Vec2<T> first{};
+  Vec2<T> second{};
+  std::int64_t count = 0;
+
+  void add(Vec2<T> p, T w) {
+    weight += w;
+    first += w * p;
+    second += Vec2<T>{w * p.x * p.x, w * p.y * p.y};
+    ++count;
+  }
+  Vec2<T> mean() const { return first / weight; }
+  Vec2<T> deviation() const {
+    using std::sqrt;
+    Vec2<T> const m = mean();
+    T const x = second.x / weight - m.x * m.x;
+    T const y = second.y / weight - m.y * m.y;
+    return {x > T(0) ? sqrt(x) : T(0), y > T(0) ? sqrt(y) : T(0)};
+  }
+};
+
+/// Counts of rays by RayStatus in each frame.
+using StatusCounts = std::array<std::array<std::int64_t, ray_status_count>, 2>;
+
+/// Mid-position displacement field of the dots (reference + displacement / 2), as a symmetric correlation meets them.
+DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px);
+
+}  // namespace gladstone

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/base/image.h"
+#include "render/scene/ground_truth.h"
+#include "render/scene/scene.h"
+
+namespace gladstone {
+
+/// Two frames as light per pixel, in fully lit pixels on the axis; noise-free, not rounded.
+struct LightPair {
+  Image<double> reference;
+  Image<double> flow;
+};
+
+/// What tracing a scene gives.
+struct Rendering {
+  LightPair light;      ///< empty where no images were asked for
+  GroundTruth truth;
+  StatusCounts statuses{};
+  std::int64_t rays = 0;   ///< traced, both frames
+};
+
+enum class RenderImages { yes, no };
+enum class RenderTheory { yes, no };
+
+/// Traces scenes, on whichever device.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  virtual std::string device() const = 0;
+
+  /// Traces `sources` (the scene's dots, or virtual ones) through a planned scene. Grows scene.pupil_margin and starts
+  /// again should a ray turn out to be bent further than planned.
+  virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
+};
+
+/// The renderer on the CPU's cores.
+class CpuRenderer : public Renderer {
+ public:
+  std::string device() const override { return "cpu"; }
+  Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+};
+
+/// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from; the
+/// flow does not change it, since radiance is conserved along rays.
+Image<double> white_light(Scene const& scene);
+
+}  // namespace gladstone

@@ -1,0 +1,135 @@
+#include "render/scene/scene.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+/// Memory that can be had without swapping [bytes]: /proc/meminfo, or the control group's limit where that is less.
+double available_memory() {
+  double available = std::numeric_limits<double>::infinity();
+  std::ifstream meminfo("/proc/meminfo");
+  std::string key, unit_name;
+  double kilobytes = 0;
+  while (meminfo >> key >> kilobytes) {
+    std::getline(meminfo, unit_name);
+    if (key == "MemAvailable:") available = kilobytes * 1024;
+  }
+  std::ifstream limit_file("/sys/fs/cgroup/memory.max"), usage_file("/sys/fs/cgroup/memory.current");
+  double limit = 0, usage = 0;
+  if (limit_file >> limit && usage_file >> usage) available = std::min(available, limit - usage);
+  return available;
+}
+
+double gigabytes(double bytes) { return bytes / 1e9; }
+
+}  // namespace
+
+SceneView<double> Scene::view(DotPattern const& sources) const {
+  SceneView<double> seen;
+  double const stop = imaging.entrance_pupil / 2;
+  seen.sources = sources.view(-setup.z_d);
+  seen.bundle.lens_z = setup.z_a;
+  seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : stop + pupil_margin;
+  seen.bundle.seed = setup.render.seed;
+  seen.bundle.sampling = setup.render.sampling;
+  seen.lens = {setup.z_a, setup.lens.focal_length, chief_rays_only() ? -1.0 : stop};
+  seen.sensor = {setup.z_a + imaging.image_distance, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
+  seen.tracing = {step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces};
+  return seen;
+}
+
+double Scene::light_per_ray(DotPattern const& sources) const {
+  double const px = setup.camera.pixel_pitch / imaging.magnification;
+  double const size = sources.half_size / px;
+  double area = sources.shape == SourceShape::disc ? pi * size * size : 4 * size * size;
+  if (sources.half_size == 0) area = 1;  // a point sends as much light as a disc of one square pixel
+  double const stop = imaging.entrance_pupil / 2;
+  double const enlarged = chief_rays_only() ? 1.0 : (stop + pupil_margin) / stop;
+  return area * enlarged * enlarged / static_cast<double>(rays_per_dot);
+}
+
+double Scene::spot_scale_px() const {
+  if (chief_rays_only()) return 0;
+  return imaging.image_distance / imaging.entrance_pupil * setup.medium.wavelength / setup.camera.pixel_pitch;
+}
+
+double Scene::spot_sigma_px() const {
+  SpotSize const spot{spot_scale_px()};
+  switch (setup.lens.spot) {
+    case SpotModel::gaussian: return spot.matched_sigma();
+    case SpotModel::gaussian_first_zero: return spot.first_zero_diameter() / 4;
+    case SpotModel::seed_eq8: return pi * spot.first_zero_diameter() / 4;
+    case SpotModel::airy:
+    case SpotModel::none: break;
+  }
+  return 0;
+}
+
+Vec2d Scene::to_pixel(Vec2d on_target) const {
+  double const scale = imaging.magnification / setup.camera.pixel_pitch;
+  return {0.5 * (setup.camera.columns - 1) + scale * on_target.x, 0.5 * (setup.camera.rows - 1) - scale * on_target.y};
+}
+
+Vec2d Scene::to_target(Vec2d pixel) const {
+  double const scale = setup.camera.pixel_pitch / imaging.magnification;
+  return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
+}
+
+void check_memory(Setup const& setup) {
+  double const field = static_cast<double>(medium_bytes_needed(setup.medium));
+  double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
+  double const images = pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t));
+  double const dots = (setup.target.kind == TargetKind::dots ? setup.dot_count() : 0.0) * 200;
+  double const needed = field + images + dots;
+  double const available = available_memory();
+  if (needed <= available) return;
+  throw DataError("setup", fmt::format("needs {:.3g} GB of memory (field {:.3g}, images {:.3g}, dots {:.3g}) but this machine has "
+                                       "{:.3g} GB free; reduce camera.pixels, the field or the number of dots",
+                                       gigabytes(needed), gigabytes(field), gigabytes(images), gigabytes(dots),
+                                       gigabytes(available)));
+}
+
+Scene build_scene(Setup const& setup) {
+  check_memory(setup);
+  Scene scene;
+  scene.setup = setup;
+  scene.imaging = setup.imaging();
+  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
+  switch (setup.target.kind) {
+    case TargetKind::dots:
+      if (setup.target.arrangement == DotArrangement::random) {
+        scene.dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
+                                        setup.target.seed);
+      } else {
+        Vec2d const extent = setup.target_extent();
+        scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
+      }
+      break;
+    case TargetKind::points: scene.dots.centre = dots_from_csv(setup.target.file); break;
+    case TargetKind::image: scene.dots = picture_target(setup.target.file, setup.target_extent()); break;
+  }
+  if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
+
+  scene.medium = build_medium(setup.medium);
+  if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
+    Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+    if (-setup.z_d > box.low.z || setup.z_a < box.high.z) {
+      throw DataError(setup.medium.field.where,
+                      fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "
+                                  "{:.6g} mm about the mid-plane; change geometry.z_a_mm, z_d_mm or medium.field.center_mm",
+                                  box.low.z / unit::millimetre, box.high.z / unit::millimetre));
+    }
+  }
+  return scene;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "render/light/dot_pattern.h"
+#include "render/medium/field_volume.h"
+#include "render/scene/scene_view.h"
+#include "render/scene/setup.h"
+#include "render/sensor/diffraction_spot.h"
+
+namespace gladstone {
+
+/// A setup made ready to trace: owns the dots and the medium, gives views.
+struct Scene {
+  Setup setup;
+  ImagingGeometry imaging{};
+  DotPattern dots;
+  BuiltMedium medium;
+  double step = 0;             ///< [m]
+  double pupil_margin = 0;     ///< by which the pupil is enlarged so that bending loses no ray [m]
+  std::uint64_t rays_per_dot = 1;
+
+  /// The view that launches take; `sources` default to the scene's own dots.
+  SceneView<double> view() const { return view(dots); }
+  SceneView<double> view(DotPattern const& sources) const;
+  bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
+  /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.
+  double light_per_ray(DotPattern const& sources) const;
+  /// Radius of a Gaussian spot [px]; 0: none.
+  double spot_sigma_px() const;
+  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays.
+  double spot_scale_px() const;
+  /// Where the chief ray of a point of the target ends without medium [px], and back [m].
+  Vec2d to_pixel(Vec2d on_target) const;
+  Vec2d to_target(Vec2d pixel) const;
+};
+
+/// Refuses what this machine's memory cannot hold, before any of it is allocated.
+/// @throws SetupError-like DataError naming the sizes
+void check_memory(Setup const& setup);
+
+/// Builds dots and medium. Step, margin and rays are 0 until planned (ray_plan.h).
+Scene build_scene(Setup const& setup);
+
+}  // namespace gladstone

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "render/light/sources.h"
+#include "render/medium/trace_medium.h"
+#include "render/optics/thin_lens.h"
+#include "render/sensor/sensor.h"
+
+namespace gladstone {
+
+/// Everything but the medium that a ray meets, by value: what a launch hands to every thread.
+template <class T>
+struct SceneView {
+  SourcesView<T> sources;
+  BundleView<T> bundle;
+  ThinLens<T> lens;
+  Sensor<T> sensor;
+  TracingOptions<T> tracing;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,163 @@
+#include "render/scene/setup.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+RenderSetup read_render_setup(SetupTable table) {
+  RenderSetup setup;
+  if (auto const rays = table.number_or_auto("rays_per_dot", Range::at_least(1, 1e9))) {
+    if (*rays != std::floor(*rays)) {
+      table.problem("rays_per_dot", "is not a whole number (rays are counted); use a whole number or \"auto\"");
+    }
+    setup.rays_per_dot = static_cast<std::uint64_t>(*rays);
+  }
+  if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
+  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
+  if (table.word("precision", "double", {"double", "single"}) == "single") {
+    table.problem("precision",
+                  "\"single\" is not available yet (the single-precision preview comes with CUDA); use \"double\"");
+  }
+  return setup;
+}
+
+SetupTable camera_table(SetupTable& root) {
+  auto cameras = root.tables("camera");
+  if (cameras.size() > 1) {
+    root.problem("camera", "is an array of several cameras, which is not available yet (one camera a setup); keep one");
+  }
+  return cameras.empty() ? root.table("camera") : cameras.front();
+}
+
+}  // namespace
+
+double Setup::focus_distance() const {
+  switch (lens.focus) {
+    case Focus::target: return z_b();
+    case Focus::medium: return z_a;
+    case Focus::distance: break;
+  }
+  return lens.focus_distance;
+}
+
+Vec2d Setup::target_extent() const {
+  if (target.extent_m) return *target.extent_m;
+  double const px = camera.pixel_pitch / imaging().magnification;
+  return {(camera.columns + 2.0 * view_margin_px) * px, (camera.rows + 2.0 * view_margin_px) * px};
+}
+
+double Setup::dot_diameter() const {
+  if (target.dot_diameter_m) return *target.dot_diameter_m;
+  return target.dot_diameter_px.value_or(0.0) * camera.pixel_pitch / imaging().magnification;
+}
+
+double Setup::dot_count() const {
+  Vec2d const extent = target_extent();
+  double const px = camera.pixel_pitch / imaging().magnification;
+  return std::round(target.dots_per_32px_window / 1024.0 * extent.x * extent.y / (px * px));
+}
+
+Setup read_setup(SetupTable root) {
+  if (root.integer("schema", 1, 0, 1000000) != 1) {
+    root.problem("schema", "is not 1 (this version reads schema 1 only); use a matching version of gladstone");
+  }
+  std::string const experiment = root.word("experiment", "bos", {"bos", "piv", "calibration"});
+  if (experiment != "bos") {
+    root.problem("experiment", "\"" + experiment + "\" is not available yet (this version simulates BOS); use \"bos\"");
+  }
+  Setup setup;
+  setup.camera = read_camera_setup(camera_table(root));
+  setup.lens = read_lens_setup(root.table("lens"));
+  SetupTable geometry = root.table("geometry");
+  setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
+  setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
+  setup.medium = read_medium_setup(root.table("medium"));
+  setup.target = read_target_setup(root.table("target"));
+  setup.render = read_render_setup(root.table("render"));
+  for (char const* later : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
+    root.refuse(later, "is not available yet (this version simulates BOS); remove it");
+  }
+  return setup;
+}
+
+std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
+  std::vector<std::string> warnings;
+  double const mm = unit::millimetre;
+  SetupTable lens = root.table("lens"), geometry = root.table("geometry"), target = root.table("target");
+  if (setup.focus_distance() <= setup.lens.focal_length) {
+    bool const by_distance = setup.lens.focus == Focus::distance;
+    (by_distance ? lens : geometry)
+        .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
+                 fmt::format("focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
+                             "image needs more than the focal length); move the lens away or take a shorter one",
+                             setup.focus_distance() / mm, setup.lens.focal_length / mm));
+    return warnings;  // everything else needs an image
+  }
+  if (setup.z_b() <= setup.lens.focal_length) {
+    geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
+    return warnings;
+  }
+  FieldKind const kind = setup.medium.field.kind;
+  if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
+    double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
+    if (-setup.z_d > centre - half) {
+      geometry.problem("z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
+                                             "z_d_mm beyond {:.6g} or make the medium thinner",
+                                             -setup.z_d < centre + half ? "inside" : "in front of", half / mm,
+                                             (half - centre) / mm));
+    }
+    if (setup.z_a < centre + half) {
+      geometry.problem("z_a_mm", fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
+                                             "z_a_mm or make the medium thinner",
+                                             half / mm));
+    }
+  }
+  double const magnification = setup.imaging().magnification;
+  double const px = setup.camera.pixel_pitch / magnification;
+  Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
+  if (setup.target.extent_m && (setup.target.extent_m->x < view.x || setup.target.extent_m->y < view.y)) {
+    target.problem("extent_mm", fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target; "
+                                            "enlarge the target or leave extent_mm out",
+                                            view.x / mm, view.y / mm));
+  }
+  if (setup.target.kind != TargetKind::image) {
+    double const diameter_px = setup.dot_diameter() / px;
+    double const diffraction_px =
+        std::isinf(setup.lens.f_number) || setup.lens.spot == SpotModel::none
+            ? 0.0
+            : 2.44 * setup.medium.wavelength * setup.lens.f_number * (1 + magnification) / setup.camera.pixel_pitch;
+    double const image_px = std::hypot(diameter_px, diffraction_px);
+    if (image_px < 2) {
+      warnings.push_back(fmt::format(
+          "dot images are {:.2f} px wide: below 2 px correlation locks to whole pixels; enlarge target.dot_diameter_px", image_px));
+    }
+    if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
+      target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
+    }
+  }
+  if (setup.target.kind == TargetKind::dots) {
+    double const count = setup.dot_count();
+    double const diameter = setup.dot_diameter();
+    Vec2d const extent = setup.target_extent();
+    double const coverage = count * pi / 4 * diameter * diameter / (extent.x * extent.y);
+    if (!(count >= 1)) {
+      target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
+    } else if (count > 4e9) {
+      target.problem("dots_per_32px_window", fmt::format("gives {:.3g} dots (4e9 at most); decrease it", count));
+    } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
+      target.problem("dots_per_32px_window",
+                     fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
+                                 "fewer or smaller dots, or arrangement = \"regular\"",
+                                 100 * coverage));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "render/base/setup_table.h"
+#include "render/light/sources.h"
+#include "render/light/target_setup.h"
+#include "render/medium/medium_setup.h"
+#include "render/optics/lens_setup.h"
+#include "render/sensor/camera_setup.h"
+
+namespace gladstone {
+
+/// Table [render] of a setup.
+struct RenderSetup {
+  std::optional<std::uint64_t> rays_per_dot;  ///< empty: auto
+  PupilSampling sampling = PupilSampling::sobol;
+  std::uint64_t seed = 1;
+};
+
+/// Everything that rendering a BOS pair needs, in SI.
+struct Setup {
+  CameraSetup camera;
+  LensSetup lens;
+  MediumSetup medium;
+  TargetSetup target;
+  RenderSetup render;
+  double z_a = 0.75;  ///< lens to the medium's mid-plane [m]
+  double z_d = 0.25;  ///< the medium's mid-plane to the dots [m]
+  int view_margin_px = 64;  ///< by which a target of default extent reaches beyond the view: the first pass's window
+
+  double z_b() const { return z_a + z_d; }
+  double focus_distance() const;
+  ImagingGeometry imaging() const { return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b()); }
+  double ambient_index() const { return 1 + medium.ambient_refractivity(); }
+  /// Width and height of the target [m].
+  Vec2d target_extent() const;
+  /// Diameter of a dot on the target [m].
+  double dot_diameter() const;
+  /// Number of dots on the target, for kind = "dots".
+  double dot_count() const;
+};
+
+/// Reads the tables of a BOS setup through the rooms' readers; what is due later is refused by name.
+Setup read_setup(SetupTable root);
+
+/// Cross-checks that need physics, not files: focus, planes, field of view, dot size, dot coverage. Problems go to the
+/// setup's document with their keys; warnings are returned.
+std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
+
+}  // namespace gladstone

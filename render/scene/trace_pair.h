@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+
+#include "render/base/host_device.h"
+#include "render/scene/scene_view.h"
+
+namespace gladstone {
+
+enum class Frame : int { reference = 0, flow = 1 };
+inline constexpr int frame_count = 2;
+
+/// Which ray of which source.
+struct RayIndex {
+  std::uint64_t source;
+  std::uint64_t ray;
+};
+
+/// Where a ray ended.
+template <class T>
+struct RayHit {
+  RayStatus status = RayStatus::alive;
+  Vec2<T> pixel{};   ///< on the sensor's plane [px]; defined where reaches_sensor_plane(status)
+  T weight{};        ///< radiance cos^4 at the source [1]
+  Vec2<T> at_lens{}; ///< where it met the lens plane [m]
+};
+
+/// True for rays that count for truth: past the stop and on the sensor's plane, inside its area or not.
+GLADSTONE_HD constexpr bool reaches_sensor_plane(RayStatus status) {
+  return status == RayStatus::alive || status == RayStatus::missed_sensor;
+}
+
+/// From the target's side of the lens to the sensor's plane.
+template <class T>
+GLADSTONE_HD RayHit<T> through_camera(SceneView<T> const& scene, Ray<T> ray, T weight) {
+  RayHit<T> hit;
+  hit.weight = weight;
+  hit.status = scene.lens.interact(ray);
+  hit.at_lens = {ray.position.x, ray.position.y};
+  if (hit.status != RayStatus::alive) return hit;
+  T const way = (scene.sensor.z - ray.position.z) / ray.direction.z;
+  hit.pixel = scene.sensor.to_pixel(ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y);
+  if (!scene.sensor.covers(hit.pixel)) hit.status = RayStatus::missed_sensor;
+  return hit;
+}
+
+/// One ray in the flow frame: through the medium, then through the camera.
+template <class T, class Medium>
+GLADSTONE_HD RayHit<T> follow(SceneView<T> const& scene, Medium const& medium, Ray<T> const& start, T weight) {
+  MediumPassage<T> const way = trace_medium(medium, scene.tracing, start);
+  if (way.status != RayStatus::alive) {
+    RayHit<T> lost;
+    lost.status = way.status;
+    return lost;
+  }
+  return through_camera(scene, apparent_ray(start, way), weight);
+}
+
+/// The one per-ray function of the renderer, for every device: emits a ray once and follows it through both frames.
+/// `Exposure` has deposit(Frame, RayHit) for the images and record_truth(source, emitted, reference, flow) for the centroids.
+template <class T, class Medium>
+struct TracePair {
+  SceneView<T> scene;
+  Medium medium;
+
+  template <class Exposure>
+  GLADSTONE_HD void operator()(RayIndex i, Exposure& exposure) const {
+    EmittedRay<T> const emitted = emit(scene.sources, scene.bundle, i.source, i.ray);
+    RayHit<T> const reference = through_camera(scene, emitted.ray, emitted.weight);
+    RayHit<T> const flow = follow(scene, medium, emitted.ray, emitted.weight);
+    exposure.deposit(Frame::reference, reference);
+    exposure.deposit(Frame::flow, flow);
+    exposure.record_truth(i.source, emitted, reference, flow);
+  }
+};
+
+}  // namespace gladstone

@@ -1,0 +1,37 @@
+#include "render/sensor/camera_setup.h"
+
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+
+namespace gladstone {
+
+CameraSetup read_camera_setup(SetupTable table) {
+  CameraSetup setup;
+  auto const pixels = table.integers("pixels", {512, 512}, 2, 2, 1, 1000000);
+  if (pixels.size() == 2) {
+    setup.columns = static_cast<int>(pixels[0]);
+    setup.rows = static_cast<int>(pixels[1]);
+  }
+  setup.pixel_pitch = table.number("pixel_pitch_um", 10.0, Range::positive(1e4)) * unit::micrometre;
+  setup.bit_depth = static_cast<int>(table.integer("bit_depth", 16, 1, 16));
+  setup.exposure_e = table.number_or_auto("exposure", Range::positive());
+  double const full_scale = std::pow(2.0, setup.bit_depth) - 1;
+  setup.offset_dn = table.number("offset_dn", 0.0, Range::at_least(0.0, 0.8 * full_scale));
+
+  SetupTable noise = table.table("noise");
+  setup.noise.enabled = noise.present();
+  if (setup.noise.enabled) {
+    setup.noise.full_well_e = noise.number("full_well_e", 30000.0, Range::at_least(1.0, 1e9));
+    setup.noise.read_noise_e = noise.number("read_noise_e", 3.0, Range::at_least(0.0, 1e6));
+    setup.noise.dark_current_e = noise.number("dark_current_e", 0.0, Range::at_least(0.0, 1e9));
+    Range efficiency = Range::positive(1.0);
+    setup.noise.quantum_efficiency = noise.number("quantum_efficiency", 0.6, efficiency);
+    setup.noise.shot_noise = noise.boolean("shot_noise", true);
+    setup.noise.seed = static_cast<std::uint64_t>(noise.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
+  }
+  return setup;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "render/base/setup_table.h"
+
+namespace gladstone {
+
+/// Table [camera.noise]; where it is absent the sensor is ideal.
+struct NoiseSetup {
+  bool enabled = false;
+  double full_well_e = 30000;         ///< electrons at full scale; also the scale of an ideal sensor's exposure
+  double read_noise_e = 3.0;          ///< standard deviation [e]
+  double dark_current_e = 0.0;        ///< mean per frame [e]
+  double quantum_efficiency = 0.6;    ///< electrons per photon
+  bool shot_noise = true;
+  std::uint64_t seed = 1;
+};
+
+/// Table [camera] of a setup, in SI.
+struct CameraSetup {
+  int columns = 512;
+  int rows = 512;
+  double pixel_pitch = 10e-6;                ///< [m]
+  int bit_depth = 16;
+  std::optional<double> exposure_e;          ///< electrons in a fully lit pixel on the axis; empty: auto
+  double offset_dn = 0;                      ///< black level
+  NoiseSetup noise;
+};
+
+CameraSetup read_camera_setup(SetupTable table);
+
+}  // namespace gladstone

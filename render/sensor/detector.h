@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "render/base/image.h"
+#include "render/base/random.h"
+#include "render/sensor/camera_setup.h"
+
+namespace gladstone {
+
+/// A recorded frame.
+struct Recording {
+  Image<std::uint16_t> image;     ///< grey levels, unshifted
+  std::size_t saturated = 0;      ///< pixels at full well or full scale
+};
+
+/// Turns light into grey levels. Light is measured in fully lit pixels on the axis (1 = a pixel that sees white paper).
+class Detector {
+ public:
+  /// @param electrons_fully_lit exposure: electrons that light of 1 sets free
+  Detector(CameraSetup const& camera, double electrons_fully_lit);
+
+  /// The exposure that puts the brightest noise-free pixel at 90 % of full scale [e].
+  static double auto_exposure(CameraSetup const& camera, double brightest_light);
+
+  /// Grey level without noise, rounding and saturation: offset + electrons * full scale / full well.
+  double ideal_level(double light) const { return offset_ + light * levels_per_light_; }
+  Image<double> ideal(Image<double> const& light) const;
+
+  /// Records a frame: shot noise (Poisson in light and dark electrons), read noise (normal), full well, rounding to the
+  /// bit depth. Noise is keyed by (seed, stream, pixel). Without [camera.noise]: rounding and saturation only.
+  Recording record(Image<double> const& light, RandomStream stream) const;
+
+  /// Grey levels that one unit of light is worth.
+  double levels_per_light() const { return levels_per_light_; }
+  double full_scale() const { return full_scale_; }
+
+ private:
+  NoiseSetup noise_;
+  double full_scale_;
+  double offset_;
+  double electrons_;
+  double levels_per_light_;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <vector>
+
+#include "render/base/host_device.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+/// Diffraction spot sizes of a circular pupil in incoherent light: N (1 + M) lambda is the scale of all of them
+/// (Adrian & Yao 1985; Raffel et al. 2018, section 2). The seed's Eq. 8 carries a superfluous pi.
+struct SpotSize {
+  double scale;  ///< N (1 + M) lambda [m]
+
+  double first_zero_diameter() const { return 2.43934 * scale; }
+  double matched_sigma() const { return 0.4206042622 * scale; }  ///< Gaussian fitted to the Airy pattern within its first zero
+};
+
+/// Pixels that one ray's spot touches: columns [column, column + width), rows alike.
+struct Footprint {
+  int column;
+  int row;
+  int width;
+};
+
+/// Light of one ray spread as a Gaussian and integrated over pixels by the error function: the weights of a footprint
+/// factor into columns and rows. Their sum is one up to erfc(reach / (sqrt 2 sigma)).
+template <class T>
+struct GaussianSpot {
+  T sigma{};  ///< [px]
+
+  static constexpr int most_width = 64;
+
+  GLADSTONE_HD int half_width() const { return static_cast<int>(T(5.5) * sigma + T(1.5)); }
+
+  GLADSTONE_HD Footprint footprint(Vec2<T> p) const {
+    using std::floor;
+    int const half = half_width();
+    return {static_cast<int>(floor(p.x + T(0.5))) - half, static_cast<int>(floor(p.y + T(0.5))) - half, 2 * half + 1};
+  }
+  /// Shares of `width` pixels from `first` on, along one axis, of light centred at p [px]; they sum to one exactly enough.
+  GLADSTONE_HD void shares(T p, int first, int width, T* out) const {
+    using std::erf;
+    T const scale = T(0.70710678118654752440) / sigma;
+    T before = erf((T(first) - T(0.5) - p) * scale);
+    for (int i = 0; i < width; ++i) {
+      T const after = erf((T(first + i) + T(0.5) - p) * scale);
+      out[i] = T(0.5) * (after - before);
+      before = after;
+    }
+  }
+};
+
+/// The Airy pattern integrated over pixels: tabulated over sub-pixel positions, cut at six times N (1 + M) lambda (which
+/// holds 97 % of the light) or three pixels, whichever is more, and renormalised to one.
+/// Between table positions the shares are interpolated linearly, to about 1e-4 of the peak.
+class AiryTable {
+ public:
+  struct View {
+    double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
+    int subdivisions = 0;            ///< table steps a pixel; subdivisions + 1 positions an axis
+    int half_width = 0;              ///< [px]
+  };
+
+  /// @param scale_px N (1 + M) lambda in pixels
+  explicit AiryTable(double scale_px);
+  View view() const { return {shares_.data(), subdivisions_, half_width_}; }
+
+ private:
+  int subdivisions_;
+  int half_width_;
+  std::vector<double> shares_;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,176 @@
+#include "studies/case.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/image_file.h"
+#include "render/base/output_file.h"
+#include "render/base/units.h"
+#include "render/sensor/detector.h"
+#include "studies/truth_file.h"
+
+namespace gladstone {
+namespace {
+
+void cross_check_windows(CaseSetup& loaded) {
+  CameraSetup const& camera = loaded.setup.camera;
+  for (int window : loaded.correlate.window_px) {
+    if (window <= std::min(camera.columns, camera.rows)) continue;
+    loaded.document.root().table("correlate").problem(
+        "window_px", fmt::format("a window of {} px is larger than the image of {} x {} px; use smaller windows", window,
+                                 camera.columns, camera.rows));
+  }
+}
+
+void warn(std::vector<std::string>& warnings, std::string text) {
+  spdlog::warn("{}", text);
+  warnings.push_back(std::move(text));
+}
+
+nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
+  nlohmann::json json;
+  for (std::size_t status = 0; status < ray_status_count; ++status) {
+    json[to_string(static_cast<RayStatus>(status))] = counts[frame][status];
+  }
+  return json;
+}
+
+}  // namespace
+
+CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
+  CaseSetup loaded{SetupDocument::from_file(path), {}, {}, {}};
+  for (auto const& assignment : overrides) loaded.document.override_key(assignment);
+  SetupTable root = loaded.document.root();
+  loaded.setup = read_setup(root);
+  loaded.correlate = read_correlation_settings(root.table("correlate"));
+  if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
+  if (!loaded.document.has_problems()) {
+    loaded.warnings = cross_check(loaded.setup, root);
+    cross_check_windows(loaded);
+  }
+  loaded.document.finish();
+  return loaded;
+}
+
+PreparedCase prepare_case(CaseSetup& loaded) {
+  PreparedCase prepared;
+  prepared.correlate = loaded.correlate;
+  for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
+  prepared.scene = build_scene(loaded.setup);
+  Scene& scene = prepared.scene;
+  prepared.step = plan_step(scene);
+  if (prepared.step.change_px >= 1e-4) {
+    warn(prepared.warnings,
+         fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
+                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
+  }
+  prepared.rays = plan_rays(scene);
+  if (!prepared.rays.converged) {
+    warn(prepared.warnings, fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
+                                        "{:.2g} px; set render.rays_per_dot higher if that matters",
+                                        prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
+                                        prepared.rays.truth_error_px));
+  }
+  if (loaded.setup.medium.field.kind != FieldKind::none) {
+    prepared.strain = map_strain(scene);
+    if (prepared.strain.caustic_fraction > 0) {
+      warn(prepared.warnings,
+           fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach the lens (images "
+                       "of dots fold over there); reduce Z_D or the gradients, or leave these vectors out",
+                       100 * prepared.strain.caustic_fraction));
+    }
+  }
+  SetupTable root = loaded.document.root();
+  root.table("medium").resolve("step_mm", prepared.step.step_mm);
+  root.table("render").resolve("rays_per_dot", static_cast<double>(prepared.rays.rays));
+  return prepared;
+}
+
+RenderedCase render_case(PreparedCase& prepared, Renderer& renderer) {
+  auto const start = std::chrono::steady_clock::now();
+  RenderedCase rendered;
+  Scene& scene = prepared.scene;
+  rendered.rendering = renderer.render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  LightPair const& light = rendered.rendering.light;
+  double const brightest = std::max(*std::max_element(light.reference.begin(), light.reference.end()),
+                                    *std::max_element(light.flow.begin(), light.flow.end()));
+  rendered.exposure_e = scene.setup.camera.exposure_e.value_or(Detector::auto_exposure(scene.setup.camera, brightest));
+  rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return rendered;
+}
+
+std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
+  namespace fs = std::filesystem;
+  OutputFolder output(folder, case_file::setup);
+  PreparedCase prepared = prepare_case(loaded);
+  RenderedCase rendered = render_case(prepared, renderer);
+  Scene const& scene = prepared.scene;
+  CameraSetup const& camera = scene.setup.camera;
+  loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
+  std::string const resolved = loaded.document.resolved();
+
+  Detector const detector(camera, rendered.exposure_e);
+  Recording const reference = detector.record(rendered.rendering.light.reference, RandomStream::noise_reference);
+  Recording const flow = detector.record(rendered.rendering.light.flow, RandomStream::noise_flow);
+  if (reference.saturated + flow.saturated > 0) {
+    warn(prepared.warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
+                                        reference.saturated, flow.saturated));
+  }
+  auto const place = [&](char const* name) { return (fs::path(output.temporary_path()) / name).string(); };
+  ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
+  write_tiff(place(case_file::reference), reference.image, metadata);
+  write_tiff(place(case_file::flow), flow.image, metadata);
+  FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
+  write_truth(place(case_file::truth), scene, rendered.rendering.truth, rendered.rendering.statuses, map_field(scene, 4), origin);
+  OutputFile::write_text(place(case_file::setup), resolved);
+
+  auto const unseen = std::count_if(rendered.rendering.truth.displacement_px.begin(),
+                                    rendered.rendering.truth.displacement_px.end(), [](Vec2d d) { return std::isnan(d.x); });
+  nlohmann::json summary{
+      {"magnification", scene.imaging.magnification},
+      {"step_mm", prepared.step.step_mm},
+      {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
+      {"rays_per_dot", prepared.rays.rays},
+      {"exposure", rendered.exposure_e},
+      {"gladstone_dale", scene.setup.medium.gladstone_dale},
+      {"spot", {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
+                {"first_zero_diameter_px", SpotSize{scene.spot_scale_px()}.first_zero_diameter()}}},
+      {"dots", scene.dots.centre.size()},
+      {"dots_unseen", unseen},
+      {"device", renderer.device()},
+      {"rays", {{"traced", rendered.rendering.rays},
+                {"reference", status_counts(rendered.rendering.statuses, 0)},
+                {"flow", status_counts(rendered.rendering.statuses, 1)}}},
+      {"pupil_margin_mm", scene.pupil_margin / unit::millimetre},
+      {"caustic_fraction", prepared.strain.caustic_fraction},
+      {"saturated", {{"reference", reference.saturated}, {"flow", flow.saturated}}},
+      {"photons_fully_lit", rendered.exposure_e / camera.noise.quantum_efficiency},
+      {"warnings", prepared.warnings},
+      {"seconds_render", rendered.seconds},
+  };
+  if (!scene.setup.render.rays_per_dot) {
+    summary["rays_plan"] = {{"truth_error_px", prepared.rays.truth_error_px},
+                            {"image_error_levels", prepared.rays.image_error_levels},
+                            {"bits", prepared.rays.bits}};
+  }
+  std::string const text = summary.dump(2) + "\n";
+  OutputFile::write_text(place(case_file::summary), text);
+  output.commit();
+  return text;
+}
+
+std::string in_case(std::string const& folder, std::string const& name) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(fs::path(folder) / case_file::setup)) {
+    throw DataError(folder, "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
+  }
+  return (fs::path(folder) / name).string();
+}
+
+}  // namespace gladstone

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/scene/renderer.h"
+
+namespace CLI {
+class App;
+}
+
+namespace gladstone {
+
+/// Exit codes of the executable.
+enum ExitCode : int { ok = 0, check_missed = 1, bad_input = 2, incomplete = 3, infeasible = 4, device_error = 5, interrupted_by_user = 130 };
+
+/// Options that every command has.
+struct GlobalOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;
+  std::string device = "auto";
+
+  /// The renderer of the device asked for; says which one runs. @throws DeviceError where it cannot be had
+  std::unique_ptr<Renderer> renderer() const;
+};
+
+/// A command adds its options to its sub-application and returns what is to be run: a function giving the exit code.
+using CommandBody = std::function<int()>;
+struct Command {
+  char const* name;
+  char const* summary;
+  char const* example;
+  CommandBody (*attach)(CLI::App& app, GlobalOptions const& options);
+};
+
+CommandBody attach_render(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_compare(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_trace(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
+
+/// Prints the result of a command: the JSON text with --json, the readable text otherwise.
+void print_result(GlobalOptions const& options, std::string const& json, std::string const& text);
+
+}  // namespace gladstone

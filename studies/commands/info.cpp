@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+#include "render/medium/density_field.h"
+#include "studies/commands/command.h"
+
+namespace gladstone {
+namespace {
+
+int describe_field(std::string const& path, std::string const& dataset, GlobalOptions const& options) {
+  auto const source = open_field(path, dataset);
+  RegularGrid const& grid = source->grid();
+  auto const plane = static_cast<std::size_t>(grid.nodes[0]) * static_cast<std::size_t>(grid.nodes[1]);
+  std::vector<float> values(plane), before;
+  double low = HUGE_VAL, high = -HUGE_VAL, steepest[3] = {};
+  for (int k = 0; k < grid.nodes[2]; ++k) {
+    source->read_planes(k, 1, values);
+    auto const [least, most] = std::minmax_element(values.begin(), values.end());
+    low = std::min<double>(low, *least);
+    high = std::max<double>(high, *most);
+    auto const slope = [&](double a, double b, int axis) {
+      steepest[axis] = std::max(steepest[axis], std::abs(a - b) / grid.spacing[axis]);
+    };
+    auto const width = static_cast<std::size_t>(grid.nodes[0]);
+    for (std::size_t i = 0; i < plane; ++i) {
+      if (i % width != 0) slope(values[i], values[i - 1], 0);
+      if (i >= width) slope(values[i], values[i - width], 1);
+      if (!before.empty()) slope(values[i], before[i], 2);
+    }
+    before = values;
+  }
+  nlohmann::json const json{{"dataset", source->name()},
+                            {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
+                            {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
+                            {"minimum", low},
+                            {"maximum", high},
+                            {"steepest_gradient", {steepest[0], steepest[1], steepest[2]}},
+                            {"units", "as in the file; lengths are taken as mm unless spacing_mm is given"}};
+  print_result(options, json.dump(2),
+               fmt::format("{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
+                           "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z",
+                           source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y,
+                           grid.spacing.z, low, high, steepest[0], steepest[1], steepest[2]));
+  return ok;
+}
+
+/// Mean e^-2 diameter d of the dots from the picture's autocorrelation at a shift of one pixel: Gaussian dots of standard
+/// deviation d/4 have a Gaussian autocorrelation of variance d^2/8.
+double dot_diameter_px(Image<double> const& image, double mean) {
+  double zero = 0, one = 0;
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int column = 0; column + 1 < image.columns(); ++column) {
+      double const a = image(column, row) - mean, b = image(column + 1, row) - mean;
+      zero += 0.5 * (a * a + b * b);
+      one += a * b;
+    }
+  }
+  double const ratio = zero > 0 ? one / zero : 0;
+  return ratio > 0 && ratio < 1 ? std::sqrt(-4 / std::log(ratio)) : std::nan("");
+}
+
+int describe_image(std::string const& path, GlobalOptions const& options) {
+  ImageMetadata metadata;
+  Image<double> const image = read_image(path, &metadata);
+  auto const [least, most] = std::minmax_element(image.begin(), image.end());
+  double mean = 0;
+  for (double value : image) mean += value / static_cast<double>(image.size());
+  double const diameter = dot_diameter_px(image, mean);
+  nlohmann::json const json{{"columns", image.columns()}, {"rows", image.rows()},
+                            {"bit_depth", metadata.bit_depth}, {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
+                            {"minimum", *least}, {"maximum", *most}, {"mean", mean},
+                            {"dot_diameter_px", std::isfinite(diameter) ? nlohmann::json(diameter) : nlohmann::json(nullptr)}};
+  print_result(options, json.dump(2),
+               fmt::format("{}: {} x {} px, {} bits, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2)", path,
+                           image.columns(), image.rows(), metadata.bit_depth, *least, *most, mean, diameter));
+  return ok;
+}
+
+}  // namespace
+
+CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string kind, file, dataset;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("kind", arguments->kind, "field or image")->required()->check(CLI::IsMember({"field", "image"}));
+  app.add_option("file", arguments->file, "The file")->required();
+  app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
+  return [arguments, &options] {
+    return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, options)
+                                      : describe_image(arguments->file, options);
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "render/base/output_file.h"
+#include "studies/case.h"
+#include "studies/commands/command.h"
+#include "studies/ray_file.h"
+
+namespace gladstone {
+
+CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string setup, rays, output, through = "all";
+    std::vector<std::string> overrides;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
+  app.add_option("--rays", arguments->rays, "CSV x_mm,y_mm,z_mm,dx,dy,dz in the world frame")->required();
+  app.add_option("-o,--output", arguments->output, "CSV to write")->required();
+  app.add_option("--through", arguments->through, "How far: medium, optics or all")
+      ->check(CLI::IsMember({"medium", "optics", "all"}));
+  app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")->expected(1)->take_all();
+  return [arguments, &options] {
+    CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
+    std::vector<Ray<double>> const rays = read_rays(arguments->rays);
+    if (options.device == "cuda") options.renderer();
+    Scene scene = build_scene(loaded.setup);
+    plan_step(scene);
+    Through const through = arguments->through == "medium"   ? Through::medium
+                            : arguments->through == "optics" ? Through::optics
+                                                             : Through::all;
+    std::vector<TracedRay> const traced = trace_rays(scene, rays, through);
+    OutputFile::write_text(arguments->output, traced_rays_csv(traced));
+    std::size_t counts[ray_status_count] = {};
+    for (TracedRay const& ray : traced) ++counts[static_cast<int>(ray.status)];
+    nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", scene.step * 1e3}};
+    std::string text = fmt::format("{}: {} rays", arguments->output, traced.size());
+    for (int status = 0; status < ray_status_count; ++status) {
+      char const* const word = to_string(static_cast<RayStatus>(status));
+      json["status"][word] = counts[status];
+      if (counts[status] > 0) text += fmt::format(", {} {}", counts[status], word);
+    }
+    print_result(options, json.dump(2), text);
+    return ok;
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,280 @@
+#include "studies/compare.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/correlator.h"
+#include "analysis/scattered_grid.h"
+#include "render/base/hdf5_file.h"
+#include "render/sensor/detector.h"
+#include "studies/figures/error_figures.h"
+#include "studies/figures/map_figures.h"
+#include "studies/truth_file.h"
+
+namespace gladstone {
+namespace {
+
+/// JSON knows no NaN: what is undefined is null.
+nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
+
+nlohmann::json term_json(BudgetTerm const& term) {
+  nlohmann::json json{{"bias_u_px", number(term.bias_u_px)},     {"bias_v_px", number(term.bias_v_px)},
+                      {"random_u_px", number(term.random_u_px)}, {"random_v_px", number(term.random_v_px)},
+                      {"rms_px", number(term.rms_px)}};
+  if (!term.includes.empty()) json["includes"] = term.includes;
+  return json;
+}
+
+nlohmann::json matrix_json(CovarianceMatrix const& matrix) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < matrix.size; ++i) {
+    nlohmann::json row = nlohmann::json::array();
+    for (std::size_t j = 0; j < matrix.size; ++j) row.push_back(number(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Strain of a displacement given on the interrogation grid: largest magnitude of an eigenvalue of the symmetric part of
+/// its gradient [px/px]; NaN where vectors are scattered.
+std::vector<double> strain_on_grid(DisplacementField const& grid, std::vector<Vec2d> const& displacement) {
+  std::vector<double> strain(grid.size(), std::numeric_limits<double>::quiet_NaN());
+  if (grid.columns < 2 || grid.rows < 2) return strain;
+  auto const at = [&](int column, int row) { return static_cast<std::size_t>(row * grid.columns + column); };
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      std::size_t const left = at(std::max(0, column - 1), row), right = at(std::min(grid.columns - 1, column + 1), row);
+      std::size_t const up = at(column, std::max(0, row - 1)), down = at(column, std::min(grid.rows - 1, row + 1));
+      Vec2d const along_x = (displacement[right] - displacement[left]) / (grid.position_px[right].x - grid.position_px[left].x);
+      Vec2d const along_y = (displacement[down] - displacement[up]) / (grid.position_px[down].y - grid.position_px[up].y);
+      double const middle = 0.5 * (along_x.x + along_y.y);
+      double const radius = std::hypot(0.5 * (along_x.x - along_y.y), 0.5 * (along_x.y + along_y.x));
+      strain[at(column, row)] = std::abs(middle) + radius;
+    }
+  }
+  return strain;
+}
+
+/// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not change.
+std::vector<double> correlation_flux(GroundTruth const& truth) {
+  std::vector<double> flux;
+  flux.reserve(truth.size());
+  for (Vec2d const& both : truth.flux) flux.push_back(std::sqrt(std::max(0.0, both.x * both.y)));
+  return flux;
+}
+
+/// Ray truth of the dots on a lattice, for quick look-ups anywhere in the view.
+class TruthMap {
+ public:
+  TruthMap(GroundTruth const& truth, CameraSetup const& camera)
+      : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
+        maps_(map_scattered(truth.reference_px, truth.displacement_px, grid_)) {}
+
+  /// The nearest lattice point's displacement; NaN outside the view.
+  Vec2d at(Vec2d c) const {
+    int const column = static_cast<int>(std::lround(c.x / spacing)), row = static_cast<int>(std::lround(c.y / spacing));
+    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return {std::nan(""), std::nan("")};
+    return {maps_.u_px(column, row), maps_.v_px(column, row)};
+  }
+
+ private:
+  static constexpr int spacing = 2;
+  MapGrid grid_;
+  DisplacementMaps maps_;
+};
+
+struct Loaded {
+  DisplacementField field;
+  CorrelationSettings settings;  ///< that gave them, if ours; else the case's own
+  bool foreign;
+  std::string report;
+};
+
+Loaded load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
+                    CompareOptions const& options) {
+  VectorFile file = read_vectors(path);
+  int const rows = loaded.setup.camera.rows;
+  Loaded vectors{{}, loaded.correlate, file.foreign, {}};
+  if (options.conventions) {
+    file.conventions = parse_conventions(*options.conventions, file.conventions);
+    vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
+  } else if (file.foreign) {
+    TruthMap const map(truth, loaded.setup.camera);
+    auto const lookup = [&map](Vec2d c) { return map.at(c); };
+    DetectedConventions const detected = detect_conventions(file, lookup, rows);
+    file.conventions = detected.conventions;
+    vectors.report = detected.report;
+  }
+  vectors.field = apply_conventions(std::move(file.field), file.conventions, rows);
+  if (!file.foreign && path.ends_with(".h5")) {
+    std::string const text = Hdf5Reader(path).attribute("setup");
+    if (!text.empty()) {
+      SetupDocument document = SetupDocument::from_text(text, path);
+      vectors.settings = read_correlation_settings(document.root().table("correlate"));
+    }
+  } else if (!file.foreign) {
+    vectors.foreign = true;  // a CSV does not say how it was measured, so it cannot be measured again
+  }
+  return vectors;
+}
+
+}  // namespace
+
+GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
+                            RenderTheory theory) {
+  DotPattern virtual_dots;
+  virtual_dots.half_size = scene.dots.half_size;
+  virtual_dots.shape = scene.dots.shape;
+  for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
+  std::uint64_t const all_rays = scene.rays_per_dot;
+  auto const correct = [&](GroundTruth const& truth) {
+    for (std::size_t i = 0; i < centres_px.size(); ++i) {
+      Vec2d const shift = at == TruthAt::mid_position ? 0.5 * truth.displacement_px[i] : Vec2d{};
+      Vec2d const miss = centres_px[i] - (truth.reference_px[i] + shift);
+      if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) continue;
+      virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(miss) - scene.to_target({0, 0}));
+    }
+  };
+  scene.rays_per_dot = std::min<std::uint64_t>(all_rays, 128);
+  for (int round = 0; round < 2; ++round) {
+    correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
+  }
+  scene.rays_per_dot = all_rays;
+  correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
+  return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
+}
+
+Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options) {
+  CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
+  GroundTruth const dots = read_truth(in_case(folder, case_file::truth));
+  std::string const path = options.vectors.empty() ? in_case(folder, case_file::vectors) : options.vectors;
+  Loaded vectors = load_vectors(path, loaded, dots, options);
+
+  Comparison comparison;
+  comparison.measured = std::move(vectors.field);
+  comparison.report = vectors.report;
+  comparison.foreign = vectors.foreign;
+  DisplacementField const& measured = comparison.measured;
+
+  PreparedCase prepared = prepare_case(loaded);
+  Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
+  comparison.point = truth_at_points(scene, renderer, measured.position_px, options.truth_at, RenderTheory::yes);
+  comparison.strain = strain_on_grid(measured, comparison.point.eq9_cone_px);
+
+  CorrelationSettings const& settings = vectors.settings;
+  WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
+                            window_support_px(settings)};
+  comparison.window = window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px,
+                                   weight, options.truth_at);
+  if (!vectors.foreign) {
+    RenderedCase const rendered = render_case(prepared, renderer);
+    Detector const detector(scene.setup.camera, rendered.exposure_e);
+    LightPair const& light = rendered.rendering.light;
+    DisplacementField again = make_correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
+    if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
+  }
+
+  std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.point.eq9_px,
+                                                 comparison.point.eq9_cone_px, comparison.window.displacement_px};
+  if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
+  comparison.mask = common_mask(measured, references);
+  std::vector<BudgetStage> const stages{
+      {"eq9", comparison.point.eq9_px},           {"straight", comparison.point.chief_px},
+      {"eq9_cone", comparison.point.eq9_cone_px}, {"thin_lens", comparison.point.displacement_px},
+      {"lens", comparison.point.displacement_px}, {"window", comparison.window.displacement_px},
+      {"noise_free", comparison.noise_free},      {"measured", measured.displacement_px},
+  };
+  comparison.budget = error_budget(stages, comparison.mask);
+  return comparison;
+}
+
+std::string errors_json(Comparison const& comparison) {
+  nlohmann::ordered_json json;
+  auto const summary = [&](std::vector<Vec2d> const& truth) {
+    nlohmann::ordered_json measures;
+    for (auto const& [name, value] : error_measures(comparison.measured.displacement_px, truth, comparison.mask)) {
+      measures[std::string(name)] = name == "count" ? nlohmann::json(static_cast<long long>(value)) : number(value);
+    }
+    return measures;
+  };
+  json["ray_truth"] = summary(comparison.point.displacement_px);
+  json["eq9"] = summary(comparison.point.eq9_px);
+  json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
+  json["window_truth"] = summary(comparison.window.displacement_px);
+  nlohmann::ordered_json budget;
+  nlohmann::json names = nlohmann::json::array();
+  for (BudgetTerm const& term : comparison.budget.terms) {
+    budget["terms"][term.name] = term_json(term);
+    names.push_back(term.name);
+  }
+  budget["total"] = term_json(comparison.budget.total);
+  budget["covariance"] = {{"terms", names},
+                          {"both_px2", matrix_json(comparison.budget.covariance)},
+                          {"u_px2", matrix_json(comparison.budget.covariance_u)},
+                          {"v_px2", matrix_json(comparison.budget.covariance_v)}};
+  budget["peak_locking_px"] = number(comparison.budget.peak_locking_px);
+  budget["closure_px"] = number(comparison.budget.closure_px);
+  json["budget"] = budget;
+  json["vectors"] = {{"total", comparison.measured.size()},
+                     {"left_out_fewer_than_three_dots", comparison.window.left_out},
+                     {"conventions", comparison.report}};
+  return json.dump(2) + "\n";
+}
+
+VectorMask gentle_mask(Comparison const& comparison, double limit) {
+  VectorMask mask = comparison.mask;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!(comparison.strain[i] <= limit)) mask[i] = 0;
+  }
+  return mask;
+}
+
+std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison) {
+  DisplacementField const& measured = comparison.measured;
+  std::vector<std::string> drawn;
+  auto const difference = [&](std::vector<Vec2d> const& from) {
+    std::vector<Vec2d> error(measured.size());
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      error[i] = comparison.mask[i] ? measured.displacement_px[i] - from[i] : Vec2d{std::nan(""), std::nan("")};
+    }
+    return error;
+  };
+  if (measured.columns > 1 && measured.rows > 1) {
+    auto const maps = [&](std::string name, std::vector<Vec2d> const& values) {
+      NamedMaps both{std::move(name), Image<double>(measured.columns, measured.rows), Image<double>(measured.columns, measured.rows)};
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        both.u_px.data()[i] = values[i].x;
+        both.v_px.data()[i] = values[i].y;
+      }
+      return both;
+    };
+    MapAxes axes;
+    axes.x_first = measured.position_px.front().x;
+    axes.x_step = measured.position_px[1].x - axes.x_first;
+    axes.y_first = measured.position_px.front().y;
+    axes.y_step = measured.position_px[static_cast<std::size_t>(measured.columns)].y - axes.y_first;
+    drawn.push_back(folder + "/displacement_maps.png");
+    write_displacement_maps(drawn.back(), "Displacement, and differences from ray truth", axes,
+                            {maps("ray truth", comparison.point.displacement_px), maps("Eq. 9", comparison.point.eq9_px),
+                             maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px),
+                             maps("measurement", measured.displacement_px)});
+  }
+  std::vector<ErrorSeries> const series{{"against ray truth", difference(comparison.point.displacement_px)},
+                                        {"against Eq. 9", difference(comparison.point.eq9_px)},
+                                        {"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)}};
+  drawn.push_back(folder + "/error_histograms.png");
+  write_error_histograms(drawn.back(), "Measurement error", series);
+  if (measured.columns > 1 && measured.rows > 1) {
+    drawn.push_back(folder + "/error_against_gradient.png");
+    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", comparison.strain, series);
+  }
+  drawn.push_back(folder + "/error_budget.png");
+  write_budget_bars(drawn.back(), "Error budget, from Eq. 9 to the measurement", comparison.budget);
+  return drawn;
+}
+
+}  // namespace gladstone

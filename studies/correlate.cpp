@@ -1,0 +1,63 @@
+#include "studies/correlate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "analysis/correlator.h"
+#include "analysis/vector_file.h"
+#include "render/base/image_file.h"
+#include "render/base/setup_table.h"
+#include "studies/case.h"
+
+namespace gladstone {
+namespace {
+
+CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
+  for (auto const& assignment : overrides) document.override_key(assignment);
+  CorrelationFile file;
+  file.settings = read_correlation_settings(document.root().table("correlate"));
+  document.finish();
+  file.resolved = document.resolved();
+  return file;
+}
+
+}  // namespace
+
+Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
+                             Image<double> const& flow, CorrelationSettings const& settings) {
+  if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
+    throw DataError(flow_name, fmt::format("is {} x {} px but {} is {} x {} (both frames need one size)", flow.columns(),
+                                           flow.rows(), reference_name, reference.columns(), reference.rows()));
+  }
+  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
+  if (largest > std::min(reference.columns(), reference.rows())) {
+    throw DataError(reference_name, fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
+                                                reference.columns(), reference.rows(), largest));
+  }
+  auto const start = std::chrono::steady_clock::now();
+  Measurement measurement{make_correlator(settings)->correlate(reference, flow), 0};
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
+}
+
+CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides) {
+  return read_document(SetupDocument::from_file(path), overrides);
+}
+
+CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
+  return read_document(SetupDocument::from_text("", "defaults"), overrides);
+}
+
+Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other) {
+  std::string const reference = in_case(folder, case_file::reference), flow = in_case(folder, case_file::flow);
+  CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
+  CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
+  Measurement measurement = correlate_frames(reference, read_image(reference), flow, read_image(flow), settings);
+  FileOrigin origin{"gladstone vectors", 1, other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed, "cpu"};
+  write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
+  return measurement;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/correlation_settings.h"
+#include "render/base/displacement_field.h"
+#include "render/base/image.h"
+
+namespace gladstone {
+
+/// What a measurement gives.
+struct Measurement {
+  DisplacementField field;
+  double seconds = 0;
+};
+
+/// Correlates two frames. @throws DataError where they differ in size or are smaller than a window
+Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
+                             Image<double> const& flow, CorrelationSettings const& settings);
+
+/// Reads the [correlate] table of a setup or of a file with nothing else. @throws SetupError
+struct CorrelationFile {
+  CorrelationSettings settings;
+  std::string resolved;  ///< text of the table with all defaults
+};
+CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides);
+CorrelationFile default_correlation(std::vector<std::string> const& overrides);
+
+/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv).
+Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other);
+
+}  // namespace gladstone

@@ -1,0 +1,162 @@
+#include "studies/figures/gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/output_file.h"
+
+extern char** environ;
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string make_temporary_folder() {
+  std::error_code error;
+  fs::path folder = fs::temp_directory_path(error);
+  if (error) folder = "/tmp";
+  std::string pattern = (folder / "gladstone_figure_XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    throw OutputError(folder.string(), fmt::format("no temporary folder for figures ({})", std::strerror(errno)));
+  }
+  return pattern;
+}
+
+/// Runs gnuplot on script.gp within the folder, its messages going to log.txt; returns its exit code.
+int run_gnuplot(std::string const& folder) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, "log.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  std::array<std::string, 3> arguments{"gnuplot", "-d", "script.gp"};  // -d: no start-up file of the user's
+  std::array<char*, 4> argv{arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
+  pid_t child = 0;
+  int const error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw GnuplotMissing();
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string text_of(std::string const& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+GnuplotFigure::GnuplotFigure(int width_px, int height_px)
+    : width_px_(width_px), height_px_(height_px), folder_(make_temporary_folder()) {
+  GLADSTONE_EXPECTS(width_px > 0 && height_px > 0);
+  command(fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11' noenhanced background '#ffffff'",
+                      width_px, height_px));
+  command("set encoding utf8");
+  command("set output 'figure.png'");
+  command("set border linewidth 1 linecolor '#404040'");
+  command("set tics nomirror out scale 0.5 textcolor '#202020'");
+  command("set key noautotitle textcolor '#202020'");
+}
+
+GnuplotFigure::~GnuplotFigure() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+void GnuplotFigure::command(std::string_view line) {
+  script_ += line;
+  script_ += '\n';
+}
+
+std::string GnuplotFigure::store(std::span<double const> values) {
+  std::string const name = fmt::format("data{}.bin", files_++);
+  std::ofstream file(folder_ + "/" + name, std::ios::binary);
+  file.write(reinterpret_cast<char const*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+  if (!file.flush()) throw OutputError(folder_ + "/" + name, "cannot be written (is the disk full?)");
+  return name;
+}
+
+std::string GnuplotFigure::add_map(Image<double> const& map, double x_first, double x_step, double y_first,
+                                   double y_step) {
+  GLADSTONE_EXPECTS(!map.empty() && x_step != 0.0 && y_step != 0.0);
+  // gnuplot wants growing coordinates: mirror what runs the other way.
+  Image<double> upright(map.columns(), map.rows());
+  for (int row = 0; row < map.rows(); ++row) {
+    for (int column = 0; column < map.columns(); ++column) {
+      int const to_column = x_step > 0.0 ? column : map.columns() - 1 - column;
+      int const to_row = y_step > 0.0 ? row : map.rows() - 1 - row;
+      upright(to_column, to_row) = map(column, row);
+    }
+  }
+  double const x_low = x_step > 0.0 ? x_first : x_first + x_step * (map.columns() - 1);
+  double const y_low = y_step > 0.0 ? y_first : y_first + y_step * (map.rows() - 1);
+  return fmt::format("{} binary array=({},{}) format='%float64' origin=({:.17g},{:.17g}) dx={:.17g} dy={:.17g}",
+                     quoted(store({upright.data(), upright.size()})), map.columns(), map.rows(), x_low, y_low,
+                     std::abs(x_step), std::abs(y_step));
+}
+
+std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& columns) {
+  GLADSTONE_EXPECTS(!columns.empty());
+  std::vector<double> rows;
+  for (std::size_t row = 0; row < columns.front().size(); ++row) {
+    for (auto const& column : columns) rows.push_back(column.at(row));
+  }
+  return fmt::format("{} binary format='%{}float64'", quoted(store(rows)), columns.size());
+}
+
+void GnuplotFigure::write(std::string const& path) const {
+  OutputFile output(path);
+  {
+    std::ofstream script(folder_ + "/script.gp", std::ios::binary);
+    script << script_ << "\nunset output\n";
+    if (!script.flush()) throw OutputError(folder_, "the figure's script cannot be written (is the disk full?)");
+  }
+  int const code = run_gnuplot(folder_);
+  throw_if_interrupted();  // Ctrl-C stops gnuplot as well
+  std::string const picture = folder_ + "/figure.png";
+  std::error_code error;
+  if (code != 0 || fs::file_size(picture, error) == 0 || error) {
+    throw OutputError(path, fmt::format("gnuplot failed (exit code {}): {}", code, text_of(folder_ + "/log.txt")));
+  }
+  fs::copy_file(picture, output.temporary_path(), fs::copy_options::overwrite_existing, error);
+  if (error) throw OutputError(path, fmt::format("cannot be written ({})", error.message()));
+  output.commit();
+}
+
+std::string GnuplotFigure::quoted(std::string_view text) {
+  std::string result = "'";
+  for (char const c : text) {
+    result += c == '\n' ? ' ' : c;
+    if (c == '\'') result += '\'';
+  }
+  return result + "'";
+}
+
+std::string_view house_colour(std::size_t index) {
+  constexpr std::array<std::string_view, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                    "#e69f00", "#56b4e9", "#404040"};
+  return colours[index % colours.size()];
+}
+
+}  // namespace gladstone

@@ -1,0 +1,82 @@
+#include "studies/figures/map_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+Image<double> difference(Image<double> const& a, Image<double> const& b) {
+  GLADSTONE_EXPECTS(a.columns() == b.columns() && a.rows() == b.rows());
+  Image<double> result(a.columns(), a.rows());
+  std::transform(a.begin(), a.end(), b.begin(), result.begin(), std::minus<>{});
+  return result;
+}
+
+}  // namespace
+
+void write_displacement_maps(std::string const& path, std::string const& title, MapAxes const& axes,
+                             std::vector<NamedMaps> const& sources) {
+  GLADSTONE_EXPECTS(!sources.empty());
+  MapFigure figure;
+  figure.title = title;
+  figure.axes = axes;
+  figure.columns = static_cast<int>(sources.size());
+  auto const add_row = [&](char const* component, Image<double> NamedMaps::*map) {
+    // Eq. 9 has by far the largest values: on its range, the others would be white.
+    ColourRange const range = colour_range(sources.front().*map, ColourScale::diverging);
+    for (NamedMaps const& source : sources) {
+      figure.panels.push_back({fmt::format("{}, {} [px]", component, source.name), source.*map, ColourScale::diverging,
+                               "", range.lower, range.upper});
+    }
+  };
+  auto const add_differences = [&](char const* component, Image<double> NamedMaps::*map) {
+    NamedMaps const& reference = sources.front();
+    figure.panels.push_back({});
+    for (std::size_t i = 1; i < sources.size(); ++i) {
+      figure.panels.push_back({fmt::format("Δ{}, {} − {} [px]", component, sources[i].name, reference.name),
+                               difference(sources[i].*map, reference.*map), ColourScale::diverging,
+                               "difference of " + sources[i].name});
+    }
+  };
+  add_row("u", &NamedMaps::u_px);
+  add_row("v", &NamedMaps::v_px);
+  if (sources.size() > 1) {
+    add_differences("u", &NamedMaps::u_px);
+    add_differences("v", &NamedMaps::v_px);
+  }
+  write_map_figure(path, figure);
+}
+
+void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants) {
+  GLADSTONE_EXPECTS(!instants.empty());
+  MapFigure figure;
+  figure.axes = axes;
+  figure.columns = 4;
+  for (SeedFigure4Instant const& instant : instants) {
+    Image<double> magnitude(instant.gradient_x.columns(), instant.gradient_x.rows());
+    std::transform(instant.gradient_x.begin(), instant.gradient_x.end(), instant.gradient_y.begin(), magnitude.begin(),
+                   [](double x, double y) { return std::hypot(x, y); });
+    auto const group = [&](char const* quantity) { return fmt::format("{} {}", quantity, figure.panels.size() / 8); };
+    std::string const gradient = group("gradient"), theory = group("theory"), rays = group("rays");
+    figure.panels.push_back({"ρ [kg/m³]", instant.density, ColourScale::sequential});
+    figure.panels.push_back({"∂ρ/∂x [kg/m⁴]", instant.gradient_x, ColourScale::diverging, gradient});
+    figure.panels.push_back({"Δx, theory (Eq. 9) [px]", instant.theory_u, ColourScale::diverging, theory});
+    figure.panels.push_back({"Δx, light rays [px]", instant.rays_u, ColourScale::diverging, rays});
+    figure.panels.push_back({"|∇ρ| [kg/m⁴]", std::move(magnitude), ColourScale::magnitude});
+    figure.panels.push_back({"∂ρ/∂y [kg/m⁴]", instant.gradient_y, ColourScale::diverging, gradient});
+    figure.panels.push_back({"Δy, theory (Eq. 9) [px]", instant.theory_v, ColourScale::diverging, theory});
+    figure.panels.push_back({"Δy, light rays [px]", instant.rays_v, ColourScale::diverging, rays});
+    figure.row_headings.push_back(instant.heading);
+    figure.row_headings.emplace_back();
+  }
+  write_map_figure(path, figure);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,214 @@
+#include "studies/figures/map_panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "analysis/error_summary.h"
+#include "render/base/contracts.h"
+#include "studies/figures/gnuplot.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* diverging_palette =
+    "set palette defined (0 '#0b3c6f', 0.125 '#2a6fae', 0.25 '#6aacd0', 0.375 '#c3dcea', 0.5 '#f7f7f7', "
+    "0.625 '#f9d3bf', 0.75 '#ec9374', 0.875 '#c43b3e', 1 '#6d0720')";
+/// Viridis (S. van der Walt & N. Smith, CC0) at nine points.
+constexpr char const* sequential_palette =
+    "set palette defined (0 '#440154', 0.125 '#482878', 0.25 '#3e4a89', 0.375 '#31688e', 0.5 '#26828e', "
+    "0.625 '#1f9e89', 0.75 '#6cce59', 0.875 '#b5de2b', 1 '#fde725')";
+
+ColourRange range_of(std::vector<double> const& values, ColourScale scale) {
+  if (values.empty()) return {scale == ColourScale::diverging ? -1.0 : 0.0, 1.0};
+  ColourRange range;
+  if (scale == ColourScale::sequential) {
+    range = {quantile(values, 0.0025), quantile(values, 0.9975)};
+  } else {
+    std::vector<double> magnitude(values);
+    for (double& value : magnitude) value = std::abs(value);
+    range.upper = quantile(std::move(magnitude), 0.9975);
+    range.lower = scale == ColourScale::diverging ? -range.upper : 0.0;
+  }
+  if (range.upper > range.lower) return range;
+  // A constant map still needs a range.
+  double const half = range.upper == 0.0 ? 1.0 : 1e-3 * std::abs(range.upper);
+  return scale == ColourScale::magnitude ? ColourRange{0.0, half} : ColourRange{range.lower - half, range.upper + half};
+}
+
+std::vector<double> finite_values(Image<double> const& map) {
+  std::vector<double> values;
+  std::copy_if(map.begin(), map.end(), std::back_inserter(values), [](double value) { return std::isfinite(value); });
+  return values;
+}
+
+/// The range of every panel, shared within its group.
+std::vector<ColourRange> ranges_of(std::vector<MapPanel> const& panels) {
+  std::map<std::string, std::vector<double>> values;
+  auto const group = [&](std::size_t i) {
+    return panels[i].range_group.empty() ? "panel " + std::to_string(i) : "group " + panels[i].range_group;
+  };
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    std::vector<double> const own = finite_values(panels[i].map);
+    values[group(i)].insert(values[group(i)].end(), own.begin(), own.end());
+  }
+  std::vector<ColourRange> ranges;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    ColourRange range = range_of(values[group(i)], panels[i].scale);
+    if (std::isfinite(panels[i].lower)) range.lower = panels[i].lower;
+    if (std::isfinite(panels[i].upper)) range.upper = panels[i].upper;
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// The step 1, 2 or 5 times a power of ten that puts at most `most` tics on a length.
+double tic_step(double length, double most) {
+  double const least = length / most;
+  double const power = std::pow(10.0, std::floor(std::log10(least)));
+  for (double const factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= least) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+/// Lengths of the layout, in pixels of the picture.
+struct Layout {
+  static constexpr int left = 40, right = 74, above = 34, below = 28, edge = 14, bar_gap = 10, bar = 13;
+  static constexpr int axis_label = 26, title = 44, heading = 34;
+  int map_width = 300;
+  int map_height = 300;
+};
+
+/// The largest map of the data's proportions that fits the width, at most 1.5 times as high.
+Layout layout_of(MapFigure const& figure, Image<double> const& map) {
+  Layout layout;
+  layout.map_width = figure.columns >= 4 ? 270 : 330;
+  double const width = map.columns() * std::abs(figure.axes.x_step);
+  double const height = map.rows() * std::abs(figure.axes.y_step);
+  double const ratio = height / width;
+  if (ratio > 1.5) layout.map_width = std::max(60, static_cast<int>(layout.map_width * 1.5 / ratio));
+  layout.map_height = std::max(40, static_cast<int>(std::lround(layout.map_width * ratio)));
+  return layout;
+}
+
+/// Averages blocks of pixels where the map is much finer than the picture, so that nothing aliases.
+std::pair<Image<double>, int> reduced(Image<double> const& map, int width_px) {
+  int const factor = std::max(1, map.columns() / (2 * width_px));
+  if (factor == 1 || map.rows() < factor) return {map, 1};
+  Image<double> small(map.columns() / factor, map.rows() / factor);
+  for (int row = 0; row < small.rows(); ++row) {
+    for (int column = 0; column < small.columns(); ++column) {
+      double sum = 0.0;
+      for (int j = 0; j < factor; ++j) {
+        for (int i = 0; i < factor; ++i) sum += map(column * factor + i, row * factor + j);
+      }
+      small(column, row) = sum / (factor * factor);
+    }
+  }
+  return {std::move(small), factor};
+}
+
+}  // namespace
+
+ColourRange colour_range(Image<double> const& map, ColourScale scale) { return range_of(finite_values(map), scale); }
+
+void write_map_figure(std::string const& path, MapFigure const& figure) {
+  GLADSTONE_EXPECTS(figure.columns > 0);
+  auto const first = std::find_if(figure.panels.begin(), figure.panels.end(),
+                                  [](MapPanel const& panel) { return !panel.map.empty(); });
+  GLADSTONE_EXPECTS(first != figure.panels.end());
+  Layout const layout = layout_of(figure, first->map);
+  MapAxes const& axes = figure.axes;
+  auto const count = static_cast<int>(figure.panels.size());
+  int const rows = (count + figure.columns - 1) / figure.columns;
+  auto const heading_of = [&](int row) {
+    auto const i = static_cast<std::size_t>(row);
+    return i < figure.row_headings.size() ? figure.row_headings[i] : std::string{};
+  };
+
+  // Pixel positions of the rows from the top.
+  int const cell_width = Layout::left + layout.map_width + Layout::right;
+  int const cell_height = Layout::above + layout.map_height + Layout::below;
+  std::vector<int> top(static_cast<std::size_t>(rows));
+  int y = Layout::edge + (figure.title.empty() ? 0 : Layout::title);
+  for (int row = 0; row < rows; ++row) {
+    if (!heading_of(row).empty()) y += Layout::heading;
+    top[static_cast<std::size_t>(row)] = y;
+    y += cell_height;
+  }
+  int const width = 2 * Layout::edge + Layout::axis_label + figure.columns * cell_width;
+  int const height = y + Layout::axis_label + Layout::edge;
+
+  GnuplotFigure plot(width, height);
+  auto const screen_x = [&](double x_px) { return x_px / width; };
+  auto const screen_y = [&](double y_px) { return 1.0 - y_px / height; };
+  plot.command("set multiplot");
+  if (!figure.title.empty()) {
+    plot.command(fmt::format("set label 1 {} at screen 0.5, {:.6f} center font 'DejaVu Sans,15' textcolor '#101010'",
+                             GnuplotFigure::quoted(figure.title), screen_y(Layout::edge + 0.4 * Layout::title)));
+  }
+  for (int row = 0; row < rows; ++row) {
+    if (heading_of(row).empty()) continue;
+    plot.command(fmt::format(
+        "set label {} {} at screen {:.6f}, {:.6f} left font 'DejaVu Sans Bold,13' textcolor '#101010'", row + 2,
+        GnuplotFigure::quoted(heading_of(row)), screen_x(Layout::edge + Layout::axis_label + Layout::left),
+        screen_y(top[static_cast<std::size_t>(row)] - 0.5 * Layout::heading)));
+  }
+
+  double const half_x = 0.5 * std::abs(axes.x_step);
+  double const half_y = 0.5 * std::abs(axes.y_step);
+  std::vector<ColourRange> const ranges = ranges_of(figure.panels);
+  for (int i = 0; i < count; ++i) {
+    MapPanel const& panel = figure.panels[static_cast<std::size_t>(i)];
+    if (panel.map.empty()) continue;
+    int const row = i / figure.columns;
+    int const column = i % figure.columns;
+    int const left = Layout::edge + Layout::axis_label + column * cell_width + Layout::left;
+    int const upper = top[static_cast<std::size_t>(row)] + Layout::above;
+    plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", screen_x(left),
+                             screen_x(left + layout.map_width)));
+    plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", screen_y(upper),
+                             screen_y(upper + layout.map_height)));
+    plot.command(fmt::format("set colorbox user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen {:.6f}",
+                             screen_x(left + layout.map_width + Layout::bar_gap), screen_y(upper + layout.map_height),
+                             screen_x(Layout::bar), layout.map_height / static_cast<double>(height)));
+    plot.command(fmt::format("set title {} font 'DejaVu Sans,12' offset 0,-0.5 textcolor '#101010'",
+                             GnuplotFigure::quoted(panel.title)));
+    plot.command(panel.scale == ColourScale::diverging ? diverging_palette : sequential_palette);
+    ColourRange const range = ranges[static_cast<std::size_t>(i)];
+    plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",
+                             range.lower, range.upper));
+    double const x_end = axes.x_first + axes.x_step * (panel.map.columns() - 1);
+    double const y_end = axes.y_first + axes.y_step * (panel.map.rows() - 1);
+    plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", std::min(axes.x_first, x_end) - half_x,
+                             std::max(axes.x_first, x_end) + half_x));
+    double const y_low = std::min(axes.y_first, y_end) - half_y;
+    double const y_high = std::max(axes.y_first, y_end) + half_y;
+    plot.command(axes.y_down ? fmt::format("set yrange [{:.10g}:{:.10g}]", y_high, y_low)
+                             : fmt::format("set yrange [{:.10g}:{:.10g}]", y_low, y_high));
+    double const x_span = std::abs(axes.x_step) * panel.map.columns();
+    plot.command(fmt::format(
+        "set xtics {:.10g} font 'DejaVu Sans,9' offset 0,0.4; set ytics {:.10g} font 'DejaVu Sans,9' offset 0.6,0",
+        tic_step(x_span, layout.map_width / 42.0), tic_step(y_high - y_low, layout.map_height / 36.0)));
+    bool const lowest = i + figure.columns >= count;
+    plot.command(lowest ? fmt::format("set xlabel {} offset 0,0.8", GnuplotFigure::quoted(axes.x_label))
+                        : std::string("unset xlabel"));
+    plot.command(column == 0 ? fmt::format("set ylabel {} offset 1.6,0", GnuplotFigure::quoted(axes.y_label))
+                             : std::string("unset ylabel"));
+    plot.command(
+        "set object 1 rectangle from graph 0,0 to graph 1,1 fillcolor '#b8b8b8' fillstyle solid noborder behind");
+    auto const [map, factor] = reduced(panel.map, layout.map_width);
+    std::string const source = plot.add_map(map, axes.x_first + 0.5 * (factor - 1) * axes.x_step, factor * axes.x_step,
+                                            axes.y_first + 0.5 * (factor - 1) * axes.y_step, factor * axes.y_step);
+    plot.command(fmt::format("plot {} with image", source));
+    for (int label = 1; label <= rows + 1; ++label) plot.command(fmt::format("unset label {}", label));
+  }
+  plot.command("unset multiplot");
+  plot.write(path);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+#include "studies/commands/command.h"
+#include "studies/version_text.h"
+
+namespace gladstone {
+namespace {
+
+/// One row a command.
+constexpr std::array commands{
+    Command{"render", "Trace the reference and the flow frame of a setup into a case folder",
+            "gladstone render table1.toml -o out/case", attach_render},
+    Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case", attach_correlate},
+    Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case", attach_compare},
+    Command{"trace", "Trace given rays and say where they end and why",
+            "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
+    Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
+    Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
+};
+
+int run(int argc, char** argv) {
+  GlobalOptions options;
+  CLI::App app{"gladstone: ray-traced synthetic BOS images, correlation and error analysis"};
+  app.set_version_flag("--version", version_text(), "Print the version and the backends compiled in");
+  app.fallthrough();
+  app.require_subcommand(1);
+  app.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
+  app.add_flag("--quiet", options.quiet, "No log, no progress bars");
+  app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(CLI::Range(0, 4096));
+  app.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  app.footer("Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 5 device error, 130 interrupted.");
+  std::array<CommandBody, commands.size()> bodies;
+  std::array<CLI::App*, commands.size()> parsed{};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    parsed[i] = app.add_subcommand(commands[i].name, commands[i].summary);
+    parsed[i]->footer(fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand anywhere.",
+                                  commands[i].example));
+    bodies[i] = commands[i].attach(*parsed[i], options);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::ParseError const& error) {
+    return app.exit(error) == 0 ? ok : bad_input;
+  }
+  if (options.quiet) spdlog::set_level(spdlog::level::err);
+  Progress::enable(!options.quiet);
+  set_thread_count(options.threads);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (parsed[i]->parsed()) return bodies[i]();
+  }
+  return bad_input;
+}
+
+int guarded(int argc, char** argv) {
+  auto const fail = [](char const* kind, std::string const& what, int code) {
+    fmt::print(stderr, "gladstone: {}{}\n", kind, what);
+    return code;
+  };
+  try {
+    return run(argc, argv);
+  } catch (SetupError const& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return bad_input;
+  } catch (Interrupted const& error) {
+    return fail("", error.what(), interrupted_by_user);
+  } catch (DeviceError const& error) {
+    return fail("device error: ", error.what(), device_error);
+  } catch (std::bad_alloc const&) {
+    return fail("", "out of memory; reduce the image, the field or the number of dots", bad_input);
+  } catch (std::exception const& error) {
+    return fail("", error.what(), bad_input);
+  }
+}
+
+}  // namespace
+}  // namespace gladstone
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_color_mt("gladstone"));
+  spdlog::set_pattern("%^%l:%$ %v");
+  gladstone::catch_interrupts();
+  int const code = gladstone::guarded(argc, argv);
+  if (std::fflush(stdout) != 0) {
+    fmt::print(stderr, "gladstone: standard output cannot be written\n");
+    return gladstone::bad_input;
+  }
+  return code;
+}

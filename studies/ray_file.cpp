@@ -1,0 +1,106 @@
+#include "studies/ray_file.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "render/base/error.h"
+#include "render/base/parallel.h"
+#include "render/base/units.h"
+#include "render/scene/trace_pair.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TracedRay dead(RayStatus status) { return {status, {nan, nan, nan}, {nan, nan, nan}, nan, {nan, nan}}; }
+
+template <class Medium>
+TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<double> const& start, Through through) {
+  MediumPassage<double> const way = trace_medium(medium, view.tracing, start);
+  if (way.status != RayStatus::alive) return dead(way.status);
+  TracedRay traced{RayStatus::alive, start.position, start.direction, 0.0, {nan, nan}};
+  if (way.crossed) {
+    traced.position = exit_position(start, way);
+    traced.direction = exit_direction(start, way);
+    traced.optical_path = way.optical_path;
+  }
+  if (through == Through::medium) return traced;
+  Ray<double> ray{traced.position, traced.direction};
+  if (ray.position.z > view.lens.z) return dead(RayStatus::missed_lens);
+  RayStatus const status = view.lens.interact(ray);
+  if (status != RayStatus::alive) return dead(status);
+  traced.position = ray.position;
+  traced.direction = ray.direction;
+  traced.optical_path = nan;  // a thin lens has no optical path of its own
+  if (through == Through::optics) return traced;
+  double const s = (view.sensor.z - ray.position.z) / ray.direction.z;
+  traced.position = ray.position + ray.direction * s;
+  traced.pixel = view.sensor.to_pixel(traced.position.x, traced.position.y);
+  if (!view.sensor.covers(traced.pixel)) traced.status = RayStatus::missed_sensor;
+  return traced;
+}
+
+}  // namespace
+
+std::vector<Ray<double>> read_rays(std::string const& path) {
+  std::ifstream file(path);
+  if (!file) throw DataError(path, "cannot be opened (missing or not readable); check --rays");
+  std::string line;
+  std::getline(file, line);
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  if (line != "x_mm,y_mm,z_mm,dx,dy,dz") {
+    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)", line));
+  }
+  std::vector<Ray<double>> rays;
+  for (std::size_t number = 2; std::getline(file, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty()) continue;
+    double v[6] = {};
+    char const* at = line.data();
+    char const* const end = at + line.size();
+    bool good = true;
+    for (int i = 0; i < 6 && good; ++i) {
+      auto const [rest, error] = std::from_chars(at, end, v[i]);
+      good = error == std::errc() && std::isfinite(v[i]) && (i == 5 ? rest == end : rest != end && *rest == ',');
+      at = rest + 1;
+    }
+    Vec3d const direction{v[3], v[4], v[5]};
+    if (!good || !(length(direction) > 0)) {
+      throw DataError(fmt::format("{}:{}", path, number),
+                      fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", line));
+    }
+    rays.push_back({Vec3d{v[0], v[1], v[2]} * unit::millimetre, normalized(direction)});
+  }
+  return rays;
+}
+
+std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through) {
+  std::vector<TracedRay> traced(rays.size());
+  SceneView<double> const view = scene.view();
+  std::visit(
+      [&](auto const& medium) {
+        parallel_chunks(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) traced[i] = trace_one(view, medium, rays[i], through);
+        });
+      },
+      scene.medium.view);
+  return traced;
+}
+
+std::string traced_rays_csv(std::vector<TracedRay> const& rays) {
+  std::string text = "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\n";
+  for (TracedRay const& ray : rays) {
+    Vec3d const p = ray.position / unit::millimetre;
+    text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", to_string(ray.status), p.x,
+                        p.y, p.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.optical_path / unit::millimetre,
+                        ray.pixel.x, ray.pixel.y);
+  }
+  return text;
+}
+
+}  // namespace gladstone

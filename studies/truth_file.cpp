@@ -1,0 +1,126 @@
+#include "studies/truth_file.h"
+
+#include <array>
+
+namespace gladstone {
+namespace {
+
+constexpr char const* dot_axes = "dot, component";
+
+std::span<double const> flat(std::vector<Vec2d> const& values) {
+  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
+  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
+}
+
+std::span<double const> flat(Image<Vec2d> const& image) {
+  return {reinterpret_cast<double const*>(image.data()), 2 * image.size()};
+}
+
+/// The datasets of /dots that are pairs in px, with what they mean.
+struct PairDataset {
+  char const* name;
+  std::vector<Vec2d> GroundTruth::*values;
+  char const* units;
+  char const* description;
+};
+
+constexpr std::array<PairDataset, 7> pair_datasets{{
+    {"/dots/reference_px", &GroundTruth::reference_px, "px",
+     "radiance-weighted centroid of the rays that pass the stop in the reference frame (column, row)"},
+    {"/dots/displacement_px", &GroundTruth::displacement_px, "px", "flow centroid minus reference centroid (u right, v down)"},
+    {"/dots/displacement_std_px", &GroundTruth::displacement_std_px, "px",
+     "weighted standard deviation of the hits in the flow frame"},
+    {"/dots/flux", &GroundTruth::flux, "fully lit px", "light of the dot in the reference and in the flow frame"},
+    {"/dots/eq9_px", &GroundTruth::eq9_px, "px", "Rajendran et al. eq. 9 along the straight chief ray, lever Z_D (u right, v down)"},
+    {"/dots/chief_px", &GroundTruth::chief_px, "px", "the same with each slice's own distance from the dots as lever"},
+    {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px",
+     "the same averaged over the dot's disc and the stop's pupil"},
+}};
+
+}  // namespace
+
+void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
+                 FieldMap const& field, FileOrigin const& origin) {
+  Hdf5Writer file(path, origin);
+  std::size_t const count = truth.size();
+  std::vector<double> position;
+  position.reserve(3 * count);
+  for (Vec3d const& p : truth.position_m) position.insert(position.end(), {p.x, p.y, p.z});
+  file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m",
+             "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera", "dot, (x, y, z)");
+  for (PairDataset const& dataset : pair_datasets) {
+    file.write(dataset.name, flat(truth.*dataset.values), {count, 2}, dataset.units, dataset.description, dot_axes);
+  }
+  std::vector<std::int64_t> rays;
+  for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
+  file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
+             "dot, frame (reference, flow)");
+  std::vector<std::int64_t> counts;
+  for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
+  file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
+             "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
+             "frame (reference, flow), status");
+
+  auto const columns = static_cast<std::size_t>(field.density.columns());
+  auto const rows = static_cast<std::size_t>(field.density.rows());
+  double const spacing[1] = {static_cast<double>(field.spacing_px)};
+  file.write("/field/spacing_px", std::span<double const>(spacing), {1}, "px",
+             "lattice constant of the maps: node (i, j) lies at pixel (i, j) spacing + (spacing - 1) / 2", "value");
+  file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()), {rows, columns},
+             "kg/m^3", "density averaged along the chief ray through the field", "row, column");
+  file.write("/field/density_gradient_kg_m4", flat(field.density_gradient), {rows, columns, 2}, "kg/m^4",
+             "d rho / d(X, Y) averaged along the chief ray, Y up", "row, column, (X, Y)");
+  file.write("/field/eq9_px", flat(field.eq9_px), {rows, columns, 2}, "px", "Rajendran et al. eq. 9", "row, column, (u, v)");
+
+  Setup const& setup = scene.setup;
+  file.attribute("/dots", "interpolation",
+                 setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
+  file.attribute("/dots", "conventions",
+                 "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
+                 "appear displaced against grad n");
+  file.attribute("/dots", "step_mm", scene.step * 1e3);
+  file.attribute("/dots", "magnification", scene.imaging.magnification);
+  file.close();
+}
+
+GroundTruth read_truth(std::string const& path) {
+  Hdf5Reader const file(path);
+  GroundTruth truth;
+  std::vector<double> const position = file.read("/dots/position_m");
+  truth.resize(position.size() / 3);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
+  }
+  for (PairDataset const& dataset : pair_datasets) {
+    std::vector<double> const values = file.read(dataset.name);
+    if (values.size() != 2 * truth.size()) {
+      throw DataError(path, std::string(dataset.name) + " has another length than /dots/position_m; render the case again");
+    }
+    for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
+  }
+  std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
+  for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays.at(2 * i), rays.at(2 * i + 1)};
+  return truth;
+}
+
+FieldMap read_field_map(std::string const& path) {
+  Hdf5Reader const file(path);
+  FieldMap map;
+  map.spacing_px = static_cast<int>(file.read("/field/spacing_px").at(0));
+  auto const shape = file.shape("/field/density_kg_m3");
+  int const rows = static_cast<int>(shape.at(0)), columns = static_cast<int>(shape.at(1));
+  map.density = Image<double>(columns, rows);
+  map.density_gradient = Image<Vec2d>(columns, rows);
+  map.eq9_px = Image<Vec2d>(columns, rows);
+  std::vector<double> const density = file.read("/field/density_kg_m3");
+  std::vector<double> const gradient = file.read("/field/density_gradient_kg_m4");
+  std::vector<double> const eq9 = file.read("/field/eq9_px");
+  for (std::size_t i = 0; i < map.density.size(); ++i) {
+    map.density.data()[i] = density[i];
+    map.density_gradient.data()[i] = {gradient[2 * i], gradient[2 * i + 1]};
+    map.eq9_px.data()[i] = {eq9[2 * i], eq9[2 * i + 1]};
+  }
+  return map;
+}
+
+}  // namespace gladstone

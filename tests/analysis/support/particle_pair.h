@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+
+#include "render/base/image.h"
+#include "render/base/vec.h"
+
+namespace gladstone::testing {
+
+/// Two images of particles with a displacement known everywhere.
+struct ParticlePair {
+  Image<double> reference;
+  Image<double> flow;
+};
+
+struct ParticleSettings {
+  int columns = 256;
+  int rows = 256;
+  double diameter_px = 3.0;  ///< where a particle's image has fallen to e^-2 of its peak
+  double particles_per_px = 20.0 / 1024.0;
+  double noise = 0.0;  ///< standard deviation over the peak of the brightest particle
+  std::uint64_t seed = 1;
+};
+
+/// 8-bit images of Gaussian particles integrated over the pixels. Particles stand at -d/2 in the reference and +d/2 in
+/// the flow image, d taken at their mid-position: `displacement` is the central displacement, what a symmetric scheme
+/// measures.
+inline ParticlePair render_particle_pair(ParticleSettings const& settings,
+                                         std::function<Vec2d(Vec2d)> const& displacement) {
+  constexpr double background = 25.5, peak = 153.0;
+  constexpr int margin = 40, half = 5;
+  std::mt19937_64 bits(settings.seed);
+  auto const uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
+  double const sigma = settings.diameter_px / 4.0, scale = 1.0 / (std::sqrt(2.0) * sigma);
+  ParticlePair pair{Image<double>(settings.columns, settings.rows, background),
+                    Image<double>(settings.columns, settings.rows, background)};
+  auto const draw = [&](Image<double>& image, Vec2d at, double amplitude) {
+    int const column = static_cast<int>(std::floor(at.x + 0.5)), row = static_cast<int>(std::floor(at.y + 0.5));
+    double x[2 * half + 1], y[2 * half + 1];
+    double const area = std::sqrt(std::acos(-1.0) / 2.0) * sigma;
+    for (int k = -half; k <= half; ++k) {
+      x[k + half] = area * (std::erf((column + k + 0.5 - at.x) * scale) - std::erf((column + k - 0.5 - at.x) * scale));
+      y[k + half] = area * (std::erf((row + k + 0.5 - at.y) * scale) - std::erf((row + k - 0.5 - at.y) * scale));
+    }
+    for (int j = std::max(0, row - half); j <= std::min(image.rows() - 1, row + half); ++j)
+      for (int i = std::max(0, column - half); i <= std::min(image.columns() - 1, column + half); ++i)
+        image(i, j) += amplitude * x[i - column + half] * y[j - row + half];
+  };
+  int const count =
+      static_cast<int>(settings.particles_per_px * (settings.columns + 2.0 * margin) * (settings.rows + 2.0 * margin));
+  for (int n = 0; n < count; ++n) {
+    double const x = uniform() * (settings.columns + 2.0 * margin) - margin - 0.5;
+    double const y = uniform() * (settings.rows + 2.0 * margin) - margin - 0.5;
+    double const amplitude = peak * (0.5 + 0.5 * uniform());
+    Vec2d const half_way = 0.5 * displacement({x, y});
+    draw(pair.reference, Vec2d{x, y} - half_way, amplitude);
+    draw(pair.flow, Vec2d{x, y} + half_way, amplitude);
+  }
+  for (Image<double>* image : {&pair.reference, &pair.flow})
+    for (double& value : *image) {
+      // Box & Muller
+      if (settings.noise > 0.0)
+        value += settings.noise * peak * std::sqrt(-2.0 * std::log(1.0 - uniform())) *
+                 std::cos(2.0 * std::acos(-1.0) * uniform());
+      value = std::clamp(std::round(value), 0.0, 255.0);
+    }
+  return pair;
+}
+
+}  // namespace gladstone::testing

@@ -1,0 +1,270 @@
+#include "analysis/vector_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class VectorFiles : public ::testing::Test {
+ protected:
+  VectorFiles() {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("gladstone_vector_file_test_" + std::to_string(::getpid()) + "_" +
+                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  ~VectorFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(std::string const& name) const { return (folder_ / name).string(); }
+  std::string file(std::string const& name, std::string const& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+  std::string problem(std::string const& text) const {
+    try {
+      read_vectors(file("bad.csv", text));
+    } catch (DataError const& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+FileOrigin origin() {
+  FileOrigin origin;
+  origin.filetype = "gladstone vectors";
+  return origin;
+}
+
+DisplacementField small_grid() {
+  DisplacementField field;
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      field.position_px.push_back({15.5 + 16.0 * column, 15.5 + 16.0 * row});
+      field.displacement_px.push_back({0.1 * column + 1.0 / 3.0, -0.7 * row});
+      field.sigma_px.push_back({0.01, nan});
+      field.peak_ratio.push_back(1.5 + column);
+      field.status.push_back(static_cast<VectorStatus>((row * 3 + column) % 4));
+    }
+  }
+  field.columns = 3;
+  field.rows = 2;
+  return field;
+}
+
+void expect_equal(DisplacementField const& a, DisplacementField const& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(a.columns, b.columns);
+  EXPECT_EQ(a.rows, b.rows);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.position_px[i], b.position_px[i]);
+    EXPECT_EQ(a.displacement_px[i], b.displacement_px[i]);
+    EXPECT_EQ(a.sigma_px[i].x, b.sigma_px[i].x);
+    EXPECT_TRUE(std::isnan(b.sigma_px[i].y));
+    EXPECT_EQ(a.peak_ratio[i], b.peak_ratio[i]);
+    EXPECT_EQ(a.status[i], b.status[i]);
+  }
+}
+
+// 17 significant digits bring every double back bit by bit.
+TEST_F(VectorFiles, CsvComesBackExactly) {
+  write_vectors(path("v.csv"), small_grid(), origin());
+  VectorFile const back = read_vectors(path("v.csv"));
+  EXPECT_EQ(back.format, "gladstone");
+  EXPECT_FALSE(back.foreign);
+  expect_equal(small_grid(), back.field);
+  std::ifstream csv(path("v.csv"));
+  std::string header;
+  std::getline(csv, header);
+  EXPECT_EQ(header, "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status");
+}
+
+TEST_F(VectorFiles, Hdf5ComesBackExactly) {
+  write_vectors(path("v.h5"), small_grid(), origin());
+  VectorFile const back = read_vectors(path("v.h5"));
+  EXPECT_FALSE(back.foreign);
+  expect_equal(small_grid(), back.field);
+}
+
+TEST_F(VectorFiles, OtherEndingsAreNotWritten) {
+  EXPECT_THROW(write_vectors(path("v.txt"), small_grid(), origin()), std::invalid_argument);
+}
+
+TEST_F(VectorFiles, OpenPivTextIsRead) {
+  VectorFile const back = read_vectors(file("o.txt",
+                                            "# x\ty\tu\tv\tflags\tmask\n"
+                                            "1.6000e+01\t1.6000e+01\t1.2500e+00\t-5.0000e-01\t0.0000e+00\t0.0000e+00\n"
+                                            "3.2000e+01\t1.6000e+01\t2.0000e+00\t0.0000e+00\t1.0000e+00\t0.0000e+00\n"
+                                            "1.6000e+01\t3.2000e+01\t3.0000e+00\t0.0000e+00\t2.0000e+00\t0.0000e+00\n"
+                                            "3.2000e+01\t3.2000e+01\tnan\tnan\t0.0000e+00\t1.0000e+00\n"));
+  EXPECT_EQ(back.format, "OpenPIV");
+  EXPECT_TRUE(back.foreign);
+  EXPECT_EQ(back.conventions.offset_px, -0.5);
+  EXPECT_EQ(back.field.columns, 2);
+  EXPECT_EQ(back.field.displacement_px[0], (Vec2d{1.25, -0.5}));
+  EXPECT_EQ(back.field.status,
+            (std::vector{VectorStatus::valid, VectorStatus::invalid, VectorStatus::replaced, VectorStatus::masked}));
+}
+
+TEST_F(VectorFiles, OpenPivCxxTextIsRead) {
+  VectorFile const back = read_vectors(file("c.txt",
+                                            "# x\ty\tu\tv\tflag\t\n"
+                                            " 16.0000\t 16.0000\t  1.2500\t -0.5000\t  0.0000\n"));
+  EXPECT_EQ(back.format, "OpenPIV");
+  EXPECT_EQ(back.field.displacement_px[0], (Vec2d{1.25, -0.5}));
+}
+
+// PIVlab writes column by column, with CR LF; with blanks as separator the header's names hold blanks themselves.
+TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
+  for (char const separator : {',', '\t', ' '}) {
+    std::string text =
+        "PIVlab, ASCII chart output - 21-Nov-2026\r\n"
+        "FRAME: 1, filenames: A.tif & B.tif, conversion factor xy (px -> m): 1, conversion factor uv (px/frame -> "
+        "m/s): 1\r\n"
+        "x [px],y [px],u [px/frame],v [px/frame],Vector type [-]\r\n"
+        "17,17,1,10,1\r\n17,33,2,20,2\r\n33,17,3,30,1\r\n33,33,NaN,NaN,0\r\n";
+    for (char& c : text) {
+      if (c == ',') c = separator;
+    }
+    VectorFile const back = read_vectors(file("p.txt", text));
+    EXPECT_EQ(back.format, "PIVlab");
+    EXPECT_EQ(back.conventions.offset_px, -1.5);
+    ASSERT_EQ(back.field.columns, 2);
+    EXPECT_EQ(back.field.displacement_px[1], (Vec2d{3.0, 30.0}));
+    EXPECT_EQ(back.field.displacement_px[2], (Vec2d{2.0, 20.0}));
+    EXPECT_EQ(back.field.status,
+              (std::vector{VectorStatus::valid, VectorStatus::valid, VectorStatus::replaced, VectorStatus::masked}));
+  }
+}
+
+TEST_F(VectorFiles, CalibratedPivlabExportIsRefusedWithAHint) {
+  EXPECT_THAT(problem("PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
+                      "x [m],y [m],u [m/s],v [m/s],Vector type [-]\r\n1,1,1,1,1\r\n"),
+              AllOf(HasSubstr("bad.csv:3"), HasSubstr("x [m]"), HasSubstr("px/frame")));
+}
+
+TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
+  VectorFile const back = read_vectors(file("n.csv", "v;su;u;y;x;sv\n4;0.1;3;2;1;0.2\n"));
+  EXPECT_EQ(back.format, "named columns");
+  EXPECT_EQ(back.field.position_px[0], (Vec2d{1.0, 2.0}));
+  EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.0, 4.0}));
+  EXPECT_EQ(back.field.sigma_px[0], (Vec2d{0.1, 0.2}));
+}
+
+TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
+  EXPECT_THAT(problem(""), AllOf(HasSubstr("bad.csv:1"), HasSubstr("empty")));
+  EXPECT_THAT(problem("x,y,u,v\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("no row")));
+  EXPECT_THAT(problem("1,2,3,4\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("no header")));
+  EXPECT_THAT(problem("x,y,u\n1,2,3\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("no column v")));
+  EXPECT_THAT(problem("x,y,u,v\n1,2,3,4\n1,2,3\n"), AllOf(HasSubstr("bad.csv:3"), HasSubstr("3 fields")));
+  EXPECT_THAT(problem("x,y,u,v\n1,2,3,4\n\n1,2,3,4x\n"), AllOf(HasSubstr("bad.csv:4"), HasSubstr("v = \"4x\"")));
+  EXPECT_THAT(problem("x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status\n1,2,3,4,nan,nan,nan,7\n"),
+              AllOf(HasSubstr("bad.csv:2"), HasSubstr("status")));
+  EXPECT_THROW(read_vectors(path("absent.csv")), DataError);
+  EXPECT_THROW(read_vectors(path("absent.h5")), DataError);
+}
+
+TEST(VectorConventions, AreSaidAsTheyAreTold) {
+  VectorConventions const told = parse_conventions("y-up, v-up,offset=-0.5,swapped");
+  EXPECT_TRUE(told.y_up && told.v_up && told.swapped);
+  EXPECT_EQ(told.offset_px, -0.5);
+  EXPECT_EQ(parse_conventions(describe(told)), told);
+  EXPECT_EQ(parse_conventions("y-up-image").mirror, VectorConventions::Mirror::image);
+  EXPECT_THROW(parse_conventions("y-sideways"), std::invalid_argument);
+  EXPECT_THROW(parse_conventions("offset=half"), std::invalid_argument);
+}
+
+/// A field without symmetry, so that every axis, sign and half pixel shows: gradients of 0.05 px/px.
+Vec2d asymmetric(Vec2d p) { return {1.0 + 0.05 * p.x - 0.03 * p.y, -0.5 + 0.05 * p.y + 0.01 * p.x}; }
+
+/// What a code with these conventions writes for the field, on a grid of 16 px that is not in the image's middle.
+VectorFile written_by(VectorConventions const& c, int image_rows, double own_offset) {
+  VectorFile file;
+  file.format = "test";
+  file.conventions.offset_px = own_offset;
+  double const low = 15.5, high = 15.5 + 16.0 * 9;
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      Vec2d const p{15.5 + 16.0 * column, 15.5 + 16.0 * row};
+      Vec2d d = asymmetric(p);
+      if (c.swapped) d = -d;
+      if (c.v_up) d.y = -d.y;
+      double const mirror = c.mirror == VectorConventions::Mirror::grid ? low + high : image_rows - 1.0;
+      // apply_conventions adds the offset first and mirrors then; here the other way round.
+      double const y = c.y_up ? mirror - p.y : p.y;
+      file.field.position_px.push_back({p.x - c.offset_px, y - c.offset_px});
+      file.field.displacement_px.push_back(d);
+    }
+  }
+  return file;
+}
+
+TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
+  int const image_rows = 200;
+  for (bool const y_up : {false, true}) {
+    for (bool const v_up : {false, true}) {
+      for (bool const swapped : {false, true}) {
+        for (double const offset : {0.0, -0.5, -1.0, -1.5}) {
+          for (auto const mirror : {VectorConventions::Mirror::grid, VectorConventions::Mirror::image}) {
+            if (!y_up && mirror == VectorConventions::Mirror::image) continue;
+            VectorConventions const c{y_up, v_up, swapped, offset, mirror};
+            DetectedConventions const found =
+                detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
+            EXPECT_EQ(found.conventions, c) << describe(c) << " -> " << found.report;
+            EXPECT_FALSE(found.ambiguous) << found.report;
+            EXPECT_LT(found.score_px, 1e-12);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(DetectConventions, GivesVectorsInOurOrder) {
+  VectorConventions const c{true, true, false, -0.5, VectorConventions::Mirror::grid};
+  VectorFile const file = written_by(c, 200, -0.5);
+  DisplacementField const ours = apply_conventions(file.field, c, 200);
+  ASSERT_EQ(ours.columns, 12);
+  ASSERT_EQ(ours.rows, 10);
+  EXPECT_EQ(ours.position_px.front(), (Vec2d{15.5, 15.5}));
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    EXPECT_NEAR(ours.displacement_px[i].x, asymmetric(ours.position_px[i]).x, 1e-12);
+    EXPECT_NEAR(ours.displacement_px[i].y, asymmetric(ours.position_px[i]).y, 1e-12);
+  }
+}
+
+// A uniform shift to the right looks the same upside down: the format's own conventions stay and it is said.
+TEST(DetectConventions, SaysWhatCannotBeTold) {
+  VectorFile file = written_by({}, 200, -0.5);
+  for (Vec2d& d : file.field.displacement_px) d = {2.0, 0.0};
+  DetectedConventions const found = detect_conventions(
+      file,
+      [](Vec2d) {
+        return Vec2d{2.0, 0.0};
+      },
+      200);
+  EXPECT_TRUE(found.ambiguous);
+  EXPECT_EQ(found.conventions, file.conventions);
+  EXPECT_THAT(found.report, HasSubstr("ambiguous"));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,99 @@
+#include "analysis/vector_validation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gladstone {
+namespace {
+
+/// A smooth vortex-like field with a little unevenness, all valid.
+std::vector<GridVector> smooth_grid(int columns, int rows) {
+  std::vector<GridVector> grid;
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      GridVector vector;
+      vector.displacement = {2.0 + 0.1 * j + 0.02 * std::sin(5.0 * i + j), -1.0 - 0.1 * i + 0.02 * std::cos(3.0 * j)};
+      vector.status = VectorStatus::valid;
+      grid.push_back(vector);
+    }
+  return grid;
+}
+
+// All neighbours at 0, epsilon 0.1: a vector (0.3, 0.4) is 0.5/0.1 = 5 away.
+TEST(NormalisedMedian, IsTheDistanceOverTheNoiseLevel) {
+  Neighbours<double> neighbours;
+  neighbours.count = 8;
+  EXPECT_NEAR(normalised_median_residual(Vec2d{0.3, 0.4}, neighbours, 0.1), 5.0, 1e-14);
+}
+
+TEST(NormalisedMedian, FlagsAPlantedOutlierAndOnlyThat) {
+  for (std::size_t const planted : {std::size_t{0}, std::size_t{5}, std::size_t{34}, std::size_t{59}}) {
+    std::vector<GridVector> grid = smooth_grid(10, 6);
+    Vec2d const truth = grid[planted].displacement;
+    grid[planted].displacement += Vec2d{3.0, -2.0};
+    validate_vectors(grid, 10, {});
+    for (std::size_t i = 0; i < grid.size(); ++i)
+      EXPECT_EQ(grid[i].status, i == planted ? VectorStatus::replaced : VectorStatus::valid) << i << " of " << planted;
+    // the median of neighbours at one grid step: off by at most the change over one step on both axes and the
+    // unevenness
+    EXPECT_NEAR(grid[planted].displacement.x, truth.x, 0.14);
+    EXPECT_NEAR(grid[planted].displacement.y, truth.y, 0.14);
+  }
+}
+
+TEST(NormalisedMedian, PrefersTheNextPeakThatAgrees) {
+  std::vector<GridVector> grid = smooth_grid(10, 6);
+  Vec2d const truth = grid[33].displacement;
+  grid[33].displacement = {9.0, 9.0};
+  grid[33].alternatives = {Vec2d{-9.0, 9.0}, truth};
+  grid[33].alternative_count = 2;
+  validate_vectors(grid, 10, {});
+  EXPECT_EQ(grid[33].status, VectorStatus::replaced);
+  EXPECT_EQ(grid[33].displacement, truth);
+}
+
+// A steep plane has a one-sided median at its rim, which is not an error.
+TEST(NormalisedMedian, AcceptsTheRimOfASteepPlane) {
+  std::vector<GridVector> grid = smooth_grid(10, 6);
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    grid[i].displacement = {1.5 * static_cast<double>(i / 10), -0.8 * static_cast<double>(i % 10)};
+  validate_vectors(grid, 10, {});
+  for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
+}
+
+TEST(NormalisedMedian, LeavesVectorsWithoutNeighboursAlone) {
+  std::vector<GridVector> grid = smooth_grid(2, 1);
+  grid[1].displacement = {50.0, 50.0};
+  validate_vectors(grid, 2, {});
+  EXPECT_EQ(grid[1].status, VectorStatus::valid);
+  EXPECT_EQ(grid[1].displacement.x, 50.0);
+}
+
+TEST(FilledDisplacement, ReachesEveryHoleAndKeepsWhatIsKnown) {
+  std::vector<GridVector> grid = smooth_grid(9, 9);
+  for (GridVector& vector : grid) {
+    vector.displacement = {1.25, -0.5};
+    vector.status = VectorStatus::invalid;
+  }
+  grid[40].status = VectorStatus::valid;
+  for (Vec2d const value : filled_displacement(grid, 9)) EXPECT_EQ(value, (Vec2d{1.25, -0.5}));
+  grid[40].status = VectorStatus::masked;
+  for (Vec2d const value : filled_displacement(grid, 9)) EXPECT_EQ(value, (Vec2d{0.0, 0.0}));
+}
+
+TEST(SmoothedDisplacement, KeepsAPlaneAndDampsAZigzag) {
+  std::vector<Vec2d> plane, zigzag;
+  for (int j = 0; j < 7; ++j)
+    for (int i = 0; i < 8; ++i) {
+      plane.push_back({0.5 * i - 0.25 * j, 1.0 + 2.0 * j});
+      zigzag.push_back({(i + j) % 2 == 0 ? 1.0 : -1.0, 0.0});
+    }
+  std::vector<Vec2d> const smooth = smoothed_displacement(plane, 8);
+  for (std::size_t i = 0; i < plane.size(); ++i) EXPECT_EQ(smooth[i], plane[i]);
+  // the weights (1 6 1)/8 halve the fastest oscillation along each axis
+  EXPECT_DOUBLE_EQ(smoothed_displacement(zigzag, 8)[3 * 8 + 3].x, 0.25 * zigzag[3 * 8 + 3].x);
+}
+
+}  // namespace
+}  // namespace gladstone

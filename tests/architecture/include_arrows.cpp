@@ -1,0 +1,184 @@
+#include "tests/architecture/include_arrows.h"
+
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+#include <regex>
+
+namespace gladstone::architecture {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// What a room may include: other rooms, libraries anywhere, and libraries in .cpp files only.
+struct Room {
+  std::string name;
+  Names rooms;
+  Names libraries;
+  Names libraries_in_cpp;
+};
+
+Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
+
+Names operator+(Names a, Names const& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// The table of rooms and arrows; a room may always include itself, the standard library and, in .cpp
+/// files, POSIX.
+std::vector<Room> const& table() {
+  static std::vector<Room> const rooms = {
+      {"render/base", {}, {"Eigen"}, {"HDF5", "OpenImageIO", "toml++", "TBB", "fmt"}},
+      {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
+      {"render/medium", {"render/base"}, {"Eigen"}, {"fmt", "zlib"}},
+      {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
+      {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
+      {"render/scene", render, {"Eigen"}, {"fmt"}},
+      {"analysis", {"render/base"}, {"Eigen", "Ceres"}, {"OpenCV", "fmt"}},
+      {"cuda", render + Names{"analysis"}, {"Eigen", "CUDA"}, {"fmt"}},
+      {"studies", render + Names{"analysis", "cuda"}, {"Eigen", "fmt", "spdlog", "nlohmann_json", "CLI11"}, {"Ceres"}},
+  };
+  return rooms;
+}
+
+struct LibraryPattern {
+  std::string library;
+  std::string header;  ///< regular expression
+};
+
+std::vector<LibraryPattern> const& known_libraries() {
+  static std::vector<LibraryPattern> const libraries = {
+      {"Eigen", "Eigen/.*|unsupported/Eigen/.*"},
+      {"HDF5", "hdf5\\.h|hdf5_hl\\.h|H5.*\\.h"},
+      {"OpenImageIO", "OpenImageIO/.*"},
+      {"toml++", "toml\\+\\+/.*|toml\\.hpp|toml\\.h"},
+      {"TBB", "tbb/.*|oneapi/.*"},
+      {"fmt", "fmt/.*"},
+      {"spdlog", "spdlog/.*"},
+      {"nlohmann_json", "nlohmann/.*"},
+      {"CLI11", "CLI/.*"},
+      {"OpenCV", "opencv2/.*"},
+      {"Ceres", "ceres/.*"},
+      {"zlib", "zlib\\.h"},
+      {"CUDA",
+       "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"
+       "nv(ml|rtc|Toolsext)\\w*\\.h|device_(launch_parameters|functions|types)\\.h|driver_types\\.h|"
+       "(vector|sm_[0-9]+)_[a-z_]+\\.h(pp)?"},
+      {"POSIX", "sys/.*|(stdio|stdlib|unistd|fcntl|signal|dirent|poll|termios|pthread|spawn)\\.h"},
+      {"std", "[a-z_0-9]+"},
+  };
+  return libraries;
+}
+
+bool contains(Names const& names, std::string const& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool ends_with_one_of(std::string_view path, std::initializer_list<std::string_view> endings) {
+  return std::any_of(endings.begin(), endings.end(), [&](std::string_view ending) { return path.ends_with(ending); });
+}
+
+/// The source with its comments blanked out; line numbers stay.
+std::string without_comments(std::string_view source) {
+  enum class In { code, text, character, line_comment, block_comment } in = In::code;
+  std::string out(source);
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    char const c = source[i];
+    char const next = i + 1 < source.size() ? source[i + 1] : '\0';
+    if (in == In::code && c == '/' && (next == '/' || next == '*')) {
+      in = next == '/' ? In::line_comment : In::block_comment;
+      out[i] = out[i + 1] = ' ';
+      ++i;
+    } else if (in == In::block_comment && c == '*' && next == '/') {
+      in = In::code;
+      out[i] = out[i + 1] = ' ';
+      ++i;
+    } else if (in == In::line_comment || in == In::block_comment) {
+      if (c != '\n') out[i] = ' ';
+      if (c == '\n' && in == In::line_comment) in = In::code;
+    } else if ((in == In::text || in == In::character) && c == '\\') {
+      ++i;
+    } else if (c == '\n') {
+      in = In::code;
+    } else if (in == In::code && c == '"') {
+      in = In::text;
+    } else if (in == In::code && c == '\'' &&
+               (i == 0 || std::isalnum(static_cast<unsigned char>(source[i - 1])) == 0)) {
+      in = In::character;  // but not the separator of 1'000
+    } else if ((in == In::text && c == '"') || (in == In::character && c == '\'')) {
+      in = In::code;
+    }
+  }
+  return out;
+}
+
+/// What is wrong with this include in this room; empty: nothing.
+std::string fault(Room const& room, std::string const& path, Include const& include) {
+  std::string const shown = include.quoted ? '"' + include.target + '"' : '<' + include.target + '>';
+  if (!include.quoted) {
+    std::string const library = library_of(include.target);
+    if (library.empty()) return shown + " belongs to no library of the table";
+    if (library == "std" || contains(room.libraries, library)) return "";
+    if (library != "POSIX" && !contains(room.libraries_in_cpp, library)) {
+      return room.name + " may not include " + library + ": " + shown;
+    }
+    return path.ends_with(".cpp") ? "" : library + " may be included in .cpp files only: " + shown;
+  }
+  std::string const target = room_of(include.target);
+  if (target.empty()) return shown + " is no path from the root of the tree into a room";
+  if (target == room.name || contains(room.rooms, target)) return "";
+  return room.name + " may not include " + target + ": " + shown;
+}
+
+}  // namespace
+
+std::vector<Include> includes_of(std::string_view source) {
+  static std::regex const directive(R"(^\s*#\s*(?:include|include_next|import)\b\s*(.*?)\s*$)");
+  std::string const text = without_comments(source);
+  std::vector<Include> found;
+  int line = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t const end = std::min(text.find('\n', begin), text.size());
+    std::string const code = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++line;
+    std::smatch match;
+    if (!std::regex_match(code, match, directive)) continue;
+    std::string const named = match[1];
+    bool const bracketed = named.size() > 2 && ((named.front() == '"' && named.back() == '"') ||
+                                                (named.front() == '<' && named.back() == '>'));
+    found.push_back({line, bracketed ? named.substr(1, named.size() - 2) : named, !bracketed || named.front() == '"'});
+  }
+  return found;
+}
+
+std::string room_of(std::string_view path) {
+  if (path.find("..") != std::string_view::npos) return "";
+  for (Room const& room : table()) {
+    if (path.starts_with(room.name + "/")) return room.name;
+  }
+  return path.starts_with("tests/") ? "tests" : "";
+}
+
+std::string library_of(std::string_view header) {
+  for (LibraryPattern const& known : known_libraries()) {
+    if (std::regex_match(header.begin(), header.end(), std::regex(known.header))) return known.library;
+  }
+  return "";
+}
+
+std::vector<std::string> forbidden_arrows(std::string const& path, std::string_view source) {
+  std::vector<std::string> faults;
+  std::string const name = room_of(path);
+  auto const room = std::find_if(table().begin(), table().end(), [&](Room const& r) { return r.name == name; });
+  if (room == table().end()) return name == "tests" ? faults : Names{path + ": lies in no room"};
+  if (name != "cuda" && ends_with_one_of(path, {".cu", ".cuh"})) faults.push_back(path + ": CUDA code outside cuda/");
+  for (Include const& include : includes_of(source)) {
+    std::string const what = fault(*room, path, include);
+    if (!what.empty()) faults.push_back(path + ":" + std::to_string(include.line) + ": " + what);
+  }
+  return faults;
+}
+
+}  // namespace gladstone::architecture

@@ -1,0 +1,155 @@
+// The rooms and their arrows (CONTRIBUTING.md): every #include of every source file is one that the table has. Most
+// tests here plant an include and check that it is seen; the last ones read the tree.
+#include "tests/architecture/include_arrows.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace gladstone::architecture {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+struct SourceFile {
+  std::string path;  ///< from the root of the tree
+  std::string text;
+};
+
+std::vector<SourceFile> sources_of(std::vector<std::string> const& folders) {
+  namespace fs = std::filesystem;
+  fs::path const root = GLADSTONE_SOURCE_DIR;
+  std::vector<SourceFile> files;
+  for (std::string const& folder : folders) {
+    for (fs::directory_entry const& entry : fs::recursive_directory_iterator(root / folder)) {
+      std::string const ending = entry.path().extension().string();
+      if (ending != ".h" && ending != ".cpp" && ending != ".cu" && ending != ".cuh") continue;
+      std::ifstream in(entry.path());
+      files.push_back({entry.path().lexically_relative(root).string(),
+                       std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>())});
+    }
+  }
+  return files;
+}
+
+TEST(IncludeArrows, FindIncludesWithTheirLines) {
+  std::vector<Include> const found =
+      includes_of("#pragma once\n#include <vector>\n  #  include \"render/base/vec.h\"  // why\n");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[0].line, 2);
+  EXPECT_EQ(found[0].target, "vector");
+  EXPECT_FALSE(found[0].quoted);
+  EXPECT_EQ(found[1].line, 3);
+  EXPECT_EQ(found[1].target, "render/base/vec.h");
+  EXPECT_TRUE(found[1].quoted);
+}
+
+TEST(IncludeArrows, LeaveCommentsOut) {
+  EXPECT_THAT(includes_of("// #include <a>\n/* x\n#include <b>\n*/\nint i = 1'000; // it's\n"), IsEmpty());
+}
+
+TEST(IncludeArrows, SeeAnIncludeAfterSlashesInAString) {
+  EXPECT_EQ(includes_of("char const* s = \"/*\";\n#include <a>\n").size(), 1U);
+  EXPECT_EQ(includes_of("char c = '\"'; int n = 1'000;\n/* ' */ #include <a>\n").size(), 1U);
+}
+
+TEST(IncludeArrows, AllowWhatTheTableHas) {
+  EXPECT_THAT(
+      forbidden_arrows("render/base/a.h", "#include <cmath>\n#include <Eigen/Core>\n#include \"render/base/b.h\"\n"),
+      IsEmpty());
+  EXPECT_THAT(forbidden_arrows("render/base/a.cpp",
+                               "#include <hdf5.h>\n#include <toml++/toml.h>\n#include <tbb/parallel_for.h>\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("render/scene/a.h", "#include \"render/optics/b.h\"\n#include \"render/medium/c.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("analysis/a.cpp", "#include <opencv2/core.hpp>\n#include \"render/base/vec.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("cuda/a.cu",
+                               "#include <cuda_runtime.h>\n#include \"analysis/b.h\"\n#include \"render/scene/c.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("studies/commands/a.cpp", "#include <CLI/CLI.hpp>\n#include \"analysis/b.h\"\n"),
+              IsEmpty());
+  EXPECT_THAT(forbidden_arrows("tests/base/a_test.cpp", "#include <gtest/gtest.h>\n#include \"studies/b.h\"\n"),
+              IsEmpty());
+}
+
+/// A file and one include line that its room may not have.
+struct Planted {
+  std::string path;
+  std::string include;
+};
+
+class ForbiddenArrow : public testing::TestWithParam<Planted> {};
+
+TEST_P(ForbiddenArrow, IsSeen) {
+  Planted const& planted = GetParam();
+  EXPECT_THAT(forbidden_arrows(planted.path, "#include <vector>\n#include " + planted.include + "\n"),
+              ElementsAre(HasSubstr(planted.path + ":2: ")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    IncludeArrows, ForbiddenArrow,
+    testing::Values(
+        Planted{"render/base/a.h", "\"render/medium/b.h\""},  // upwards
+        Planted{"render/base/a.h", "<hdf5.h>"},               // libraries that headers do not show
+        Planted{"render/base/a.h", "<OpenImageIO/imageio.h>"}, Planted{"render/base/a.h", "<toml++/toml.h>"},
+        Planted{"render/base/a.h", "<tbb/parallel_for.h>"}, Planted{"render/base/a.h", "<fmt/format.h>"},
+        Planted{"render/medium/a.h", "<unistd.h>"}, Planted{"render/base/a.cpp", "<opencv2/core.hpp>"},
+        Planted{"render/light/a.h", "\"render/medium/b.h\""},  // the four meet in scene
+        Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
+        Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
+        Planted{"render/medium/a.cpp", "<hdf5.h>"},  // through base alone
+        Planted{"render/scene/a.h", "\"analysis/b.h\""}, Planted{"render/scene/a.cpp", "\"cuda/b.h\""},
+        Planted{"analysis/a.cpp", "\"render/scene/b.h\""},  // analysis never calls the renderer
+        Planted{"analysis/a.h", "<opencv2/core.hpp>"}, Planted{"analysis/a.cpp", "\"studies/b.h\""},
+        Planted{"cuda/a.cu", "\"studies/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
+        Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers in cuda/ alone
+        Planted{"studies/a.cpp", "<cufft.h>"}, Planted{"render/base/a.h", "<cuda/std/complex>"},
+        Planted{"render/base/a.h", "<thrust/sort.h>"},
+        Planted{"studies/a.cpp", "\"tests/support/b.h\""},  // nothing includes tests
+        Planted{"render/base/a.cpp", "<gtest/gtest.h>"},
+        Planted{"render/base/a.cpp", "<boost/any.hpp>"},  // a library that nobody listed
+        Planted{"render/base/a.h", "\"vec.h\""},          // not a path from the root
+        Planted{"render/light/a.h", "\"../medium/b.h\""}, Planted{"render/base/a.h", "\"render/base/../medium/b.h\""},
+        Planted{"render/base/a.h", "HEADER_OF_THE_DAY"}));  // cannot be checked
+
+TEST(IncludeArrows, RefuseCudaCodeOutsideItsRoom) {
+  EXPECT_THAT(forbidden_arrows("render/scene/kernel.cu", ""), ElementsAre(HasSubstr("CUDA code outside cuda/")));
+}
+
+TEST(IncludeArrows, RefuseASourceInNoRoom) {
+  EXPECT_THAT(forbidden_arrows("render/stray.h", ""), ElementsAre(HasSubstr("lies in no room")));
+}
+
+TEST(Tree, HasOnlyTheArrowsOfTheTable) {
+  std::vector<SourceFile> const files = sources_of({"render", "analysis", "cuda", "studies"});
+  ASSERT_GT(files.size(), 20U);
+  std::size_t includes = 0;
+  for (SourceFile const& file : files) {
+    includes += includes_of(file.text).size();
+    EXPECT_THAT(forbidden_arrows(file.path, file.text), IsEmpty());
+  }
+  EXPECT_GT(includes, files.size());
+}
+
+TEST(Tree, NamesCudaInExactlyOneFileOfStudies) {
+  std::vector<std::string> naming;
+  for (SourceFile const& file : sources_of({"studies"})) {
+    for (Include const& include : includes_of(file.text)) {
+      if (include.quoted && room_of(include.target) == "cuda") {
+        naming.push_back(file.path);
+        break;
+      }
+    }
+  }
+  EXPECT_EQ(naming.size(), 1U) << testing::PrintToString(naming);
+}
+
+}  // namespace
+}  // namespace gladstone::architecture

@@ -1,0 +1,155 @@
+#include "render/base/image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string temporary(std::string const& name) { return (fs::path(testing::TempDir()) / ("image_" + name)).string(); }
+
+std::string content(std::string const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Every 16-bit value once.
+Image<std::uint16_t> all_values() {
+  Image<std::uint16_t> image(256, 256);
+  for (int i = 0; i < 65536; ++i) image.data()[i] = static_cast<std::uint16_t>(i);
+  return image;
+}
+
+/// A picture in any format that OpenImageIO writes.
+template <class Sample>
+std::string write_picture(std::string const& name, std::vector<Sample> const& samples, int columns, int channels) {
+  std::string const path = temporary(name);
+  int const rows = static_cast<int>(samples.size()) / columns / channels;
+  OIIO::ImageSpec const spec(columns, rows, channels, OIIO::BaseTypeFromC<Sample>::value);
+  auto const output = OIIO::ImageOutput::create(path);
+  EXPECT_TRUE(output && output->open(path, spec) &&
+              output->write_image(OIIO::BaseTypeFromC<Sample>::value, samples.data()));
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+TEST(ImageFile, EveryValueOfA16BitTiffComesBack) {
+  std::string const path = temporary("all.tif");
+  auto const image = all_values();
+  write_tiff(path, image, {12, 10e-6, "schema = 1\n# umlaut \xc3\xa4\n"});
+  ImageMetadata metadata;
+  auto const back = read_image(path, &metadata);
+  ASSERT_EQ(back.columns(), 256);
+  ASSERT_EQ(back.rows(), 256);
+  for (std::size_t i = 0; i < image.size(); ++i) ASSERT_EQ(back.data()[i], image.data()[i]);
+  EXPECT_EQ(metadata.bit_depth, 12);
+  EXPECT_EQ(metadata.pixel_pitch_m, 10e-6);
+  EXPECT_EQ(metadata.description, "schema = 1\n# umlaut \xc3\xa4\n");
+}
+
+TEST(ImageFile, OtherProgramsFindResolutionAndSoftware) {
+  std::string const path = temporary("resolution.tif");
+  write_tiff(path, Image<std::uint16_t>(3, 2, 7), {16, 10e-6, "text"});
+  auto const input = OIIO::ImageInput::open(path);
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->spec().format, OIIO::TypeDesc::UINT16);
+  EXPECT_EQ(input->spec().nchannels, 1);
+  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("XResolution"), 1000.0f);  // 10 um: 1000 pixels a centimetre
+  EXPECT_FLOAT_EQ(input->spec().get_float_attribute("YResolution"), 1000.0f);
+  EXPECT_EQ(input->spec().get_string_attribute("ResolutionUnit"), "cm");
+  EXPECT_THAT(std::string(input->spec().get_string_attribute("Software")), HasSubstr("gladstone"));
+  EXPECT_THAT(std::string(input->spec().get_string_attribute("ImageDescription")), HasSubstr("\ntext"));
+  EXPECT_EQ(input->spec().find_attribute("DateTime"), nullptr);
+}
+
+TEST(ImageFile, SingleRowAndEmptyDescriptionWork) {
+  std::string const path = temporary("row.tif");
+  write_tiff(path, Image<std::uint16_t>(5, 1, 9), {});
+  ImageMetadata metadata;
+  EXPECT_EQ(read_image(path, &metadata)(4, 0), 9.0);
+  EXPECT_EQ(metadata.description, "");
+  EXPECT_EQ(metadata.bit_depth, 16);
+  EXPECT_EQ(metadata.pixel_pitch_m, 0.0);
+}
+
+TEST(ImageFile, ValuesOfOtherFormatsAreRaw) {
+  ImageMetadata metadata;
+  auto const bytes = read_image(write_picture<std::uint8_t>("8.png", {0, 1, 128, 255}, 2, 1), &metadata);
+  EXPECT_THAT(std::vector<double>(bytes.begin(), bytes.end()), testing::ElementsAre(0, 1, 128, 255));
+  EXPECT_EQ(bytes(1, 0), 1.0);
+  EXPECT_EQ(metadata.bit_depth, 8);
+  auto const words = read_image(write_picture<std::uint16_t>("16.png", {0, 1, 4095, 65535}, 4, 1), &metadata);
+  EXPECT_THAT(std::vector<double>(words.begin(), words.end()), testing::ElementsAre(0, 1, 4095, 65535));
+  EXPECT_EQ(metadata.bit_depth, 16);
+  auto const floats = read_image(write_picture<float>("float.tif", {-1.5f, 0.25f, 1e6f, 3.0f}, 2, 1));
+  EXPECT_THAT(std::vector<double>(floats.begin(), floats.end()), testing::ElementsAre(-1.5, 0.25, 1e6, 3.0));
+}
+
+TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
+  std::string const path = temporary("12.tif");
+  OIIO::ImageSpec spec(4096, 1, 1, OIIO::TypeDesc::UINT16);
+  spec["oiio:BitsPerSample"] = 12;
+  std::vector<std::uint16_t> samples(4096);
+  for (int i = 0; i < 4096; ++i) samples[i] = static_cast<std::uint16_t>((i * 65535 + 2047) / 4095);
+  auto const output = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(output && output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, samples.data()));
+  ASSERT_TRUE(output->close());
+  ImageMetadata metadata;
+  auto const image = read_image(path, &metadata);
+  EXPECT_EQ(metadata.bit_depth, 12);
+  for (int i = 0; i < 4096; ++i) ASSERT_EQ(image(i, 0), i);
+}
+
+TEST(ImageFile, ColourBecomesLuminanceAndAlphaIsIgnored) {
+  auto const colour =
+      read_image(write_picture<std::uint8_t>("rgb.png", {100, 0, 0, 0, 100, 0, 0, 0, 100, 9, 9, 9}, 4, 3));
+  // Rec. ITU-R BT.709, section 3.2; the weights sum to 1
+  EXPECT_NEAR(colour(0, 0), 21.26, 1e-12);
+  EXPECT_NEAR(colour(1, 0), 71.52, 1e-12);
+  EXPECT_NEAR(colour(2, 0), 7.22, 1e-12);
+  EXPECT_NEAR(colour(3, 0), 9.0, 1e-12);
+  auto const grey = read_image(write_picture<std::uint8_t>("greyalpha.png", {80, 255, 50, 128}, 2, 2));
+  EXPECT_EQ(grey(0, 0), 80.0);
+  // OpenImageIO's writer takes 50 as multiplied by the opacity 128/255 already and stores 50 / (128/255) = 99.6.
+  EXPECT_NEAR(grey(1, 0), 99.6, 1.0);
+}
+
+TEST(ImageFile, EqualImagesAreEqualFiles) {
+  write_tiff(temporary("a.tif"), all_values(), {12, 6.5e-6, "x"});
+  write_tiff(temporary("b.tif"), all_values(), {12, 6.5e-6, "x"});
+  EXPECT_EQ(content(temporary("a.tif")), content(temporary("b.tif")));
+}
+
+TEST(ImageFile, UnreadablePicturesAreNamed) {
+  EXPECT_THAT([] { read_image("/no/such/picture.tif"); },
+              ThrowsMessage<DataError>(HasSubstr("/no/such/picture.tif: does not exist")));
+  std::ofstream(temporary("text.tif")) << "not a picture";
+  EXPECT_THAT([] { read_image(temporary("text.tif")); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("text.tif"), HasSubstr("cannot be read as a picture"))));
+  write_tiff(temporary("cut.tif"), all_values(), {});
+  std::string const whole = content(temporary("cut.tif"));
+  std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsMessage<DataError>(HasSubstr("cut.tif")));
+}
+
+TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
+  EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); },
+              ThrowsMessage<OutputError>(AllOf(HasSubstr("/dev/full"), HasSubstr("No space left on device"))));
+  EXPECT_THAT([] { write_tiff("/no/such/folder/a.tif", all_values(), {}); },
+              ThrowsMessage<OutputError>(HasSubstr("No such file or directory")));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,407 @@
+#include "render/base/setup_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace gladstone {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+SetupDocument document(std::string_view text) { return SetupDocument::from_text(text, "case.toml", "/data/cases"); }
+
+/// The problems of a document after finish(), each as "where: message".
+std::vector<std::string> problems(SetupDocument& setup) {
+  std::vector<std::string> lines;
+  try {
+    setup.finish();
+  } catch (SetupError const& error) {
+    for (auto const& problem : error.problems()) lines.push_back(problem.where + ": " + problem.message);
+  }
+  return lines;
+}
+
+TEST(SetupTable, ValuesAreReturnedAsWritten) {
+  auto setup = document(R"(
+schema = 1
+[lens]
+f_number = 11
+focal_length_mm = 105.5
+psf = "airy"
+shot_noise = true
+pixels = [512, 256]
+spacing_mm = [0.5, 1, 2e-3]
+periodic = [true, false, true]
+)");
+  EXPECT_EQ(setup.root().required_integer("schema", 1, 1), 1);
+  auto lens = setup.root().table("lens");
+  EXPECT_TRUE(lens.present());
+  EXPECT_EQ(lens.number("f_number", 8.0), 11.0);
+  EXPECT_EQ(lens.required_number("focal_length_mm"), 105.5);
+  EXPECT_EQ(lens.word("psf", "gaussian", {"airy", "gaussian"}), "airy");
+  EXPECT_TRUE(lens.boolean("shot_noise", false));
+  EXPECT_THAT(lens.integers("pixels", {}, 2, 2, 1, 4096), ElementsAre(512, 256));
+  EXPECT_THAT(lens.numbers("spacing_mm", {}, 3), ElementsAre(0.5, 1.0, 2e-3));
+  EXPECT_THAT(lens.booleans("periodic", {}, 3), ElementsAre(true, false, true));
+  EXPECT_NO_THROW(setup.finish());
+}
+
+TEST(SetupTable, AbsentTableGivesDefaults) {
+  auto setup = document("");
+  auto lens = setup.root().table("lens");
+  EXPECT_FALSE(lens.present());
+  EXPECT_EQ(lens.number("f_number", 8.0), 8.0);
+  EXPECT_EQ(lens.optional_number("focus_distance_mm"), std::nullopt);
+  EXPECT_EQ(lens.number_or_auto("step_mm"), std::nullopt);
+  EXPECT_NO_THROW(setup.finish());
+  EXPECT_EQ(setup.resolved(), "[lens]\nf_number = 8.0\nstep_mm = \"auto\"\n");
+}
+
+TEST(SetupTable, EveryProblemIsReportedAtItsLineInOrder) {
+  auto setup = document(R"(schema = 2
+[lens]
+f_number = -3
+psf = "gausian"
+  focal_length_mm = "105"
+[camera]
+pixels = [512, 0]
+)");
+  auto camera = setup.root().table("camera");
+  camera.integers("pixels", {512, 512}, 2, 2, 1, 65536);
+  camera.required_number("pixel_pitch_um");
+  auto lens = setup.root().table("lens");
+  lens.number("f_number", 11.0, Range::positive());
+  lens.word("psf", "gaussian", {"airy", "gaussian"});
+  lens.required_number("focal_length_mm");
+  setup.root().integer("schema", 1, 1, 1);
+  EXPECT_THAT(
+      problems(setup),
+      ElementsAre(
+          "case.toml:1:1: schema = 2: must be at least 1 and at most 1",
+          "case.toml:3:1: lens.f_number = -3: must be greater than 0",
+          "case.toml:4:1: lens.psf = \"gausian\": must be \"airy\" or \"gaussian\"; did you mean \"gaussian\"?",
+          "case.toml:5:3: lens.focal_length_mm = \"105\": must be a number (it is a text); write it without quotes",
+          "case.toml:6:2: camera.pixel_pitch_um: is missing; give a number",
+          "case.toml:7:1: camera.pixels = [512, 0]: value 2, 0, must be at least 1 and at most 65536"));
+}
+
+TEST(SetupTable, ProblemOfAnAbsentTableStandsAtTheFilesStart) {
+  auto setup = document("# nothing\n");
+  setup.root().table("lens").required_number("focal_length_mm");
+  EXPECT_THAT(problems(setup), ElementsAre("case.toml:1:1: lens.focal_length_mm: is missing; give a number"));
+}
+
+TEST(SetupTable, AWrongValueGivesTheFallbackSoThatReadingGoesOn) {
+  auto setup = document("a = nan\nb = -1\nc = 'x'\nd = 1.5\ne = [1]");
+  auto root = setup.root();
+  EXPECT_EQ(root.number("a", 7.0), 7.0);
+  EXPECT_EQ(root.number("b", 7.0, Range::positive()), 7.0);
+  EXPECT_TRUE(root.boolean("c", true));
+  EXPECT_EQ(root.integer("d", 3, 0, 9), 3);
+  EXPECT_THAT(root.numbers("e", {1.0, 2.0}, 2), ElementsAre(1.0, 2.0));
+  EXPECT_EQ(root.required_number("f", {2.0, 4.0}), 2.0);
+  EXPECT_EQ(problems(setup).size(), 6u);
+}
+
+TEST(SetupTable, NanIsAlwaysRefusedAndInfinityUnlessAllowed) {
+  auto setup = document("a = nan\nb = inf\nc = inf\nd = [1.0, nan]");
+  Range unbounded = Range::positive();
+  unbounded.allow_inf = true;
+  EXPECT_EQ(setup.root().number("a", 1.0, unbounded), 1.0);
+  EXPECT_EQ(setup.root().number("b", 1.0, Range::positive()), 1.0);
+  EXPECT_TRUE(std::isinf(setup.root().number("c", 1.0, unbounded)));
+  setup.root().numbers("d", {0.0, 0.0}, 2);
+  EXPECT_THAT(
+      problems(setup),
+      ElementsAre("case.toml:1:1: a = nan: must be a number (nan is none)", "case.toml:2:1: b = inf: must be finite",
+                  "case.toml:4:1: d = [1.0, nan]: value 2, nan, must be a number (nan is none)"));
+}
+
+TEST(SetupTable, EndsOfARangeAreIncludedUnlessOpen) {
+  auto setup = document("a = 0.0\nb = 1.0\nc = 0.0\nd = 1.5\ne = -0.5");
+  auto root = setup.root();
+  root.number("a", 0.5, Range::at_least(0.0, 1.0));
+  root.number("b", 0.5, Range::at_least(0.0, 1.0));
+  root.number("c", 0.5, Range::positive(1.0));
+  root.number("d", 0.5, Range::at_least(0.0, 1.0));
+  root.number("e", 0.5, Range::at_least(0.0));
+  EXPECT_THAT(problems(setup), ElementsAre("case.toml:3:1: c = 0.0: must be greater than 0 and at most 1",
+                                           "case.toml:4:1: d = 1.5: must be at least 0 and at most 1",
+                                           "case.toml:5:1: e = -0.5: must be at least 0"));
+}
+
+TEST(SetupTable, WholeNumbersAreAskedForByWord) {
+  auto setup = document("a = 3.0\nb = 3.5\nc = '3'");
+  for (auto const* key : {"a", "b", "c"}) setup.root().integer(key, 1, 0, 9);
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:1:1: a = 3.0: must be a whole number; write 3",
+                          "case.toml:2:1: b = 3.5: must be a whole number",
+                          "case.toml:3:1: c = \"3\": must be a whole number (it is a text); write it without quotes"));
+}
+
+TEST(SetupTable, NumberOrWordGivesExactlyOne) {
+  auto setup = document("a = 2.5\nb = 'ciddor'\nd = 'cidor'\ne = true");
+  auto const read = [&](std::string const& key) {
+    return setup.root().number_or_word(key, {2.26e-4, ""}, {"ciddor", "merzkirch"}, Range::positive());
+  };
+  EXPECT_EQ(read("a").number, 2.5);
+  EXPECT_EQ(read("b").word, "ciddor");
+  EXPECT_EQ(read("b").number, std::nullopt);
+  EXPECT_EQ(read("c").number, 2.26e-4);
+  EXPECT_EQ(read("d").number, 2.26e-4);
+  read("e");
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:3:1: d = \"cidor\": must be a number or \"ciddor\" or \"merzkirch\"; did you mean "
+                          "\"ciddor\"?",
+                          "case.toml:4:1: e = true: must be a number or \"ciddor\" or \"merzkirch\" (it is true or "
+                          "false)"));
+}
+
+TEST(SetupTable, UnreadKeysNameTheNearestKeyOfTheirTable) {
+  auto setup = document(R"([lens]
+f_nuber = 8
+focal_length = 105
+z_a_mm = 1
+unheard_of = 1
+[cmaera]
+pixels = [1, 1]
+[geometry]
+)");
+  auto lens = setup.root().table("lens");
+  lens.number("f_number", 11.0);
+  lens.number("focal_length_mm", 105.0);
+  setup.root().table("camera").number("pixel_pitch_um", 10.0);
+  setup.root().table("geometry").number("z_a_mm", 750.0);
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:2:1: unknown key \"f_nuber\" in [lens]; did you mean \"f_number\"?",
+                          "case.toml:3:1: unknown key \"focal_length\" in [lens]; did you mean \"focal_length_mm\"?",
+                          "case.toml:4:1: unknown key \"z_a_mm\" in [lens]; it belongs in [geometry]",
+                          "case.toml:5:1: unknown key \"unheard_of\" in [lens]; known are \"f_number\" or "
+                          "\"focal_length_mm\"",
+                          "case.toml:6:2: unknown table [cmaera]; did you mean [camera]?"));
+}
+
+TEST(SetupTable, UnreadKeysAreFoundInInlineTablesAndArraysOfTables) {
+  auto setup =
+      document("lens = { f_number = 8, fnumber = 8 }\n[[field]]\nkind = 'a'\n[[field]]\nkind = 'b'\nknd = 'c'\n");
+  setup.root().table("lens").number("f_number", 8.0);
+  for (auto& field : setup.root().tables("field")) field.required_text("kind");
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:1:24: unknown key \"fnumber\" in [lens]; did you mean \"f_number\"?",
+                          "case.toml:6:1: unknown key \"knd\" in [field[1]]; did you mean \"kind\"?"));
+}
+
+TEST(SetupTable, AKeyThatOtherSettingsMakeUselessIsSaidToHaveNoEffect) {
+  auto setup = document("model = 'thin'\nfile = 'a.toml'\n");
+  setup.root().word("model", "thin", {"thin", "prescription"});
+  EXPECT_TRUE(setup.root().has("file"));
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:2:1: \"file\" in the setup has no effect with the other settings; remove it"));
+}
+
+TEST(SetupTable, RefusedKeyIsReportedOnceAndByName) {
+  auto setup = document("[lens]\nfile = 'a.toml'\n[particles]\ncount = 1\n");
+  setup.root().table("lens").refuse("file", "is not available yet: thin lenses only");
+  setup.root().table("lens").refuse("absent", "never said");
+  setup.root().refuse("particles", "is not available yet");
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:2:1: lens.file = \"a.toml\": is not available yet: thin lenses only",
+                          "case.toml:3:2: particles = { count = 1 }: is not available yet"));
+}
+
+TEST(SetupTable, TableOfTheWrongKindIsAProblem) {
+  auto setup = document("lens = 5\n[[camera]]\npixels = 1\n");
+  setup.root().table("lens").number("f_number", 8.0);
+  setup.root().table("camera").number("pixels", 8.0);
+  auto const found = problems(setup);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_THAT(found[0], HasSubstr("case.toml:1:1: lens = 5: must be a table (it is a whole number)"));
+  EXPECT_THAT(found[1], HasSubstr("camera = [{ pixels = 1 }]: must be one table"));
+}
+
+TEST(SetupTable, SingleTableIsAnArrayOfOne) {
+  auto setup = document("[medium.field]\nkind = 'none'\n");
+  auto fields = setup.root().table("medium").tables("field");
+  ASSERT_EQ(fields.size(), 1u);
+  EXPECT_EQ(fields[0].required_text("kind"), "none");
+  EXPECT_TRUE(setup.root().table("medium").tables("other").empty());
+  EXPECT_NO_THROW(setup.finish());
+}
+
+TEST(SetupTable, DuplicateProblemsAreSaidOnce) {
+  auto setup = document("a = 'x'");
+  setup.root().number("a", 1.0);
+  setup.root().number("a", 1.0);
+  EXPECT_EQ(problems(setup).size(), 1u);
+}
+
+TEST(SetupTable, ProblemOfADefaultSaysSo) {
+  auto setup = document("[lens]\n");
+  auto lens = setup.root().table("lens");
+  lens.number("f_number", 8.0);
+  lens.problem("f_number", "is too small for this medium");
+  EXPECT_THAT(problems(setup),
+              ElementsAre("case.toml:1:2: lens.f_number = 8.0 (default): is too small for this medium"));
+}
+
+TEST(SetupOverride, SameDocumentAsTheKeyInTheFile) {
+  auto const read = [](SetupDocument& setup) {
+    auto lens = setup.root().table("lens");
+    lens.number("f_number", 11.0);
+    lens.word("focus", "target", {"target", "medium"});
+    lens.table("deep").table("er").integers("list", {}, 1, 9, 0, 9);
+    setup.finish();
+    return setup.resolved();
+  };
+  auto written = document("[lens]\nf_number = 8\nfocus = \"medium\"\n[lens.deep.er]\nlist = [1, 2]\n");
+  auto given = document("[lens]\nf_number = 22\n");
+  given.override_key("lens.f_number=16");
+  given.override_key("lens.f_number = 8");
+  given.override_key("lens.focus=medium");
+  given.override_key("lens.deep.er.list=[1, 2]");
+  EXPECT_EQ(read(given), read(written));
+}
+
+TEST(SetupOverride, ProblemsStandAtTheAssignmentAfterThoseOfTheFile) {
+  auto setup = document("[lens]\nf_number = 1\nz = 1");
+  setup.override_key("lens.f_number=-1");
+  setup.override_key("lens.f_nuber=8");
+  setup.override_key("lens.psf.deep=8");
+  setup.override_key("nonsense");
+  setup.override_key("a..b=1");
+  setup.override_key("lens.empty=");
+  auto lens = setup.root().table("lens");
+  lens.number("f_number", 8.0, Range::positive());
+  auto const found = problems(setup);
+  EXPECT_THAT(found, testing::UnorderedElementsAre(
+                         "case.toml:3:1: unknown key \"z\" in [lens]; known are \"f_number\"",
+                         "--set nonsense: has no \"=\"; write --set key.path=value",
+                         "--set a..b=1: has an empty key; write --set key.path=value",
+                         "--set lens.empty=: has no value; write --set key.path=value",
+                         "--set lens.f_number=-1: lens.f_number = -1: must be greater than 0",
+                         "--set lens.f_nuber=8: unknown key \"f_nuber\" in [lens]; did you mean \"f_number\"?",
+                         "--set lens.psf.deep=8: unknown table [lens.psf]; known are \"f_number\""));
+  ASSERT_FALSE(found.empty());
+  EXPECT_THAT(found.front(), HasSubstr("case.toml:3:1"));
+}
+
+TEST(SetupOverride, APathThroughAValueIsAProblem) {
+  auto setup = document("a = 1\n[[field]]\nkind = 'x'");
+  setup.override_key("a.b=1");
+  setup.override_key("field.kind=none");
+  setup.root().integer("a", 1, 0, 9);
+  for (auto& field : setup.root().tables("field")) field.text("kind", "");
+  EXPECT_THAT(problems(setup),
+              ElementsAre("--set a.b=1: a is a whole number, not a table; set a key of a table",
+                          "--set field.kind=none: field is an array, not a table; change its elements in the file"));
+}
+
+TEST(SetupOverride, AValueCannotSmuggleInOtherKeys) {
+  auto setup = document("");
+  setup.override_key("a=1\nb = 2");
+  EXPECT_EQ(setup.root().text("a", ""), "1\nb = 2");
+  EXPECT_NO_THROW(setup.finish());
+}
+
+TEST(SetupDocument, SyntaxErrorHasLineAndColumn) {
+  try {
+    document("a = 1\nb = [1, \n");
+    FAIL() << "accepted";
+  } catch (SetupError const& error) {
+    ASSERT_EQ(error.problems().size(), 1u);
+    EXPECT_THAT(error.problems()[0].where, testing::MatchesRegex("case.toml:[23]:[0-9]+"));
+    EXPECT_THAT(error.problems()[0].message, HasSubstr("is not TOML: "));
+  }
+}
+
+TEST(SetupDocument, MissingFileAndFolderAreNamed) {
+  for (auto const& [path, why] : {std::pair{"/no/such/setup.toml", "No such file"}, std::pair{"/tmp", "folder"}}) {
+    try {
+      SetupDocument::from_file(path);
+      FAIL() << "accepted " << path;
+    } catch (SetupError const& error) {
+      EXPECT_THAT(error.what(), HasSubstr(path));
+      EXPECT_THAT(error.what(), HasSubstr(why));
+    }
+  }
+}
+
+TEST(SetupDocument, FileNamesAreRelativeToTheSetup) {
+  auto const folder = std::filesystem::path(testing::TempDir()) / "setup_paths";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "case.toml") << "file = '../field.h5'\nother = '/abs/x.h5'\nempty = ''\n";
+  auto setup = SetupDocument::from_file((folder / "case.toml").string());
+  EXPECT_EQ(setup.root().required_path("file"), (folder.parent_path() / "field.h5").lexically_normal().string());
+  EXPECT_EQ(setup.root().required_path("other"), "/abs/x.h5");
+  EXPECT_EQ(setup.root().required_path("empty"), "");
+  auto const found = problems(setup);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0], HasSubstr("case.toml:3:1: empty = \"\": must not be empty"));
+  std::filesystem::remove_all(folder);
+}
+
+/// Reads every kind of key; what the resolved text must hold and read back.
+std::string read_everything(SetupDocument& setup) {
+  auto root = setup.root();
+  auto medium = root.table("medium");
+  medium.number("wavelength_nm", 532.0);
+  medium.number_or_auto("step_mm");
+  root.integer("schema", 1, 1, 1);
+  root.text("note", "tab\t, quote \", backslash \\, newline\n, control \x01, umlaut \xc3\xa4");
+  root.number("tiny", 5e-324);
+  root.number("third", 1.0 / 3.0);
+  root.number("big", 1e300);
+  root.number("minus_zero", -0.0);
+  Range range = Range::positive();
+  range.allow_inf = true;
+  root.number("f_number", std::numeric_limits<double>::infinity(), range);
+  root.optional_number("absent");
+  root.required_path("file");
+  root.booleans("periodic", {true, false}, 2);
+  root.number_list("list", {}, 0, 9);
+  root.number_or_word("k", {std::nullopt, "ciddor"}, {"ciddor"});
+  for (auto& field : medium.tables("field")) {
+    field.table("inner").number("depth", 1.0);
+    field.required_word("kind", {"none", "file"});
+  }
+  root.table("noise").present();
+  root.table("unwritten");
+  setup.finish();
+  return setup.resolved();
+}
+
+TEST(ResolvedSetup, ReadsBackToTheSame) {
+  auto setup = document(
+      "file = 'field.h5'\n[medium]\nwavelength_nm = 450\n[[medium.field]]\nkind = 'none'\n[[medium.field]]\n"
+      "kind = 'file'\ninner = { depth = 0.1 }\n[noise]\n");
+  std::string const once = read_everything(setup);
+  auto again = SetupDocument::from_text(once, "resolved", "/elsewhere");
+  EXPECT_EQ(read_everything(again), once);
+  EXPECT_THAT(once, HasSubstr("file = \"/data/cases/field.h5\"\n"));
+  EXPECT_THAT(once, HasSubstr("third = 0.3333333333333333\n"));
+  EXPECT_THAT(once, HasSubstr("wavelength_nm = 450.0\nstep_mm = \"auto\"\n"));
+  EXPECT_THAT(once, HasSubstr("[[medium.field]]\nkind = \"none\"\n\n[medium.field.inner]\ndepth = 1.0\n"));
+  EXPECT_THAT(once, HasSubstr("[noise]\n"));
+  EXPECT_THAT(once, testing::Not(HasSubstr("absent")));
+  EXPECT_THAT(once, testing::Not(HasSubstr("unwritten")));
+}
+
+TEST(ResolvedSetup, AutoIsReplacedByWhatItCameTo) {
+  auto setup = document("[medium]\nstep_mm = 'auto'\n");
+  auto medium = setup.root().table("medium");
+  EXPECT_EQ(medium.number_or_auto("step_mm"), std::nullopt);
+  medium.resolve("step_mm", 0.25);
+  EXPECT_EQ(medium.number_or_auto("step_mm"), std::nullopt);
+  EXPECT_EQ(setup.resolved(), "[medium]\nstep_mm = 0.25\n");
+  auto again = document(setup.resolved());
+  EXPECT_EQ(again.root().table("medium").number_or_auto("step_mm"), 0.25);
+}
+
+}  // namespace
+}  // namespace gladstone

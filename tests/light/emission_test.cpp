@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "render/base/units.h"
+#include "render/light/sources.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double two_pow_32 = 4294967296.0;
+
+/// One bundle towards a pupil of 5 mm radius, 1 m from the target.
+BundleView<double> bundle(PupilSampling sampling) { return {0.75, 5e-3, 11, sampling}; }
+
+/// Which of rings x sectors cells of equal area a point of a disc falls into.
+int equal_area_cell(Vec2d p, double radius, int rings, int sectors) {
+  double const r2 = dot(p, p) / (radius * radius);
+  double turn = std::atan2(p.y, p.x) / (2 * pi);
+  if (turn < 0) turn += 1;
+  return std::min(static_cast<int>(r2 * rings), rings - 1) * sectors +
+         std::min(static_cast<int>(turn * sectors), sectors - 1);
+}
+
+// The first eight points of Joe and Kuo's sequence (new-joe-kuo-6), listed there in Gray-code order k ^ (k >> 1).
+TEST(Sobol, FirstPointsAreJoeAndKuos) {
+  double const points[8][4] = {{0, 0, 0, 0},
+                               {0.5, 0.5, 0.5, 0.5},
+                               {0.75, 0.25, 0.25, 0.25},
+                               {0.25, 0.75, 0.75, 0.75},
+                               {0.375, 0.375, 0.625, 0.875},
+                               {0.875, 0.875, 0.125, 0.375},
+                               {0.625, 0.125, 0.875, 0.625},
+                               {0.125, 0.625, 0.375, 0.125}};
+  for (std::uint32_t k = 0; k < 8; ++k) {
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      EXPECT_EQ(sobol_bits(k ^ (k >> 1), dimension) / two_pow_32, points[k][dimension]) << k << " " << dimension;
+    }
+  }
+}
+
+/// Largest and smallest number of points in the elementary intervals of 2^-bits volume of a pair of dimensions.
+std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int points_log2, int bits,
+                                                     std::uint32_t const (&seeds)[2]) {
+  int fewest = 1 << points_log2, most = 0;
+  for (int along_first = 0; along_first <= bits; ++along_first) {
+    std::vector<int> counts(std::size_t{1} << bits, 0);
+    for (std::uint32_t i = 0; i < (1u << points_log2); ++i) {
+      std::uint64_t a = sobol_bits(i, first), b = sobol_bits(i, second);
+      if (seeds[0] != 0) {
+        a = owen_scramble(static_cast<std::uint32_t>(a), seeds[0]);
+        b = owen_scramble(static_cast<std::uint32_t>(b), seeds[1]);
+      }
+      std::uint64_t const cell_a = a >> (32 - along_first), cell_b = b >> (32 - (bits - along_first));
+      ++counts[static_cast<std::size_t>((cell_a << (bits - along_first)) | cell_b)];
+    }
+    fewest = std::min(fewest, *std::min_element(counts.begin(), counts.end()));
+    most = std::max(most, *std::max_element(counts.begin(), counts.end()));
+  }
+  return {fewest, most};
+}
+
+// A (0,m,2)-net has exactly one of its 2^m points in every elementary interval of volume 2^-m (Niederreiter 1987). The
+// first two Sobol dimensions are one; dimensions of polynomial degrees 2 and 3 are a (t,m,2)-net with t = 1 + 2.
+TEST(Sobol, PupilPairIsANetWithOnePointPerElementaryInterval) {
+  EXPECT_EQ(extremes_of_elementary_intervals(0, 1, 8, 8, {0, 0}), (std::pair{1, 1}));
+}
+TEST(Sobol, SourcePairIsANetOfQualityThree) {
+  EXPECT_EQ(extremes_of_elementary_intervals(2, 3, 11, 8, {0, 0}), (std::pair{8, 8}));
+}
+
+// Nested scrambling permutes elementary intervals among themselves.
+TEST(OwenScrambling, KeepsTheNets) {
+  for (std::uint32_t seed = 1; seed < 40; ++seed) {
+    std::uint32_t const seeds[2] = {seed * 2654435761u, seed * 40503u + 17u};
+    EXPECT_EQ(extremes_of_elementary_intervals(0, 1, 8, 8, seeds), (std::pair{1, 1})) << seed;
+    EXPECT_EQ(extremes_of_elementary_intervals(2, 3, 11, 8, seeds), (std::pair{8, 8})) << seed;
+  }
+}
+
+// Over the scramblings of many sources every point is uniform: mean 1/2 and variance 1/12 within five standard errors,
+// sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n); coordinates of different dimensions and of neighbouring sources, and bits
+// of different streams, are uncorrelated within 5/sqrt(n).
+TEST(OwenScrambling, IsUnbiasedAndIndependentFromSourceToSource) {
+  constexpr int n = 8192;
+  for (std::uint64_t const ray : {0ull, 5ull, 1000ull}) {
+    std::vector<double> value[4];
+    for (std::uint64_t source = 0; source < n; ++source) {
+      double u[sobol_dimensions];
+      sample_coordinates(bundle(PupilSampling::sobol), source, ray, u);
+      for (int d = 0; d < 4; ++d) value[d].push_back(u[d]);
+    }
+    for (int d = 0; d < 4; ++d) {
+      double mean = 0, variance = 0, neighbours = 0, dimensions = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        mean += value[d][i] / n;
+        variance += (value[d][i] - 0.5) * (value[d][i] - 0.5) / n;
+        neighbours += 12 * (value[d][i] - 0.5) * (value[d][(i + 1) % n] - 0.5) / n;
+        dimensions += 12 * (value[d][i] - 0.5) * (value[(d + 1) % 4][i] - 0.5) / n;
+      }
+      EXPECT_NEAR(mean, 0.5, 5 * std::sqrt(1.0 / 12 / n));
+      EXPECT_NEAR(variance, 1.0 / 12, 5 * std::sqrt((1.0 / 80 - 1.0 / 144) / n));
+      EXPECT_NEAR(neighbours, 0, 5 / std::sqrt(n));
+      EXPECT_NEAR(dimensions, 0, 5 / std::sqrt(n));
+    }
+  }
+}
+
+TEST(RandomStreams, OfOneSeedAreIndependent) {
+  constexpr int n = 8192;
+  RandomStream const streams[] = {RandomStream::target, RandomStream::pupil, RandomStream::noise_reference,
+                                  RandomStream::noise_flow};
+  for (int a = 0; a < 4; ++a) {
+    for (int b = a + 1; b < 4; ++b) {
+      double correlation = 0;
+      for (std::uint64_t i = 0; i < n; ++i) {
+        correlation +=
+            12 * (to_unit(random_bits(7, streams[a], i)) - 0.5) * (to_unit(random_bits(7, streams[b], i)) - 0.5) / n;
+      }
+      EXPECT_NEAR(correlation, 0, 5 / std::sqrt(n)) << a << " " << b;
+    }
+  }
+}
+
+// Cells of equal area of the disc are elementary intervals of (radius^2, angle): a net fills them all equally.
+TEST(Emission, SobolPupilPointsFillCellsOfEqualAreaEqually) {
+  Vec2d const centre{1e-3, -2e-3};
+  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1e-4, SourceShape::disc};
+  std::map<int, int> pupil, disc;
+  for (std::uint64_t ray = 0; ray < 4096; ++ray) {
+    EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::sobol), 0, ray);
+    ASSERT_LE(length(emitted.pupil), 5e-3);
+    Vec2d const on_disc = Vec2d{emitted.ray.position.x, emitted.ray.position.y} - centre;
+    ASSERT_LE(length(on_disc), 1e-4 * (1 + 1e-9));
+    ++pupil[equal_area_cell(emitted.pupil, 5e-3, 8, 8)];
+    ++disc[equal_area_cell(on_disc, 1e-4, 8, 8)];
+  }
+  ASSERT_EQ(pupil.size(), 64u);
+  ASSERT_EQ(disc.size(), 64u);
+  for (auto const& [cell, count] : pupil) EXPECT_EQ(count, 64) << cell;
+  for (auto const& [cell, count] : disc) EXPECT_EQ(count, 64) << cell;
+}
+
+// Uniform disc of radius R: <x> = <y> = <x y> = 0, <x^2> = <y^2> = R^2/4, <x^4> = R^4/8; variances of these averages
+// per point are R^2/4, R^4/24, R^4/8 - R^4/16 and R^8 (7/128 - 1/64) (moments of cos^2p and r^2p), five standard errors
+// allowed.
+TEST(Emission, RandomPupilPointsHaveTheMomentsOfADisc) {
+  Vec2d const centre{};
+  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 0.0, SourceShape::disc};
+  constexpr int n = 20000;
+  double const R = 5e-3;
+  double x = 0, y = 0, xy = 0, xx = 0, yy = 0, x4 = 0;
+  for (std::uint64_t ray = 0; ray < n; ++ray) {
+    EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::random), 0, ray);
+    ASSERT_EQ(emitted.ray.position, (Vec3d{0, 0, -0.25}));
+    Vec2d const p = emitted.pupil / R;
+    x += p.x / n, y += p.y / n, xy += p.x * p.y / n, xx += p.x * p.x / n, yy += p.y * p.y / n;
+    x4 += p.x * p.x * p.x * p.x / n;
+  }
+  EXPECT_NEAR(x, 0, 5 * std::sqrt(1.0 / 4 / n));
+  EXPECT_NEAR(y, 0, 5 * std::sqrt(1.0 / 4 / n));
+  EXPECT_NEAR(xy, 0, 5 * std::sqrt(1.0 / 24 / n));
+  EXPECT_NEAR(xx, 0.25, 5 * std::sqrt(1.0 / 16 / n));
+  EXPECT_NEAR(yy, 0.25, 5 * std::sqrt(1.0 / 16 / n));
+  EXPECT_NEAR(x4, 0.125, 5 * std::sqrt((7.0 / 128 - 1.0 / 64) / n));
+}
+
+// Vector from the source to the pupil point; cos^4 of its angle to the axis, times radiance. Rounding only.
+TEST(Emission, RaysRunToTheirPupilPointWithWeightRadianceCosFour) {
+  Vec2d const centres[] = {{0, 0}, {0.02, -0.03}};
+  double const radiance[] = {1.0, 0.25};
+  SourcesView<double> const sources{centres, radiance, 2, -0.25, 2e-4, SourceShape::disc};
+  for (std::uint64_t source = 0; source < 2; ++source) {
+    for (std::uint64_t ray = 0; ray < 50; ++ray) {
+      EmittedRay<double> const emitted = emit(sources, bundle(PupilSampling::sobol), source, ray);
+      Vec3d const start = emitted.ray.position, way = emitted.ray.direction;
+      EXPECT_EQ(start.z, -0.25);
+      EXPECT_NEAR(length(way), 1, 1e-15);
+      EXPECT_NEAR(start.x + way.x / way.z, emitted.pupil.x, 1e-16);
+      EXPECT_NEAR(start.y + way.y / way.z, emitted.pupil.y, 1e-16);
+      double const dx = emitted.pupil.x - start.x, dy = emitted.pupil.y - start.y;
+      double const cosine = 1 / std::sqrt(1 + dx * dx + dy * dy);
+      EXPECT_NEAR(emitted.weight, radiance[source] * std::pow(cosine, 4), 1e-15);
+    }
+  }
+}
+
+TEST(Emission, ChiefRaysAllCrossThePupilsCentre) {
+  Vec2d const centre{0.01, 0.0};
+  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 2e-4, SourceShape::disc};
+  BundleView<double> chief = bundle(PupilSampling::sobol);
+  chief.pupil_radius = 0;
+  for (std::uint64_t ray = 0; ray < 50; ++ray) EXPECT_EQ(emit(sources, chief, 0, ray).pupil, (Vec2d{0, 0}));
+}
+
+// Eight by eight squares in a square source are elementary intervals of its pair of dimensions.
+TEST(Emission, SquareSourcesAreFilledEvenly) {
+  Vec2d const centre{};
+  SourcesView<double> const sources{&centre, nullptr, 1, -0.25, 1.0, SourceShape::square};
+  std::map<std::pair<int, int>, int> counts;
+  for (std::uint64_t ray = 0; ray < 4096; ++ray) {
+    Vec3d const p = emit(sources, bundle(PupilSampling::sobol), 0, ray).ray.position;
+    ++counts[{static_cast<int>(std::floor(4 * p.x)), static_cast<int>(std::floor(4 * p.y))}];
+  }
+  ASSERT_EQ(counts.size(), 64u);
+  for (auto const& [cell, count] : counts) {
+    EXPECT_EQ(count, 64);
+    EXPECT_TRUE(cell.first >= -4 && cell.first < 4 && cell.second >= -4 && cell.second < 4);
+  }
+}
+
+}  // namespace
+}  // namespace gladstone

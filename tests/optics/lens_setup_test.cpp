@@ -1,0 +1,59 @@
+#include "render/optics/lens_setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+LensSetup read(std::string const& text) {
+  SetupDocument document = SetupDocument::from_text("[lens]\n" + text, "lens.toml");
+  LensSetup const setup = read_lens_setup(document.root().table("lens"));
+  document.finish();
+  return setup;
+}
+
+TEST(LensSetup, DefaultsAreTable1) {
+  LensSetup const setup = read("");
+  EXPECT_DOUBLE_EQ(setup.focal_length, 0.105);
+  EXPECT_DOUBLE_EQ(setup.f_number, 11);
+  EXPECT_EQ(setup.focus, Focus::target);
+  EXPECT_EQ(setup.spot, SpotModel::gaussian);
+}
+
+TEST(LensSetup, ReadsEveryKey) {
+  LensSetup const setup = read("focal_length_mm = 50\nf_number = inf\nfocus_distance_mm = 800\npsf = \"airy\"\n");
+  EXPECT_DOUBLE_EQ(setup.focal_length, 0.05);
+  EXPECT_TRUE(std::isinf(setup.f_number));
+  EXPECT_EQ(setup.focus, Focus::distance);
+  EXPECT_DOUBLE_EQ(setup.focus_distance, 0.8);
+  EXPECT_EQ(setup.spot, SpotModel::airy);
+  EXPECT_EQ(read("focus = \"medium\"").focus, Focus::medium);
+  EXPECT_EQ(read("psf = \"none\"").spot, SpotModel::none);
+  EXPECT_EQ(read("psf = \"seed_eq8\"").spot, SpotModel::seed_eq8);
+  EXPECT_EQ(read("psf = \"gaussian_first_zero\"").spot, SpotModel::gaussian_first_zero);
+}
+
+TEST(LensSetup, PrescriptionsAreRefusedByName) {
+  EXPECT_THAT(
+      [] { read("model = \"prescription\"\nfile = \"double_gauss.toml\"\n"); },
+      ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:2"), HasSubstr("\"prescription\" is not available yet"),
+                                      HasSubstr("lens.toml:3"), HasSubstr("lens prescriptions"))));
+}
+
+TEST(LensSetup, ImpossibleLensesAreRefused) {
+  EXPECT_THAT([] { read("focal_length_mm = -105\n"); }, ThrowsMessage<SetupError>(HasSubstr("lens.toml:2")));
+  EXPECT_THAT([] { read("f_number = 0\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
+  EXPECT_THAT([] { read("f_number = nan\n"); }, ThrowsMessage<SetupError>(HasSubstr("f_number")));
+  EXPECT_THAT([] { read("focus = \"target\"\nfocus_distance_mm = 900\n"); },
+              ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("stands beside focus"))));
+}
+
+}  // namespace
+}  // namespace gladstone

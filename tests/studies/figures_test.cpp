@@ -1,0 +1,183 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+#include "studies/figures/error_figures.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/map_figures.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Figures : public ::testing::Test {
+ protected:
+  Figures() {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("gladstone_figures_test_" + std::to_string(::getpid()) + "_" +
+                                                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_);
+  }
+  ~Figures() override { std::filesystem::remove_all(folder_); }
+  std::string path(std::string const& name) const { return (folder_ / name).string(); }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Pixels darker than 30 % grey in the upper and in the lower half of a picture.
+struct DarkPixels {
+  int upper = 0;
+  int lower = 0;
+};
+DarkPixels dark_pixels(std::string const& path) {
+  Image<double> const picture = read_image(path);
+  DarkPixels dark;
+  for (int row = 0; row < picture.rows(); ++row) {
+    for (int column = 0; column < picture.columns(); ++column) {
+      if (picture(column, row) < 0.3 * 255.0) ++(2 * row < picture.rows() ? dark.upper : dark.lower);
+    }
+  }
+  return dark;
+}
+
+/// Zero (dark violet) in the upper rows, one (yellow) in the lower ones.
+MapPanel half_dark() {
+  MapPanel panel;
+  panel.title = "it's a test_title [px]";
+  panel.scale = ColourScale::magnitude;
+  panel.map = Image<double>(40, 40, 0.0);
+  for (int row = 20; row < 40; ++row) {
+    for (int column = 0; column < 40; ++column) panel.map(column, row) = 1.0;
+  }
+  return panel;
+}
+
+// The map is 330 px wide, half of it dark: more than 330 x 165 x 0.9 dark pixels above, and below only frame and text.
+TEST_F(Figures, MapsHaveRowZeroAtTheTop) {
+  MapAxes const pixels{0.0, 1.0, 0.0, 1.0, true, "x [px]", "y [px]"};
+  MapAxes const world{-20.0, 1.0, 20.0, -1.0, false, "x [mm]", "y [mm]"};
+  for (MapAxes const& axes : {pixels, world}) {
+    MapFigure figure;
+    figure.columns = 1;
+    figure.axes = axes;
+    figure.panels = {half_dark()};
+    write_map_figure(path("map.png"), figure);
+    DarkPixels const dark = dark_pixels(path("map.png"));
+    EXPECT_GT(dark.upper, 49000);
+    EXPECT_LT(dark.lower, 8000);
+  }
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Figures, ConstantAndMissingMapsAreDrawn) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  NamedMaps const constant{"truth", Image<double>(8, 4, 0.0), Image<double>(8, 4, 2.0)};
+  NamedMaps const missing{"measurement", Image<double>(8, 4, nan), Image<double>(8, 4, nan)};
+  write_displacement_maps(path("maps.png"), "title", {}, {constant, missing});
+  Image<double> const picture = read_image(path("maps.png"));
+  EXPECT_GT(picture.columns(), 700);
+}
+
+TEST_F(Figures, SeedFigure4HasFourColumnsAndTwoRowsAnInstant) {
+  Image<double> map(16, 16, 1.0);
+  map(3, 3) = -1.0;
+  SeedFigure4Instant const instant{"t = 1", map, map, map, map, map, map, map};
+  write_seed_figure4(path("one.png"), {}, {instant});
+  write_seed_figure4(path("two.png"), {}, {instant, instant});
+  Image<double> const one = read_image(path("one.png"));
+  Image<double> const two = read_image(path("two.png"));
+  EXPECT_EQ(one.columns(), two.columns());
+  EXPECT_GT(one.columns(), 4 * 270);
+  EXPECT_GT(two.rows() - one.rows(), 2 * 270);
+}
+
+TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
+  std::vector<double> gradient;
+  ErrorSeries series{"against truth", {}};
+  for (int i = 0; i < 400; ++i) {
+    gradient.push_back(0.001 * i);
+    series.error_px.push_back({0.01 * std::sin(i), 0.02 * std::cos(1.3 * i)});
+  }
+  ErrorSeries const nothing{"against nothing",
+                            std::vector<Vec2d>(400, Vec2d{std::numeric_limits<double>::quiet_NaN(), 0.0})};
+  write_error_histograms(path("histogram.png"), "errors", {series, nothing});
+  write_error_against_gradient(path("gradient.png"), "errors", gradient, {series, nothing});
+  std::vector<BudgetStage> const stages{{"eq9", std::vector<Vec2d>(400)}, {"measured", series.error_px}};
+  write_budget_bars(path("budget.png"), "budget", error_budget(stages, VectorMask(400, 1)));
+  for (char const* name : {"histogram.png", "gradient.png", "budget.png"}) {
+    EXPECT_GT(read_image(path(name)).columns(), 700) << name;
+  }
+  EXPECT_EQ(files(), 3u);
+}
+
+TEST_F(Figures, AbsentGnuplotIsNamedWithItsPackage) {
+  std::string const before = ::getenv("PATH") != nullptr ? ::getenv("PATH") : "";
+  ::setenv("PATH", path("").c_str(), 1);
+  try {
+    GnuplotFigure figure(100, 100);
+    figure.command("plot x");
+    figure.write(path("x.png"));
+    ADD_FAILURE() << "no error";
+  } catch (GnuplotMissing const& error) {
+    EXPECT_THAT(error.what(), HasSubstr("gnuplot-nox"));
+  }
+  ::setenv("PATH", before.c_str(), 1);
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(Figures, FailureLeavesTheOldPicture) {
+  std::ofstream(path("x.png")) << "old";
+  GnuplotFigure figure(100, 100);
+  figure.command("plot nonsense(");
+  try {
+    figure.write(path("x.png"));
+    ADD_FAILURE() << "no error";
+  } catch (OutputError const& error) {
+    EXPECT_THAT(error.what(), HasSubstr("x.png"));
+    EXPECT_THAT(error.what(), HasSubstr("nonsense"));
+  }
+  std::string text;
+  std::ifstream(path("x.png")) >> text;
+  EXPECT_EQ(text, "old");
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(Figures, AFolderThatCannotBeIsAnOutputError) {
+  std::ofstream(path("file")) << "no folder";
+  GnuplotFigure figure(100, 100);
+  figure.command("plot x");
+  EXPECT_THROW(figure.write(path("file/x.png")), OutputError);
+}
+
+// d = A x with A = [[3, 0], [4, 5]] / 1000: A^T A = [[25, 20], [20, 25]] / 1e6 has eigenvalues 45e-6 and 5e-6.
+// Differences of a linear field are exact: rounding only.
+TEST(LocalGradient, IsTheLargestSingularValue) {
+  DisplacementField field;
+  field.columns = 4;
+  field.rows = 3;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      Vec2d const p{8.0 * column, 16.0 * row};
+      field.position_px.push_back(p);
+      field.displacement_px.push_back({3e-3 * p.x, 4e-3 * p.x + 5e-3 * p.y});
+    }
+  }
+  for (double const gradient : local_gradient(field)) EXPECT_NEAR(gradient, std::sqrt(45e-6), 1e-15);
+}
+
+}  // namespace
+}  // namespace gladstone
