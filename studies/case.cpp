@@ -92,11 +92,11 @@ PreparedCase prepare_case(CaseSetup& loaded) {
   return prepared;
 }
 
-RenderedCase render_case(PreparedCase& prepared, Renderer& renderer) {
+RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheory theory) {
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene& scene = prepared.scene;
-  rendered.rendering = renderer.render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  rendered.rendering = renderer.render(scene, scene.dots, RenderImages::yes, theory);
   LightPair const& light = rendered.rendering.light;
   double const brightest = std::max(*std::max_element(light.reference.begin(), light.reference.end()),
                                     *std::max_element(light.flow.begin(), light.flow.end()));
@@ -109,7 +109,7 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   namespace fs = std::filesystem;
   OutputFolder output(folder, case_file::setup);
   PreparedCase prepared = prepare_case(loaded);
-  RenderedCase rendered = render_case(prepared, renderer);
+  RenderedCase rendered = render_case(prepared, renderer, RenderTheory::yes);
   Scene const& scene = prepared.scene;
   CameraSetup const& camera = scene.setup.camera;
   loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
@@ -157,7 +157,8 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   if (!scene.setup.render.rays_per_dot) {
     summary["rays_plan"] = {{"truth_error_px", prepared.rays.truth_error_px},
                             {"image_error_levels", prepared.rays.image_error_levels},
-                            {"bits", prepared.rays.bits}};
+                            {"bits", prepared.rays.bits},
+                            {"extrapolated", prepared.rays.extrapolated}};
   }
   std::string const text = summary.dump(2) + "\n";
   OutputFile::write_text(place(case_file::summary), text);

@@ -44,7 +44,7 @@ struct RenderedCase {
   double seconds = 0;
 };
 
-RenderedCase render_case(PreparedCase& prepared, Renderer& renderer);
+RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheory theory);
 
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json.
 /// @return the text of summary.json

@@ -39,24 +39,25 @@ nlohmann::json matrix_json(CovarianceMatrix const& matrix) {
   return rows;
 }
 
-/// Strain of a displacement given on the interrogation grid: largest magnitude of an eigenvalue of the symmetric part of
-/// its gradient [px/px]; NaN where vectors are scattered.
-std::vector<double> strain_on_grid(DisplacementField const& grid, std::vector<Vec2d> const& displacement) {
-  std::vector<double> strain(grid.size(), std::numeric_limits<double>::quiet_NaN());
-  if (grid.columns < 2 || grid.rows < 2) return strain;
-  auto const at = [&](int column, int row) { return static_cast<std::size_t>(row * grid.columns + column); };
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      std::size_t const left = at(std::max(0, column - 1), row), right = at(std::min(grid.columns - 1, column + 1), row);
-      std::size_t const up = at(column, std::max(0, row - 1)), down = at(column, std::min(grid.rows - 1, row + 1));
-      Vec2d const along_x = (displacement[right] - displacement[left]) / (grid.position_px[right].x - grid.position_px[left].x);
-      Vec2d const along_y = (displacement[down] - displacement[up]) / (grid.position_px[down].y - grid.position_px[up].y);
-      double const middle = 0.5 * (along_x.x + along_y.y);
-      double const radius = std::hypot(0.5 * (along_x.x - along_y.y), 0.5 * (along_x.y + along_y.x));
-      strain[at(column, row)] = std::abs(middle) + radius;
+/// Largest strain of Eq. 9 within half a window of every vector [px/px]: one front in the window spoils it.
+std::vector<double> strain_at(Scene const& scene, std::vector<Vec2d> const& positions, int window_px) {
+  int const spacing = std::max(1, std::max(scene.setup.camera.columns, scene.setup.camera.rows) / 2048);
+  Image<double> const strain = strain_of(map_field(scene, spacing).eq9_px, spacing).strain;
+  std::vector<double> largest;
+  largest.reserve(positions.size());
+  for (Vec2d const& p : positions) {
+    double const half = 0.5 * window_px;
+    int const left = std::max(0, static_cast<int>((p.x - half) / spacing));
+    int const right = std::min(strain.columns() - 1, static_cast<int>((p.x + half) / spacing));
+    int const top = std::max(0, static_cast<int>((p.y - half) / spacing));
+    int const bottom = std::min(strain.rows() - 1, static_cast<int>((p.y + half) / spacing));
+    double value = 0;
+    for (int row = top; row <= bottom; ++row) {
+      for (int column = left; column <= right; ++column) value = std::max(value, strain(column, row));
     }
+    largest.push_back(value);
   }
-  return strain;
+  return largest;
 }
 
 /// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not change.
@@ -144,7 +145,6 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
     correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
   scene.rays_per_dot = all_rays;
-  correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
 }
 
@@ -163,7 +163,7 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   PreparedCase prepared = prepare_case(loaded);
   Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
   comparison.point = truth_at_points(scene, renderer, measured.position_px, options.truth_at, RenderTheory::yes);
-  comparison.strain = strain_on_grid(measured, comparison.point.eq9_cone_px);
+  comparison.strain = strain_at(scene, measured.position_px, vectors.settings.window_px.back());
 
   CorrelationSettings const& settings = vectors.settings;
   WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
@@ -171,7 +171,7 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   comparison.window = window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px,
                                    weight, options.truth_at);
   if (!vectors.foreign) {
-    RenderedCase const rendered = render_case(prepared, renderer);
+    RenderedCase const rendered = render_case(prepared, renderer, RenderTheory::no);
     Detector const detector(scene.setup.camera, rendered.exposure_e);
     LightPair const& light = rendered.rendering.light;
     DisplacementField again = make_correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));

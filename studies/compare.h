@@ -27,7 +27,7 @@ struct Comparison {
   GroundTruth point;                     ///< truth and theory of the virtual dot whose place the vector is
   WindowTruth window;
   std::vector<Vec2d> noise_free;         ///< measured on noise-free, unquantised images; empty for foreign vectors
-  std::vector<double> strain;            ///< of the cone-averaged displacement at the vectors [px/px]
+  std::vector<double> strain;            ///< largest of Eq. 9 on each vector's window [px/px]
   VectorMask mask;
   ErrorBudget budget;
   std::string report;                    ///< what was detected about a foreign file; empty for ours

@@ -128,9 +128,9 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
   std::string const text =
       "# The seed's experiment\n\n"
       "Rajendran, Bane & Vlachos, section 4, Table 1: Z_A 0.75 m, Z_D 0.25 m, 105 mm, f/11, 10 um pixels, 512 x 512 px, 20 dots in\n"
-      "32 x 32 px, density field 10 mm deep. Root mean squares in px per component; strain is that of the cone-averaged\n"
-      "displacement. Where it exceeds 0.3 no correlation is quantitative: the earlier instant has fronts at which rays cross, the\n"
-      "late one is the quantitative case.\n\n"
+      "32 x 32 px, density field 10 mm deep. Root mean squares in px per component. Vectors are told apart by the largest strain of\n"
+      "Eq. 9 on their window: where it exceeds 0.3 a single ray's displacement changes by a third of the way to its neighbour, and\n"
+      "at 1 rays cross. The earlier instant has such fronts; the late one is the quantitative case.\n\n"
       "| vectors | count | signal | Eq. 9 - rays | cone Eq. 9 - rays | measured - rays | measured - rays on the window | measured - cone "
       "Eq. 9 | measured - Eq. 9 | over 1 px |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n" +

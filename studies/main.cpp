@@ -27,6 +27,7 @@ constexpr std::array commands{
     Command{"trace", "Trace given rays and say where they end and why",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
+    Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
 };
 

@@ -137,6 +137,45 @@ GLADSTONE_HD bool refract_component(Vec3<T> direction, T from_n2, T to_n2, int a
   return true;
 }
 
+/// The part of a step that stays inside a box.
+template <class T>
+struct PartialStep {
+  bool leaves;  ///< false: it is the whole step
+  T step;       ///< [m]
+  StepIncrement<T> add;
+  int axis;     ///< of the face where it ends
+};
+
+/// Finds where a curved step leaves the box, by bisection: for the rare rays that graze a face. Kept out of line, so that
+/// the loop over steps stays small.
+template <class T, class Medium>
+[[gnu::noinline]] GLADSTONE_HD PartialStep<T> bisect_exit(Medium const& medium, Integrator integrator,
+                                                          Bounds<T> const& box, RayState<T> from, T dt) {
+  PartialStep<T> part{false, dt, {}, 2};
+  Vec3<T> beyond{};
+  T inside = T(0), next = dt;
+  for (int trial = 0; trial <= 64; ++trial) {
+    StepIncrement<T> const add = step_increment(medium, integrator, from.position, from.optical_direction, next);
+    Vec3<T> const reached = from.position + from.optical_direction * next + add.position;
+    bool const left = outside(box, reached);
+    if (trial == 0) part.add = add;
+    if (trial == 0 && !left) return part;
+    if (left) {
+      part.step = next;
+      part.add = add;
+      beyond = reached;
+    } else {
+      inside = next;
+    }
+    next = T(0.5) * (inside + part.step);
+  }
+  part.leaves = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (beyond[axis] < box.low[axis] || beyond[axis] > box.high[axis]) part.axis = axis;
+  }
+  return part;
+}
+
 }  // namespace detail
 
 /// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step (first
@@ -177,8 +216,10 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
   T const whole_step = options.step / n_entry;
   T const whole_steps = floor(chord_t / whole_step + T(1e-6));
   T const rest = chord_t - whole_steps * whole_step;
-  T dt = rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
-  int const most_steps = 64 + 16 * static_cast<int>(whole_steps < T(1e7) ? whole_steps : T(1e7));
+  // along an endless axis there is no last step to share with, and the rest of the division means nothing
+  T const countable = T(1e6);
+  T dt = whole_steps < countable && rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
+  int const most_steps = 64 + 16 * static_cast<int>(whole_steps < countable ? whole_steps : countable);
 
   T const tiny = T(16) * std::numeric_limits<T>::epsilon();
   for (int taken = 0; taken < most_steps; ++taken) {
@@ -203,13 +244,15 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
     }
     if (landing && options.integrator != Integrator::straight) {
       // Newton on the step length; what remains is closed by the Taylor series of the last step's end
+      bool landed = false;
       for (int trial = 0; trial < 12; ++trial) {
         T const speed = direction[out.axis] + add.optical_direction[out.axis];
         T const position = R[out.axis] + direction[out.axis] * step + add.position[out.axis];
         T const face = speed > T(0) ? box.high[out.axis] : box.low[out.axis];
-        T const miss = (face - position) / speed;
-        bool const close = (miss < T(0) ? -miss : miss) <= T(1e-4) * (step > T(0) ? step : dt);
-        if (close || trial == 11) {
+        T miss = (face - position) / speed;
+        if ((miss < T(0) ? -miss : miss) <= T(1e-4) * step) {
+          landed = step <= T(2) * dt;
+          miss -= T(0.5) * miss * miss * add.last_force[out.axis] / speed;
           Vec3<T> const end = direction + add.optical_direction;
           add.position += (T(0.5) * miss * miss) * add.last_force + add.optical_direction * miss;
           add.optical_direction += add.last_force * miss;
@@ -218,7 +261,16 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
           break;
         }
         step = step + miss > T(0) ? step + miss : T(0.5) * step;
+        if (!(step <= T(2) * dt)) break;
         add = step_increment(medium, options.integrator, where, along, step);
+      }
+      if (!landed) {
+        // a grazing ray, bent away from the face that it was heading for: a whole step, or the part of it that stays inside
+        detail::PartialStep<T> const part = detail::bisect_exit(medium, options.integrator, box, {where, along}, dt);
+        landing = part.leaves;
+        step = part.step;
+        add = part.add;
+        out.axis = part.axis;
       }
     }
     way.shift += way.turn * step + add.position;

@@ -87,41 +87,98 @@ class LightPatch {
   std::vector<double> column_shares_, row_shares_;
 };
 
+/// Points of a unit disc (or square) with weights that integrate what a spot makes of a source to far below a grey level.
+struct SourceCubature {
+  std::vector<Vec2d> points;    ///< offsets in units of the source's half size
+  std::vector<double> weights;  ///< sum 1
+
+  /// Uniform over the unit disc: Gauss-Legendre in r^2 times equal angles, turned by half a step from ring to ring.
+  static SourceCubature disc(int radial, int angular);
+  /// Disc as above. Square: Gauss-Legendre in both directions. A point: itself.
+  /// @param half_size_px of the source's image; the finer the spot beside it, the more points
+  static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
+};
+
+SourceCubature make_cubature(Scene const& scene, DotPattern const& sources, SpotView const& spot);
+
+/// What is known of a dot's light before its rays are traced.
+struct DotPlan {
+  Vec2d origin{};              ///< image of the dot's centre without medium [px]
+  double expected_weight = 0;  ///< sum of the weights of all rays that pass the stop, expected
+  bool control = false;        ///< see DotExposure
+};
+
+/// @param spot null: no images
+DotPlan plan_dot(Scene const& scene, SpotView const* spot, SceneView<double> const& view, std::uint64_t dot);
+
+/// What one ray tells about where the flow sends a dot's light.
+struct RayRecord {
+  Vec2d place;               ///< on the source, in units of its half size
+  Vec2d pupil;               ///< where it meets the lens plane in the reference frame [m]
+  Vec2d displacement;        ///< flow hit minus the geometric image of its place [px]
+  Vec2d bend;                ///< where it meets the lens plane in the flow frame, minus that [m]
+  double weight;             ///< radiance cos^4
+  double flow_weight;        ///< the same times what passes the stop in the flow frame
+};
+
+/// A smooth model of a dot's light in the flow: displacement as a polynomial of the place on the source (cubic) and of the
+/// pupil point (quadratic), arrival on the lens plane as a linear function of both. Where the rays are few, or the source is a
+/// point, the model is simpler.
+class FlowFit {
+ public:
+  /// Least squares over a dot's rays.
+  /// @param extended false: the source is a point
+  void fit(std::vector<RayRecord> const& rays, double stop_radius, bool extended);
+
+  Vec2d displacement(Vec2d place, Vec2d pupil) const;
+  /// Where a ray is expected to arrive on the lens plane, and the pupil point of a ray that arrives there [m].
+  Vec2d arrival(Vec2d pupil, Vec2d place) const;
+  Vec2d pupil_of(Vec2d arrival, Vec2d place) const;
+  /// Pupil area that arrives on a unit of the stop's area.
+  double area_ratio() const;
+  /// How far the pupil's rim moves the displacement [px].
+  double pupil_spread() const;
+
+ private:
+  static constexpr int displacement_terms = 19;
+  static constexpr int bend_terms = 5;  ///< 1, pupil x, y, place x, y
+  std::size_t rays_ = 0;
+  bool extended_ = false;
+  double stop_radius_ = 1;
+  int terms_ = 0;
+  Vec2d displacement_[displacement_terms];
+  Vec2d bend_[bend_terms];
+
+  static int basis(Vec2d place, Vec2d pupil, std::size_t rays, bool extended, double* value);
+
+};
+
 /// Gathers everything that one dot's rays leave behind; TracePair's Exposure on the CPU. One object a thread, one dot
 /// at a time, rays in order, so that sums are the same on any number of threads.
+///
+/// Images use a control variate where the reference frame is known in closed form (a thin lens focused on the target maps
+/// every ray of a source's point on one image point, so the reference image is the source's disc convolved with the spot,
+/// integrated by cubature): the flow image is the same disc moved by a smooth fit to the rays' displacements, integrated
+/// likewise, plus for every ray the spot where it lands minus the spot where the fit puts it. Whatever the fit, the sum
+/// converges to the image that the rays alone would give; the better the fit, the less it scatters.
 class DotExposure {
  public:
   /// @param spot null: truth only, no images
-  explicit DotExposure(SpotView const* spot) : with_image_(spot != nullptr) {
-    if (spot) patches_.assign(frame_count, LightPatch(*spot));
-  }
+  /// @param scene,cubature outlive the exposure
+  DotExposure(Scene const& scene, DotPattern const& sources, SpotView const* spot, SourceCubature const& cubature);
 
-  /// Starts a dot whose chief ray ends near `origin` [px].
-  void begin(Vec2d origin, LightImage* const (&images)[frame_count], double light_per_weight) {
-    origin_ = origin;
-    light_per_weight_ = light_per_weight;
-    for (int frame = 0; frame < frame_count; ++frame) {
-      images_[frame] = images[frame];
-      sums_[frame] = {};
-    }
-  }
-  void deposit(Frame frame, RayHit<double> const& hit) {
-    auto const f = static_cast<std::size_t>(frame);
-    if (!reaches_sensor_plane(hit.status)) return;
-    sums_[f].add(hit.pixel - origin_, hit.weight);
-    if (with_image_) patches_[f].deposit(hit.pixel, hit.weight, images_[f], light_per_weight_);
-  }
-  void record_truth(std::uint64_t, EmittedRay<double> const& emitted, RayHit<double> const& reference,
-                    RayHit<double> const& flow) {
-    ++statuses_[0][static_cast<std::size_t>(reference.status)];
-    ++statuses_[1][static_cast<std::size_t>(flow.status)];
-    if (flow.status <= RayStatus::vignetted) {
-      Vec2d const bend = flow.at_lens - emitted.pupil;
-      largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
-    }
-  }
+  /// Starts a dot. @param plan says where its light is expected
+  void begin(DotPlan const& plan, LightImage* const (&images)[frame_count], double light_per_weight);
+
+  /// What TracePair leaves behind for one ray.
+  void record(EmittedRay<double> const& emitted, RayHit<double> const& reference, RayHit<double> const& flow);
+
   /// Ends the dot: its light joins the images, its truth is written.
   void finish(GroundTruth& truth, std::size_t dot);
+  /// Completes the patches without sending them anywhere.
+  void finish_light() {
+    if (with_image_ && plan_.control) deposit_controlled();
+  }
 
   LightPatch const& patch(Frame frame) const { return patches_[static_cast<std::size_t>(frame)]; }
   CentroidSum<double> const& sum(Frame frame) const { return sums_[static_cast<std::size_t>(frame)]; }
@@ -130,9 +187,19 @@ class DotExposure {
   double largest_bend() const { return std::sqrt(largest_bend2_); }
 
  private:
+  void deposit(Frame frame, Vec2d p, double weight);
+
+  void deposit_controlled();
+
+  Scene const& scene_;
+  SourceCubature const& cubature_;
   bool with_image_;
-  Vec2d origin_{};
+  DotPlan plan_;
+  ThinLens<double> lens_;
+  double stop_radius_;          ///< [m]; 1 without a stop
+  double half_size_px_ = 0;     ///< of the source's image
   double light_per_weight_ = 0;
+  std::vector<RayRecord> rays_;  ///< of the dot, where images are controlled
   LightImage* images_[frame_count] = {};
   std::vector<LightPatch> patches_;
   CentroidSum<double> sums_[frame_count];

@@ -39,13 +39,43 @@ FieldMap map_field(Scene const& scene, int spacing_px) {
   return map;
 }
 
+StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
+  StrainMap map;
+  map.spacing_px = spacing_px;
+  int const columns = displacement.columns(), rows = displacement.rows();
+  map.caustic = Image<double>(columns, rows);
+  map.strain = Image<double>(columns, rows);
+  std::size_t crossed = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      int const left = std::max(0, column - 1), right = std::min(columns - 1, column + 1);
+      int const up = std::max(0, row - 1), down = std::min(rows - 1, row + 1);
+      Vec2d const along_x =
+          (displacement(right, row) - displacement(left, row)) / double((right - left) * map.spacing_px);
+      Vec2d const along_y =
+          (displacement(column, down) - displacement(column, up)) / double((down - up) * map.spacing_px);
+      double const middle = 0.5 * (along_x.x + along_y.y);
+      double const radius = std::hypot(0.5 * (along_x.x - along_y.y), 0.5 * (along_x.y + along_y.x));
+      map.caustic(column, row) = middle + radius;
+      map.strain(column, row) = std::max(std::abs(middle + radius), std::abs(middle - radius));
+      if (middle + radius >= 1) ++crossed;
+    }
+  }
+  map.caustic_fraction = static_cast<double>(crossed) / static_cast<double>(displacement.size());
+  return map;
+}
+
 StrainMap map_strain(Scene const& scene) {
   StrainMap map;
   CameraSetup const& camera = scene.setup.camera;
-  map.spacing_px = std::max(4, std::max(camera.columns, camera.rows) / 128);
+  // the cone smooths what lies between the points of a coarse lattice; chief rays see everything, but need one ray a
+  // point
+  bool const chief = scene.chief_rays_only();
+  int const larger = std::max(camera.columns, camera.rows);
+  map.spacing_px = chief ? std::max(1, larger / 512) : std::max(4, larger / 128);
   int const columns = std::max(3, camera.columns / map.spacing_px), rows = std::max(3, camera.rows / map.spacing_px);
   Image<Vec2d> displacement(columns, rows);
-  constexpr std::uint64_t rays = 64;
+  std::uint64_t const rays = chief ? 1 : 64;
   DotPattern points;
   points.centre.resize(displacement.size());
   for (std::size_t i = 0; i < points.centre.size(); ++i) {
@@ -60,35 +90,21 @@ StrainMap map_strain(Scene const& scene) {
         parallel_chunks(points.centre.size(), 32, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             Vec2d sum{};
+            // every point takes the pupil points of the first, so that differences between points carry no scatter
+            SourcesView<double> point = view.sources;
+            point.centre += i;
             for (std::uint64_t ray = 0; ray < rays; ++ray) {
-              EmittedRay<double> emitted = emit(view.sources, view.bundle, i, ray);
+              EmittedRay<double> const emitted = emit(point, view.bundle, 0, ray);
               sum += integrate_gradient(medium, emitted.ray, step).levered / static_cast<double>(rays);
             }
-            displacement.data()[i] = theory_displacement(sum, 1.0, scene.imaging.magnification, scene.setup.ambient_index(),
-                                                         camera.pixel_pitch);
+            displacement.data()[i] = theory_displacement(sum, 1.0, scene.imaging.magnification,
+                                                         scene.setup.ambient_index(), camera.pixel_pitch);
           }
         });
       },
       scene.medium.view);
 
-  map.caustic = Image<double>(columns, rows);
-  map.strain = Image<double>(columns, rows);
-  std::size_t crossed = 0;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      int const left = std::max(0, column - 1), right = std::min(columns - 1, column + 1);
-      int const up = std::max(0, row - 1), down = std::min(rows - 1, row + 1);
-      Vec2d const along_x = (displacement(right, row) - displacement(left, row)) / double((right - left) * map.spacing_px);
-      Vec2d const along_y = (displacement(column, down) - displacement(column, up)) / double((down - up) * map.spacing_px);
-      double const middle = 0.5 * (along_x.x + along_y.y);
-      double const radius = std::hypot(0.5 * (along_x.x - along_y.y), 0.5 * (along_x.y + along_y.x));
-      map.caustic(column, row) = middle + radius;
-      map.strain(column, row) = std::max(std::abs(middle + radius), std::abs(middle - radius));
-      if (middle + radius >= 1) ++crossed;
-    }
-  }
-  map.caustic_fraction = static_cast<double>(crossed) / static_cast<double>(displacement.size());
-  return map;
+  return strain_of(displacement, map.spacing_px);
 }
 
 }  // namespace gladstone

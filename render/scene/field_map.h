@@ -21,13 +21,16 @@ struct FieldMap {
 /// @param spacing_px lattice constant [px]
 FieldMap map_field(Scene const& scene, int spacing_px);
 
-/// Strain of the cone-averaged displacement over the view (g = -d Delta / dx in the image).
+/// Strain of a displacement over the view (g = -d Delta / dx in the image).
 struct StrainMap {
   int spacing_px = 0;
   Image<double> caustic;           ///< largest eigenvalue of the symmetric part of grad Delta; 1 or more: rays cross
   Image<double> strain;            ///< largest magnitude of an eigenvalue
   double caustic_fraction = 0;     ///< share of the view at 1 or more
 };
+
+/// Strain of displacements on a lattice [px], by central differences, one-sided at the edges. @pre at least 2 x 2 nodes
+StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px);
 
 /// Cone-averaged Eq. 9 on a lattice of virtual points, and its finite differences.
 StrainMap map_strain(Scene const& scene);

@@ -34,11 +34,11 @@ struct CentroidSum {
   Vec2<T> second{};
   std::int64_t count = 0;
 
-  void add(Vec2<T> p, T w) {
+  void add(Vec2<T> p, T w, bool counts) {
     weight += w;
     first += w * p;
     second += Vec2<T>{w * p.x * p.x, w * p.y * p.y};
-    ++count;
+    count += counts ? 1 : 0;
   }
   Vec2<T> mean() const { return first / weight; }
   Vec2<T> deviation() const {

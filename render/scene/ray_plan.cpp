@@ -19,6 +19,7 @@ namespace {
 
 constexpr double step_tolerance_px = 1e-4;
 constexpr double truth_tolerance_px = 1e-3;
+constexpr double image_tolerance_levels = 0.5;
 constexpr int scramblings = 4;
 constexpr std::size_t sample_dots = 96;
 
@@ -100,18 +101,19 @@ struct Window {
 
 template <class Medium>
 Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium const& medium, SpotView const& spot,
-                   std::size_t dot, Window const (&windows)[frame_count]) {
-  DotExposure exposure(&spot);
+                   SourceCubature const& cubature, std::size_t dot, Window const& window) {
+  DotExposure exposure(scene, scene.dots, &spot, cubature);
   LightImage* const nowhere[frame_count] = {};
   double const scale = scene.light_per_ray(scene.dots);
-  exposure.begin(scene.to_pixel(scene.dots.centre[dot]), nowhere, scale);
   TracePair<double, Medium> const pair{view, medium};
+  exposure.begin(plan_dot(scene, &spot, pair.scene, dot), nowhere, scale);
   for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) pair({dot, ray}, exposure);
+  exposure.finish_light();
   Sampled sampled;
-  auto const area = static_cast<std::size_t>(windows[0].side * windows[0].side);
+  auto const area = static_cast<std::size_t>(window.side * window.side);
   sampled.light.assign(2 * area, 0.0);
-  windows[0].collect(exposure.patch(Frame::reference), scale, sampled.light.data());
-  windows[1].collect(exposure.patch(Frame::flow), scale, sampled.light.data() + area);
+  window.collect(exposure.patch(Frame::reference), scale, sampled.light.data());
+  window.collect(exposure.patch(Frame::flow), scale, sampled.light.data() + area);
   CentroidSum<double> const& reference = exposure.sum(Frame::reference);
   CentroidSum<double> const& flow = exposure.sum(Frame::flow);
   if (reference.weight > 0 && flow.weight > 0) sampled.displacement = flow.mean() - reference.mean();
@@ -133,6 +135,7 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
     std::vector<double> mean, variance;
   };
   std::vector<PerDot> measured(dots.size());
+  SourceCubature const cubature = make_cubature(scene, scene.dots, spot);
   std::visit(
       [&](auto const& medium) {
         parallel_for(dots.size(), [&](std::size_t index) {
@@ -140,12 +143,11 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
           int const side = 2 * spot.half_width() + 49;
           Vec2d const at = scene.to_pixel(scene.dots.centre[dot]);
           Window const window{static_cast<int>(std::floor(at.x)) - side / 2, static_cast<int>(std::floor(at.y)) - side / 2, side};
-          Window const windows[frame_count] = {window, window};
           std::vector<Sampled> samples;
           for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
             SceneView<double> view = scene.view();
             view.bundle.seed = repeat_seed(view.bundle.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-            samples.push_back(sample_dot(scene, view, medium, spot, dot, windows));
+            samples.push_back(sample_dot(scene, view, medium, spot, cubature, dot, window));
           }
           PerDot& result = measured[index];
           auto const unbiased = [&](auto const& value_of) {
@@ -236,17 +238,34 @@ RaysPlan plan_rays(Scene& scene) {
   // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
   double const level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
   double const at_peak = 0.9 * full_scale;
-  constexpr std::uint64_t most = std::uint64_t{1} << 16;
+  constexpr std::uint64_t most = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
   bool const single_ray = scene.chief_rays_only() && scene.dots.half_size == 0;
-  Progress progress("choosing the rays", 16);
+  Progress progress("choosing the rays", 8);
+  double excess = 0, before = 0;  // errors over their tolerances, whichever is larger
   for (scene.rays_per_dot = single_ray ? 1 : 32;; scene.rays_per_dot *= 2) {
     Scatter const scatter = measure_scatter(scene, sample, spot, level, at_peak);
     double const light_per_level = level > 0 ? level : scatter.brightest / at_peak;
     plan.truth_error_px = std::sqrt(scatter.truth_variance);
     plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
-    plan.converged = plan.truth_error_px <= truth_tolerance_px && plan.image_error_levels <= 0.5;
+    before = excess;
+    excess = std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels);
+    plan.converged = excess <= 1;
     progress.advance();
-    if (plan.converged || scene.rays_per_dot >= most) break;
+    if (plan.converged || scene.rays_per_dot >= most_measured) break;
+  }
+  if (!plan.converged && before > 0) {
+    // beyond what is measured, errors go on falling as they did last
+    double const order = std::clamp(std::log2(before / excess), 0.5, 1.0);
+    std::uint64_t const measured = scene.rays_per_dot;
+    while (scene.rays_per_dot < most && excess > 1) {
+      scene.rays_per_dot *= 2;
+      excess *= std::pow(2.0, -order);
+    }
+    double const gain = std::pow(static_cast<double>(scene.rays_per_dot / measured), -order);
+    plan.truth_error_px *= gain;
+    plan.image_error_levels *= gain;
+    plan.extrapolated = true;
+    plan.converged = excess <= 1;
   }
   plan.rays = scene.rays_per_dot;
   return plan;

@@ -21,7 +21,8 @@ struct RaysPlan {
   double truth_error_px = 0;       ///< rms over dots, components and scramblings of the displacement's scatter
   double image_error_levels = 0;   ///< rms over lit pixels, in grey levels of `bits`
   int bits = 0;
-  bool converged = true;           ///< false: the largest number tried was not enough
+  bool extrapolated = false;       ///< the errors were measured up to 4096 rays and extrapolated from there
+  bool converged = true;           ///< false: the largest number, 65536, is not enough
 };
 
 /// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, every dot being probed by five rays

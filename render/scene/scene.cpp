@@ -38,13 +38,20 @@ SceneView<double> Scene::view(DotPattern const& sources) const {
   double const stop = imaging.entrance_pupil / 2;
   seen.sources = sources.view(-setup.z_d);
   seen.bundle.lens_z = setup.z_a;
-  seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : stop + pupil_margin;
+  seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : pupil_radius();
   seen.bundle.seed = setup.render.seed;
   seen.bundle.sampling = setup.render.sampling;
-  seen.lens = {setup.z_a, setup.lens.focal_length, chief_rays_only() ? -1.0 : stop};
+  seen.lens = {setup.z_a, setup.lens.focal_length, chief_rays_only() ? -1.0 : stop, stop_edge()};
   seen.sensor = {setup.z_a + imaging.image_distance, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
   seen.tracing = {step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces};
   return seen;
+}
+
+double Scene::stop_edge() const { return 1.2 / std::pow(static_cast<double>(rays_per_dot), 0.25); }
+
+double Scene::pupil_radius() const {
+  double const stop = imaging.entrance_pupil / 2;
+  return stop * std::sqrt(1 + stop_edge() / 2) + pupil_margin;
 }
 
 double Scene::light_per_ray(DotPattern const& sources) const {
@@ -53,7 +60,7 @@ double Scene::light_per_ray(DotPattern const& sources) const {
   double area = sources.shape == SourceShape::disc ? pi * size * size : 4 * size * size;
   if (sources.half_size == 0) area = 1;  // a point sends as much light as a disc of one square pixel
   double const stop = imaging.entrance_pupil / 2;
-  double const enlarged = chief_rays_only() ? 1.0 : (stop + pupil_margin) / stop;
+  double const enlarged = chief_rays_only() ? 1.0 : pupil_radius() / stop;
   return area * enlarged * enlarged / static_cast<double>(rays_per_dot);
 }
 

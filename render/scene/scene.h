@@ -25,6 +25,10 @@ struct Scene {
   SceneView<double> view() const { return view(dots); }
   SceneView<double> view(DotPattern const& sources) const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
+  /// Width of the smoothed zone about the stop's edge, as a share of its area; falls with the number of rays [1].
+  double stop_edge() const;
+  /// Radius of the disc in the lens plane that rays are sent to [m].
+  double pupil_radius() const;
   /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.
   double light_per_ray(DotPattern const& sources) const;
   /// Radius of a Gaussian spot [px]; 0: none.

@@ -37,10 +37,11 @@ GLADSTONE_HD RayHit<T> through_camera(SceneView<T> const& scene, Ray<T> ray, T w
   hit.weight = weight;
   hit.status = scene.lens.interact(ray);
   hit.at_lens = {ray.position.x, ray.position.y};
-  if (hit.status != RayStatus::alive) return hit;
+  hit.weight *= hit.status == RayStatus::missed_lens ? T(0) : scene.lens.transmission(ray.position.x, ray.position.y);
+  if (hit.weight == T(0)) return hit;
   T const way = (scene.sensor.z - ray.position.z) / ray.direction.z;
   hit.pixel = scene.sensor.to_pixel(ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y);
-  if (!scene.sensor.covers(hit.pixel)) hit.status = RayStatus::missed_sensor;
+  if (hit.status == RayStatus::alive && !scene.sensor.covers(hit.pixel)) hit.status = RayStatus::missed_sensor;
   return hit;
 }
 
@@ -68,9 +69,7 @@ struct TracePair {
     EmittedRay<T> const emitted = emit(scene.sources, scene.bundle, i.source, i.ray);
     RayHit<T> const reference = through_camera(scene, emitted.ray, emitted.weight);
     RayHit<T> const flow = follow(scene, medium, emitted.ray, emitted.weight);
-    exposure.deposit(Frame::reference, reference);
-    exposure.deposit(Frame::flow, flow);
-    exposure.record_truth(i.source, emitted, reference, flow);
+    exposure.record(emitted, reference, flow);
   }
 };
 

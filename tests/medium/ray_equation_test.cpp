@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "tests/support/grin_media.h"
+#include "studies/oracle_media.h"
 
 namespace gladstone {
 namespace {
 
-using test::FishEye;
-using test::LinearSquaredIndex;
-using test::LuneburgSphere;
-using test::ParabolicRod;
+using oracle::FishEye;
+using oracle::LinearSquaredIndex;
+using oracle::LuneburgSphere;
+using oracle::ParabolicRod;
 
 struct Path {
   RayState<double> end;
@@ -95,8 +95,7 @@ TEST(ParabolicRod, OpticalDirectionKeepsTheLengthOfTheIndex) {
   double before = 0;
   for (int steps = 10; steps <= 160; steps *= 2) {
     RayState<double> const end = walk(rod, start, t, steps).end;
-    double const drift =
-        std::abs(dot(end.optical_direction, end.optical_direction) - rod.squared_index(end.position));
+    double const drift = std::abs(dot(end.optical_direction, end.optical_direction) - rod.squared_index(end.position));
     if (before > 0) {
       EXPECT_GT(before / drift, 14);
     }
@@ -134,7 +133,9 @@ INSTANTIATE_TEST_SUITE_P(Heights, Luneburg, testing::Values(0.0, 0.1, 0.25, 0.5,
 
 TEST(LuneburgSphereMedium, MidwayPointsAreAsComputed) {
   LuneburgSphere const sphere;
-  auto const midway = [&](double h) { return walk(sphere, {{h, 0, -std::sqrt(1 - h * h)}, {0, 0, 1}}, pi / 4, 1000).end; };
+  auto const midway = [&](double h) {
+    return walk(sphere, {{h, 0, -std::sqrt(1 - h * h)}, {0, 0, 1}}, pi / 4, 1000).end;
+  };
   EXPECT_NEAR(midway(0.25).position.x, 0.176776695296637, 1e-13);
   EXPECT_NEAR(midway(0.25).position.z, 0.0224535843050899, 1e-13);
   EXPECT_NEAR(midway(0.5).position.x, 0.353553390593274, 1e-13);

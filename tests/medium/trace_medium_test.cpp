@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "render/base/units.h"
-#include "tests/support/grin_media.h"
+#include "studies/oracle_media.h"
 #include "tests/support/gridded.h"
 
 namespace gladstone {
 namespace {
 
-using test::FishEye;
-using test::GlassBox;
-using test::ParabolicRod;
+using oracle::FishEye;
+using oracle::GlassBox;
+using oracle::ParabolicRod;
 
 constexpr double K = 2.26e-4, rho_0 = 1.225;  // Table 1
 constexpr double n_0 = 1 + K * rho_0;
@@ -111,7 +111,8 @@ TEST(UniformDensity, RefractingFacesOfTheAmbientIndexDisplaceNothing) {
 TEST(UniformDensity, AnotherIndexBehindRefractingFacesIsAPlaneParallelPlate) {
   // lateral shift of the apparent source along x: L (tan i - tan r); physics 3.3 gives the perpendicular one
   GlassBox const plate{1.5168, {{-10, -10, 0}, {10, 10, 10e-3}}};
-  for (auto [degrees, lateral] : {std::pair{10.0, 0.601580184310577e-3}, {30.0, 1.97621122205116e-3}, {60.0, 5.18297750549795e-3}}) {
+  for (auto [degrees, lateral] :
+       {std::pair{10.0, 0.601580184310577e-3}, {30.0, 1.97621122205116e-3}, {60.0, 5.18297750549795e-3}}) {
     double const i = degrees * unit::degree;
     Ray<double> const start = ray({0, 0, -0.1}, {std::sin(i), 0, std::cos(i)});
     MediumPassage<double> const way = trace_medium(plate, options(1e-3, Faces::refract, Integrator::rk4, 0), start);
@@ -208,16 +209,15 @@ TEST(StraightIntegrator, GivesTheLeveredIntegralOfASinusoid) {
   for (double slope : {0.0, 0.01, 0.05}) {
     double const x0 = 3e-4, s1 = 0.245, s2 = 0.255;
     Ray<double> const start = ray({x0, 0, -0.25}, {slope, 0, 1});
-    MediumPassage<double> const way =
-        trace_medium(field, options(2.5e-4, Faces::matched, Integrator::straight), start);
+    MediumPassage<double> const way = trace_medium(field, options(2.5e-4, Faces::matched, Integrator::straight), start);
     // integral of s cos(k (x0 + m s) + phase) ds
     auto const primitive = [&](double s) {
       double const phase = k * (x0 + slope * s) + field.phase, q = k * slope;
       return q == 0 ? std::cos(phase) * s * s / 2 : s * std::sin(phase) / q + std::cos(phase) / (q * q);
     };
     double const levered = K * 10 * (primitive(s2) - primitive(s1));
-    // T_z keeps its value, so tan(theta') - tan(theta) = (1 + m^2) / n0 times the integral: relative terms of K amplitude
-    // (1.4e-6) and of Simpson's rule (k m h)^4/2880 are left
+    // T_z keeps its value, so tan(theta') - tan(theta) = (1 + m^2) / n0 times the integral: relative terms of K
+    // amplitude (1.4e-6) and of Simpson's rule (k m h)^4/2880 are left
     EXPECT_NEAR(apparent_ray(start, way).position.x - x0, -(1 + slope * slope) / n_0 * levered,
                 1e-5 * std::abs(K * 10 * 0.0025));
   }
@@ -226,7 +226,8 @@ TEST(StraightIntegrator, GivesTheLeveredIntegralOfASinusoid) {
 // --- reversal: the ray equation has no arrow of time
 
 template <class Medium>
-void expect_reversible(Medium const& medium, TracingOptions<double> const& how, Ray<double> const& start, double beyond) {
+void expect_reversible(Medium const& medium, TracingOptions<double> const& how, Ray<double> const& start,
+                       double beyond) {
   MediumPassage<double> const out = trace_medium(medium, how, start);
   ASSERT_TRUE(out.crossed);
   ASSERT_EQ(out.status, RayStatus::alive);
@@ -279,7 +280,8 @@ TEST(TimeReversal, HoldsInTheRod) {
 
 TEST(TraceMedium, RayThatMissesComesBackAsItWas) {
   GlassBox const box;
-  for (Ray<double> const& start : {ray({2, 0, -5}, {0, 0, 1}), ray({0, 0, 5}, {0.1, 0, 1}), ray({0, -3, -5}, {0.3, 0.01, 1})}) {
+  for (Ray<double> const& start :
+       {ray({2, 0, -5}, {0, 0, 1}), ray({0, 0, 5}, {0.1, 0, 1}), ray({0, -3, -5}, {0.3, 0.01, 1})}) {
     MediumPassage<double> const way = trace_medium(box, options(0.1, Faces::refract), start);
     EXPECT_FALSE(way.crossed);
     EXPECT_EQ(way.status, RayStatus::alive);
@@ -318,7 +320,7 @@ TEST(TraceMedium, RayEntersThroughASide) {
 // n^2 > 2: light that entered by one face of a cube leaves by no adjacent one.
 TEST(TraceMedium, GlassCubeReflectsTotally) {
   GlassBox const box{1.5, {{-1, -1, -1}, {1, 1, 1}}};
-  Ray<double> const start = ray({-1.5, 0, 0.5}, {0.5, 0, 0.6});
+  Ray<double> const start = ray({-1.5, 0, -0.5}, {0.5, 0, 0.6});
   EXPECT_EQ(trace_medium(box, options(0.1, Faces::refract, Integrator::rk4, 0), start).status,
             RayStatus::total_internal_reflection);
   EXPECT_EQ(trace_medium(box, options(0.1, Faces::matched, Integrator::rk4, 0), start).status, RayStatus::alive);
@@ -369,12 +371,12 @@ TEST(TraceMedium, LandsOnTheRearFaceExactly) {
 
 // A strong gradient turns a grazing ray back: it leaves by the face that it came in through, as a parabola does.
 TEST(TraceMedium, RayMayTurnBack) {
-  test::LinearSquaredIndex medium;
+  oracle::LinearSquaredIndex medium;
   medium.box = {{-unbounded, -unbounded, -unbounded}, {10, unbounded, unbounded}};
   medium.box.low.x = -20;
   medium.a = 0.02;
-  // up the slope at 30 degrees, from x = 1: p_x = -0.5 n; turns at x = 1 - p_x^2 / (2 a), above the lower bound; back at
-  // x = 1 with +p_x and out at x = 10
+  // up the slope at 30 degrees, from x = 1: p_x = -0.5 n; turns at x = 1 - p_x^2 / (2 a), above the lower bound; back
+  // at x = 1 with +p_x and out at x = 10
   Ray<double> const start = ray({1, 0, 0}, {-0.5, 0, std::sqrt(0.75)});
   double const n = std::sqrt(1.04), px = -0.5 * n, pz = std::sqrt(0.75) * n;
   double const t = (-px + std::sqrt(px * px + 2 * 0.02 * 9)) / 0.02;
@@ -395,12 +397,59 @@ TEST(TraceMedium, TrappedRayIsGivenUp) {
 TEST(TraceMedium, RayWithinAnEndlessSlabEnds) {
   Ray<double> const start = ray({-1, 0, 0}, {1, 0, 0});
   EXPECT_EQ(trace_medium(slab({0, 0, 0}), options(1e-3), start).status, RayStatus::lost_in_medium);
-  // a gradient across bends it out: z = alpha x^2 / (2 n0) reaches 5 mm after 2.1 m; n = n0 + alpha z makes it a catenary
+  // a gradient across bends it out: z = alpha x^2 / (2 n0) reaches 5 mm after 2.1 m; n = n0 + alpha z makes it a
+  // catenary
   MediumPassage<double> const way = trace_medium(slab({0, 0, 10}), options(1e-3), start);
   ASSERT_EQ(way.status, RayStatus::alive);
   double const a = n_0 / (K * 10);
   EXPECT_NEAR(exit_position(start, way).x, -1 + a * std::acosh(1 + 0.005 / a), 1e-9);
   EXPECT_NEAR(exit_position(start, way).z, 0.005, 1e-15);
+}
+
+// Rays from everywhere through a violently uneven glass (n from 1.1 to 1.5 over four cells), grazing ones among them:
+// whatever comes out does so on a face, with a unit direction.
+TEST(TraceMedium, EveryRayEndsOnAFace) {
+  auto grid = test::open_grid(12, 10, 11, {1e-3, 1.1e-3, 0.9e-3}, {-5e-3, -5e-3, -5e-3});
+  for (bool periodic : {false, true}) {
+    grid.periodic = {periodic, periodic, false};
+    auto const volume = test::sampled<float>(grid, [](Vec3d p) {
+      return 0.3 + 0.2 * std::sin(900 * p.x + 0.3) * std::cos(700 * p.y) * std::sin(800 * p.z + 1);
+    });
+    auto const medium = volume.view<double, CubicBspline, 3>(0, 0);
+    Bounds<double> const box = medium.bounds();
+    int alive = 0;
+    for (int i = 0; i < 20000; ++i) {
+      // a low-discrepancy walk over positions and directions
+      auto const u = [i](double irrational) { return 2 * std::fmod((i + 1) * irrational, 1.0) - 1; };
+      Vec3d const direction{u(0.754877666), u(0.569840291), 0.05 + std::abs(u(0.430159709))};
+      Ray<double> const start =
+          ray({8e-3 * u(0.618033989), 8e-3 * u(0.414213562), i % 5 == 0 ? 2e-3 : -0.02}, direction);
+      auto how = options(i % 2 == 0 ? 7e-4 : 1e-4, i % 4 < 2 ? Faces::matched : Faces::refract);
+      MediumPassage<double> const way = trace_medium(medium, how, start);
+      if (!way.crossed || way.status != RayStatus::alive) continue;
+      ++alive;
+      Vec3d const end = exit_position(start, way);
+      double off = 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        off = std::min({off, std::abs(end[axis] - box.low[axis]), std::abs(end[axis] - box.high[axis])});
+      }
+      EXPECT_LT(off, 1e-15) << i;
+      EXPECT_NEAR(length(exit_direction(start, way)), 1, 1e-14) << i;
+    }
+    EXPECT_GT(alive, 1000) << "of 20000; some miss, some are reflected totally";
+  }
+}
+
+// The same source in single precision: a preview, good to float's 24 bits of the deviation, not of the ray.
+TEST(TraceMedium, SinglePrecisionKeepsTheDeviation) {
+  UniformGradient<float> field;
+  field.half_thickness = 0.005f;
+  field.gladstone_dale = static_cast<float>(K);
+  field.ambient_density = static_cast<float>(rho_0);
+  field.gradient = {10, 0, 0};
+  Ray<float> const start{{0, 0, -0.25f}, {0, 0, 1}};
+  TracingOptions<float> const how{1e-3f, static_cast<float>(K * rho_0), Integrator::rk4, Faces::matched};
+  EXPECT_NEAR(apparent_ray(start, trace_medium(field, how, start)).position.x / -5.64843623091498e-6, 1, 5e-6);
 }
 
 }  // namespace

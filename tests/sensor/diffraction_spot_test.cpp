@@ -11,10 +11,10 @@
 namespace gladstone {
 namespace {
 
-// At Table 1 N (1 + M) lambda = 11 * 1.117318 * 532 nm = 6.5383 um.
+// At Table 1 N (1 + M) lambda = 11 * 1.117318 * 532 nm = 6.5385 um.
 TEST(SpotSize, Table1IsSixteenMicrometresToTheFirstZero) {
   SpotSize const spot{11 * (1 + 0.105 / 0.895) * 532e-9};
-  EXPECT_NEAR(spot.scale, 6.538542e-6, 1e-12);
+  EXPECT_NEAR(spot.scale, 6.538547e-6, 1e-12);
   EXPECT_NEAR(spot.first_zero_diameter(), 15.954e-6 * 2.43934 / 2.44, 6e-9);  // 15.954 um is with the rounded 2.44
 }
 
@@ -51,7 +51,7 @@ std::vector<double> gaussian_shares(GaussianSpot<double> const& spot, double p, 
 }
 
 // What lies beyond the footprint is erfc((5.5 sigma + 0.5)/(sqrt 2 sigma)) < 4e-8 an axis, and the centroid of shares
-// differs from the position by the aliasing of pixels, exp(-2 pi^2 sigma^2)/pi: 1e-6 px allowed from sigma = 0.85 on.
+// differs from the position by the aliasing of pixels, sum exp(-2 pi^2 k^2 sigma^2)/(pi k): 1e-6 px beyond it allowed.
 TEST(GaussianSpot, KeepsItsLightAndItsCentroid) {
   for (double const sigma : {0.1, 0.275, 0.65, 1.0, 2.5}) {
     for (double const p : {10.0, 10.25, 10.4999, 10.5, -3.3}) {
@@ -62,7 +62,9 @@ TEST(GaussianSpot, KeepsItsLightAndItsCentroid) {
       EXPECT_NEAR(sum, 1, 4e-7) << sigma << " " << p;
       double centroid = 0;
       for (int i = 0; i < at.width; ++i) centroid += shares[static_cast<std::size_t>(i)] * (at.column + i);
-      EXPECT_NEAR(centroid, p, std::exp(-2 * pi * pi * sigma * sigma) / pi * 1.001 + 1e-6) << sigma << " " << p;
+      double aliasing = 0;
+      for (int k = 1; k < 20; ++k) aliasing += std::exp(-2 * std::pow(pi * k * sigma, 2)) / (pi * k);
+      EXPECT_NEAR(centroid, p, aliasing + 1e-6) << sigma << " " << p;
     }
   }
 }
@@ -115,13 +117,13 @@ TEST(AiryTable, SumsToOneAndIsSymmetric) {
   }
 }
 
-// Every pixel's share against a midpoint rule of 150 x 150 points, both normalised over the footprint. The table's own
-// lattice has n points a pixel, cut on a circle beyond the footprint's middle of the sides: 2e-5 of the light is
-// allowed.
+// Every pixel's share against a midpoint rule of 80 x 80 points, both normalised over the footprint. The table has 62
+// points a pixel; such a rule errs by h^2/24 times the Laplacian, pi^2/scale^2 at the peak: 2.5e-4 of a share that is
+// below 0.4.
 TEST(AiryTable, SharesAreIntegralsOverPixels) {
   double const scale = 0.654;
   Shares const shares(scale);
-  int const n = shares.view.subdivisions, half = shares.view.half_width, fine = 150;
+  int const n = shares.view.subdivisions, half = shares.view.half_width, fine = 80;
   for (int const sub_x : {0, n / 2, n / 2 + 5}) {
     int const sub_y = n / 3;
     double const x0 = static_cast<double>(sub_x) / n - 0.5, y0 = static_cast<double>(sub_y) / n - 0.5;
@@ -143,7 +145,7 @@ TEST(AiryTable, SharesAreIntegralsOverPixels) {
     double const total = std::accumulate(direct.begin(), direct.end(), 0.0);
     for (int i = 0; i < shares.width * shares.width; ++i) {
       ASSERT_NEAR(shares(sub_x, sub_y, i % shares.width, i / shares.width), direct[static_cast<std::size_t>(i)] / total,
-                  2e-5);
+                  1e-4);
     }
   }
 }

@@ -4,7 +4,8 @@
 
 #include "render/medium/index_sample.h"
 
-namespace gladstone::test {
+/// Media in which rays are known in closed form: what `gladstone validate` and the tests trace through.
+namespace gladstone::oracle {
 
 /// n^2 = n0^2 + 2 a x: every ray is a parabola in Sharma's parameter, R = R_0 + T_0 t + a t^2/2 (Ghatak & Thyagarajan).
 struct LinearSquaredIndex {
@@ -65,4 +66,4 @@ struct GlassBox {
   IndexSample<double> sample(Vec3d) const { return {n - 1, {}}; }
 };
 
-}  // namespace gladstone::test
+}  // namespace gladstone::oracle

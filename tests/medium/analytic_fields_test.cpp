@@ -1,0 +1,203 @@
+#include "render/medium/analytic_fields.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/base/units.h"
+#include "render/medium/field_volume.h"
+#include "render/medium/trace_medium.h"
+#include "tests/support/gridded.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double K = 2.26e-4, rho_0 = 1.225, n_0 = 1 + K * rho_0;
+
+MediumSetup setup_of(FieldKind kind, double thickness = 0.01) {
+  MediumSetup setup;
+  setup.thickness = thickness;
+  setup.field.kind = kind;
+  return setup;
+}
+
+template <class Field>
+Field built(MediumSetup const& setup) {
+  return std::get<Field>(build_medium(setup).view);
+}
+
+TracingOptions<double> options(double step, Integrator integrator = Integrator::rk4) {
+  return {step, K * rho_0, integrator, Faces::matched};
+}
+
+/// Slope dx/dz with which a ray along the axis leaves at x.
+template <class Field>
+double deflection(Field const& field, double x, double step, double from = -0.25) {
+  Ray<double> const start{{x, 0, from}, {0, 0, 1}};
+  Vec3d const d = exit_direction(start, trace_medium(field, options(step), start));
+  return d.x / d.z;
+}
+
+template <class Field>
+void expect_consistent_gradient(Field const& field, double length_scale) {
+  double const h = 1e-4 * length_scale;
+  for (Vec3d p : {Vec3d{0.3, -0.2, 0.1}, Vec3d{-0.7, 0.4, -0.5}, Vec3d{0, 1.1, 0.2}}) {
+    Vec3d const at = p * length_scale;
+    Vec3d const gradient = field.sample(at).gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3d step{};
+      step[axis] = h;
+      double const difference = (field.sample(at + step).refractivity - field.sample(at - step).refractivity) / (2 * h);
+      // h^2/6 times the third derivative, some 1e-7 of the largest gradient; rounding of n - 1 over h
+      EXPECT_NEAR(gradient[axis], difference, 1e-6 * field.gladstone_dale / length_scale) << "axis " << axis;
+    }
+  }
+}
+
+TEST(AnalyticFields, GradientsAreDerivatives) {
+  auto gradient = setup_of(FieldKind::uniform_gradient);
+  gradient.field.gradient = {10, -20, 5};
+  expect_consistent_gradient(built<UniformGradient<double>>(gradient), 1e-3);
+  auto wave = setup_of(FieldKind::sinusoid);
+  wave.field.amplitude = 0.3;
+  wave.field.wavelength = 4e-3;
+  wave.field.direction = {0.6, 0.8};
+  wave.field.phase = 0.5;
+  expect_consistent_gradient(built<Sinusoid<double>>(wave), 1e-3);
+  for (FieldKind kind : {FieldKind::gaussian_plume, FieldKind::gaussian_blob}) {
+    auto gaussian = setup_of(kind);
+    gaussian.field.amplitude = -0.6;
+    gaussian.field.radius = 1e-3;
+    if (kind == FieldKind::gaussian_plume) {
+      expect_consistent_gradient(built<GaussianPlume<double>>(gaussian), 1e-3);
+    } else {
+      expect_consistent_gradient(built<GaussianBlob<double>>(gaussian), 1e-3);
+    }
+  }
+  auto shock = setup_of(FieldKind::normal_shock);
+  shock.field.mach = 2;
+  shock.field.upstream_density = 0.5;
+  shock.field.shock_thickness = 3e-3;
+  shock.field.tilt = 0.4;
+  expect_consistent_gradient(built<NormalShock<double>>(shock), 1e-3);
+}
+
+TEST(AnalyticFields, ValuesAreThoseOfTheFormulae) {
+  auto gradient = setup_of(FieldKind::uniform_gradient);
+  gradient.field.gradient = {10, -20, 5};
+  EXPECT_NEAR(built<UniformGradient<double>>(gradient).sample({1e-3, 2e-3, 3e-3}).refractivity, K * (rho_0 - 0.015),
+              1e-18);
+  auto wave = setup_of(FieldKind::sinusoid);
+  wave.field.amplitude = 0.3;
+  wave.field.wavelength = 4e-3;
+  wave.field.direction = {0, 1};
+  EXPECT_NEAR(built<Sinusoid<double>>(wave).sample({7, 1e-3, 9}).refractivity, K * (rho_0 + 0.3), 1e-18);
+  auto plume = setup_of(FieldKind::gaussian_plume);
+  plume.field.amplitude = -0.6;
+  plume.field.radius = 1e-3;
+  EXPECT_NEAR(built<GaussianPlume<double>>(plume).sample({6e-4, 5, 8e-4}).refractivity,
+              K * (rho_0 - 0.6 * std::exp(-1)), 1e-18);
+  plume.field.kind = FieldKind::gaussian_blob;
+  EXPECT_NEAR(built<GaussianBlob<double>>(plume).sample({2e-3, 1e-3, 2e-3}).refractivity,
+              K * (rho_0 - 0.6 * std::exp(-9)), 1e-18);
+}
+
+// Abel pair of the Gaussian: eps(x) = -2 sqrt(pi) (dn/n0)(x/a) exp(-x^2/a^2), largest at x = a/sqrt(2), where it is
+// sqrt(2 pi / e) dn/n0 = 1.520347 dn/n0. Bending moves the ray by eps a, so with dn = 2.3e-7 the rest is below 1e-6.
+TEST(GaussianPlumeField, LargestDeflectionIsTheAbelIntegral) {
+  double const a = 5e-3;
+  auto setup = setup_of(FieldKind::gaussian_plume, 12 * a);  // cut where exp(-36)
+  setup.field.amplitude = 1e-3;
+  setup.field.radius = a;
+  auto const plume = built<GaussianPlume<double>>(setup);
+  double const dn = K * 1e-3;
+  auto const scaled = [&](double x) { return -deflection(plume, x, a / 20) * n_0 / dn; };
+  EXPECT_NEAR(scaled(a / std::sqrt(2.0)), 1.520347, 2e-6);
+  EXPECT_NEAR(scaled(a / std::sqrt(2.0)), std::sqrt(2 * pi / std::exp(1)), 1e-6);
+  EXPECT_LT(scaled(0.98 * a / std::sqrt(2.0)), scaled(a / std::sqrt(2.0)));
+  EXPECT_LT(scaled(1.02 * a / std::sqrt(2.0)), scaled(a / std::sqrt(2.0)));
+  for (double x : {-0.3, 0.4, 1.5}) EXPECT_NEAR(scaled(x * a), 2 * std::sqrt(pi) * x * std::exp(-x * x), 1e-6);
+}
+
+TEST(GaussianBlobField, DeflectionIsThePlumesTimesItsExtentInY) {
+  double const a = 5e-3;
+  auto setup = setup_of(FieldKind::gaussian_blob, 12 * a);
+  setup.field.amplitude = 1e-3;
+  setup.field.radius = a;
+  auto const blob = built<GaussianBlob<double>>(setup);
+  Ray<double> const start{{0.4 * a, 0.3 * a, -0.25}, {0, 0, 1}};
+  Vec3d const d = exit_direction(start, trace_medium(blob, options(a / 20), start));
+  double const scale = -2 * std::sqrt(pi) * K * 1e-3 / n_0 * std::exp(-0.25);
+  EXPECT_NEAR(d.x / d.z / scale, 0.4, 1e-6);
+  EXPECT_NEAR(d.y / d.z / scale, 0.3, 1e-6);
+}
+
+// --- shocks: NACA Report 1135 (1953), gamma = 1.4
+
+TEST(NormalShockField, DensityRatiosAreRankineHugoniots) {
+  EXPECT_NEAR(shock_density_ratio(1.0, 1.4), 1, 1e-15);
+  EXPECT_NEAR(shock_density_ratio(1.5, 1.4), 1.862068966, 1e-9);
+  EXPECT_NEAR(shock_density_ratio(2.0, 1.4), 2.666666667, 1e-9);
+  EXPECT_NEAR(shock_density_ratio(3.0, 1.4), 3.857142857, 1e-9);
+  EXPECT_NEAR(shock_density_ratio(1e6, 1.4), 6, 1e-9);  // the strong limit (gamma + 1)/(gamma - 1)
+}
+
+MediumSetup shock_setup(double thickness, double tilt, double slab = 0.02) {
+  auto setup = setup_of(FieldKind::normal_shock, slab);
+  setup.field.mach = 2;
+  setup.field.upstream_density = 0.5;
+  setup.field.shock_thickness = thickness;
+  setup.field.tilt = tilt;
+  return setup;
+}
+
+TEST(NormalShockField, RunsFromUpstreamToDownstreamOverItsThickness) {
+  auto setup = shock_setup(1e-3, 0);
+  setup.field.position = 2e-3;
+  auto const shock = built<NormalShock<double>>(setup);
+  EXPECT_NEAR(shock.sample({-0.1, 0, 0}).refractivity, K * 0.5, 1e-18);
+  EXPECT_NEAR(shock.sample({0.1, 0, 0}).refractivity, K * 0.5 * 8 / 3, 1e-18);
+  EXPECT_NEAR(shock.sample({2e-3, 0, 0}).refractivity, K * 0.5 * 11 / 6, 1e-18);
+  EXPECT_NEAR(shock.sample({2e-3, 0, 0}).gradient.x, K * 0.5 * (5.0 / 3) / 1e-3, 1e-13) << "jump / thickness";
+}
+
+/// Snell at a plane whose normal is `incidence` from the ray: the component of n d along the plane stays.
+double snell_slope(double n1, double n2, double incidence) {
+  return std::tan(incidence - std::asin(n1 / n2 * std::sin(incidence)));
+}
+
+// A jump refracts by Snell on the tilted plane, whatever its width, once the ray has crossed all of it; tilt 30 degrees
+// is an incidence of 60. The tails, tanh(4 d / w), end within the slab for small w: the error falls with it.
+TEST(NormalShockField, TiltedJumpConvergesToSnell) {
+  double const tilt = 30 * unit::degree, incidence = pi / 2 - tilt;
+  double const n1 = 1 + K * 0.5, n2 = 1 + K * 0.5 * 8 / 3;
+  double const snell = snell_slope(n1, n2, incidence);
+  EXPECT_NEAR(snell / ((n2 - n1) * std::tan(incidence)), 1, 1e-3) << "dn tan(phi), to first order in dn";
+  double before = 1;
+  for (double width : {8e-3, 4e-3, 2e-3, 1e-3}) {
+    auto const shock = built<NormalShock<double>>(shock_setup(width, tilt));
+    double const error = std::abs(deflection(shock, 0, width / 40) / snell - 1);
+    EXPECT_LT(error, 0.5 * before) << width;
+    before = error;
+  }
+  EXPECT_LT(before, 1e-7) << "2 exp(-4 * 5 mm / 1 mm) = 4e-9, and the scheme's";
+}
+
+// The same on a grid of 0.1 mm: float nodes, spline between them.
+TEST(NormalShockField, GriddedJumpRefractsLikeSnell) {
+  double const tilt = 30 * unit::degree, incidence = pi / 2 - tilt, cell = 1e-4;
+  double const n1 = 1 + K * 0.5, n2 = 1 + K * 0.5 * 8 / 3;
+  double const snell = snell_slope(n1, n2, incidence);
+  for (double width : {1.6e-3, 0.8e-3, 0.4e-3}) {
+    auto const shock = built<NormalShock<double>>(shock_setup(width, tilt));
+    auto const grid = test::open_grid(41, 4, 101, {cell, cell, cell}, {-20 * cell, -cell, -50 * cell});
+    auto const volume = test::sampled<float>(grid, [&](Vec3d p) { return shock.sample(p).refractivity; });
+    double const traced = deflection(volume.view<double, CubicBspline, 3>(0, 0), 0, cell / 4);
+    // tails within +-5 mm along z: 2 exp(-4 * 2.5 / 1.6) = 4e-3 for the widest; the grid resolves the narrowest by 4
+    // cells
+    EXPECT_NEAR(traced / snell, 1, 2.2 * std::exp(-4 * 2.5e-3 / width) + 1e-3) << width;
+  }
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "render/base/units.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+double sum_of(Image<double> const& image) { return std::accumulate(image.begin(), image.end(), 0.0); }
+
+Vec2d centroid_of(Image<double> const& image) {
+  Vec2d sum{};
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int column = 0; column < image.columns(); ++column) {
+      sum += image(column, row) * Vec2d{double(column), double(row)};
+    }
+  }
+  return sum / sum_of(image);
+}
+
+// An isolated dot inside the frame: image and flux hold its area's light, pi d^2/4 (cos^4 takes 2.3e-5 of it), in both
+// frames, as a uniform gradient neither magnifies nor focuses. Rays at the stop's edge leave a stratum, 1/512, to
+// chance.
+TEST(Light, OfADotsImageIsItsFlux) {
+  for (SpotModel const spot :
+       {SpotModel::gaussian, SpotModel::airy, SpotModel::gaussian_first_zero, SpotModel::seed_eq8, SpotModel::none}) {
+    auto setup = table1_setup(64);
+    setup.lens.spot = spot;
+    setup.medium.field = uniform_gradient(60, -80);
+    Scene scene = scene_with_dots(setup, {{30.3, 33.8}}, 512);
+    Rendering const rendering = render_all(scene);
+    Vec2d const flux = rendering.truth.flux[0];
+    double const reference = sum_of(rendering.light.reference), flow = sum_of(rendering.light.flow);
+    for (double const light : {reference, flow, flux.x, flux.y}) {
+      EXPECT_NEAR(light / (pi / 4 * 9), 1, 1.5 / 512) << static_cast<int>(spot);
+    }
+  }
+}
+
+// A bright dot of diameter d has pi d^2/4 fully lit pixels of light on the axis, times the mean cos^4 of its cone, 1 -
+// 2 <theta^2> = 1 - 2 (4.773 mm)^2/2; off the axis times cos^4. A margin m makes the number of rays in the stop
+// uncertain by one stratum, 1/N.
+TEST(Light, IsTheDotsAreaWhateverRaysAndMargin) {
+  auto const setup = table1_setup(128);
+  double const area = pi / 4 * 9, cone = 1 - std::pow(0.105 / 22, 2);
+  for (std::uint64_t const rays : {512ull, 4096ull}) {
+    for (double const margin : {0.0, 1e-3}) {
+      Scene scene = scene_with_dots(setup, {{63.5, 63.5}, {10, 20}}, rays);
+      scene.pupil_margin = margin;
+      GroundTruth const truth = trace_truth(scene);
+      double const tolerance = 1.5 / double(rays);
+      EXPECT_NEAR(truth.flux[0].x / area, cone, tolerance) << rays << " " << margin;
+      double const cosine2 = 1 / (1 + dot(scene.dots.centre[1], scene.dots.centre[1]));
+      EXPECT_NEAR(truth.flux[1].x / area, cone * cosine2 * cosine2, tolerance + 1e-5) << rays << " " << margin;
+    }
+  }
+}
+
+// A dot of 40 px is white paper in its middle: light 1 per pixel. The mean over 11 x 11 px holds a tenth of 2^15 points
+// of a net; its relative error is below sqrt(1/6000) = 1.3 % even for independent points.
+TEST(Light, OfAFullyLitAreaIsOne) {
+  auto setup = table1_setup(64);
+  setup.target.dot_diameter_px = 40;
+  Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 15);
+  Rendering const rendering = render_all(scene);
+  double mean = 0;
+  for (int row = 26; row < 37; ++row) {
+    for (int column = 26; column < 37; ++column) mean += rendering.light.reference(column, row) / 121;
+  }
+  EXPECT_NEAR(mean, 1, 0.013);
+}
+
+// Spots symmetric about their ray keep the centroid, up to the aliasing of pixels, exp(-2 pi^2 sigma^2)/pi < 1e-13 px
+// at sigma = 1.25 px; a footprint ends at 5.5 sigma. The picture's dot lies where truth says and holds the flux that
+// truth says, in both frames, up to what 2^13 rays leave to chance in a dot of 0.75 px standard deviation: 0.75
+// px/2^6.5 = 8e-3 px at worst.
+TEST(Light, OfADotIsCentredWhereTruthSays) {
+  auto setup = table1_setup(64);
+  setup.lens.spot = SpotModel::seed_eq8;
+  setup.medium.field = dns_plane("kepeak");
+  for (Vec2d const at : {Vec2d{31.5, 31.5}, Vec2d{28.2, 35.7}, Vec2d{36.1, 27.4}}) {
+    Scene scene = scene_with_dots(setup, {at}, 1 << 13);
+    Rendering const rendering = render_all(scene);
+    Vec2d const reference = centroid_of(rendering.light.reference), flow = centroid_of(rendering.light.flow);
+    Vec2d const shift = rendering.truth.displacement_px[0];
+    EXPECT_GT(length(shift), 0.01);
+    EXPECT_NEAR(sum_of(rendering.light.reference) / rendering.truth.flux[0].x, 1, 3e-3);
+    EXPECT_NEAR(sum_of(rendering.light.flow) / rendering.truth.flux[0].y, 1, 3e-3);
+    EXPECT_LT(length(reference - rendering.truth.reference_px[0]), 5e-3);
+    EXPECT_LT(length(flow - reference - shift), 1e-3);
+  }
+}
+
+// The sensor's own view of white paper: cos^4 of the angle to the axis.
+TEST(Light, OfWhitePaperFallsWithCosFour) {
+  Scene const scene = build_scene(table1_setup(101));
+  Image<double> const white = white_light(scene);
+  EXPECT_EQ(white(50, 50), 1.0);
+  double const tangent = 50 * 10e-6 / 0.117318436;
+  EXPECT_NEAR(white(100, 50), std::pow(1 + tangent * tangent, -2), 1e-9);
+  EXPECT_NEAR(white(0, 100), std::pow(1 + 2 * tangent * tangent, -2), 1e-9);
+}
+
+// Dark dots on white are white less the bright dots' light, pixel by pixel; the medium leaves the paper between as it
+// is.
+TEST(Light, OfDarkDotsIsWhitePaperLessTheDots) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(100, 50);
+  Scene bright = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
+  Rendering const dots = render_all(bright);
+  setup.target.polarity = Polarity::dark;
+  Scene dark = scene_with_dots(setup, {{20, 20}, {44, 30}}, 256);
+  Rendering const paper = render_all(dark);
+  Image<double> const white = white_light(dark);
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 64; ++column) {
+      ASSERT_EQ(paper.light.reference(column, row), white(column, row) - dots.light.reference(column, row));
+      ASSERT_EQ(paper.light.flow(column, row), white(column, row) - dots.light.flow(column, row));
+    }
+  }
+  EXPECT_EQ(paper.light.flow(10, 50), white(10, 50));
+  EXPECT_LT(paper.light.reference(20, 20), 0.3);
+  // a large dark dot is black in its middle
+  setup.target.dot_diameter_px = 30;
+  Scene large = scene_with_dots(setup, {{31.5, 31.5}}, 1 << 14);
+  EXPECT_NEAR(render_all(large).light.reference(31, 31), 0, 0.05);
+}
+
+}  // namespace
+}  // namespace gladstone

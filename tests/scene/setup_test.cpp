@@ -1,0 +1,149 @@
+#include "render/scene/setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "render/scene/scene.h"
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+struct ReadSetup {
+  gladstone::Setup setup;
+  std::vector<std::string> warnings;
+};
+
+/// Reads and cross-checks a setup as the commands do.
+ReadSetup read(std::string const& text) {
+  SetupDocument document = SetupDocument::from_text(text, "case.toml");
+  ReadSetup result{read_setup(document.root()), {}};
+  result.warnings = cross_check(result.setup, document.root());
+  document.finish();
+  return result;
+}
+
+auto refused(std::string const& where, std::string const& why) {
+  return ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:" + where), HasSubstr(why)));
+}
+
+TEST(Setup, DefaultsAreTable1WithoutAnyComplaint) {
+  ReadSetup const seen = read("schema = 1\n");
+  EXPECT_THAT(seen.warnings, IsEmpty());
+  EXPECT_DOUBLE_EQ(seen.setup.z_b(), 1.0);
+  EXPECT_NEAR(seen.setup.imaging().magnification, 0.117318436, 1e-9);
+  EXPECT_NEAR(seen.setup.ambient_index(), 1.00027685, 1e-12);
+  // 20 dots in 32 x 32 px over 512 px and a window of 64 px all round
+  EXPECT_EQ(seen.setup.dot_count(), std::round(20.0 / 1024 * 640 * 640));
+  EXPECT_NEAR(seen.setup.target_extent().x, 640 * 10e-6 / 0.117318436, 1e-9);
+  EXPECT_NEAR(seen.setup.dot_diameter(), 3 * 10e-6 / 0.117318436, 1e-12);
+}
+
+TEST(Setup, FocusWithinTheFocalLengthIsImpossible) {
+  EXPECT_THAT([] { read("[geometry]\nz_a_mm = 60\nz_d_mm = 40\n"); }, refused("2:1", "focus is impossible"));
+  EXPECT_THAT([] { read("[lens]\nfocus_distance_mm = 100\n"); }, refused("2:1", "focus is impossible"));
+  EXPECT_THAT([] { read("[lens]\nfocus = \"medium\"\n[geometry]\nz_a_mm = 100\n"); },
+              refused("4:1", "focus is impossible"));
+}
+
+TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
+  std::string const field =
+      "[medium]\nthickness_mm = 100\n[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n";
+  EXPECT_THAT([&] { read(field + "[geometry]\nz_d_mm = 20\n"); }, refused("7:1", "dots lie inside the medium"));
+  EXPECT_THAT([&] { read(field + "[lens]\nfocal_length_mm = 10\n[geometry]\nz_a_mm = 30\n"); },
+              refused("9:1", "lens lies inside"));
+  EXPECT_THAT(read("[medium]\nthickness_mm = 100\n[geometry]\nz_d_mm = 20\n").warnings,
+              IsEmpty());  // no field, no medium
+}
+
+TEST(Setup, TheTargetMustFillTheView) {
+  EXPECT_THAT([] { read("[target]\nextent_mm = [40, 60]\n"); }, refused("2:1", "larger than the target"));
+  EXPECT_THAT(read("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
+}
+
+// Dots of 1 px with a spot of 1.6 px are 1.89 px wide.
+TEST(Setup, DotsBelowTwoPixelsAreWarnedOf) {
+  EXPECT_THAT(read("[target]\ndot_diameter_px = 1\n").warnings,
+              Contains(AllOf(HasSubstr("1.88"), HasSubstr("below 2 px"))));
+  EXPECT_THAT(read("[target]\ndot_diameter_px = 1.5\n").warnings, IsEmpty());
+}
+
+TEST(Setup, DotsThatCannotFindRoomAreRefused) {
+  // 100 dots of 3 px in 1024 px^2 cover 69 %
+  EXPECT_THAT([] { read("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
+  EXPECT_THAT(read("[target]\ndots_per_32px_window = 100\narrangement = \"regular\"\n").warnings, IsEmpty());
+  EXPECT_THAT([] { read("[target]\ndots_per_32px_window = 1e-6\n"); }, refused("2:1", "no dot at all"));
+  EXPECT_THAT([] { read("[target]\npolarity = \"dark\"\ndot_diameter_px = 0\n"); }, refused("2:1", "cannot be seen"));
+}
+
+TEST(Setup, WhatIsDueLaterIsRefusedByName) {
+  EXPECT_THAT([] { read("[render]\nprecision = \"single\"\n"); }, refused("2:1", "\"single\" is not available yet"));
+  EXPECT_THAT([] { read("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
+  EXPECT_THAT([] { read("experiment = \"calibration\"\n"); }, refused("1:1", "\"calibration\" is not available yet"));
+  EXPECT_THAT([] { read("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
+  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\n"); },
+              refused("2:1", "\"prescription\" is not available yet"));
+  EXPECT_THAT([] { read("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "lens prescriptions"));
+  for (std::string const table : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
+    EXPECT_THAT([&] { read(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
+  }
+  EXPECT_THAT([] { read("schema = 2\n"); }, refused("1:1", "schema"));
+}
+
+TEST(Setup, AllProblemsComeTogether) {
+  EXPECT_THAT(
+      [] {
+        read(
+            "[camera]\npixel_pitch_um = -1\n[lens]\nf_numbr = 8\n[target]\nextent_mm = [1, 1]\n[render]\nrays_per_dot "
+            "= 1.5\n");
+      },
+      ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:2:1"), HasSubstr("case.toml:4:1"), HasSubstr("f_number"),
+                                      HasSubstr("case.toml:6:1"), HasSubstr("case.toml:8:1"))));
+}
+
+// A picture of 1e6 x 1e6 px takes 1e12 pixels of two frames: tens of terabytes, refused by its figure, before
+// allocation.
+TEST(Memory, ThatTheMachineDoesNotHaveIsRefusedWithItsFigure) {
+  gladstone::Setup setup;
+  setup.camera.columns = setup.camera.rows = 1000000;
+  EXPECT_THAT(
+      [&] { build_scene(setup); },
+      ThrowsMessage<DataError>(AllOf(HasSubstr("GB of memory"), HasSubstr("images 3.6e+04"), HasSubstr("reduce"))));
+}
+
+TEST(BuildScene, MakesTheDotsOfTheTarget) {
+  gladstone::Setup setup;
+  setup.camera.columns = setup.camera.rows = 64;
+  EXPECT_EQ(static_cast<double>(build_scene(setup).dots.centre.size()), setup.dot_count());
+  setup.target.arrangement = DotArrangement::regular;
+  Scene const regular = build_scene(setup);  // whole rows and columns: up to one of 26 less, each way
+  EXPECT_NEAR(static_cast<double>(regular.dots.centre.size()), setup.dot_count(), 0.08 * setup.dot_count());
+  EXPECT_EQ(regular.dots.half_size, setup.dot_diameter() / 2);
+  // picture and target are each other's images
+  Vec2d const px{12.5, 40.25}, back = regular.to_pixel(regular.to_target(px));
+  EXPECT_NEAR(back.x, px.x, 1e-12);
+  EXPECT_NEAR(back.y, px.y, 1e-12);
+}
+
+// F13 at Table 1: first zero 1.595 px wide; matched sigma 0.4206 of 0.6539 px; the seed's print times pi, 5.01 px.
+TEST(BuildScene, SpotsHaveTheSizesOfTable1) {
+  gladstone::Setup setup;
+  setup.camera.columns = setup.camera.rows = 32;
+  Scene scene = build_scene(setup);
+  EXPECT_NEAR(scene.spot_scale_px(), 0.65385475, 1e-7);
+  EXPECT_NEAR(scene.spot_sigma_px(), 0.4206042622 * 0.65385475, 1e-7);
+  scene.setup.lens.spot = SpotModel::gaussian_first_zero;
+  EXPECT_NEAR(4 * scene.spot_sigma_px(), 1.595, 1e-3);
+  scene.setup.lens.spot = SpotModel::seed_eq8;
+  EXPECT_NEAR(4 * scene.spot_sigma_px(), 5.01, 5e-3);
+}
+
+}  // namespace
+}  // namespace gladstone

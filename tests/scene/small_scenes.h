@@ -1,0 +1,92 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "render/scene/ray_plan.h"
+#include "render/scene/renderer.h"
+#include "render/scene/scene.h"
+
+namespace gladstone {
+
+/// Table 1 with a smaller sensor: f = 105 mm, f/11, Z_A = 0.75 m, Z_D = 0.25 m, pixels of 10 um.
+inline Setup table1_setup(int pixels) {
+  Setup setup;
+  setup.camera.columns = setup.camera.rows = pixels;
+  return setup;
+}
+
+inline FieldSetup uniform_gradient(double along_x, double along_y, double along_z = 0) {
+  FieldSetup field;
+  field.kind = FieldKind::uniform_gradient;
+  field.gradient = {along_x, along_y, along_z};
+  return field;
+}
+
+/// The DNS plane of that name, as the demo maps it: 1.225 kg/m^3, 32 mm, periodic in x and y, stacked over the
+/// thickness.
+inline FieldSetup dns_plane(std::string const& instant) {
+  FieldSetup field;
+  field.kind = FieldKind::file;
+  field.file = std::string(GLADSTONE_DATA_DIR) + "/fields/hbdt512_" + instant + "_slice.h5";
+  field.where = "test";
+  field.scale = 1.225;
+  field.spacing = Vec3d{0.0625e-3, 0.0625e-3, 0.0625e-3};
+  field.extrude = true;
+  field.periodic = {true, true, false};
+  return field;
+}
+
+/// A scene with dots at given places of the reference picture [px], its step and margin planned.
+inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
+  Setup bare = setup;
+  bare.target.dots_per_32px_window = 1;
+  bare.target.dot_diameter_px = 0;
+  Scene scene = build_scene(bare);
+  scene.setup = setup;
+  scene.dots.half_size = setup.dot_diameter() / 2;
+  scene.dots.centre.clear();
+  for (Vec2d const p : at_px) scene.dots.centre.push_back(scene.to_target(p));
+  plan_step(scene);
+  scene.rays_per_dot = rays;
+  return scene;
+}
+
+inline Rendering render_all(Scene& scene) {
+  return CpuRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+}
+inline GroundTruth trace_truth(Scene& scene, RenderTheory theory = RenderTheory::yes) {
+  return CpuRenderer().render(scene, scene.dots, RenderImages::no, theory).truth;
+}
+
+/// A lattice of points, `pitch` apart, in the middle of a square picture.
+inline std::vector<Vec2d> lattice(int pixels, int per_side, double pitch) {
+  std::vector<Vec2d> points;
+  for (int j = 0; j < per_side; ++j) {
+    for (int i = 0; i < per_side; ++i) {
+      points.push_back({0.5 * (pixels - 1) + (i - 0.5 * (per_side - 1)) * pitch + 0.37 * (j % 2),
+                        0.5 * (pixels - 1) + (j - 0.5 * (per_side - 1)) * pitch + 0.21 * (i % 3)});
+    }
+  }
+  return points;
+}
+
+/// Writes a plane of values f(i, j) as a raw NRRD file.
+template <class Function>
+void write_plane(std::string const& path, int columns, int rows, Function&& value) {
+  std::ofstream file(path, std::ios::binary);
+  file << "NRRD0004\ntype: float\ndimension: 3\nsizes: " << columns << " " << rows
+       << " 1\nendian: " << (std::endian::native == std::endian::little ? "little" : "big") << "\nencoding: raw\n\n";
+  for (int j = 0; j < rows; ++j) {
+    for (int i = 0; i < columns; ++i) {
+      float const number = static_cast<float>(value(i, j));
+      file.write(reinterpret_cast<char const*>(&number), sizeof number);
+    }
+  }
+}
+
+}  // namespace gladstone
