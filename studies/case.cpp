@@ -107,7 +107,7 @@ RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheor
 
 std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
   namespace fs = std::filesystem;
-  OutputFolder output(folder, case_file::setup);
+  OutputFolder output(folder, case_file::setup, {case_file::derived.begin(), case_file::derived.end()});
   PreparedCase prepared = prepare_case(loaded);
   RenderedCase rendered = render_case(prepared, renderer, RenderTheory::yes);
   Scene const& scene = prepared.scene;
@@ -132,6 +132,11 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
 
   auto const unseen = std::count_if(rendered.rendering.truth.displacement_px.begin(),
                                     rendered.rendering.truth.displacement_px.end(), [](Vec2d d) { return std::isnan(d.x); });
+  if (unseen > 0) {
+    warn(prepared.warnings, fmt::format("{} of {} dots are not seen in one of the frames: the flow bends their rays past the lens "
+                                        "(their truth is nan); reduce the gradients or Z_D",
+                                        unseen, scene.dots.centre.size()));
+  }
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +60,14 @@ inline constexpr char const* setup = "setup.toml";
 inline constexpr char const* summary = "summary.json";
 inline constexpr char const* vectors = "vectors.h5";
 inline constexpr char const* errors = "errors.json";
+/// What correlate and compare make of a rendering: it goes when the case is rendered again.
+inline constexpr std::array derived{vectors,
+                                    "vectors.csv",
+                                    errors,
+                                    "displacement_maps.png",
+                                    "error_histograms.png",
+                                    "error_against_gradient.png",
+                                    "error_budget.png"};
 }  // namespace case_file
 
 /// "folder/name"; @throws DataError where the folder is no CASE (has no setup.toml)

@@ -182,6 +182,10 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
                                                  comparison.point.eq9_cone_px, comparison.window.displacement_px};
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
+  if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
+    throw DataError(path, "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
+                          "the vectors and --conventions");
+  }
   std::vector<BudgetStage> const stages{
       {"eq9", comparison.point.eq9_px},           {"straight", comparison.point.chief_px},
       {"eq9_cone", comparison.point.eq9_cone_px}, {"thin_lens", comparison.point.displacement_px},

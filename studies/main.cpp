@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <iostream>
@@ -10,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
+#include "render/base/nearest_name.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "studies/commands/command.h"
@@ -31,12 +33,36 @@ constexpr std::array commands{
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
 };
 
+/// Says what is wrong with a command line that names no command, or things that nobody knows.
+int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* command, CLI::App const& app) {
+  std::vector<std::string> known;
+  for (Command const& one : commands) known.emplace_back(one.name);
+  std::string const name = unknown.empty() ? "" : unknown.front();
+  bool const is_option = name.starts_with("-");
+  std::string message = "no command is named";
+  if (!unknown.empty()) message = fmt::format("unknown {} \"{}\"", is_option ? "option" : command ? "argument" : "command", name);
+  if (is_option) {
+    known = {"--help", "--version", "--json", "--quiet", "--threads", "--device"};
+    for (CLI::Option const* option : (command ? command : &app)->get_options()) {
+      for (std::string const& longer : option->get_lnames()) known.push_back("--" + longer);
+    }
+  }
+  if (auto const nearest = nearest_name(name, known); nearest && (is_option || !command)) {
+    message += "; did you mean \"" + *nearest + "\"?";
+  } else if (!command && !is_option) {
+    message += "; commands are " + quoted_list(known);
+  }
+  fmt::print(stderr, "gladstone: {} See gladstone {}{}--help\n", message.ends_with('?') ? message : message + '.',
+             command ? command->get_name() : "", command ? " " : "");
+  return bad_input;
+}
+
 int run(int argc, char** argv) {
   GlobalOptions options;
   CLI::App app{"gladstone: ray-traced synthetic BOS images, correlation and error analysis"};
   app.set_version_flag("--version", version_text(), "Print the version and the backends compiled in");
   app.fallthrough();
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
   app.add_flag("--quiet", options.quiet, "No log, no progress bars");
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(CLI::Range(0, 4096));
@@ -50,10 +76,15 @@ int run(int argc, char** argv) {
                                   commands[i].example));
     bodies[i] = commands[i].attach(*parsed[i], options);
   }
+  app.allow_extras();  // what nobody knows is refused below, with the nearest name
   try {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
     return app.exit(error) == 0 ? ok : bad_input;
+  }
+  auto const parsed_one = std::find_if(parsed.begin(), parsed.end(), [](CLI::App* command) { return command->parsed(); });
+  if (std::vector<std::string> const unknown = app.remaining(true); !unknown.empty() || parsed_one == parsed.end()) {
+    return refuse_arguments(unknown, parsed_one == parsed.end() ? nullptr : *parsed_one, app);
   }
   if (options.quiet) spdlog::set_level(spdlog::level::err);
   Progress::enable(!options.quiet);

@@ -31,8 +31,9 @@ TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<dou
   }
   if (through == Through::medium) return traced;
   Ray<double> ray{traced.position, traced.direction};
-  if (ray.position.z > view.lens.z) return dead(RayStatus::missed_lens);
-  RayStatus const status = view.lens.interact(ray);
+  if (ray.position.z > view.bundle.lens_z) return dead(RayStatus::missed_lens);
+  double weight = 1;
+  RayStatus const status = view.train.carry(ray, weight);
   if (status != RayStatus::alive) return dead(status);
   traced.position = ray.position;
   traced.direction = ray.direction;

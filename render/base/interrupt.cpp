@@ -18,6 +18,7 @@ extern "C" void remember_interrupt(int) { interrupted.store(true, std::memory_or
 void catch_interrupts() {
   std::signal(SIGINT, remember_interrupt);
   std::signal(SIGTERM, remember_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is a failed write, reported like a full disk
 }
 
 void throw_if_interrupted() {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
   std::string hint;
   if (error == ENOSPC || error == EDQUOT) hint = "; free some space or choose another folder";
   if (error == EACCES || error == EPERM || error == EROFS) hint = "; choose a folder that you may write to";
+  if (error == ENOENT) hint = "; choose a place where a folder can be made";
   if (error == ENOTDIR) hint = "; a part of the path is a file";
   if (error == EFBIG) hint = "; raise the limit on the size of files (ulimit -f)";
   throw OutputError(path, what + " (" + std::strerror(error) + ')' + hint);
@@ -113,6 +115,24 @@ void refuse_foreign_folder(fs::path const& place, std::string const& marker_file
                                         "); choose another folder or empty it");
 }
 
+/// Links (where the file system cannot: copies) into `fresh` what `old` holds beyond the files of `fresh` and `derived`.
+void keep_what_users_added(fs::path const& old, fs::path const& fresh, std::vector<std::string> const& derived) {
+  std::error_code error;
+  for (fs::directory_iterator entry(old, error), end; !error && entry != end; entry.increment(error)) {
+    fs::path const name = entry->path().filename();
+    if (fs::exists(fs::symlink_status(fresh / name))) continue;
+    if (std::find(derived.begin(), derived.end(), name.string()) != derived.end()) continue;
+    auto const options = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
+    std::error_code problem;
+    fs::copy(entry->path(), fresh / name, options | fs::copy_options::create_hard_links, problem);
+    if (problem) {
+      fs::remove_all(fresh / name, problem);
+      fs::copy(entry->path(), fresh / name, options, problem);
+    }
+    if (problem) throw OutputError(entry->path().string(), "cannot be kept (" + problem.message() + "); move it elsewhere");
+  }
+}
+
 }  // namespace
 
 OutputFile::OutputFile(std::string path) {
@@ -173,7 +193,8 @@ void OutputFile::write_text(std::string const& path, std::string const& text) {
   file.commit();
 }
 
-OutputFolder::OutputFolder(std::string path, std::string marker_file) : marker_file_(std::move(marker_file)) {
+OutputFolder::OutputFolder(std::string path, std::string marker_file, std::vector<std::string> derived)
+    : marker_file_(std::move(marker_file)), derived_(std::move(derived)) {
   fs::path const place = final_place(path);
   std::error_code error;
   if (fs::exists(place.parent_path(), error)) clean_up_after_the_dead(place);
@@ -203,6 +224,8 @@ void OutputFolder::commit() {
     if (int const error = flush_to_disk(entry->path().string())) fail(path_, "cannot be written", error);
   }
   refuse_foreign_folder(path_, marker_file_);
+
+  keep_what_users_added(path_, temporary_, derived_);
 
   // Without an old folder one rename does it. With one the two change places at once where the file system can do
   // that; elsewhere the old one steps aside, and back if the new one cannot take its place.

@@ -36,11 +36,13 @@ class OutputFile {
 };
 
 /// A folder built beside its place and renamed when whole; an old folder of that name is replaced only then, and only
-/// if it is empty or was made by gladstone (holds `marker_file`), so that no user's data are lost.
+/// if it is empty or was made by gladstone (holds `marker_file`). What a user put into the old one moves to the new one:
+/// everything but the files that are written anew and those derived from them, so that no user's data are lost.
 class OutputFolder {
  public:
+  /// @param derived names of files that make no sense beside new ones; they go with the old folder
   /// @throws OutputError where it cannot be made, `path` is a file, or holds data that gladstone did not write
-  OutputFolder(std::string path, std::string marker_file);
+  OutputFolder(std::string path, std::string marker_file, std::vector<std::string> derived = {});
   ~OutputFolder();
   OutputFolder(OutputFolder const&) = delete;
   OutputFolder& operator=(OutputFolder const&) = delete;
@@ -53,6 +55,7 @@ class OutputFolder {
   std::string path_;
   std::string temporary_;
   std::string marker_file_;
+  std::vector<std::string> derived_;
   std::vector<std::string> made_folders_;
   bool committed_ = false;
 };

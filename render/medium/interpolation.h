@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/base/host_device.h"
+#include "render/base/lanes.h"
 
 namespace gladstone {
 
@@ -10,21 +11,26 @@ struct CubicBspline {
   static constexpr int support = 4;
   static constexpr int first = -1;  ///< first coefficient, counted from the cell's lower node
 
-  /// Weights w and derivatives d (per cell width) at fraction u in [0, 1] of the cell.
+  /// Weights w and derivatives d (per cell width) at fraction u in [0, 1] of the cell, as polynomials of u.
+  template <class T>
+  GLADSTONE_HD static void weigh(T u, Lanes<T, 4>& w, Lanes<T, 4>& d) {
+    constexpr T s = T(1.0 / 6.0), t = T(2.0 / 3.0), h = T(0.5);
+    constexpr T weight[4][4] = {{s, t, s, T(0)}, {-h, T(0), h, T(0)}, {h, T(-1), h, T(0)}, {-s, h, -h, s}};
+    constexpr T slope[3][4] = {{-h, T(0), h, T(0)}, {T(1), T(-2), T(1), T(0)}, {-h, T(1.5), T(-1.5), h}};
+    using Four = Lanes<T, 4>;
+    Four const x = Four::all(u);
+    Four const xx = x * x;
+    w = (Four::load(weight[0]) + Four::load(weight[1]) * x) + (Four::load(weight[2]) + Four::load(weight[3]) * x) * xx;
+    d = (Four::load(slope[0]) + Four::load(slope[1]) * x) + Four::load(slope[2]) * xx;
+  }
   template <class T>
   GLADSTONE_HD static void weigh(T u, T (&w)[4], T (&d)[4]) {
-    T const sixth = T(1.0 / 6.0);
-    T const v = T(1) - u;
-    T const uu = u * u;
-    T const vv = v * v;
-    w[0] = sixth * vv * v;
-    w[3] = sixth * uu * u;
-    w[1] = T(2.0 / 3.0) - uu + T(0.5) * uu * u;
-    w[2] = T(2.0 / 3.0) - vv + T(0.5) * vv * v;
-    d[0] = T(-0.5) * vv;
-    d[3] = T(0.5) * uu;
-    d[1] = u * (T(1.5) * u - T(2));
-    d[2] = v * (T(2) - T(1.5) * v);
+    Lanes<T, 4> value, slope;
+    weigh(u, value, slope);
+    for (int i = 0; i < 4; ++i) {
+      w[i] = value.v[i];
+      d[i] = slope.v[i];
+    }
   }
 };
 
@@ -34,11 +40,9 @@ struct Linear {
   static constexpr int first = 0;
 
   template <class T>
-  GLADSTONE_HD static void weigh(T u, T (&w)[2], T (&d)[2]) {
-    w[0] = T(1) - u;
-    w[1] = u;
-    d[0] = T(-1);
-    d[1] = T(1);
+  GLADSTONE_HD static void weigh(T u, Lanes<T, 2>& w, Lanes<T, 2>& d) {
+    w = {{T(1) - u, u}};
+    d = {{T(-1), T(1)}};
   }
 };
 

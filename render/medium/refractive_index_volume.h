@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/lanes.h"
 #include "render/base/regular_grid.h"
 #include "render/medium/index_sample.h"
 #include "render/medium/interpolation.h"
@@ -36,73 +37,64 @@ struct GriddedIndex {
   GLADSTONE_HD Bounds<T> bounds() const { return box; }
 
   /// Refractivity and its analytic gradient at p [m]. @pre p lies in bounds() (up to rounding)
-  GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
+  [[gnu::always_inline]] GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     constexpr int S = Basis::support;
-    T wx[S], dx[S], wy[S], dy[S];
+    Row wx, dx, wy, dy;
     Stored const* corner = coefficients + locate(0, (p.x - origin.x) * inverse_spacing.x, wx, dx) +
                            row * locate(1, (p.y - origin.y) * inverse_spacing.y, wy, dy);
+    T sum[4];
     if constexpr (Dimensions == 2) {
       Sums const sums = contract_rows(corner, wy, dy);
-      return finish(dot_row(sums.value, wx), dot_row(sums.value, dx), dot_row(sums.dy, wx), T(0));
+      sum_lanes(sums.value * wx, sums.value * dx, sums.dy * wx, Row::all(T(0)), sum);
     } else {
       // contract y first for every plane, then z, then x: 12 S + S^2 (2 S) products instead of 4 S^3
-      T wz[S], dz[S];
+      Row wz, dz;
       corner += plane * locate(2, (p.z - origin.z) * inverse_spacing.z, wz, dz);
-      Row value{}, along_y{}, along_z{};
-      for (int k = 0; k < S; ++k) {
-        Sums const sums = contract_rows(corner + k * plane, wy, dy);
-        for (int i = 0; i < S; ++i) {
-          value.c[i] += wz[k] * sums.value.c[i];
-          along_y.c[i] += wz[k] * sums.dy.c[i];
-          along_z.c[i] += dz[k] * sums.value.c[i];
-        }
+      Sums sums = contract_rows(corner, wy, dy);
+      Row value = wz.spread(0) * sums.value, along_y = wz.spread(0) * sums.dy, along_z = dz.spread(0) * sums.value;
+      for (int k = 1; k < S; ++k) {
+        sums = contract_rows(corner + k * plane, wy, dy);
+        value = wz.spread(k) * sums.value + value;
+        along_y = wz.spread(k) * sums.dy + along_y;
+        along_z = dz.spread(k) * sums.value + along_z;
       }
-      return finish(dot_row(value, wx), dot_row(value, dx), dot_row(along_y, wx), dot_row(along_z, wx));
+      sum_lanes(value * wx, value * dx, along_y * wx, along_z * wx, sum);
     }
+    return finish(sum[0], sum[1], sum[2], sum[3]);
   }
 
  private:
-  struct Row {
-    T c[Basis::support];
-  };
+  using Row = Lanes<T, Basis::support>;
   struct Sums {
     Row value;
     Row dy;
   };
 
   /// Weights on one axis, and the offset of the first coefficient that they belong to.
-  GLADSTONE_HD std::ptrdiff_t locate(int axis, T u, T (&w)[Basis::support], T (&d)[Basis::support]) const {
+  GLADSTONE_HD std::ptrdiff_t locate(int axis, T u, Row& w, Row& d) const {
     using std::floor;
     int const count = nodes[static_cast<std::size_t>(axis)];
-    int last = count - 2;
+    T last = T(count - 2);
     if (periodic[static_cast<std::size_t>(axis)]) {
       u -= T(count) * floor(u / T(count));
-      last = count - 1;
+      last = T(count - 1);
     }
-    int cell = static_cast<int>(floor(u));
-    cell = cell < 0 ? 0 : (cell > last ? last : cell);
-    Basis::weigh(u - T(cell), w, d);
-    return cell + padding + Basis::first;
+    T cell = floor(u);
+    cell = cell > T(0) ? cell : T(0);
+    cell = cell < last ? cell : last;
+    Basis::weigh(u - cell, w, d);
+    return static_cast<int>(cell) + padding + Basis::first;
   }
 
-  GLADSTONE_HD Sums contract_rows(Stored const* corner, T const (&wy)[Basis::support],
-                                  T const (&dy)[Basis::support]) const {
-    constexpr int S = Basis::support;
-    Sums sums{};
-    for (int j = 0; j < S; ++j) {
-      for (int i = 0; i < S; ++i) {
-        T const c = static_cast<T>(corner[j * row + i]);
-        sums.value.c[i] += wy[j] * c;
-        sums.dy.c[i] += dy[j] * c;
-      }
+  GLADSTONE_HD Sums contract_rows(Stored const* corner, Row const& wy, Row const& dy) const {
+    Row c = Row::load(corner);
+    Sums sums{wy.spread(0) * c, dy.spread(0) * c};
+    for (int j = 1; j < Basis::support; ++j) {
+      c = Row::load(corner + j * row);
+      sums.value = wy.spread(j) * c + sums.value;
+      sums.dy = dy.spread(j) * c + sums.dy;
     }
     return sums;
-  }
-
-  GLADSTONE_HD static T dot_row(Row const& a, T const (&w)[Basis::support]) {
-    T sum = a.c[0] * w[0];
-    for (int i = 1; i < Basis::support; ++i) sum += a.c[i] * w[i];
-    return sum;
   }
 
   GLADSTONE_HD IndexSample<T> finish(T value, T gx, T gy, T gz) const {

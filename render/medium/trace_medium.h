@@ -18,24 +18,25 @@ enum class Faces : int {
 /// How rays are carried through a medium; the same for all rays of a launch.
 template <class T>
 struct TracingOptions {
-  T step{};                   ///< largest step, as arc length [m]
-  T ambient_refractivity{};   ///< n_0 - 1 [1]
+  T step{};                  ///< largest step, as arc length [m]
+  T ambient_refractivity{};  ///< n_0 - 1 [1]
   Integrator integrator = Integrator::rk4;
   Faces faces = Faces::matched;
 };
 
 /// A ray's way through a medium, kept as its departure from the straight ray it would have been: with t the sum of
-/// Sharma's steps, R = entry + T_0 t + shift and T = T_0 + turn, T_0 along the incoming ray. A uniform medium gives exact zeros.
+/// Sharma's steps, R = entry + T_0 t + shift and T = T_0 + turn, T_0 along the incoming ray. A uniform medium gives
+/// exact zeros.
 template <class T>
 struct MediumPassage {
   RayStatus status = RayStatus::alive;
-  bool crossed = false;        ///< false: the ray missed the medium and comes back as it went in
-  Vec3<T> straight{};          ///< T_0 [1]
-  T entry{};                   ///< way from the ray's start to the medium, divided by |T_0| [m]
-  T t{};                       ///< [m]
-  Vec3<T> shift{};             ///< [m]
-  Vec3<T> turn{};              ///< [1]
-  T optical_path{};            ///< from the ray's start to where it leaves the medium [m]
+  bool crossed = false;  ///< false: the ray missed the medium and comes back as it went in
+  Vec3<T> straight{};    ///< T_0 [1]
+  T entry{};             ///< way from the ray's start to the medium, divided by |T_0| [m]
+  T t{};                 ///< [m]
+  Vec3<T> shift{};       ///< [m]
+  Vec3<T> turn{};        ///< [1]
+  T optical_path{};      ///< from the ray's start to where it leaves the medium [m]
 };
 
 /// Where the ray leaves the medium [m].
@@ -54,8 +55,8 @@ GLADSTONE_HD Vec3<T> exit_direction(Ray<T> const& start, MediumPassage<T> const&
   return start.direction + (way.turn - start.direction * growth) / after;
 }
 
-/// The straight ray that a camera takes the bent one for: the outgoing line, followed back to the plane z = z of the start
-/// (a dot's apparent place). @pre the ray leaves with a z component
+/// The straight ray that a camera takes the bent one for: the outgoing line, followed back to the plane z = z of the
+/// start (a dot's apparent place). @pre the ray leaves with a z component
 template <class T>
 GLADSTONE_HD Ray<T> apparent_ray(Ray<T> const& start, MediumPassage<T> const& way) {
   if (!way.crossed) return start;
@@ -143,11 +144,11 @@ struct PartialStep {
   bool leaves;  ///< false: it is the whole step
   T step;       ///< [m]
   StepIncrement<T> add;
-  int axis;     ///< of the face where it ends
+  int axis;  ///< of the face where it ends
 };
 
-/// Finds where a curved step leaves the box, by bisection: for the rare rays that graze a face. Kept out of line, so that
-/// the loop over steps stays small.
+/// Finds where a curved step leaves the box, by bisection: for the rare rays that graze a face. Kept out of line, so
+/// that the loop over steps stays small.
 template <class T, class Medium>
 [[gnu::noinline]] GLADSTONE_HD PartialStep<T> bisect_exit(Medium const& medium, Integrator integrator,
                                                           Bounds<T> const& box, RayState<T> from, T dt) {
@@ -178,19 +179,39 @@ template <class T, class Medium>
 
 }  // namespace detail
 
-/// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step (first
-/// and last step partial and equally long on a straight ray, so that a reversed ray meets the same points), exactly to the
-/// face where it leaves.
-/// @param start any ray in the ambient [m, unit direction]; one that starts inside starts at full index there
-/// @return the passage; status total_internal_reflection or lost_in_medium (trapped) where it does not come out
-template <class T, class Medium>
-GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<T> const& options,
-                                           Ray<T> const& start) {
+namespace detail {
+
+/// A ray under way: its passage so far, and the steps that are left to take.
+template <class T>
+struct Crossing {
   MediumPassage<T> way;
-  Bounds<T> const box = medium.bounds();
-  detail::Chord<T> const chord = detail::chord_in(box, start.position, start.direction);
+  Bounds<T> box{};
+  T whole_step{};      ///< [m]
+  T dt{};              ///< the next step [m]
+  int steps_left = 0;  ///< 0: nothing is left to trace
+};
+
+/// A step is the last one if it ends within this share of itself from the face.
+template <class T>
+inline constexpr T landing_margin = T(1) + T(16) * std::numeric_limits<T>::epsilon();
+
+/// False where a step dt along a straight line surely ends short of every face: cheaper than way_out, which divides.
+template <class T>
+GLADSTONE_HD bool may_reach_face(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction, T dt) {
+  Vec3<T> const end = R + direction * (dt * T(1 + 1e-9));
+  return !(end.x > box.low.x && end.x < box.high.x && end.y > box.low.y && end.y < box.high.y && end.z > box.low.z &&
+           end.z < box.high.z);
+}
+
+/// Brings a ray to the face where it enters, and plans its steps.
+template <class T, class Medium>
+GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const& start) {
+  Crossing<T> crossing;
+  MediumPassage<T>& way = crossing.way;
+  Bounds<T> const box = crossing.box = medium.bounds();
+  Chord<T> const chord = chord_in(box, start.position, start.direction);
   way.straight = start.direction;
-  if (!(chord.leave > chord.enter)) return way;
+  if (!(chord.leave > chord.enter)) return crossing;
   way.crossed = true;
 
   Vec3<T> const entry_point = start.position + start.direction * chord.enter;
@@ -203,9 +224,9 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
   way.optical_path = n_ambient * chord.enter;
   if (refracting && chord.entry_axis >= 0) {
     T change = T(0);
-    if (!detail::refract_component(way.straight, n_ambient * n_ambient, n_entry * n_entry, chord.entry_axis, change)) {
+    if (!refract_component(way.straight, n_ambient * n_ambient, n_entry * n_entry, chord.entry_axis, change)) {
       way.status = RayStatus::total_internal_reflection;
-      return way;
+      return crossing;
     }
     way.turn[chord.entry_axis] = change;
   }
@@ -213,28 +234,41 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
   // whole steps, with what remains of the chord halved between the first and the last one
   using std::floor;
   T const chord_t = (chord.leave - chord.enter) / n_entry;
-  T const whole_step = options.step / n_entry;
+  T const whole_step = crossing.whole_step = options.step / n_entry;
   T const whole_steps = floor(chord_t / whole_step + T(1e-6));
   T const rest = chord_t - whole_steps * whole_step;
   // along an endless axis there is no last step to share with, and the rest of the division means nothing
   T const countable = T(1e6);
-  T dt = whole_steps < countable && rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
-  int const most_steps = 64 + 16 * static_cast<int>(whole_steps < countable ? whole_steps : countable);
+  crossing.dt = whole_steps < countable && rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
+  crossing.steps_left = 64 + 16 * static_cast<int>(whole_steps < countable ? whole_steps : countable);
+  return crossing;
+}
 
-  T const tiny = T(16) * std::numeric_limits<T>::epsilon();
-  for (int taken = 0; taken < most_steps; ++taken) {
+/// Takes a ray that has entered to where it leaves.
+template <class T, class Medium>
+GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const& start,
+                               Crossing<T>& crossing) {
+  if (crossing.steps_left == 0) return;
+  MediumPassage<T>& way = crossing.way;
+  Bounds<T> const& box = crossing.box;
+  T const n_ambient = T(1) + options.ambient_refractivity;
+  bool const refracting = options.faces == Faces::refract;
+  T dt = crossing.dt;
+  for (; crossing.steps_left > 0; --crossing.steps_left) {
     Vec3<T> const R = start.position + way.straight * (way.entry + way.t) + way.shift;
     Vec3<T> const direction = way.straight + way.turn;
     Vec3<T> const where =
         options.integrator == Integrator::straight ? start.position + way.straight * (way.entry + way.t) : R;
     Vec3<T> const along = options.integrator == Integrator::straight ? way.straight : direction;
-    detail::WayOut<T> out = detail::way_out(box, where, along);
-    bool landing = out.t <= dt * (T(1) + tiny);
-    T step = landing ? out.t : dt;
+    WayOut<T> out{T(unbounded), 2};
+    if (may_reach_face(box, where, along, dt)) out = way_out(box, where, along);
+    bool landing = out.t <= dt * landing_margin<T>;
+    T step = dt;
+    if (landing) step = out.t;
     StepIncrement<T> add = step_increment(medium, options.integrator, where, along, step);
     if (!landing) {
       Vec3<T> const reached = where + along * step + add.position;
-      if (options.integrator != Integrator::straight && detail::outside(box, reached)) {
+      if (options.integrator != Integrator::straight && outside(box, reached)) {
         // a curved ray left in mid-step: land on the face that it crossed
         landing = true;
         for (int axis = 0; axis < 3; ++axis) {
@@ -265,8 +299,9 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
         add = step_increment(medium, options.integrator, where, along, step);
       }
       if (!landed) {
-        // a grazing ray, bent away from the face that it was heading for: a whole step, or the part of it that stays inside
-        detail::PartialStep<T> const part = detail::bisect_exit(medium, options.integrator, box, {where, along}, dt);
+        // a grazing ray, bent away from the face that it was heading for: a whole step, or the part of it that stays
+        // inside
+        PartialStep<T> const part = bisect_exit(medium, options.integrator, box, {where, along}, dt);
         landing = part.leaves;
         step = part.step;
         add = part.add;
@@ -282,18 +317,77 @@ GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<
         Vec3<T> const leaving = way.straight + way.turn;
         T change = T(0);
         T const n2 = dot(leaving, leaving);
-        if (!detail::refract_component(leaving, n2, n_ambient * n_ambient, out.axis, change)) {
+        if (!refract_component(leaving, n2, n_ambient * n_ambient, out.axis, change)) {
           way.status = RayStatus::total_internal_reflection;
-          return way;
+          return;
         }
         way.turn[out.axis] += change;
       }
-      return way;
+      return;
     }
-    dt = whole_step;
+    dt = crossing.whole_step;
   }
   way.status = RayStatus::lost_in_medium;
-  return way;
+}
+
+}  // namespace detail
+
+/// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step
+/// (first and last step partial and equally long on a straight ray, so that a reversed ray meets the same points),
+/// exactly to the face where it leaves.
+/// @param start any ray in the ambient [m, unit direction]; one that starts inside starts at full index there
+/// @return the passage; status total_internal_reflection or lost_in_medium (trapped) where it does not come out
+template <class T, class Medium>
+GLADSTONE_HD MediumPassage<T> trace_medium(Medium const& medium, TracingOptions<T> const& options,
+                                           Ray<T> const& start) {
+  detail::Crossing<T> crossing = detail::enter_medium(medium, options, start);
+  detail::leave_medium(medium, options, start, crossing);
+  return crossing.way;
+}
+
+/// The same for N rays side by side. A step waits for its own samples of the medium, one after the other; with several
+/// rays in step a processor works on one while another waits.
+template <class T, class Medium, int N>
+GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const (&start)[N],
+                               MediumPassage<T> (&way)[N]) {
+  detail::Crossing<T> crossing[N];
+  bool together = options.integrator == Integrator::rk4;
+  for (int i = 0; i < N; ++i) {
+    crossing[i] = detail::enter_medium(medium, options, start[i]);
+    together &= crossing[i].steps_left > 0;
+  }
+  // as long as all are in mid-medium; what is special about a last step is left to the single ray
+  Vec3<T> R[N], direction[N];
+  T dt[N];
+  StepIncrement<T> add[N];
+  while (together) {
+    for (int i = 0; i < N; ++i) {
+      MediumPassage<T> const& so_far = crossing[i].way;
+      R[i] = start[i].position + so_far.straight * (so_far.entry + so_far.t) + so_far.shift;
+      direction[i] = so_far.straight + so_far.turn;
+      dt[i] = crossing[i].dt;
+      together &= crossing[i].steps_left > 1 && !detail::may_reach_face(crossing[i].box, R[i], direction[i], dt[i]);
+    }
+    if (!together) break;
+    step_increments(medium, R, direction, dt, add);
+    for (int i = 0; i < N; ++i) {
+      together &= !detail::outside(crossing[i].box, R[i] + direction[i] * dt[i] + add[i].position);
+    }
+    if (!together) break;
+    for (int i = 0; i < N; ++i) {
+      MediumPassage<T>& so_far = crossing[i].way;
+      so_far.shift += so_far.turn * dt[i] + add[i].position;
+      so_far.turn += add[i].optical_direction;
+      so_far.optical_path += add[i].optical_path;
+      so_far.t += dt[i];
+      crossing[i].dt = crossing[i].whole_step;
+      --crossing[i].steps_left;
+    }
+  }
+  for (int i = 0; i < N; ++i) {
+    detail::leave_medium(medium, options, start[i], crossing[i]);
+    way[i] = crossing[i].way;
+  }
 }
 
 }  // namespace gladstone

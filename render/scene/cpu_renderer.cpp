@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 
+#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/scene/dot_exposure.h"
@@ -14,6 +15,9 @@
 
 namespace gladstone {
 namespace {
+
+/// Ctrl-C is looked for this often within a dot, whose rays may take seconds.
+constexpr std::uint64_t rays_between_polls = 128;
 
 /// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
 template <class Medium>
@@ -34,8 +38,9 @@ void record_theory(Scene const& scene, SceneView<double> const& view, Medium con
   Vec2d sum{};
   double weight = 0;
   for (std::uint64_t ray = 0; ray < rays; ++ray) {
+    if (ray % rays_between_polls == 0) throw_if_interrupted();
     EmittedRay<double> const emitted = emit(view.sources, view.bundle, dot, ray);
-    if (view.lens.stop_radius >= 0 && length(emitted.pupil) > view.lens.stop_radius) continue;
+    if (!scene.chief_rays_only() && 2 * length(emitted.pupil) > scene.imaging.entrance_pupil) continue;
     sum += emitted.weight * integrate_gradient(medium, emitted.ray, step).levered;
     weight += emitted.weight;
   }
@@ -71,7 +76,10 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
       Vec2d const centre = sources.centre[dot];
       truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
       exposure.begin(plan_dot(scene, spot, pair.scene, dot), targets, light_per_ray);
-      for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) pair({dot, ray}, exposure);
+      for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {
+        if (ray % rays_between_polls == 0) throw_if_interrupted();
+        pair({dot, ray}, exposure);
+      }
       exposure.finish(truth, dot);
       if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);
     }

@@ -131,7 +131,7 @@ DotPlan plan_dot(Scene const& scene, SpotView const* spot, SceneView<double> con
   plan.origin = scene.to_pixel(centre);
   plan.control = spot != nullptr && spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
   // the mean of cos^4 over the stop, whose points are |P|^2 = R^2/2 from the axis in the mean
-  double const stop = view.lens.stop_radius > 0 ? view.lens.stop_radius : 0.0;
+  double const stop = scene.imaging.entrance_pupil / 2;
   double const share = view.bundle.pupil_radius > 0 ? stop / view.bundle.pupil_radius : 1.0;
   double const distance = view.bundle.lens_z - view.sources.plane_z;
   double const spread = 1 + (gladstone::dot(centre, centre) + 0.5 * stop * stop) / (distance * distance);
@@ -278,8 +278,8 @@ DotExposure::DotExposure(Scene const& scene, DotPattern const& sources, SpotView
     : scene_(scene),
       cubature_(cubature),
       with_image_(spot != nullptr),
-      lens_(scene.view().lens),
-      stop_radius_(lens_.stop_radius > 0 ? lens_.stop_radius : 1.0),
+      stop_(scene.aperture_stop()),
+      stop_radius_(scene.chief_rays_only() ? 1.0 : stop_.radius),
       half_size_px_(sources.half_size * scene.imaging.magnification / scene.setup.camera.pixel_pitch) {
   if (spot) patches_.assign(frame_count, LightPatch(*spot));
 }
@@ -352,7 +352,7 @@ void DotExposure::deposit_controlled() {
   for (RayRecord const& ray : rays_) {
     Vec2d const p = plan_.origin + half_size_px_ * ray.place;
     Vec2d const arrival = fit.arrival(ray.pupil, ray.place);
-    double const expected = ray.weight * lens_.transmission(arrival.x, arrival.y);
+    double const expected = ray.weight * (scene_.chief_rays_only() ? 1.0 : stop_.transmission(arrival.x, arrival.y));
     Vec2d const moved = fit.displacement(ray.place, ray.pupil);
     if (moved == ray.displacement && expected == ray.flow_weight) continue;
     if (ray.flow_weight != 0) deposit(Frame::flow, p + ray.displacement, ray.flow_weight);

@@ -195,7 +195,7 @@ class DotExposure {
   SourceCubature const& cubature_;
   bool with_image_;
   DotPlan plan_;
-  ThinLens<double> lens_;
+  ApertureStop<double> stop_;   ///< meaningless for chief rays
   double stop_radius_;          ///< [m]; 1 without a stop
   double half_size_px_ = 0;     ///< of the source's image
   double light_per_weight_ = 0;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/base/random.h"
@@ -33,7 +34,8 @@ template <class Medium>
 Probe probe_dots(Scene const& scene, Medium const& medium, double step) {
   SceneView<double> view = scene.view();
   view.tracing.step = step;
-  view.lens.stop_radius = -1;  // bending matters here, not clipping
+  view.train = {};  // bending matters here, not clipping
+  view.train.append(ThinLens<double>{scene.setup.z_a, scene.setup.lens.focal_length});
   double const rim = scene.imaging.entrance_pupil / 2;
   Vec2d const pupil[5] = {{0, 0}, {rim, 0}, {0, rim}, {-rim, 0}, {0, -rim}};
   int const rays = scene.chief_rays_only() ? 1 : 5;
@@ -43,6 +45,7 @@ Probe probe_dots(Scene const& scene, Medium const& medium, double step) {
   parallel_chunks(scene.dots.centre.size(), 64, [&](std::size_t begin, std::size_t end) {
     double bend = 0;
     for (std::size_t dot = begin; dot < end; ++dot) {
+      throw_if_interrupted();
       Vec2d const centre = scene.dots.centre[dot];
       Vec2d sum{};
       int seen = 0;
@@ -107,7 +110,10 @@ Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium con
   double const scale = scene.light_per_ray(scene.dots);
   TracePair<double, Medium> const pair{view, medium};
   exposure.begin(plan_dot(scene, &spot, pair.scene, dot), nowhere, scale);
-  for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) pair({dot, ray}, exposure);
+  for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {
+    if (ray % 128 == 0) throw_if_interrupted();
+    pair({dot, ray}, exposure);
+  }
   exposure.finish_light();
   Sampled sampled;
   auto const area = static_cast<std::size_t>(window.side * window.side);

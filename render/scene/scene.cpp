@@ -35,19 +35,21 @@ double gigabytes(double bytes) { return bytes / 1e9; }
 
 SceneView<double> Scene::view(DotPattern const& sources) const {
   SceneView<double> seen;
-  double const stop = imaging.entrance_pupil / 2;
   seen.sources = sources.view(-setup.z_d);
   seen.bundle.lens_z = setup.z_a;
   seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : pupil_radius();
   seen.bundle.seed = setup.render.seed;
   seen.bundle.sampling = setup.render.sampling;
-  seen.lens = {setup.z_a, setup.lens.focal_length, chief_rays_only() ? -1.0 : stop, stop_edge()};
+  if (!chief_rays_only()) seen.train.append(aperture_stop());
+  seen.train.append(ThinLens<double>{setup.z_a, setup.lens.focal_length});
   seen.sensor = {setup.z_a + imaging.image_distance, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
   seen.tracing = {step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces};
   return seen;
 }
 
 double Scene::stop_edge() const { return 1.2 / std::pow(static_cast<double>(rays_per_dot), 0.25); }
+
+ApertureStop<double> Scene::aperture_stop() const { return {setup.z_a, imaging.entrance_pupil / 2, stop_edge()}; }
 
 double Scene::pupil_radius() const {
   double const stop = imaging.entrance_pupil / 2;

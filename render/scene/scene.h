@@ -27,6 +27,8 @@ struct Scene {
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
   /// Width of the smoothed zone about the stop's edge, as a share of its area; falls with the number of rays [1].
   double stop_edge() const;
+  /// The stop in the lens plane. @pre not chief_rays_only()
+  ApertureStop<double> aperture_stop() const;
   /// Radius of the disc in the lens plane that rays are sent to [m].
   double pupil_radius() const;
   /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.

@@ -2,7 +2,7 @@
 
 #include "render/light/sources.h"
 #include "render/medium/trace_medium.h"
-#include "render/optics/thin_lens.h"
+#include "render/optics/optical_train.h"
 #include "render/sensor/sensor.h"
 
 namespace gladstone {
@@ -12,7 +12,7 @@ template <class T>
 struct SceneView {
   SourcesView<T> sources;
   BundleView<T> bundle;
-  ThinLens<T> lens;
+  OpticalTrain<T> train;
   Sensor<T> sensor;
   TracingOptions<T> tracing;
 };

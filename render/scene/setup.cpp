@@ -10,9 +10,13 @@
 namespace gladstone {
 namespace {
 
+constexpr double most_steps = 1e6;       // across the medium
+constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
+constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
+
 RenderSetup read_render_setup(SetupTable table) {
   RenderSetup setup;
-  if (auto const rays = table.number_or_auto("rays_per_dot", Range::at_least(1, 1e9))) {
+  if (auto const rays = table.number_or_auto("rays_per_dot", Range::at_least(1, 1e7))) {
     if (*rays != std::floor(*rays)) {
       table.problem("rays_per_dot", "is not a whole number (rays are counted); use a whole number or \"auto\"");
     }
@@ -118,6 +122,11 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                              half / mm));
     }
   }
+  if (setup.medium.step_mm && kind != FieldKind::none && setup.medium.thickness / mm > most_steps * *setup.medium.step_mm) {
+    root.table("medium").problem("step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
+                                                        "most); use \"auto\" or a longer step",
+                                                        setup.medium.thickness / mm / *setup.medium.step_mm, most_steps));
+  }
   double const magnification = setup.imaging().magnification;
   double const px = setup.camera.pixel_pitch / magnification;
   Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
@@ -132,6 +141,12 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
         std::isinf(setup.lens.f_number) || setup.lens.spot == SpotModel::none
             ? 0.0
             : 2.44 * setup.medium.wavelength * setup.lens.f_number * (1 + magnification) / setup.camera.pixel_pitch;
+    double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
+    if (diffraction_px > widest_px) {
+      lens.problem("f_number", fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
+                                           "the lens or focus farther away",
+                                           diffraction_px, widest_px));
+    }
     double const image_px = std::hypot(diameter_px, diffraction_px);
     if (image_px < 2) {
       warnings.push_back(fmt::format(
@@ -149,7 +164,10 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     if (!(count >= 1)) {
       target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
     } else if (count > 4e9) {
-      target.problem("dots_per_32px_window", fmt::format("gives {:.3g} dots (4e9 at most); decrease it", count));
+      target.problem("dots_per_32px_window",
+                     fmt::format("gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
+                                 "decrease it, camera.pixels or target.extent_mm",
+                                 count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
     } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
       target.problem("dots_per_32px_window",
                      fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "

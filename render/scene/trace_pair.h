@@ -35,9 +35,9 @@ template <class T>
 GLADSTONE_HD RayHit<T> through_camera(SceneView<T> const& scene, Ray<T> ray, T weight) {
   RayHit<T> hit;
   hit.weight = weight;
-  hit.status = scene.lens.interact(ray);
-  hit.at_lens = {ray.position.x, ray.position.y};
-  hit.weight *= hit.status == RayStatus::missed_lens ? T(0) : scene.lens.transmission(ray.position.x, ray.position.y);
+  T const to_lens = (scene.bundle.lens_z - ray.position.z) / ray.direction.z;
+  hit.at_lens = {ray.position.x + to_lens * ray.direction.x, ray.position.y + to_lens * ray.direction.y};
+  hit.status = scene.train.carry(ray, hit.weight);
   if (hit.weight == T(0)) return hit;
   T const way = (scene.sensor.z - ray.position.z) / ray.direction.z;
   hit.pixel = scene.sensor.to_pixel(ray.position.x + way * ray.direction.x, ray.position.y + way * ray.direction.y);

@@ -45,7 +45,8 @@ Recording Detector::record(Image<double> const& light, RandomStream stream) cons
       if (noise_.enabled) {
         KeyedEngine engine(noise_.seed, stream, i);
         electrons += noise_.dark_current_e;
-        if (noise_.shot_noise && electrons > 0) {
+        // beyond 1e12 electrons any pixel is full, and the library's Poisson sampling leaves its range
+        if (noise_.shot_noise && electrons > 0 && electrons < 1e12) {
           electrons = static_cast<double>(std::poisson_distribution<long long>(electrons)(engine));
         }
         full = electrons >= noise_.full_well_e;

@@ -4,6 +4,7 @@
 
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
+#include "render/sensor/error_function.h"
 
 namespace gladstone {
 
@@ -13,7 +14,9 @@ struct SpotSize {
   double scale;  ///< N (1 + M) lambda [m]
 
   double first_zero_diameter() const { return 2.43934 * scale; }
-  double matched_sigma() const { return 0.4206042622 * scale; }  ///< Gaussian fitted to the Airy pattern within its first zero
+  double matched_sigma() const {
+    return 0.4206042622 * scale;
+  }  ///< Gaussian fitted to the Airy pattern within its first zero
 };
 
 /// Pixels that one ray's spot touches: columns [column, column + width), rows alike.
@@ -38,22 +41,30 @@ struct GaussianSpot {
     int const half = half_width();
     return {static_cast<int>(floor(p.x + T(0.5))) - half, static_cast<int>(floor(p.y + T(0.5))) - half, 2 * half + 1};
   }
-  /// Shares of `width` pixels from `first` on, along one axis, of light centred at p [px]; they sum to one exactly enough.
+  /// Shares of `width` pixels from `first` on, along one axis, of light centred at p [px]; they sum to one exactly
+  /// enough.
   GLADSTONE_HD void shares(T p, int first, int width, T* out) const {
-    using std::erf;
-    T const scale = T(0.70710678118654752440) / sigma;
-    T before = erf((T(first) - T(0.5) - p) * scale);
-    for (int i = 0; i < width; ++i) {
-      T const after = erf((T(first + i) + T(0.5) - p) * scale);
-      out[i] = T(0.5) * (after - before);
-      before = after;
+    constexpr T offset[8] = {T(-0.5), T(0.5), T(1.5), T(2.5), T(3.5), T(4.5), T(5.5), T(6.5)};
+    using Four = Lanes<T, 4>;
+    Four const scale = Four::all(T(0.70710678118654752440) / sigma);
+    T before{};
+    // edges from the left, eight at a time; pixel i lies between edges i and i + 1
+    for (int edge = 0; edge <= width; edge += 8) {
+      Four const left = Four::all(T(first + edge) - p);
+      Four erf[2] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale};
+      error_function(erf);
+      for (int i = 0; i < 8 && edge + i <= width; ++i) {
+        T const here = erf[i / 4].v[i % 4];
+        if (edge + i > 0) out[edge + i - 1] = T(0.5) * (here - before);
+        before = here;
+      }
     }
   }
 };
 
-/// The Airy pattern integrated over pixels: tabulated over sub-pixel positions, cut at six times N (1 + M) lambda (which
-/// holds 97 % of the light) or three pixels, whichever is more, and renormalised to one.
-/// Between table positions the shares are interpolated linearly, to about 1e-4 of the peak.
+/// The Airy pattern integrated over pixels: tabulated over sub-pixel positions, cut at six times N (1 + M) lambda
+/// (which holds 97 % of the light) or three pixels, whichever is more, and renormalised to one. Between table positions
+/// the shares are interpolated linearly, to about 1e-4 of the peak.
 class AiryTable {
  public:
   struct View {

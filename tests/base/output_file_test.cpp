@@ -190,6 +190,24 @@ TEST_F(OutputFolderTest, WithoutCommitTheOldFolderStays) {
   EXPECT_THAT(names(), ElementsAre("case"));
 }
 
+TEST_F(OutputFolderTest, WhatAUserPutIntoItStaysAndWhatDependsOnTheOldGoes) {
+  std::string const path = in_folder("case");
+  fs::create_directories(path + "/notes/deep");
+  for (std::string const name : {"summary.json", "vectors.h5", "notes.txt", "notes/deep/a.txt"}) {
+    std::ofstream(path + '/' + name) << "old " + name;
+  }
+  fs::create_symlink("nowhere", path + "/link");
+  OutputFolder folder(path, "summary.json", {"vectors.h5"});
+  std::ofstream(folder.temporary_path() + "/summary.json") << "new";
+  folder.commit();
+  EXPECT_EQ(content(path + "/summary.json"), "new");
+  EXPECT_EQ(content(path + "/notes.txt"), "old notes.txt");
+  EXPECT_EQ(content(path + "/notes/deep/a.txt"), "old notes/deep/a.txt");
+  EXPECT_EQ(fs::read_symlink(path + "/link"), "nowhere");
+  EXPECT_FALSE(fs::exists(path + "/vectors.h5"));
+  EXPECT_THAT(names(), ElementsAre("case"));
+}
+
 TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
   std::string const path = in_folder("thesis");
   fs::create_directory(path);

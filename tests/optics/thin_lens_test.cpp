@@ -1,4 +1,4 @@
-#include "render/optics/thin_lens.h"
+#include "render/optics/optical_train.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,17 @@ namespace {
 constexpr double f = 0.105;
 
 /// The lens of Table 1 at z = 0.75 m: 105 mm, f/11.
-ThinLens<double> table1_lens() { return {0.75, f, f / 22}; }
+OpticalTrain<double> table1_lens() {
+  OpticalTrain<double> train;
+  train.append(ApertureStop<double>{0.75, f / 22, 0});
+  train.append(ThinLens<double>{0.75, f});
+  return train;
+}
+
+RayStatus carry(OpticalTrain<double> const& train, Ray<double>& ray) {
+  double weight = 1;
+  return train.carry(ray, weight);
+}
 
 /// The ray from a point to a point of the lens plane.
 Ray<double> ray_between(Vec3d from, Vec2d pupil, double lens_z) {
@@ -64,7 +74,7 @@ TEST(ThinLens, IsStigmaticOnAndOffTheAxis) {
   for (Vec2d const X : {Vec2d{0, 0}, Vec2d{0.02, 0}, Vec2d{-0.03, 0.025}, Vec2d{0.1, -0.2}}) {
     for (Vec2d const pupil : pupil_points(f / 22)) {
       Ray<double> ray = ray_between({X.x, X.y, -0.25}, pupil, 0.75);
-      ASSERT_EQ(table1_lens().interact(ray), RayStatus::alive);
+      ASSERT_EQ(carry(table1_lens(), ray), RayStatus::alive);
       EXPECT_NEAR(length(ray.direction), 1, 1e-15);
       Vec2d const image = meets(ray, 0.75 + z_i);
       EXPECT_NEAR(image.x, -M * X.x, 1e-15);
@@ -81,7 +91,7 @@ TEST(ThinLens, ADefocusedPointIsADiscOfThePupilsShape) {
   Vec3d const X{0.01, -0.005, -0.25};
   for (Vec2d const pupil : pupil_points(f / 22)) {
     Ray<double> ray = ray_between(X, pupil, 0.75);
-    ASSERT_EQ(table1_lens().interact(ray), RayStatus::alive);
+    ASSERT_EQ(carry(table1_lens(), ray), RayStatus::alive);
     Vec2d const hit = meets(ray, 0.75 + sensor);
     EXPECT_NEAR(hit.x, -sensor * X.x + scale * pupil.x, 1e-15);
     EXPECT_NEAR(hit.y, -sensor * X.y + scale * pupil.y, 1e-15);
@@ -93,7 +103,7 @@ TEST(ThinLens, ADefocusedPointIsADiscOfThePupilsShape) {
 TEST(ThinLens, ParallelRaysMeetInTheFocalPlane) {
   for (Vec2d const pupil : pupil_points(f / 22)) {
     Ray<double> ray{{pupil.x - 0.1 * 0.5, pupil.y, 0.25}, normalized(Vec3d{0.1, 0, 1})};
-    ASSERT_EQ(table1_lens().interact(ray), RayStatus::alive);
+    ASSERT_EQ(carry(table1_lens(), ray), RayStatus::alive);
     EXPECT_NEAR(meets(ray, 0.75 + f).x, 0.1 * f, 1e-15);
     EXPECT_NEAR(meets(ray, 0.75 + f).y, 0, 1e-15);
   }
@@ -101,35 +111,51 @@ TEST(ThinLens, ParallelRaysMeetInTheFocalPlane) {
 
 // Rays along the axis keep their distance exactly: the last double at the stop passes, the next one does not.
 TEST(ThinLens, StopsExactlyAtItsRadius) {
-  ThinLens<double> lens = table1_lens();
-  lens.stop_radius = 0.004;
+  ApertureStop<double> const stop{0.75, 0.004, 0};
   auto const status_at = [&](double x) {
     Ray<double> ray{{x, 0, 0}, {0, 0, 1}};
-    return lens.interact(ray);
+    double weight = 1;
+    RayStatus const status = stop.interact(ray, weight);
+    EXPECT_EQ(weight, status == RayStatus::alive ? 1 : 0);
+    return status;
   };
   EXPECT_EQ(status_at(0.004), RayStatus::alive);
   EXPECT_EQ(status_at(-0.004), RayStatus::alive);
   EXPECT_EQ(status_at(0.004 * (1 + 4e-16)), RayStatus::vignetted);
 }
 
+// The edge kernel has moments 1, 0, 0, 0: a parabola in the enclosed area integrates over the smoothed stop as over the sharp one.
+TEST(ApertureStop, SmoothedEdgeIntegratesParabolasExactly) {
+  ApertureStop<double> const smooth{0, 1, 0.3};
+  double sums[4] = {};
+  int const n = 200000;
+  for (int i = 0; i < n; ++i) {
+    double const area = 1.3 * (i + 0.5) / n;
+    double const share = smooth.transmission(std::sqrt(area), 0);
+    for (int k = 0; k < 4; ++k) sums[k] += share * std::pow(area, k) * 1.3 / n;
+  }
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(sums[k], 1.0 / (k + 1), 1e-9) << k;
+}
+
 TEST(ThinLens, WithoutAStopPassesEverything) {
-  ThinLens<double> lens = table1_lens();
-  lens.stop_radius = -1;
   Ray<double> ray{{5, 0, 0}, {0, 0, 1}};
-  EXPECT_EQ(lens.interact(ray), RayStatus::alive);
+  double weight = 1;
+  ThinLens<double> const lens{0.75, f};
+  EXPECT_EQ(lens.interact(ray, weight), RayStatus::alive);
+  EXPECT_EQ(weight, 1);
 }
 
 TEST(ThinLens, IsMissedByRaysThatRunAwayOrAlongIt) {
   for (double const dz : {0.0, -1.0}) {
     Ray<double> ray{{0, 0, 0}, normalized(Vec3d{1, 0, dz})};
-    EXPECT_EQ(table1_lens().interact(ray), RayStatus::missed_lens);
+    EXPECT_EQ(carry(table1_lens(), ray), RayStatus::missed_lens);
   }
 }
 
 // A vignetted ray tells where it met the lens plane, which is how bending at the stop is measured.
 TEST(ThinLens, VignettedRaysEndOnTheLensPlane) {
   Ray<double> ray = ray_between({0, 0, -0.25}, {0.02, 0.01}, 0.75);
-  EXPECT_EQ(table1_lens().interact(ray), RayStatus::vignetted);
+  EXPECT_EQ(carry(table1_lens(), ray), RayStatus::vignetted);
   EXPECT_NEAR(ray.position.x, 0.02, 1e-16);
   EXPECT_NEAR(ray.position.y, 0.01, 1e-16);
   EXPECT_EQ(ray.position.z, 0.75);

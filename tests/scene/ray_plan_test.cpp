@@ -104,7 +104,7 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
   EXPECT_GT(plan.image_error_levels, 0.5);
 }
 
-// The promise: truth to 1e-3 px rms and the picture to half a grey level of 12 bits rms over lit pixels, against 64
+// The promise: truth to 1e-3 px rms and the picture to half a grey level of 12 bits rms over lit pixels, against 16
 // times as many rays of another scrambling. The plan estimates both from four scramblings of 20 dots (120 degrees of
 // freedom in truth: 6.5 %), so three such deviations are allowed.
 TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
@@ -125,7 +125,7 @@ TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
   EXPECT_EQ(plan.rays & (plan.rays - 1), 0u);
   Rendering const chosen = render_all(scene);
   Scene finer = scene;
-  finer.rays_per_dot = 64 * plan.rays;
+  finer.rays_per_dot = 16 * plan.rays;
   finer.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
   Rendering const reference = render_all(finer);
 

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "render/scene/ray_plan.h"
+#include "render/scene/renderer.h"
+#include "render/scene/scene.h"
+
+namespace gladstone::bench {
+
+/// Width of the demo's field at the medium [m].
+inline constexpr double volume_width = 32.7e-3;
+inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
+
+/// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
+inline double smooth_refractivity(Vec3d p, unsigned seed) {
+  double sum = 0;
+  double phase = 0.1 * seed;
+  for (int mode = 1; mode <= 4; ++mode) {
+    Vec3d const k{900.0 + 210 * mode, 1500.0 - 170 * mode, 700.0 + 260 * (mode % 3)};
+    phase += 1.7 + 0.3 * seed;
+    sum += std::sin(k.x * p.x + phase) * std::cos(k.y * p.y - 0.6 * phase) * std::sin(k.z * p.z + 2.1 * phase) / mode;
+  }
+  return ambient_refractivity * (1 + 0.1 * sum);
+}
+
+/// Table 1 with no medium yet and `per_side`^2 dots of 3 px on a square lattice whose rays all cross the volume from
+/// face to face; a fixed number of rays per dot.
+inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot) {
+  Setup setup;
+  setup.target.kind = TargetKind::dots;
+  setup.target.dots_per_32px_window = 1;
+  Scene scene = build_scene(setup);
+  double const edge = 36.0, pitch = (setup.camera.columns - 1 - 2 * edge) / (per_side - 1);
+  scene.dots.centre.clear();
+  for (int j = 0; j < per_side; ++j) {
+    for (int i = 0; i < per_side; ++i)
+      scene.dots.centre.push_back(scene.to_target({edge + i * pitch, edge + j * pitch}));
+  }
+  scene.rays_per_dot = rays_per_dot;
+  return scene;
+}
+
+/// Table 1 through a cube of nodes^3, 32.7 mm wide, RK4 with steps of one cell.
+inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot) {
+  Scene scene = table1_scene(per_side, rays_per_dot);
+  RegularGrid grid;
+  grid.nodes = {nodes, nodes, nodes};
+  double const cell = volume_width / (nodes - 1);
+  grid.spacing = {cell, cell, cell};
+  grid.origin = {-volume_width / 2, -volume_width / 2, -volume_width / 2};
+  auto const fill = [&](int first, int count, std::span<float> out) {
+    std::size_t at = 0;
+    for (int k = first; k < first + count; ++k) {
+      for (int j = 0; j < nodes; ++j) {
+        for (int i = 0; i < nodes; ++i) {
+          Vec3d const node{grid.origin.x + i * cell, grid.origin.y + j * cell, grid.origin.z + k * cell};
+          out[at++] = static_cast<float>(smooth_refractivity(node, 1));
+        }
+      }
+    }
+  };
+  using Volume = RefractiveIndexVolume<float>;
+  auto const volume = std::make_shared<Volume const>(grid, Volume::Interpolation::cubic_bspline, 1.0, 0.0, fill);
+  scene.medium.view = volume->view<double, CubicBspline, 3>(0, 0);
+  scene.medium.owner = volume;
+  scene.medium.grid = grid;
+  scene.medium.finest = scene.medium.coarsest_step = cell;
+  scene.setup.medium.thickness = volume_width;
+  scene.setup.medium.step_mm = cell * 1e3;
+  plan_step(scene);
+  return scene;
+}
+
+/// Table 1 through the late DNS plane, stacked over 10 mm as in the demo.
+inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot) {
+  Scene scene = table1_scene(per_side, rays_per_dot);
+  MediumSetup& medium = scene.setup.medium;
+  medium.field.kind = FieldKind::file;
+  medium.field.file = std::string(GLADSTONE_DATA_DIR) + "/fields/hbdt512_late_slice.h5";
+  medium.field.where = "benchmark";
+  medium.field.scale = 1.225;
+  medium.field.spacing = Vec3d{0.0625e-3, 0.0625e-3, 0.0625e-3};
+  medium.field.extrude = true;
+  medium.field.periodic = {true, true, false};
+  scene.medium = build_medium(medium);
+  medium.step_mm = 2.5;
+  plan_step(scene);
+  return scene;
+}
+
+/// Rays of a rendering in one frame.
+inline double rays_of(Scene const& scene) {
+  return static_cast<double>(scene.dots.centre.size()) * static_cast<double>(scene.rays_per_dot);
+}
+/// RK4 steps that they take, but for their slant (below 0.1 %).
+inline double steps_of(Scene const& scene) {
+  Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+  return rays_of(scene) * std::round((box.high.z - box.low.z) / scene.step);
+}
+
+}  // namespace gladstone::bench

@@ -1,0 +1,52 @@
+#include <benchmark/benchmark.h>
+
+#include "analysis/correlator.h"
+#include "render/base/parallel.h"
+#include "tests/analysis/support/particle_pair.h"
+
+namespace gladstone::bench {
+namespace {
+
+/// Vectors per second on a pair of 1024 x 1024 px with 20 particles a 32 px window and a smooth displacement.
+void correlate(benchmark::State& state, CorrelationSettings const& settings) {
+  static testing::ParticlePair const pair = [] {
+    testing::ParticleSettings particles;
+    particles.columns = particles.rows = 1024;
+    return testing::render_particle_pair(particles, [](Vec2d p) {
+      return Vec2d{1.7 + std::sin(0.01 * p.y), 0.8 * std::cos(0.012 * p.x)};
+    });
+  }();
+  set_thread_count(static_cast<int>(state.range(0)));
+  auto const correlator = make_correlator(settings);
+  std::size_t vectors = 0;
+  for (auto _ : state) vectors = correlator->correlate(pair.reference, pair.flow).position_px.size();
+  set_thread_count(0);
+  state.counters["vectors"] = static_cast<double>(vectors);
+  state.counters["vectors/s"] =
+      benchmark::Counter(static_cast<double>(vectors), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void correlate_single_pass(benchmark::State& state) {
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  correlate(state, settings);
+}
+BENCHMARK(correlate_single_pass)
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
+
+void correlate_multi_pass(benchmark::State& state) { correlate(state, CorrelationSettings{}); }
+BENCHMARK(correlate_multi_pass)
+    ->ArgName("threads")
+    ->Arg(1)
+    ->Arg(2)
+    ->UseRealTime()
+    ->Iterations(3)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gladstone::bench

@@ -1,0 +1,130 @@
+#include <benchmark/benchmark.h>
+
+#include <optional>
+#include <vector>
+
+#include "render/scene/dot_exposure.h"
+#include "render/sensor/diffraction_spot.h"
+#include "tests/benchmarks/bench_scenes.h"
+#include "tests/benchmarks/plain_loop.h"
+
+namespace gladstone::bench {
+namespace {
+
+/// Sobol points, sines and a square root or two: a ray as it leaves its dot.
+void emit_rays(benchmark::State& state) {
+  Scene const scene = table1_scene(8, 64);
+  SceneView<double> const view = scene.view();
+  std::uint64_t ray = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(emit(view.sources, view.bundle, ray / 64 % view.sources.count, ray % 64));
+    ++ray;
+  }
+  state.counters["rays/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(emit_rays);
+
+/// One axis of one ray's light on the sensor, at Table 1's spot.
+void spread_over_pixels(benchmark::State& state) {
+  GaussianSpot<double> const spot{0.275};
+  int const width = 2 * spot.half_width() + 1;
+  std::vector<double> shares(static_cast<std::size_t>(width));
+  double p = 100.0;
+  for (auto _ : state) {
+    spot.shares(p, 100 - spot.half_width(), width, shares.data());
+    benchmark::DoNotOptimize(shares.data());
+    benchmark::ClobberMemory();
+    p = p < 100.49 ? p + 0.001 : 99.51;
+  }
+  state.counters["axes/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(spread_over_pixels);
+
+/// One ray's light gathered around its dot.
+void deposit_spot(benchmark::State& state) {
+  Scene const scene = table1_scene(2, 64);
+  std::optional<AiryTable> airy;
+  LightPatch patch(make_spot(scene, airy));
+  double p = 99.0;
+  for (auto _ : state) {
+    patch.deposit({p, 101.0 - 0.01 * p}, 1.0, nullptr, 1.0);
+    p = p < 101.0 ? p + 0.001 : 99.0;
+  }
+  benchmark::DoNotOptimize(patch);
+  state.counters["deposits/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(deposit_spot);
+
+/// Refractivity and gradient at points one after another, each hanging on the last.
+template <class Medium>
+void sample_in_a_row(benchmark::State& state, Medium const& medium, Vec3d start, Vec3d stride) {
+  Vec3d p = start;
+  int taken = 0;
+  for (auto _ : state) {
+    IndexSample<double> const s = medium.sample(p);
+    p = p + stride + 1e-9 * s.gradient;
+    if (++taken == 60) {
+      p = start;
+      taken = 0;
+    }
+  }
+  benchmark::DoNotOptimize(p);
+  state.counters["samples/s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+void sample_volume(benchmark::State& state) {
+  Scene const scene = volume_scene(64, 2, 1);
+  sample_in_a_row(state, std::get<SplineVolume<double>>(scene.medium.view), {1e-3, 2e-3, -16e-3}, {0, 0, 0.5e-3});
+}
+BENCHMARK(sample_volume);
+void sample_plane(benchmark::State& state) {
+  Scene const scene = plane_scene(2, 1);
+  sample_in_a_row(state, std::get<SplinePlane<double>>(scene.medium.view), {1e-3, 2e-3, -4e-3}, {2e-5, 1e-5, 0.1e-3});
+}
+BENCHMARK(sample_plane);
+
+/// Rays through a 64^3 volume, nothing else.
+void trace_volume(benchmark::State& state) {
+  Scene const scene = volume_scene(64, 32, 64);
+  SceneView<double> const view = scene.view();
+  auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
+  std::vector<Ray<double>> rays;
+  for (std::uint64_t dot = 0; dot < view.sources.count; dot += 7)
+    rays.push_back(emit(view.sources, view.bundle, dot, dot % 64).ray);
+  std::size_t next = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(trace_medium(volume, view.tracing, rays[next]));
+    next = next + 1 < rays.size() ? next + 1 : 0;
+  }
+  state.counters["steps/s"] =
+      benchmark::Counter(63.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(trace_volume);
+
+/// The same, several rays side by side.
+template <int N>
+void trace_volume_together(benchmark::State& state) {
+  Scene const scene = volume_scene(64, 32, 64);
+  SceneView<double> const view = scene.view();
+  auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
+  std::uint64_t bundle = 0;
+  for (auto _ : state) {
+    Ray<double> rays[N];
+    for (int i = 0; i < N; ++i) {
+      rays[i] = emit(view.sources, view.bundle, bundle % view.sources.count, static_cast<std::uint64_t>(i)).ray;
+    }
+    MediumPassage<double> ways[N];
+    trace_medium(volume, view.tracing, rays, ways);
+    benchmark::DoNotOptimize(ways);
+    bundle += 7;
+  }
+  state.counters["steps/s"] =
+      benchmark::Counter(63.0 * N * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(trace_volume_together<2>);
+BENCHMARK(trace_volume_together<4>);
+BENCHMARK(trace_volume_together<8>);
+
+}  // namespace
+}  // namespace gladstone::bench

@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+/// What a case holds, and that it repeats bit for bit (interface.md, Files and Repeatability).
+using Case = Workplace;
+
+std::vector<std::string> keys(nlohmann::json const& object) {
+  std::vector<std::string> names;
+  for (auto const& item : object.items()) names.push_back(item.key());
+  return names;
+}
+
+TEST_F(Case, RenderCorrelateCompareMakeTheFilesOfTheContract) {
+  render("case");
+  EXPECT_THAT(names("case"),
+              UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json"));
+  succeed({"correlate", "case"});
+  EXPECT_TRUE(std::filesystem::exists(in("case/vectors.h5")));
+  EXPECT_THAT(succeed({"compare", "case", "--no-figures"}), HasSubstr("Error budget"));
+  EXPECT_THAT(names("case"), UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json",
+                                                  "vectors.h5", "errors.json"));
+  EXPECT_THAT(names(), UnorderedElementsAre("case", "setup.toml"));
+}
+
+TEST_F(Case, SummaryHasItsKeysAndTheMagnificationOfTheThinLens) {
+  render("case");
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  for (char const* key :
+       {"magnification", "step_mm", "rays_per_dot", "exposure", "gladstone_dale", "device", "rays", "warnings"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+  // f / (Z_B - f) = 105 / 895
+  EXPECT_NEAR(summary["magnification"].get<double>(), 105.0 / 895.0, 1e-15);
+  EXPECT_EQ(summary["rays_per_dot"], 32);
+  EXPECT_EQ(summary["gladstone_dale"], 2.26e-4);
+}
+
+TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
+  render("case");
+  succeed({"correlate", "case"});
+  succeed({"compare", "case", "--no-figures"});
+  auto const errors = nlohmann::json::parse(read("case/errors.json"));
+  for (char const* truth : {"ray_truth", "eq9", "eq9_cone"}) {
+    EXPECT_THAT(keys(errors[truth]),
+                UnorderedElementsAre("count", "valid_fraction", "bias_u_px", "bias_v_px", "random_u_px", "random_v_px",
+                                     "rms_px", "rms_without_gross_px", "p95_px", "gross_fraction"));
+    EXPECT_EQ(errors[truth]["count"], errors["ray_truth"]["count"]) << "one mask serves all comparisons";
+  }
+  auto const& terms = errors["budget"]["terms"];
+  EXPECT_THAT(keys(terms), UnorderedElementsAre("small_angle", "cone", "refraction", "aberration", "window",
+                                                "estimator", "pattern", "noise"));
+  EXPECT_TRUE(terms["pattern"]["rms_px"].is_null()) << "needs repeats";
+  // the chain runs from Eq. 9 to the measurement: its biases add up to that of the measurement against Eq. 9
+  double sum = 0;
+  for (auto const& term : terms) sum += term["bias_u_px"].is_null() ? 0.0 : term["bias_u_px"].get<double>();
+  EXPECT_NEAR(sum, errors["eq9"]["bias_u_px"].get<double>(), 1e-9);
+  EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
+}
+
+TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
+  render("case");
+  succeed({"correlate", "case", "-o", "v.csv"});
+  std::string const text = read("v.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')), "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 49);  // 16 px windows every 8 px: 7 x 7
+  EXPECT_THAT(text, HasSubstr("\n7.5,7.5,"));                     // (ws - 1)/2 from the first pixel
+  // two images with the same settings give the same vectors
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "w.csv", "--set", "correlate.window_px=[32,16]"});
+  EXPECT_EQ(read("w.csv"), text);
+  write("c.toml", "[correlate]\nwindow_px = [32, 16]\n");
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "x.csv", "--config", "c.toml"});
+  EXPECT_EQ(read("x.csv"), text);
+}
+
+TEST_F(Case, SetOnTheCommandLineEqualsTheSameInTheFile) {
+  write("changed.toml",
+        with(with(small_setup, "f_number = 11.0", "f_number = 8.0"), "[20.0, 10.0, 0.0]", "[-30.0, 0.0, 5.0]"));
+  render("file", {}, "changed.toml");
+  render("set", {"--set", "lens.f_number=8", "--set", "medium.field.gradient_kg_m4=[-30.0, 0.0, 5.0]"});
+  expect_same_case("file", "set");
+  EXPECT_EQ(read("file/setup.toml"), read("set/setup.toml"));
+}
+
+TEST_F(Case, TheResolvedSetupRendersTheSameBitsAgain) {
+  write("auto.toml", with(with(small_setup, "rays_per_dot = 32", "rays_per_dot = \"auto\""), "[camera]",
+                          "[camera]\nexposure = \"auto\"\nnoise = { read_noise_e = 5.0 }"));
+  render("first", {}, "auto.toml");
+  std::string const resolved = read("first/setup.toml");
+  EXPECT_THAT(resolved, testing::Not(HasSubstr("\"auto\"")));
+  render("second", {}, "first/setup.toml");
+  expect_same_case("first", "second");
+  EXPECT_EQ(read("second/setup.toml"), resolved);
+}
+
+TEST_F(Case, OneTwoAndSevenThreadsGiveTheSameBits) {
+  for (std::string const threads : {"1", "2", "7"}) {
+    render("case" + threads, {"--threads", threads});
+    succeed({"correlate", "case" + threads, "--threads", threads});
+    succeed({"compare", "case" + threads, "--threads", threads, "--no-figures"});
+    if (threads == "1") continue;
+    expect_same_case("case1", "case" + threads);
+    expect_same_datasets("case1/vectors.h5", "case" + threads + "/vectors.h5");
+    EXPECT_EQ(read("case1/errors.json"), read("case" + threads + "/errors.json"));
+  }
+}
+
+TEST_F(Case, RenderingTwiceGivesTheSame) {
+  render("a");
+  render("b");
+  expect_same_case("a", "b");
+  EXPECT_EQ(read("a/setup.toml"), read("b/setup.toml"));
+}
+
+TEST_F(Case, AnotherSeedOfTheTargetGivesOtherDots) {
+  render("a");
+  render("b", {"--set", "target.seed=8"});
+  EXPECT_NE(Hdf5Reader(in("a/truth.h5").string()).read("/dots/position_m"),
+            Hdf5Reader(in("b/truth.h5").string()).read("/dots/position_m"));
+}
+
+TEST_F(Case, FileNamesStartAtTheSetupWhereverTheProgramRuns) {
+  std::filesystem::create_directories(in("Versuch Nr. 1 – Wärme/daten"));
+  std::filesystem::create_directories(in("elsewhere"));
+  write("Versuch Nr. 1 – Wärme/daten/punkte.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
+  write("Versuch Nr. 1 – Wärme/größe.toml",
+        with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"daten/punkte.csv\""));
+  Outcome const outcome =
+      run({"render", "../Versuch Nr. 1 – Wärme/größe.toml", "-o", "../Versuch Nr. 1 – Wärme/fall ä"}, in("elsewhere"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::string const made = "Versuch Nr. 1 – Wärme/fall ä";
+  EXPECT_EQ(Hdf5Reader(in(made + "/truth.h5").string()).shape("/dots/position_m"), (std::vector<std::size_t>{3, 3}));
+  succeed({"correlate", made});
+  succeed({"compare", made});
+  // the case's own setup finds the file again from its new place
+  render("again", {}, made + "/setup.toml");
+  expect_same_case(made, "again");
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

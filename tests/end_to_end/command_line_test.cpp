@@ -1,0 +1,79 @@
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using CommandLine = Workplace;
+using testing::HasSubstr;
+
+TEST_F(CommandLine, UnknownCommandsAndOptionsNameTheNearest) {
+  expect_refused({"corelate", "case"}, 2, {"unknown command \"corelate\"", "did you mean \"correlate\"?"});
+  expect_refused({"frobnicate"}, 2, {"unknown command \"frobnicate\"", "\"render\""});
+  expect_refused({}, 2, {"no command is named"});
+  expect_refused({"render", "setup.toml", "-o", "case", "--sett", "a=1"}, 2,
+                 {"unknown option \"--sett\"", "\"--set\""});
+  expect_refused({"render", "setup.toml", "more.toml", "-o", "case"}, 2, {"unknown argument \"more.toml\""});
+}
+
+TEST_F(CommandLine, WhatIsRequiredIsNamed) {
+  expect_refused({"render", "setup.toml"}, 2, {"--output is required"});
+  expect_refused({"render", "setup.toml", "-o"}, 2, {"--output"});
+  expect_refused({"trace", "setup.toml", "-o", "out.csv"}, 2, {"--rays is required"});
+  expect_refused({"render", "setup.toml", "-o", "case", "--threads", "-1"}, 2, {"--threads"});
+  expect_refused({"render", "setup.toml", "-o", "case", "--device", "tpu"}, 2, {"--device"});
+}
+
+TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
+  Outcome const version = gladstone({"--version"});
+  if (version.out.find("GPU renderer not part") == std::string::npos) GTEST_SKIP() << "this program has a GPU renderer";
+  for (std::vector<std::string> const& command :
+       {std::vector<std::string>{"render", "setup.toml", "-o", "case"}, {"validate"}}) {
+    auto arguments = command;
+    arguments.insert(arguments.end(), {"--device", "cuda"});
+    expect_refused(arguments, 5, {"device error: ", "use --device cpu or auto"});
+  }
+}
+
+TEST_F(CommandLine, VersionTellsTheBackends) {
+  Outcome const outcome = gladstone({"--version"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("gladstone "), HasSubstr("backends: cpu"), HasSubstr("CUDA")));
+}
+
+TEST_F(CommandLine, EveryHelpHasAnExample) {
+  for (std::string const command : {"render", "correlate", "compare", "trace", "info", "validate", "demo"}) {
+    EXPECT_THAT(succeed({"--help"}), HasSubstr(command));
+    EXPECT_THAT(succeed({command, "--help"}), HasSubstr("Example:\n  gladstone " + command));
+  }
+}
+
+TEST_F(CommandLine, JsonIsOneObjectAndNothingElseForEveryCommand) {
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  auto const rendered = json_of({"render", "setup.toml", "-o", "case"});
+  EXPECT_EQ(rendered, nlohmann::json::parse(read("case/summary.json")));
+  EXPECT_EQ(json_of({"correlate", "case"})["vectors"], 49);
+  auto const compared = json_of({"compare", "case"});
+  EXPECT_EQ(compared, nlohmann::json::parse(read("case/errors.json")));
+  EXPECT_EQ(json_of({"trace", "setup.toml", "--rays", "rays.csv", "-o", "out.csv"})["rays"], 1);
+  EXPECT_EQ(json_of({"info", "image", "case/flow.tif"})["columns"], 64);
+  EXPECT_EQ(json_of({"info", "field", GLADSTONE_DATA_DIR "/fields/hbdt512_late_slice.h5"})["nodes"],
+            nlohmann::json::array({512, 512, 1}));
+}
+
+TEST_F(CommandLine, ValidateMeetsEveryOracle) {
+  auto const json = json_of({"validate"});
+  EXPECT_EQ(json["missed"], 0);
+  EXPECT_GT(json["oracles"].size(), 20u);
+  for (auto const& oracle : json["oracles"]) EXPECT_TRUE(oracle["passed"]) << oracle;
+}
+
+TEST_F(CommandLine, QuietSaysNothingAboutSuccess) {
+  Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--quiet"});
+  EXPECT_EQ(outcome.err, "");
+  Outcome const loud = gladstone({"render", "setup.toml", "-o", "case"});
+  EXPECT_THAT(loud.err, HasSubstr("device: cpu"));
+  EXPECT_THAT(loud.err, testing::Not(HasSubstr("\r"))) << "a progress bar without a terminal";
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

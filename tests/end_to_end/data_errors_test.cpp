@@ -1,0 +1,162 @@
+#include <numeric>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+/// The small setup with a field from a file.
+std::string file_setup(std::string const& file, std::string const& more = "") {
+  return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+              "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [1.0, 1.0, 1.0]\n" + more);
+}
+
+/// Broken fields, images, vectors and cases: exit code 2, file and dataset named, nothing written.
+class DataErrors : public Workplace {
+ protected:
+  void write_field(std::string const& name, std::vector<std::size_t> const& shape,
+                   std::vector<double> const& values) const {
+    Hdf5Writer file(in(name).string(), {"test field", 1, "", 0, "cpu"});
+    file.write("density", values, shape, "kg/m^3", "a field", "z, y, x");
+    file.close();
+  }
+  static std::vector<double> ramp(std::size_t count) {
+    std::vector<double> values(count);
+    std::iota(values.begin(), values.end(), 1.0);
+    return values;
+  }
+};
+
+TEST_F(DataErrors, MissingFieldFileStandsAtItsLine) {
+  std::string const text = file_setup("nowhere.h5");
+  expect_setup_refused(text, {"setup.toml:" + place_of(text, "file = \"nowhere"), "there is no file", "nowhere.h5"});
+}
+
+TEST_F(DataErrors, NotAnHdf5File) {
+  write("field.h5", "this is a text\n");
+  expect_setup_refused(file_setup("field.h5"), {"field.h5: ", "is not an HDF5 file"});
+}
+
+TEST_F(DataErrors, AnHdf5FileCutShort) {
+  write_field("whole.h5", {4, 4, 4}, ramp(64));
+  write("field.h5", read("whole.h5").substr(0, 600));
+  expect_setup_refused(file_setup("field.h5"), {"field.h5: ", "damaged or cut short"});
+}
+
+TEST_F(DataErrors, MissingDatasetListsThoseThatExist) {
+  write_field("field.h5", {4, 4, 4}, ramp(64));
+  expect_setup_refused(file_setup("field.h5", "dataset = \"densitty\""),
+                       {"field.h5: ", "has no dataset \"densitty\"", "did you mean \"density\"?"});
+}
+
+TEST_F(DataErrors, WrongRank) {
+  write_field("field.h5", {8, 8}, ramp(64));
+  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"field.h5: ", "\"density\"", "has rank 2"});
+  write_field("field.h5", {4, 4, 2, 2}, ramp(64));
+  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"holds 2 values a point"});
+}
+
+TEST_F(DataErrors, HolesOfTheDatabaseAreCounted) {
+  auto values = ramp(64);
+  values[3] = values[17] = values[40] = -999.9;
+  write_field("field.h5", {4, 4, 4}, values);
+  expect_setup_refused(file_setup("field.h5"), {"field.h5: ", "\"density\"", "3 of 64 points are holes"});
+}
+
+TEST_F(DataErrors, TruncatedNrrd) {
+  std::string const header =
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\nspacings: 1 1 1\n\n";
+  write("field.nrrd", header + std::string(100, '\0'));  // of 256 bytes
+  expect_setup_refused(file_setup("field.nrrd"), {"field.nrrd: ", "256"});
+  write("field.nrrd", "NRRD0004\ntype: float\n");
+  expect_setup_refused(file_setup("field.nrrd"), {"field.nrrd"});
+}
+
+TEST_F(DataErrors, FieldOfUnknownFormat) {
+  write("field.vtk", "# vtk DataFile");
+  expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "known are .h5"});
+}
+
+TEST_F(DataErrors, DotsInsideAVolume) {
+  write_field("field.h5", {4, 4, 4}, ramp(64));
+  expect_setup_refused(with(file_setup("field.h5"), "[1.0, 1.0, 1.0]", "[1.0, 1.0, 200.0]"),
+                       {"lie inside the volume", "z_d_mm"});
+}
+
+TEST_F(DataErrors, DotsFromABrokenTable) {
+  auto const refused = [&](std::string const& table, std::string const& piece) {
+    write("dots.csv", table);
+    std::string const text = with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\"");
+    expect_setup_refused(text, {piece});
+  };
+  refused("x,y\n1,2\n", "dots.csv:1: ");
+  refused("x_mm,y_mm\n1,2\n1,two\n", "dots.csv:3: \"1,two\" is not two finite numbers");
+  refused("x_mm,y_mm\n1,2,3\n", "dots.csv:2: ");
+  refused("x_mm,y_mm\n", "holds no dots");
+}
+
+TEST_F(DataErrors, ImagesOfDifferentSize) {
+  write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
+  write_tiff(in("b.tif").string(), Image<std::uint16_t>(64, 48), {});
+  expect_refused({"correlate", "a.tif", "b.tif", "-o", "v.csv"}, 2, {"b.tif: is 64 x 48 px but a.tif is 64 x 64"});
+}
+
+TEST_F(DataErrors, ImagesSmallerThanAWindow) {
+  write_tiff(in("a.tif").string(), Image<std::uint16_t>(20, 20), {});
+  expect_refused({"correlate", "a.tif", "a.tif", "-o", "v.csv"}, 2, {"a.tif: is 20 x 20 px", "correlate.window_px"});
+}
+
+TEST_F(DataErrors, WhatIsNoImage) {
+  write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
+  expect_refused({"correlate", "a.tif", "setup.toml", "-o", "v.h5"}, 2, {"setup.toml: cannot be read as a picture"});
+  expect_refused({"correlate", "a.tif", "nowhere.tif", "-o", "v.h5"}, 2, {"nowhere.tif: does not exist"});
+  write("cut.tif", read("a.tif").substr(0, 300));
+  expect_refused({"correlate", "a.tif", "cut.tif", "-o", "v.h5"}, 2, {"cut.tif: "});
+}
+
+TEST_F(DataErrors, VectorsNeedAPlaceAndAKnownEnding) {
+  write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
+  expect_refused({"correlate", "a.tif", "a.tif"}, 2, {"two images need -o"});
+  expect_refused({"correlate", "a.tif", "a.tif", "-o", "v.txt"}, 2, {"v.txt: ", ".h5 nor .csv"});
+}
+
+TEST_F(DataErrors, AFolderThatIsNoCase) {
+  std::filesystem::create_directory(in("folder"));
+  for (std::string const command : {"correlate", "compare"}) {
+    expect_refused({command, "folder"}, 2, {"folder: is not a case (it holds no setup.toml)", "gladstone render"});
+    expect_refused({command, "nowhere"}, 2, {"nowhere: "});
+  }
+}
+
+TEST_F(DataErrors, CompareWithoutVectors) {
+  render("case");
+  expect_refused({"compare", "case"}, 2, {"case/vectors.h5: does not exist"});
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: "});
+}
+
+TEST_F(DataErrors, DamagedTruth) {
+  render("case");
+  succeed({"correlate", "case"});
+  std::string const whole = read("case/truth.h5");
+  write("case/truth.h5", whole.substr(0, whole.size() / 2));
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: ", "damaged or cut short"});
+  write("case/truth.h5", "rubbish");
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not an HDF5 file"});
+  write("case/truth.h5", read("case/vectors.h5"));
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: has no dataset \"/dots/"});
+}
+
+TEST_F(DataErrors, GarbageAmongTheVectorsHasItsLine) {
+  render("case");
+  write("v.csv", "x,y,u,v\n10,10,0.1,0.2\n20,10,a lot,0.2\n");
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:3: u = \"a lot\" is not a number"});
+  write("v.csv", "x,y,u,v\n10,10,0.1\n");
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:2: 3 fields where the header names 4 columns"});
+  write("v.csv", "");
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:1: the file is empty"});
+  write("v.csv", "x,y,u,v\n10,10,nan,nan\n");
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: has no vector that can be compared"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

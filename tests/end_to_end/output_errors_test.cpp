@@ -1,0 +1,137 @@
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Places that cannot be written and runs that are broken off: the old output stays, and nothing else.
+class OutputErrors : public Workplace {
+ protected:
+  /// A rendering of minutes, stopped in the middle.
+  Outcome interrupt_a_rendering(int signal) const {
+    Program program({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_);
+    for (int wait = 0; wait < 1000 && !is_rendering(); ++wait) std::this_thread::sleep_for(10ms);
+    EXPECT_TRUE(is_rendering());
+    std::this_thread::sleep_for(300ms);
+    program.send(signal);
+    return program.finish(2s);
+  }
+  bool is_rendering() const {
+    auto const all = names();
+    return std::any_of(all.begin(), all.end(),
+                       [](std::string const& name) { return name.starts_with(".case.partial-"); });
+  }
+};
+
+TEST_F(OutputErrors, AFileInThePath) {
+  expect_refused({"render", "setup.toml", "-o", "setup.toml/case"}, 2, {"setup.toml", "Not a directory"});
+  expect_refused({"render", "setup.toml", "-o", "setup.toml"}, 2, {"setup.toml: is a file; name a folder"});
+}
+
+TEST_F(OutputErrors, APlaceWhereNothingCanBeMade) {
+  expect_refused({"render", "setup.toml", "-o", "/proc/nowhere/case"}, 2, {"/proc/nowhere: ", "choose a place"});
+}
+
+TEST_F(OutputErrors, SomebodyElsesFolderIsLeftAlone) {
+  std::filesystem::create_directory(in("thesis"));
+  write("thesis/chapter1.tex", "precious");
+  expect_refused({"render", "setup.toml", "-o", "thesis"}, 2, {"thesis: is not empty and was not made by gladstone"});
+}
+
+TEST_F(OutputErrors, ReadOnlyFolder) {
+  std::filesystem::create_directory(in("locked"));
+  std::filesystem::permissions(in("locked"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec |
+                                                 std::filesystem::perms::others_read |
+                                                 std::filesystem::perms::others_exec);
+  auto const without_privileges = [] { return ::geteuid() != 0 || (::setgid(65534) == 0 && ::setuid(65534) == 0); };
+  Outcome const outcome = run({"render", "setup.toml", "-o", "locked/case"}, folder_, without_privileges);
+  if (outcome.exit_code == 126) GTEST_SKIP() << "the program cannot be run without root's rights from here";
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              testing::AllOf(testing::HasSubstr("locked/case: the folder cannot be made (Permission denied)"),
+                             testing::HasSubstr("choose a folder that you may write to")));
+  EXPECT_TRUE(names("locked").empty());
+}
+
+TEST_F(OutputErrors, FullDiskLeavesTheOldCase) {
+  // a disk of 64 kB in a mount namespace of its own: truth.h5 and two images are more
+  pid_t const child = ::fork();
+  if (child == 0) {
+    std::filesystem::create_directory(in("disk"));
+    bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                         ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                         ::mount("none", in("disk").c_str(), "tmpfs", 0, "size=64k") == 0;
+    if (!mounted) ::_exit(77);
+    std::filesystem::create_directory(in("disk/case"));
+    write("disk/case/setup.toml", "old");
+    Outcome const outcome = run({"render", "setup.toml", "-o", "disk/case"}, folder_);
+    write("stderr", outcome.err);
+    bool const as_before = names("disk") == std::vector<std::string>{"case"} &&
+                           names("disk/case") == std::vector<std::string>{"setup.toml"} &&
+                           read("disk/case/setup.toml") == "old";
+    ::_exit(outcome.exit_code == 2 ? (as_before ? 0 : 1) : 2);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here; see FilesThatMayNotGrow";
+  EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
+  EXPECT_THAT(read("stderr"), testing::HasSubstr("No space left on device"));
+}
+
+TEST_F(OutputErrors, FilesThatMayNotGrow) {
+  render("case");
+  auto const before = everything();
+  auto const limited = [] {
+    rlimit const limit{4096, 4096};
+    return ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
+  };
+  Outcome const outcome = run({"render", "setup.toml", "-o", "case", "--set", "render.seed=2"}, folder_, limited);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err << outcome.signal;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("cannot be written"));
+  EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
+}
+
+TEST_F(OutputErrors, ControlCInMidRenderLeavesNothingWithinTwoSeconds) {
+  for (int const signal : {SIGINT, SIGTERM}) {
+    Outcome const outcome = interrupt_a_rendering(signal);
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("interrupted"));
+    EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
+  }
+}
+
+TEST_F(OutputErrors, ControlCLeavesTheOldCaseAsItWas) {
+  render("case");
+  succeed({"correlate", "case"});
+  auto const before = everything();
+  EXPECT_EQ(interrupt_a_rendering(SIGINT).exit_code, 130);
+  EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
+}
+
+TEST_F(OutputErrors, WhatAKilledRunLeftIsClearedAwayByTheNext) {
+  interrupt_a_rendering(SIGKILL);
+  EXPECT_TRUE(is_rendering());
+  render("case");
+  EXPECT_FALSE(is_rendering());
+}
+
+TEST_F(OutputErrors, RenderingAgainKeepsWhatTheUserAddedAndDropsWhatWasMeasured) {
+  render("case");
+  succeed({"correlate", "case"});
+  std::filesystem::create_directory(in("case/plots"));
+  write("case/notes.txt", "mine");
+  write("case/plots/a.dat", "mine too");
+  render("case", {"--set", "target.seed=8"});
+  EXPECT_EQ(read("case/notes.txt"), "mine");
+  EXPECT_EQ(read("case/plots/a.dat"), "mine too");
+  EXPECT_FALSE(std::filesystem::exists(in("case/vectors.h5")));
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

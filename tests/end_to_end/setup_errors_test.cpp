@@ -1,0 +1,143 @@
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+/// Bad setups: exit code 2, the place, what is wrong, what to do, and no case folder.
+class SetupErrors : public Workplace {
+ protected:
+  /// The small setup with `old` replaced is refused at the place of `at`, with these words.
+  void refused(std::string const& old, std::string const& replacement, std::string const& at,
+               std::vector<std::string> pieces) {
+    std::string const text = with(small_setup, old, replacement);
+    pieces.insert(pieces.begin(), "setup.toml:" + place_of(text, at) + ": ");
+    expect_setup_refused(text, pieces);
+  }
+};
+
+TEST_F(SetupErrors, MisspeltKeyNamesTheNearest) {
+  refused("f_number", "fnumber", "fnumber", {"unknown key \"fnumber\" in [lens]", "did you mean \"f_number\"?"});
+}
+
+TEST_F(SetupErrors, MisspeltTableNamesTheNearest) {
+  refused("[lens]", "[lense]", "lense", {"unknown table [lense]", "did you mean [lens]?"});
+}
+
+TEST_F(SetupErrors, WrongTypeSaysWhatItIsAndWhatItMustBe) {
+  refused("f_number = 11.0", "f_number = \"11\"", "f_number", {"must be a number (it is a text)", "without quotes"});
+  refused("[64, 64]", "[64.5, 64]", "pixels", {"value 1, 64.5, must be a whole number"});
+  refused("[64, 64]", "64", "pixels", {"must be an array of 2 whole numbers"});
+}
+
+TEST_F(SetupErrors, SyntaxErrorHasLineAndColumn) {
+  write("setup.toml", with(small_setup, "f_number = 11.0", "f_number = = 11.0"));
+  expect_refused({"render", "setup.toml", "-o", "case"}, 2, {"setup.toml:10:"});
+}
+
+TEST_F(SetupErrors, NanIsNoNumber) {
+  refused("f_number = 11.0", "f_number = nan", "f_number", {"must be a number (nan is none)"});
+}
+
+TEST_F(SetupErrors, NegativePitch) {
+  refused("pixel_pitch_um = 10.0", "pixel_pitch_um = -10.0", "pixel_pitch_um", {"-10", "must be greater than 0"});
+}
+
+TEST_F(SetupErrors, ZeroPixels) { refused("[64, 64]", "[0, 64]", "pixels", {"value 1, 0, must be at least 1"}); }
+
+TEST_F(SetupErrors, AbsurdSizeIsRefusedWithItsMemoryBeforeItIsAllocated) {
+  // 1e12 pixels, two frames of 18 bytes: 36 TB
+  std::string text = with(small_setup, "[64, 64]", "[1000000, 1000000]");
+  text = with(text, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.001");
+  auto const start = std::chrono::steady_clock::now();
+  expect_setup_refused(text, {"needs 3.6e+04 GB of memory", "reduce camera.pixels"});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  refused("[64, 64]", "[1000000, 1000000]", "dots_per_32px_window", {"GB of memory", "camera.pixels"});
+}
+
+TEST_F(SetupErrors, UnknownKindListsThoseThatExist) {
+  refused("\"uniform_gradient\"", "\"uniform_gradiant\"", "kind",
+          {"\"gaussian_plume\"", "did you mean \"uniform_gradient\"?"});
+}
+
+TEST_F(SetupErrors, DotsInsideTheField) {
+  refused("z_d_mm = 250.0", "z_d_mm = 4.0", "z_d_mm", {"the dots lie inside the medium", "increase z_d_mm beyond 5"});
+}
+
+TEST_F(SetupErrors, LensInsideTheField) { refused("z_a_mm = 750.0", "z_a_mm = 4.0", "z_a_mm", {"increase z_a_mm"}); }
+
+TEST_F(SetupErrors, FocusIsImpossible) {
+  refused("focal_length_mm = 105.0", "focal_length_mm = 1000.0", "z_a_mm", {"focus is impossible"});
+}
+
+TEST_F(SetupErrors, WindowLargerThanTheImage) {
+  refused("[32, 16]", "[128, 16]", "window_px", {"a window of 128 px is larger than the image of 64 x 64 px"});
+}
+
+TEST_F(SetupErrors, TargetSmallerThanTheView) {
+  refused("[target]", "[target]\nextent_mm = [1.0, 1.0]", "extent_mm", {"is larger than the target"});
+}
+
+TEST_F(SetupErrors, DiffractionSpotBeyondReasonAndStepsWithoutEnd) {
+  refused("f_number = 11.0", "f_number = 1e300", "f_number", {"diffraction spot", "open the lens"});
+  refused("[medium.field]", "[medium]\nstep_mm = 1e-300\n[medium.field]", "step_mm", {"use \"auto\" or a longer step"});
+}
+
+TEST_F(SetupErrors, MissingSetupFile) {
+  expect_refused({"render", "nowhere.toml", "-o", "case"}, 2,
+                 {"nowhere.toml: cannot be read (No such file or directory)"});
+}
+
+TEST_F(SetupErrors, AFolderIsNoSetup) {
+  std::filesystem::create_directory(in("folder"));
+  expect_refused({"render", "folder", "-o", "case"}, 2, {"folder: cannot be read (it is a folder)"});
+}
+
+TEST_F(SetupErrors, BinaryRubbishIsNoSetup) {
+  write("setup.toml", std::string("\x00\xff\xfe\x80rubbish\x00", 12));
+  expect_refused({"render", "setup.toml", "-o", "case"}, 2, {"setup.toml:1:"});
+}
+
+TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
+  std::string text = with(small_setup, "pixel_pitch_um = 10.0", "pixel_pitch_um = -10.0");
+  text = with(text, "f_number = 11.0", "fnumber = 11.0");
+  text = with(text, "rays_per_dot = 32", "rays_per_dot = 0.5");
+  write("setup.toml", text);
+  Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--set", "lens.psf=square"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  std::size_t last = 0;
+  for (std::string const& where :
+       {"setup.toml:" + place_of(text, "pixel_pitch_um"), "setup.toml:" + place_of(text, "fnumber"),
+        "setup.toml:" + place_of(text, "rays_per_dot"), std::string("--set lens.psf=square")}) {
+    std::size_t const at = outcome.err.find(where);
+    ASSERT_NE(at, std::string::npos) << where << " in\n" << outcome.err;
+    EXPECT_GE(at, last) << outcome.err;
+    last = at;
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
+}
+
+TEST_F(SetupErrors, WhatIsDueLaterIsRefusedByName) {
+  refused("\"bos\"", "\"piv\"", "experiment", {"\"piv\" is not available yet"});
+  refused("[lens]", "[lens]\nmodel = \"prescription\"", "model", {"\"prescription\" is not available yet"});
+  refused("[render]", "[render]\nprecision = \"single\"", "precision", {"\"single\" is not available yet"});
+  refused("[correlate]", "[correlate]\nmethod = \"rpc\"", "method", {"\"rpc\" is not available yet", "use \"scc\""});
+  std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
+  expect_setup_refused(two, {"several cameras, which is not available yet"});
+  expect_setup_refused(std::string(small_setup) + "[velocity]\nkind = \"uniform\"\n",
+                       {"velocity", "not available yet"});
+}
+
+TEST_F(SetupErrors, SetWithoutSenseIsRefusedAsSuch) {
+  auto const refuse = [&](std::string const& assignment, std::string const& piece) {
+    expect_refused({"render", "setup.toml", "-o", "case", "--set", assignment}, 2, {"--set " + assignment, piece});
+  };
+  refuse("lens.f_number", "has no \"=\"");
+  refuse("lens.f_number=", "has no value");
+  refuse("=3", "has an empty key");
+  refuse("lens.fnumber=3", "did you mean \"f_number\"?");
+  refuse("lens.f_number=-3", "must be greater than 0");
+  refuse("schema.deep=1", "not a table");
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

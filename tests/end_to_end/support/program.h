@@ -1,0 +1,94 @@
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace gladstone::end_to_end {
+
+inline std::string content(std::filesystem::path const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// How a run of the program ended.
+struct Outcome {
+  int exit_code = -1;  ///< -1: it was killed
+  int signal = 0;      ///< that killed it
+  std::string out;     ///< stdout
+  std::string err;     ///< stderr
+};
+
+/// The executable, run as a shell runs it.
+class Program {
+ public:
+  /// @param folder  working directory
+  /// @param prepare run in the child before the program replaces it; false: give up with exit code 126
+  Program(std::vector<std::string> arguments, std::filesystem::path const& folder,
+          std::function<bool()> const& prepare = {}) {
+    char name[] = "/tmp/gladstone_streams_XXXXXX";
+    streams_ = ::mkdtemp(name);
+    arguments.insert(arguments.begin(), GLADSTONE_PROGRAM);
+    std::vector<char*> argv;
+    for (auto& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    std::string const out = (streams_ / "out").string(), err = (streams_ / "err").string();
+    child_ = ::fork();
+    if (child_ != 0) return;
+    int const out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    int const err_file = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    ::dup2(out_file, STDOUT_FILENO);
+    ::dup2(err_file, STDERR_FILENO);
+    if (::chdir(folder.c_str()) != 0 || (prepare && !prepare())) ::_exit(126);
+    ::execv(argv[0], argv.data());
+    ::_exit(126);
+  }
+  ~Program() {
+    if (child_ > 0) finish(std::chrono::seconds(0));
+    std::error_code ignored;
+    std::filesystem::remove_all(streams_, ignored);
+  }
+  Program(Program const&) = delete;
+  Program& operator=(Program const&) = delete;
+
+  void send(int signal) const { ::kill(child_, signal); }
+
+  /// Waits for the end; what outlives the limit is killed.
+  Outcome finish(std::chrono::milliseconds limit) {
+    auto const end = std::chrono::steady_clock::now() + limit;
+    int status = 0;
+    while (::waitpid(child_, &status, WNOHANG) == 0) {
+      if (std::chrono::steady_clock::now() >= end) {
+        ::kill(child_, SIGKILL);
+        ::waitpid(child_, &status, 0);
+        break;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    child_ = 0;
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+            content(streams_ / "out"), content(streams_ / "err")};
+  }
+
+ private:
+  std::filesystem::path streams_;
+  pid_t child_ = 0;
+};
+
+/// Runs the program to its end, at most 60 s.
+inline Outcome run(std::vector<std::string> arguments, std::filesystem::path const& folder,
+                   std::function<bool()> const& prepare = {}) {
+  return Program(std::move(arguments), folder, prepare).finish(std::chrono::seconds(60));
+}
+
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "render/base/hdf5_file.h"
+#include "render/base/image_file.h"
+#include "tests/end_to_end/support/program.h"
+
+namespace gladstone::end_to_end {
+
+/// A small experiment that renders in a tenth of a second: 64 x 64 px in a uniform gradient.
+inline constexpr char const* small_setup = R"(schema = 1
+experiment = "bos"
+
+[camera]
+pixels = [64, 64]
+pixel_pitch_um = 10.0
+
+[lens]
+focal_length_mm = 105.0
+f_number = 11.0
+
+[geometry]
+z_a_mm = 750.0
+z_d_mm = 250.0
+
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [20.0, 10.0, 0.0]
+
+[target]
+dots_per_32px_window = 10.0
+
+[render]
+rays_per_dot = 32
+
+[correlate]
+window_px = [32, 16]
+)";
+
+/// A setup with one part of its text exchanged.
+inline std::string with(std::string text, std::string const& old, std::string const& replacement) {
+  auto const at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), replacement);
+}
+
+/// "line:column" of a piece of text, as the program counts them.
+inline std::string place_of(std::string const& text, std::string const& piece) {
+  auto const at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  auto const line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1;
+  auto const start = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  return std::to_string(line) + ':' + std::to_string(start == std::string::npos ? at + 1 : at - start);
+}
+
+/// A fresh folder for each test in which the program runs.
+class Workplace : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("gladstone_") + info->test_suite_name() + '_' + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    write("setup.toml", small_setup);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path in(std::string const& name) const { return folder_ / name; }
+  void write(std::string const& name, std::string const& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string read(std::string const& name) const { return content(folder_ / name); }
+
+  Outcome gladstone(std::vector<std::string> arguments) const { return run(std::move(arguments), folder_); }
+
+  /// Runs what has to succeed; its stdout.
+  std::string succeed(std::vector<std::string> arguments) const {
+    Outcome const outcome = gladstone(std::move(arguments));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  }
+  /// The one JSON object on stdout.
+  nlohmann::json json_of(std::vector<std::string> arguments) const {
+    arguments.emplace_back("--json");
+    std::string const out = succeed(std::move(arguments));
+    auto const json = nlohmann::json::parse(out, nullptr, false);
+    EXPECT_TRUE(json.is_object()) << out;
+    return json;
+  }
+  /// Renders the setup into a case with more arguments.
+  void render(std::string const& name, std::vector<std::string> const& more = {},
+              std::string const& setup = "setup.toml") const {
+    std::vector<std::string> arguments{"render", setup, "-o", name, "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    succeed(arguments);
+  }
+
+  /// Everything in the folder: path to content; folders end in '/'.
+  std::map<std::string, std::string> everything() const {
+    std::map<std::string, std::string> found;
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      std::string const name = std::filesystem::relative(entry.path(), folder_).string();
+      entry.is_directory() ? found[name + '/'] = "" : found[name] = content(entry.path());
+    }
+    return found;
+  }
+
+  /// The command fails with this code, its message contains each of these, stdout stays empty and no file changes.
+  void expect_refused(std::vector<std::string> const& arguments, int code,
+                      std::vector<std::string> const& pieces) const {
+    auto const before = everything();
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err << " (signal " << outcome.signal << ')';
+    for (auto const& piece : pieces) EXPECT_THAT(outcome.err, testing::HasSubstr(piece));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_TRUE(everything() == before) << "files changed: " << testing::PrintToString(names());
+  }
+  /// Rendering this setup text is refused as bad input.
+  void expect_setup_refused(std::string const& text, std::vector<std::string> const& pieces) const {
+    write("setup.toml", text);
+    expect_refused({"render", "setup.toml", "-o", "case"}, 2, pieces);
+  }
+
+  std::vector<std::string> names(std::string const& folder = ".") const {
+    std::vector<std::string> found;
+    for (auto const& entry : std::filesystem::directory_iterator(folder_ / folder))
+      found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  /// Two cases hold the same pixels and the same truth, bit for bit.
+  void expect_same_case(std::string const& a, std::string const& b) const {
+    for (std::string const image : {"/reference.tif", "/flow.tif"}) {
+      Image<double> const one = read_image(in(a + image).string()), other = read_image(in(b + image).string());
+      ASSERT_EQ(one.columns(), other.columns());
+      EXPECT_TRUE(std::equal(one.begin(), one.end(), other.begin(), other.end())) << a << b << image;
+    }
+    expect_same_datasets(a + "/truth.h5", b + "/truth.h5");
+  }
+  void expect_same_datasets(std::string const& a, std::string const& b) const {
+    Hdf5Reader const one(in(a).string()), other(in(b).string());
+    auto const datasets = datasets_of(one, a);
+    for (auto const& name : datasets) {
+      auto const x = one.read(name), y = other.read(name);
+      ASSERT_EQ(x.size(), y.size()) << name;
+      EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << a << ' ' << b << ' ' << name;
+    }
+  }
+  static std::vector<std::string> datasets_of(Hdf5Reader const& file, std::string const& name) {
+    if (name.find("truth") == std::string::npos) return file.dataset_names();
+    return {"/dots/position_m", "/dots/reference_px", "/dots/displacement_px", "/dots/displacement_std_px",
+            "/dots/rays",       "/dots/eq9_px",       "/dots/eq9_cone_px",     "/rays/status"};
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,202 @@
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+/// Other targets, sensors, apertures and media than the small setup's.
+class Variants : public Workplace {
+ protected:
+  std::vector<double> dataset(std::string const& name, std::string const& of = "case") const {
+    return Hdf5Reader(in(of + "/truth.h5").string()).read(name);
+  }
+  Image<double> image(std::string const& name) const { return read_image(in(name).string()); }
+  static double largest(Image<double> const& picture) { return *std::max_element(picture.begin(), picture.end()); }
+};
+
+TEST_F(Variants, ChiefRaysOfAPinholeMoveByEq9InAUniformGradient) {
+  render("case", {"--set", "lens.f_number=inf"});
+  auto const rays = dataset("/dots/displacement_px"), eq9 = dataset("/dots/eq9_px"),
+             spread = dataset("/dots/displacement_std_px");
+  ASSERT_EQ(rays.size(), eq9.size());
+  // Eq. 9 is the leading order; what it leaves out is of relative order theta^2 + gradient * thickness ~ 1e-5 of 0.1
+  // px, and the finite view angle (field 4 mm off axis in 1 m) less
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_NEAR(rays[i], eq9[i], 1e-5);
+  // the hits spread over the disc's image only: a disc of radius 1.5 px has a standard deviation of 0.75 px per axis,
+  // which 32 points give to about 4 %
+  for (double const value : spread) EXPECT_NEAR(value, 0.75, 0.1);
+}
+
+TEST_F(Variants, PointsOfATableStandWhereItSays) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n1.5,-0.5\r\n");
+  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  render("case", {}, "points.toml");
+  auto const position = dataset("/dots/position_m"), reference = dataset("/dots/reference_px");
+  ASSERT_EQ(position.size(), 6u);
+  EXPECT_NEAR(position[3], 1.5e-3, 1e-18);
+  EXPECT_NEAR(position[4], -0.5e-3, 1e-18);
+  // pixel (64 - 1)/2 + M x / p, rows downwards; a disc sampled by 32 rays is centred to a few hundredths of a pixel
+  double const scale = 105.0 / 895.0 / 10e-6;
+  EXPECT_NEAR(reference[2], 31.5 + 1.5e-3 * scale, 0.2);
+  EXPECT_NEAR(reference[3], 31.5 + 0.5e-3 * scale, 0.2);
+}
+
+TEST_F(Variants, RegularDotsFormALattice) {
+  for (std::string const key : {"target.arrangement=regular", "target.kind=grid"}) {
+    render("case", {"--set", key});
+    auto const position = dataset("/dots/position_m");
+    // equal steps along the first row
+    double const pitch = position[3] - position[0];
+    EXPECT_GT(pitch, 0);
+    EXPECT_NEAR(position[6] - position[3], pitch, 1e-15);
+    EXPECT_EQ(position[1], position[4]);
+  }
+}
+
+TEST_F(Variants, APictureAsTarget) {
+  Image<std::uint16_t> picture(16, 16, 0);
+  for (int i = 4; i < 12; ++i) picture(i, 8) = 65535;  // a bar, left to right
+  write_tiff(in("bar.tif").string(), picture, {});
+  write("picture.toml",
+        with(small_setup, "dots_per_32px_window = 10.0", "kind = \"image\"\nfile = \"bar.tif\"\nextent_mm = [8, 8]"));
+  render("case", {}, "picture.toml");
+  Image<double> const seen = image("case/reference.tif");
+  // 8 mm are 93.9 px: the bar, 4 mm by 0.5 mm just below the middle, reaches from column 8 to 55 around row 34
+  EXPECT_GT(seen(31, 34), 0.5 * largest(seen));
+  EXPECT_EQ(seen(31, 10), 0);
+  EXPECT_EQ(seen(2, 34), 0);
+}
+
+TEST_F(Variants, DarkDotsAreBrightOnesTakenFromWhite) {
+  render("bright", {"--set", "camera.exposure=20000"});
+  render("dark", {"--set", "camera.exposure=20000", "--set", "target.polarity=dark"});
+  Image<double> const bright = image("bright/reference.tif"), dark = image("dark/reference.tif");
+  // white paper on the axis is 20000 / 30000 of full scale; cos^4 takes 4 (3.8 mm / 1 m)^2 = 6e-5 of it, 3 levels, and
+  // either picture is rounded
+  double const white = 20000.0 / 30000.0 * 65535;
+  for (std::size_t i = 0; i < bright.size(); ++i) EXPECT_NEAR(bright.data()[i] + dark.data()[i], white, 6);
+}
+
+TEST_F(Variants, NoiseRepeatsWithItsSeedAndDiffersBetweenFrames) {
+  std::string const still =
+      with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", "kind = \"none\"");
+  write("noise.toml", with(still, "[lens]", "[camera.noise]\nread_noise_e = 20.0\nseed = 3\n[lens]"));
+  render("a", {}, "noise.toml");
+  render("b", {}, "noise.toml");
+  expect_same_case("a", "b");
+  render("c", {"--set", "camera.noise.seed=4"}, "noise.toml");
+  auto const differing = [](Image<double> const& one, Image<double> const& other) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) count += one.data()[i] != other.data()[i];
+    return count;
+  };
+  // read noise of 44 levels: equal values in two frames are rare, but half of the dark pixels clip at zero in each
+  EXPECT_GT(differing(image("a/reference.tif"), image("a/flow.tif")), 64u * 64u / 2);
+  EXPECT_GT(differing(image("a/reference.tif"), image("c/reference.tif")), 64u * 64u / 2);
+  // without a medium and without noise the frames are equal
+  write("still.toml", still);
+  render("d", {}, "still.toml");
+  EXPECT_EQ(differing(image("d/reference.tif"), image("d/flow.tif")), 0u);
+}
+
+TEST_F(Variants, EightAndTwelveBitsAreStoredUnshifted) {
+  for (int const bits : {8, 12, 16}) {
+    render("case", {"--set", "camera.bit_depth=" + std::to_string(bits)});
+    ImageMetadata metadata;
+    double const reference = largest(read_image(in("case/reference.tif").string(), &metadata));
+    double const flow = largest(image("case/flow.tif"));
+    double const full_scale = std::pow(2.0, bits) - 1;
+    EXPECT_EQ(metadata.bit_depth, bits);
+    EXPECT_NEAR(metadata.pixel_pitch_m, 10e-6, 1e-9);
+    EXPECT_NE(metadata.description.find("bit_depth = " + std::to_string(bits)), std::string::npos);
+    EXPECT_NEAR(std::max(reference, flow), 0.9 * full_scale, 0.51);  // auto exposure, rounded
+  }
+}
+
+/// A density ramp of 20 kg/m^4 along x about the ambient density, as a volume and as a plane.
+class FieldFiles : public Variants {
+ protected:
+  static constexpr int side = 17, depth = 5;  // nodes, 0.5 and 2.5 mm apart: 8 mm by 10 mm
+  static float ramp(int i) { return 1.225f + 20.0f * 0.5e-3f * static_cast<float>(i - side / 2); }
+  std::string setup(std::string const& file, std::string const& more) const {
+    return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                "kind = \"file\"\nfile = \"" + file + "\"\n" + more);
+  }
+  void expect_the_ramp(std::string const& name, std::string const& text) const {
+    write("ramp.toml", text);
+    render(name, {}, "ramp.toml");
+    // the same gradient in closed form, ray by ray; floats of 1.2 kg/m^3 are good to 6e-8, 20 kg/m^4 0.5 mm to 1e-5 of
+    // it
+    render("exact", {"--set", "medium.field.gradient_kg_m4=[20.0, 0.0, 0.0]"});
+    auto const u = dataset("/dots/displacement_px", name), exact = dataset("/dots/displacement_px", "exact");
+    auto const position = dataset("/dots/position_m", name);
+    ASSERT_EQ(u.size(), exact.size());
+    for (std::size_t dot = 0; dot < u.size() / 2; ++dot) {
+      // rays reach the medium within 3/4 of the dot's distance from the axis and 1.2 mm of cone
+      double const reach = 0.75 * std::max(std::abs(position[3 * dot]), std::abs(position[3 * dot + 1])) + 1.4e-3;
+      if (reach < 4e-3) {
+        EXPECT_NEAR(u[2 * dot], exact[2 * dot], 2e-5 * std::abs(exact[2 * dot]) + 1e-7);
+      }
+    }
+  }
+};
+
+TEST_F(FieldFiles, NrrdVolumeBendsAsTheGradientItHolds) {
+  std::string data =
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 17 17 5\nendian: little\nencoding: raw\nspacings: 0.5 0.5 2.5\n\n";
+  for (int k = 0; k < depth; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        float const value = ramp(i);
+        data.append(reinterpret_cast<char const*>(&value), sizeof value);
+      }
+    }
+  }
+  write("ramp.nrrd", data);
+  expect_the_ramp("case", setup("ramp.nrrd", ""));
+}
+
+TEST_F(FieldFiles, Hdf5PlaneExtrudedBendsAsTheGradientItHolds) {
+  std::vector<double> values;
+  for (int j = 0; j < side; ++j) {
+    for (int i = 0; i < side; ++i) values.push_back(ramp(i));
+  }
+  Hdf5Writer file(in("ramp.h5").string(), {"test field", 1, "", 0, "cpu"});
+  file.write("rho", values, {1, side, side, 1}, "kg/m^3", "ramp along x", "z, y, x, component");
+  file.close();
+  expect_the_ramp("case", setup("ramp.h5", "extrude = true\nspacing_mm = [0.5, 0.5, 0.5]"));
+}
+
+TEST_F(Variants, OddButPossibleSetupsRender) {
+  for (std::vector<std::string> const& odd :
+       {std::vector<std::string>{"camera.pixels=[4, 4]", "correlate.window_px=[4]"},
+        {"camera.pixels=[200, 33]"},
+        {"render.rays_per_dot=1"},
+        {"target.dots_per_32px_window=0.1"},
+        {"target.dot_diameter_px=0"},
+        {"medium.thickness_mm=1e-9"},
+        {"correlate.overlap=0.95"},
+        {"camera.bit_depth=1"},
+        {"camera.exposure=1e30", "camera.noise.shot_noise=true"},
+        {"lens.focus=medium"},
+        {"lens.psf=airy"},
+        {"lens.psf=none"},
+        {"medium.step_mm=1e300"}}) {
+    std::vector<std::string> arguments;
+    for (auto const& key : odd) arguments.insert(arguments.end(), {"--set", key});
+    render("case", arguments);
+    for (double const pixel : image("case/flow.tif")) ASSERT_TRUE(pixel >= 0 && pixel <= 65535) << odd.front();
+    for (double const value : dataset("/dots/eq9_px")) ASSERT_TRUE(std::isfinite(value)) << odd.front();
+  }
+}
+
+TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
+  Outcome const outcome =
+      gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[1e300, 0, 0]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("dots are not seen in one of the frames"));
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
