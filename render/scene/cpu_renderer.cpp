@@ -76,10 +76,12 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
       Vec2d const centre = sources.centre[dot];
       truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
       exposure.begin(plan_dot(scene, spot, pair.scene, dot), targets, light_per_ray);
-      for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {
+      std::uint64_t ray = 0;
+      for (; ray + 2 <= scene.rays_per_dot; ray += 2) {
         if (ray % rays_between_polls == 0) throw_if_interrupted();
-        pair({dot, ray}, exposure);
+        pair.template together<2>({dot, ray}, exposure);
       }
+      if (ray < scene.rays_per_dot) pair({dot, ray}, exposure);
       exposure.finish(truth, dot);
       if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);
     }

@@ -45,16 +45,21 @@ GLADSTONE_HD RayHit<T> through_camera(SceneView<T> const& scene, Ray<T> ray, T w
   return hit;
 }
 
-/// One ray in the flow frame: through the medium, then through the camera.
-template <class T, class Medium>
-GLADSTONE_HD RayHit<T> follow(SceneView<T> const& scene, Medium const& medium, Ray<T> const& start, T weight) {
-  MediumPassage<T> const way = trace_medium(medium, scene.tracing, start);
+/// From where a ray leaves the medium through the camera.
+template <class T>
+GLADSTONE_HD RayHit<T> after_medium(SceneView<T> const& scene, Ray<T> const& start, MediumPassage<T> const& way, T weight) {
   if (way.status != RayStatus::alive) {
     RayHit<T> lost;
     lost.status = way.status;
     return lost;
   }
   return through_camera(scene, apparent_ray(start, way), weight);
+}
+
+/// One ray in the flow frame: through the medium, then through the camera.
+template <class T, class Medium>
+GLADSTONE_HD RayHit<T> follow(SceneView<T> const& scene, Medium const& medium, Ray<T> const& start, T weight) {
+  return after_medium(scene, start, trace_medium(medium, scene.tracing, start), weight);
 }
 
 /// The one per-ray function of the renderer, for every device: emits a ray once and follows it through both frames.
@@ -70,6 +75,23 @@ struct TracePair {
     RayHit<T> const reference = through_camera(scene, emitted.ray, emitted.weight);
     RayHit<T> const flow = follow(scene, medium, emitted.ray, emitted.weight);
     exposure.record(emitted, reference, flow);
+  }
+
+  /// N rays of a source from ray i on, side by side: faster on a processor that works ahead.
+  template <int N, class Exposure>
+  GLADSTONE_HD void together(RayIndex i, Exposure& exposure) const {
+    EmittedRay<T> emitted[N];
+    Ray<T> start[N];
+    for (int k = 0; k < N; ++k) {
+      emitted[k] = emit(scene.sources, scene.bundle, i.source, i.ray + static_cast<std::uint64_t>(k));
+      start[k] = emitted[k].ray;
+    }
+    MediumPassage<T> way[N];
+    trace_medium(medium, scene.tracing, start, way);
+    for (int k = 0; k < N; ++k) {
+      exposure.record(emitted[k], through_camera(scene, start[k], emitted[k].weight),
+                      after_medium(scene, start[k], way[k], emitted[k].weight));
+    }
   }
 };
 
