@@ -48,6 +48,33 @@ template <class T, class Medium>
   return {n * s.gradient, n * n};
 }
 
+/// Sharma's three samples of a step for N rays, stage by stage, so that no ray's samples wait for another's.
+/// @param bent 1: rk4; 0: the gradients are taken along the undeflected ray
+template <class T, class Medium, int N>
+GLADSTONE_HD void step_increments(Medium const& medium, T bent, Vec3<T> const (&R)[N], Vec3<T> const (&direction)[N],
+                                  T const (&dt)[N], StepIncrement<T> (&add)[N]) {
+  Force<T> first[N], middle[N], last[N];
+  GLADSTONE_UNROLL
+  for (int i = 0; i < N; ++i) first[i] = force_at<T>(medium, R[i]);
+  GLADSTONE_UNROLL
+  for (int i = 0; i < N; ++i) {
+    Vec3<T> const A = first[i].d * dt[i];
+    middle[i] = force_at<T>(medium, R[i] + (T(0.5) * direction[i] + (bent * T(0.125)) * A) * dt[i]);
+  }
+  GLADSTONE_UNROLL
+  for (int i = 0; i < N; ++i) {
+    Vec3<T> const B = middle[i].d * dt[i];
+    last[i] = force_at<T>(medium, R[i] + (direction[i] + (bent * T(0.5)) * B) * dt[i]);
+  }
+  T const sixth = T(1.0 / 6.0);
+  GLADSTONE_UNROLL
+  for (int i = 0; i < N; ++i) {
+    Vec3<T> const A = first[i].d * dt[i], B = middle[i].d * dt[i], C = last[i].d * dt[i];
+    add[i] = {(sixth * dt[i]) * (A + T(2) * B), sixth * (A + T(4) * B + C),
+              (sixth * dt[i]) * (first[i].n2 + T(4) * middle[i].n2 + last[i].n2), last[i].d};
+  }
+}
+
 /// The increments of one step of the ray equation d2R/dt2 = n grad n, dt = ds/n.
 /// rk4: Sharma, Kumar & Ghatak, Appl. Opt. 21 (1982) 984; Rajendran et al. eqs. 3-6, where the printed step is Sharma's
 /// dt, not arc length, and T_n is T_i.
@@ -57,44 +84,15 @@ template <class T, class Medium>
 template <class T, class Medium>
 GLADSTONE_HD StepIncrement<T> step_increment(Medium const& medium, Integrator integrator, Vec3<T> R, Vec3<T> direction,
                                              T dt) {
-  Force<T> const first = force_at<T>(medium, R);
-  Vec3<T> const A = first.d * dt;
-  if (integrator == Integrator::euler) return {{}, A, first.n2 * dt, first.d};
-  // bent = 0 takes the gradients along the undeflected ray
-  T const bent = integrator == Integrator::rk4 ? T(1) : T(0);
-  Force<T> const middle = force_at<T>(medium, R + (T(0.5) * direction + (bent * T(0.125)) * A) * dt);
-  Vec3<T> const B = middle.d * dt;
-  Force<T> const last = force_at<T>(medium, R + (direction + (bent * T(0.5)) * B) * dt);
-  Vec3<T> const C = last.d * dt;
-  T const sixth = T(1.0 / 6.0);
-  return {(sixth * dt) * (A + T(2) * B), sixth * (A + T(4) * B + C),
-          (sixth * dt) * (first.n2 + T(4) * middle.n2 + last.n2), last.d};
-}
-
-/// step_increment with rk4 for N rays, stage by stage, so that no ray's samples wait for another's.
-template <class T, class Medium, int N>
-GLADSTONE_HD void step_increments(Medium const& medium, Vec3<T> const (&R)[N], Vec3<T> const (&direction)[N],
-                                  T const (&dt)[N], StepIncrement<T> (&add)[N]) {
-  Force<T> first[N], middle[N], last[N];
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) first[i] = force_at<T>(medium, R[i]);
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const A = first[i].d * dt[i];
-    middle[i] = force_at<T>(medium, R[i] + (T(0.5) * direction[i] + T(0.125) * A) * dt[i]);
+  if (integrator == Integrator::euler) {
+    Force<T> const force = force_at<T>(medium, R);
+    return {{}, force.d * dt, force.n2 * dt, force.d};
   }
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const B = middle[i].d * dt[i];
-    last[i] = force_at<T>(medium, R[i] + (direction[i] + T(0.5) * B) * dt[i]);
-  }
-  T const sixth = T(1.0 / 6.0);
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const A = first[i].d * dt[i], B = middle[i].d * dt[i], C = last[i].d * dt[i];
-    add[i] = {(sixth * dt[i]) * (A + T(2) * B), sixth * (A + T(4) * B + C),
-              (sixth * dt[i]) * (first[i].n2 + T(4) * middle[i].n2 + last[i].n2), last[i].d};
-  }
+  Vec3<T> const from[1] = {R}, along[1] = {direction};
+  T const step[1] = {dt};
+  StepIncrement<T> add[1];
+  step_increments(medium, integrator == Integrator::rk4 ? T(1) : T(0), from, along, step, add);
+  return add[0];
 }
 
 /// One whole step: the state after Sharma's dt.

@@ -177,10 +177,6 @@ template <class T, class Medium>
   return part;
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// A ray under way: its passage so far, and the steps that are left to take.
 template <class T>
 struct Crossing {
@@ -369,7 +365,7 @@ GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& op
       together &= crossing[i].steps_left > 1 && !detail::may_reach_face(crossing[i].box, R[i], direction[i], dt[i]);
     }
     if (!together) break;
-    step_increments(medium, R, direction, dt, add);
+    step_increments(medium, T(1), R, direction, dt, add);
     for (int i = 0; i < N; ++i) {
       together &= !detail::outside(crossing[i].box, R[i] + direction[i] * dt[i] + add[i].position);
     }

@@ -25,7 +25,8 @@ struct OpticalTrain {
       }
       RayStatus const here = elements[i].visit([&](auto const& element) { return element.interact(ray, weight); });
       if (here != RayStatus::alive) status = here;
-      if (weight == T(0) || (here != RayStatus::alive && here != RayStatus::vignetted)) return status;
+      if (here != RayStatus::alive && here != RayStatus::vignetted) weight = T(0);
+      if (weight == T(0)) return status;
     }
     return status;
   }

@@ -16,9 +16,6 @@
 namespace gladstone {
 namespace {
 
-/// Ctrl-C is looked for this often within a dot, whose rays may take seconds.
-constexpr std::uint64_t rays_between_polls = 128;
-
 /// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
 template <class Medium>
 void record_theory(Scene const& scene, SceneView<double> const& view, Medium const& medium, std::size_t dot,
@@ -76,12 +73,7 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
       Vec2d const centre = sources.centre[dot];
       truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
       exposure.begin(plan_dot(scene, spot, pair.scene, dot), targets, light_per_ray);
-      std::uint64_t ray = 0;
-      for (; ray + 2 <= scene.rays_per_dot; ray += 2) {
-        if (ray % rays_between_polls == 0) throw_if_interrupted();
-        pair.template together<2>({dot, ray}, exposure);
-      }
-      if (ray < scene.rays_per_dot) pair({dot, ray}, exposure);
+      trace_dot(pair, dot, scene.rays_per_dot, exposure);
       exposure.finish(truth, dot);
       if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);
     }

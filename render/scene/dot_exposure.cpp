@@ -121,7 +121,7 @@ SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, doub
 
 SourceCubature make_cubature(Scene const& scene, DotPattern const& sources, SpotView const& spot) {
   double const half_size_px = sources.half_size * scene.imaging.magnification / scene.setup.camera.pixel_pitch;
-  double const spot_px = spot.model == SpotModel::airy ? 0.42 * scene.spot_scale_px() : spot.gaussian.sigma;
+  double const spot_px = spot.model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot.gaussian.sigma;
   return SourceCubature::make(sources.shape, half_size_px, spot_px);
 }
 
@@ -250,19 +250,18 @@ Vec2d FlowFit::arrival(Vec2d pupil, Vec2d place) const {
          place.y * bend_[4];
 }
 
-Vec2d FlowFit::pupil_of(Vec2d arrival, Vec2d place) const {
-  Vec2d const q = arrival - bend_[0] - place.x * bend_[3] - place.y * bend_[4];
-  double const a = 1 + bend_[1].x / stop_radius_, b = bend_[2].x / stop_radius_;
-  double const c = bend_[1].y / stop_radius_, d = 1 + bend_[2].y / stop_radius_;
-  double const scale = 1 / (a * d - b * c);
-  return {scale * (d * q.x - b * q.y), scale * (a * q.y - c * q.x)};
+FlowFit::Jacobian FlowFit::arrival_by_pupil() const {
+  return {1 + bend_[1].x / stop_radius_, bend_[2].x / stop_radius_, bend_[1].y / stop_radius_, 1 + bend_[2].y / stop_radius_};
 }
 
-double FlowFit::area_ratio() const {
-  double const a = 1 + bend_[1].x / stop_radius_, b = bend_[2].x / stop_radius_;
-  double const c = bend_[1].y / stop_radius_, d = 1 + bend_[2].y / stop_radius_;
-  return 1 / (a * d - b * c);
+Vec2d FlowFit::pupil_of(Vec2d arrival, Vec2d place) const {
+  Vec2d const q = arrival - bend_[0] - place.x * bend_[3] - place.y * bend_[4];
+  Jacobian const j = arrival_by_pupil();
+  double const scale = 1 / j.determinant();
+  return {scale * (j.d * q.x - j.b * q.y), scale * (j.a * q.y - j.c * q.x)};
 }
+
+double FlowFit::area_ratio() const { return 1 / arrival_by_pupil().determinant(); }
 
 double FlowFit::pupil_spread() const {
   Vec2d const centre = displacement({}, {});

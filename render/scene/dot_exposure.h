@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/base/image.h"
+#include "render/base/interrupt.h"
 #include "render/optics/lens_setup.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/scene.h"
@@ -150,7 +151,12 @@ class FlowFit {
   Vec2d bend_[bend_terms];
 
   static int basis(Vec2d place, Vec2d pupil, std::size_t rays, bool extended, double* value);
-
+  /// d arrival / d pupil: [[a, b], [c, d]] and its determinant.
+  struct Jacobian {
+    double a, b, c, d;
+    double determinant() const { return a * d - b * c; }
+  };
+  Jacobian arrival_by_pupil() const;
 };
 
 /// Gathers everything that one dot's rays leave behind; TracePair's Exposure on the CPU. One object a thread, one dot
@@ -206,5 +212,19 @@ class DotExposure {
   StatusCounts statuses_{};
   double largest_bend2_ = 0;
 };
+
+/// Ctrl-C is looked for this often within a dot, whose rays may take seconds.
+inline constexpr std::uint64_t rays_between_polls = 128;
+
+/// Traces the first `rays` rays of a dot in order, two side by side. @throws Interrupted
+template <class Medium>
+void trace_dot(TracePair<double, Medium> const& pair, std::uint64_t dot, std::uint64_t rays, DotExposure& exposure) {
+  std::uint64_t ray = 0;
+  for (; ray + 2 <= rays; ray += 2) {
+    if (ray % rays_between_polls == 0) throw_if_interrupted();
+    pair.template together<2>({dot, ray}, exposure);
+  }
+  if (ray < rays) pair({dot, ray}, exposure);
+}
 
 }  // namespace gladstone

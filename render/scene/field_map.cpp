@@ -66,21 +66,20 @@ StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
 }
 
 StrainMap map_strain(Scene const& scene) {
-  StrainMap map;
   CameraSetup const& camera = scene.setup.camera;
   // the cone smooths what lies between the points of a coarse lattice; chief rays see everything, but need one ray a
   // point
   bool const chief = scene.chief_rays_only();
   int const larger = std::max(camera.columns, camera.rows);
-  map.spacing_px = chief ? std::max(1, larger / 512) : std::max(4, larger / 128);
-  int const columns = std::max(3, camera.columns / map.spacing_px), rows = std::max(3, camera.rows / map.spacing_px);
+  int const spacing_px = chief ? std::max(1, larger / 512) : std::max(4, larger / 128);
+  int const columns = std::max(3, camera.columns / spacing_px), rows = std::max(3, camera.rows / spacing_px);
   Image<Vec2d> displacement(columns, rows);
   std::uint64_t const rays = chief ? 1 : 64;
   DotPattern points;
   points.centre.resize(displacement.size());
   for (std::size_t i = 0; i < points.centre.size(); ++i) {
     int const column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    points.centre[i] = scene.to_target({map.spacing_px * (column + 0.5), map.spacing_px * (row + 0.5)});
+    points.centre[i] = scene.to_target({spacing_px * (column + 0.5), spacing_px * (row + 0.5)});
   }
   SceneView<double> view = scene.view(points);
   view.bundle.pupil_radius = scene.imaging.entrance_pupil / 2;
@@ -104,7 +103,7 @@ StrainMap map_strain(Scene const& scene) {
       },
       scene.medium.view);
 
-  return strain_of(displacement, map.spacing_px);
+  return strain_of(displacement, spacing_px);
 }
 
 }  // namespace gladstone

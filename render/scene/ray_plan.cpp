@@ -110,10 +110,7 @@ Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium con
   double const scale = scene.light_per_ray(scene.dots);
   TracePair<double, Medium> const pair{view, medium};
   exposure.begin(plan_dot(scene, &spot, pair.scene, dot), nowhere, scale);
-  for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {
-    if (ray % 128 == 0) throw_if_interrupted();
-    pair({dot, ray}, exposure);
-  }
+  trace_dot(pair, dot, scene.rays_per_dot, exposure);
   exposure.finish_light();
   Sampled sampled;
   auto const area = static_cast<std::size_t>(window.side * window.side);

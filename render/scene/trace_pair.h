@@ -63,7 +63,7 @@ GLADSTONE_HD RayHit<T> follow(SceneView<T> const& scene, Medium const& medium, R
 }
 
 /// The one per-ray function of the renderer, for every device: emits a ray once and follows it through both frames.
-/// `Exposure` has deposit(Frame, RayHit) for the images and record_truth(source, emitted, reference, flow) for the centroids.
+/// `Exposure` has record(emitted, reference, flow), which keeps what images and truth need.
 template <class T, class Medium>
 struct TracePair {
   SceneView<T> scene;
