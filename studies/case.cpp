@@ -22,9 +22,11 @@ void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
   for (int window : loaded.correlate.window_px) {
     if (window <= std::min(camera.columns, camera.rows)) continue;
-    loaded.document.root().table("correlate").problem(
-        "window_px", fmt::format("a window of {} px is larger than the image of {} x {} px; use smaller windows", window,
-                                 camera.columns, camera.rows));
+    loaded.document.root()
+        .table("correlate")
+        .problem("window_px",
+                 fmt::format("a window of {} px is larger than the image of {} x {} px; use smaller windows", window,
+                             camera.columns, camera.rows));
   }
 }
 
@@ -66,22 +68,25 @@ PreparedCase prepare_case(CaseSetup& loaded) {
   Scene& scene = prepared.scene;
   prepared.step = plan_step(scene);
   if (prepared.step.change_px >= 1e-4) {
-    warn(prepared.warnings,
-         fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
-                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
+    warn(
+        prepared.warnings,
+        fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
+                    prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
   prepared.rays = plan_rays(scene);
   if (!prepared.rays.converged) {
-    warn(prepared.warnings, fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
-                                        "{:.2g} px; set render.rays_per_dot higher if that matters",
-                                        prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
-                                        prepared.rays.truth_error_px));
+    warn(prepared.warnings,
+         fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
+                     "{:.2g} px; set render.rays_per_dot higher if that matters",
+                     prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
+                     prepared.rays.truth_error_px));
   }
   if (loaded.setup.medium.field.kind != FieldKind::none) {
     prepared.strain = map_strain(scene);
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,
-           fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach the lens (images "
+           fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach "
+                       "the lens (images "
                        "of dots fold over there); reduce Z_D or the gradients, or leave these vectors out",
                        100 * prepared.strain.caustic_fraction));
     }
@@ -119,23 +124,27 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   Recording const reference = detector.record(rendered.rendering.light.reference, RandomStream::noise_reference);
   Recording const flow = detector.record(rendered.rendering.light.flow, RandomStream::noise_flow);
   if (reference.saturated + flow.saturated > 0) {
-    warn(prepared.warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
-                                        reference.saturated, flow.saturated));
+    warn(prepared.warnings,
+         fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
+                     reference.saturated, flow.saturated));
   }
   auto const place = [&](char const* name) { return (fs::path(output.temporary_path()) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
   write_tiff(place(case_file::reference), reference.image, metadata);
   write_tiff(place(case_file::flow), flow.image, metadata);
   FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
-  write_truth(place(case_file::truth), scene, rendered.rendering.truth, rendered.rendering.statuses, map_field(scene, 4), origin);
+  write_truth(place(case_file::truth), scene, rendered.rendering.truth, rendered.rendering.statuses,
+              map_field(scene, 4), origin);
   OutputFile::write_text(place(case_file::setup), resolved);
 
-  auto const unseen = std::count_if(rendered.rendering.truth.displacement_px.begin(),
-                                    rendered.rendering.truth.displacement_px.end(), [](Vec2d d) { return std::isnan(d.x); });
+  auto const unseen =
+      std::count_if(rendered.rendering.truth.displacement_px.begin(), rendered.rendering.truth.displacement_px.end(),
+                    [](Vec2d d) { return std::isnan(d.x); });
   if (unseen > 0) {
-    warn(prepared.warnings, fmt::format("{} of {} dots are not seen in one of the frames: the flow bends their rays past the lens "
-                                        "(their truth is nan); reduce the gradients or Z_D",
-                                        unseen, scene.dots.centre.size()));
+    warn(prepared.warnings,
+         fmt::format("{} of {} dots are not seen in one of the frames: the flow bends their rays past the lens "
+                     "(their truth is nan); reduce the gradients or Z_D",
+                     unseen, scene.dots.centre.size()));
   }
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
@@ -144,14 +153,16 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
       {"rays_per_dot", prepared.rays.rays},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
-      {"spot", {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
-                {"first_zero_diameter_px", SpotSize{scene.spot_scale_px()}.first_zero_diameter()}}},
+      {"spot",
+       {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
+        {"first_zero_diameter_px", SpotSize{scene.spot_scale_px()}.first_zero_diameter()}}},
       {"dots", scene.dots.centre.size()},
       {"dots_unseen", unseen},
       {"device", renderer.device()},
-      {"rays", {{"traced", rendered.rendering.rays},
-                {"reference", status_counts(rendered.rendering.statuses, 0)},
-                {"flow", status_counts(rendered.rendering.statuses, 1)}}},
+      {"rays",
+       {{"traced", rendered.rendering.rays},
+        {"reference", status_counts(rendered.rendering.statuses, 0)},
+        {"flow", status_counts(rendered.rendering.statuses, 1)}}},
       {"pupil_margin_mm", scene.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", reference.saturated}, {"flow", flow.saturated}}},
@@ -174,7 +185,8 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
 std::string in_case(std::string const& folder, std::string const& name) {
   namespace fs = std::filesystem;
   if (!fs::exists(fs::path(folder) / case_file::setup)) {
-    throw DataError(folder, "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
+    throw DataError(folder,
+                    "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
   }
   return (fs::path(folder) / name).string();
 }

@@ -41,7 +41,7 @@ PreparedCase prepare_case(CaseSetup& loaded);
 /// A rendered case in memory.
 struct RenderedCase {
   Rendering rendering;
-  double exposure_e = 0;      ///< electrons in a fully lit pixel on the axis
+  double exposure_e = 0;  ///< electrons in a fully lit pixel on the axis
   double seconds = 0;
 };
 

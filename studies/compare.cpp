@@ -22,8 +22,10 @@ namespace {
 nlohmann::json number(double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr); }
 
 nlohmann::json term_json(BudgetTerm const& term) {
-  nlohmann::json json{{"bias_u_px", number(term.bias_u_px)},     {"bias_v_px", number(term.bias_v_px)},
-                      {"random_u_px", number(term.random_u_px)}, {"random_v_px", number(term.random_v_px)},
+  nlohmann::json json{{"bias_u_px", number(term.bias_u_px)},
+                      {"bias_v_px", number(term.bias_v_px)},
+                      {"random_u_px", number(term.random_u_px)},
+                      {"random_v_px", number(term.random_v_px)},
                       {"rms_px", number(term.rms_px)}};
   if (!term.includes.empty()) json["includes"] = term.includes;
   return json;
@@ -60,7 +62,8 @@ std::vector<double> strain_at(Scene const& scene, std::vector<Vec2d> const& posi
   return largest;
 }
 
-/// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not change.
+/// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not
+/// change.
 std::vector<double> correlation_flux(GroundTruth const& truth) {
   std::vector<double> flux;
   flux.reserve(truth.size());
@@ -168,13 +171,14 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   CorrelationSettings const& settings = vectors.settings;
   WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
                             window_support_px(settings)};
-  comparison.window = window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px,
-                                   weight, options.truth_at);
+  comparison.window = window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots),
+                                   measured.position_px, weight, options.truth_at);
   if (!vectors.foreign) {
     RenderedCase const rendered = render_case(prepared, renderer, RenderTheory::no);
     Detector const detector(scene.setup.camera, rendered.exposure_e);
     LightPair const& light = rendered.rendering.light;
-    DisplacementField again = make_correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
+    DisplacementField again =
+        make_correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 
@@ -183,8 +187,10 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
-    throw DataError(path, "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
-                          "the vectors and --conventions");
+    throw DataError(
+        path,
+        "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
+        "the vectors and --conventions");
   }
   std::vector<BudgetStage> const stages{
       {"eq9", comparison.point.eq9_px},           {"straight", comparison.point.chief_px},
@@ -249,7 +255,8 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   };
   if (measured.columns > 1 && measured.rows > 1) {
     auto const maps = [&](std::string name, std::vector<Vec2d> const& values) {
-      NamedMaps both{std::move(name), Image<double>(measured.columns, measured.rows), Image<double>(measured.columns, measured.rows)};
+      NamedMaps both{std::move(name), Image<double>(measured.columns, measured.rows),
+                     Image<double>(measured.columns, measured.rows)};
       for (std::size_t i = 0; i < values.size(); ++i) {
         both.u_px.data()[i] = values[i].x;
         both.v_px.data()[i] = values[i].y;
@@ -262,10 +269,10 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     axes.y_first = measured.position_px.front().y;
     axes.y_step = measured.position_px[static_cast<std::size_t>(measured.columns)].y - axes.y_first;
     drawn.push_back(folder + "/displacement_maps.png");
-    write_displacement_maps(drawn.back(), "Displacement, and differences from ray truth", axes,
-                            {maps("ray truth", comparison.point.displacement_px), maps("Eq. 9", comparison.point.eq9_px),
-                             maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px),
-                             maps("measurement", measured.displacement_px)});
+    write_displacement_maps(
+        drawn.back(), "Displacement, and differences from ray truth", axes,
+        {maps("ray truth", comparison.point.displacement_px), maps("Eq. 9", comparison.point.eq9_px),
+         maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px), maps("measurement", measured.displacement_px)});
   }
   std::vector<ErrorSeries> const series{{"against ray truth", difference(comparison.point.displacement_px)},
                                         {"against Eq. 9", difference(comparison.point.eq9_px)},
@@ -274,7 +281,8 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   write_error_histograms(drawn.back(), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
     drawn.push_back(folder + "/error_against_gradient.png");
-    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", comparison.strain, series);
+    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", comparison.strain,
+                                 series);
   }
   drawn.push_back(folder + "/error_budget.png");
   write_budget_bars(drawn.back(), "Error budget, from Eq. 9 to the measurement", comparison.budget);

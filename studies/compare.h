@@ -15,7 +15,7 @@ namespace gladstone {
 
 /// How a comparison is to be made.
 struct CompareOptions {
-  std::string vectors;                     ///< file; empty: CASE/vectors.h5
+  std::string vectors;  ///< file; empty: CASE/vectors.h5
   TruthAt truth_at = TruthAt::mid_position;
   std::optional<std::string> conventions;  ///< as the user tells them; empty: detected for foreign files
   bool figures = true;
@@ -24,13 +24,13 @@ struct CompareOptions {
 /// Everything that is known at every vector: the chain from Eq. 9 to the measurement.
 struct Comparison {
   DisplacementField measured;
-  GroundTruth point;                     ///< truth and theory of the virtual dot whose place the vector is
+  GroundTruth point;  ///< truth and theory of the virtual dot whose place the vector is
   WindowTruth window;
-  std::vector<Vec2d> noise_free;         ///< measured on noise-free, unquantised images; empty for foreign vectors
-  std::vector<double> strain;            ///< largest of Eq. 9 on each vector's window [px/px]
+  std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
+  std::vector<double> strain;     ///< largest of Eq. 9 on each vector's window [px/px]
   VectorMask mask;
   ErrorBudget budget;
-  std::string report;                    ///< what was detected about a foreign file; empty for ours
+  std::string report;  ///< what was detected about a foreign file; empty for ours
   bool foreign = false;
 };
 

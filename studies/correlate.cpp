@@ -25,16 +25,19 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
 
 }  // namespace
 
-Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
-                             Image<double> const& flow, CorrelationSettings const& settings) {
+Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
+                             std::string const& flow_name, Image<double> const& flow,
+                             CorrelationSettings const& settings) {
   if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
-    throw DataError(flow_name, fmt::format("is {} x {} px but {} is {} x {} (both frames need one size)", flow.columns(),
-                                           flow.rows(), reference_name, reference.columns(), reference.rows()));
+    throw DataError(flow_name,
+                    fmt::format("is {} x {} px but {} is {} x {} (both frames need one size)", flow.columns(),
+                                flow.rows(), reference_name, reference.columns(), reference.rows()));
   }
   int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
   if (largest > std::min(reference.columns(), reference.rows())) {
-    throw DataError(reference_name, fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
-                                                reference.columns(), reference.rows(), largest));
+    throw DataError(reference_name,
+                    fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
+                                reference.columns(), reference.rows(), largest));
   }
   auto const start = std::chrono::steady_clock::now();
   Measurement measurement{make_correlator(settings)->correlate(reference, flow), 0};
@@ -55,7 +58,8 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
   Measurement measurement = correlate_frames(reference, read_image(reference), flow, read_image(flow), settings);
-  FileOrigin origin{"gladstone vectors", 1, other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed, "cpu"};
+  FileOrigin origin{"gladstone vectors", 1, other ? other->resolved : loaded.document.resolved(),
+                    loaded.setup.render.seed, "cpu"};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

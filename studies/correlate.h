@@ -15,8 +15,9 @@ struct Measurement {
 };
 
 /// Correlates two frames. @throws DataError where they differ in size or are smaller than a window
-Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
-                             Image<double> const& flow, CorrelationSettings const& settings);
+Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
+                             std::string const& flow_name, Image<double> const& flow,
+                             CorrelationSettings const& settings);
 
 /// Reads the [correlate] table of a setup or of a file with nothing else. @throws SetupError
 struct CorrelationFile {

@@ -67,8 +67,9 @@ std::string table_row(std::string const& name, Comparison const& comparison, Vec
   double const theory = summarize_errors(comparison.point.eq9_px, comparison.point.displacement_px, mask).rms_px;
   double const cone = summarize_errors(comparison.point.eq9_cone_px, comparison.point.displacement_px, mask).rms_px;
   return fmt::format("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.1f} % |\n", name,
-                     against_rays.count, signal, theory, cone, against_rays.rms_px, rms(comparison.window.displacement_px),
-                     rms(comparison.point.eq9_cone_px), rms(comparison.point.eq9_px), 100 * against_rays.gross_fraction);
+                     against_rays.count, signal, theory, cone, against_rays.rms_px,
+                     rms(comparison.window.displacement_px), rms(comparison.point.eq9_cone_px),
+                     rms(comparison.point.eq9_px), 100 * against_rays.gross_fraction);
 }
 
 }  // namespace
@@ -81,7 +82,8 @@ std::string shared_folder() {
   for (fs::path const& folder : {installed, fs::path(GLADSTONE_SOURCE_DIR)}) {
     if (fs::exists(folder / "studies" / "cases" / "table1.toml")) return folder.string();
   }
-  throw DataError(installed.string(), "studies/cases/table1.toml is not there (incomplete installation); install gladstone again");
+  throw DataError(installed.string(),
+                  "studies/cases/table1.toml is not there (incomplete installation); install gladstone again");
 }
 
 std::string run_demo(std::string const& folder, Renderer& renderer) {
@@ -98,7 +100,8 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
     render_to_folder(loaded, renderer, place);
     spdlog::info("{}: correlating", instant.name);
     Measurement const measured = correlate_case(place, "", nullptr);
-    spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(), measured.seconds);
+    spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),
+                 measured.seconds);
     Comparison const comparison = compare_case(place, renderer, {});
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     rows += table_row(fmt::format("{}, all vectors", instant.name), comparison, comparison.mask);
@@ -127,16 +130,21 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string const text =
       "# The seed's experiment\n\n"
-      "Rajendran, Bane & Vlachos, section 4, Table 1: Z_A 0.75 m, Z_D 0.25 m, 105 mm, f/11, 10 um pixels, 512 x 512 px, 20 dots in\n"
-      "32 x 32 px, density field 10 mm deep. Root mean squares in px per component. Vectors are told apart by the largest strain of\n"
-      "Eq. 9 on their window: where it exceeds 0.3 a single ray's displacement changes by a third of the way to its neighbour, and\n"
+      "Rajendran, Bane & Vlachos, section 4, Table 1: Z_A 0.75 m, Z_D 0.25 m, 105 mm, f/11, 10 um pixels, 512 x 512 "
+      "px, 20 dots in\n"
+      "32 x 32 px, density field 10 mm deep. Root mean squares in px per component. Vectors are told apart by the "
+      "largest strain of\n"
+      "Eq. 9 on their window: where it exceeds 0.3 a single ray's displacement changes by a third of the way to its "
+      "neighbour, and\n"
       "at 1 rays cross. The earlier instant has such fronts; the late one is the quantitative case.\n\n"
-      "| vectors | count | signal | Eq. 9 - rays | cone Eq. 9 - rays | measured - rays | measured - rays on the window | measured - cone "
+      "| vectors | count | signal | Eq. 9 - rays | cone Eq. 9 - rays | measured - rays | measured - rays on the window "
+      "| measured - cone "
       "Eq. 9 | measured - Eq. 9 | over 1 px |\n"
       "|---|---|---|---|---|---|---|---|---|---|\n" +
       rows + "\n" + reports +
-      fmt::format("Made in {:.0f} s on {}. Each folder holds the images, truth.h5, vectors.h5, errors.json and figures.\n", seconds,
-                  renderer.device());
+      fmt::format(
+          "Made in {:.0f} s on {}. Each folder holds the images, truth.h5, vectors.h5, errors.json and figures.\n",
+          seconds, renderer.device());
   OutputFile::write_text((fs::path(folder) / "summary.md").string(), text);
   return text;
 }

@@ -15,17 +15,19 @@ std::string error_report(Comparison const& comparison) {
                                  {"Eq. 9", comparison.point.eq9_px},
                                  {"cone-filtered Eq. 9", comparison.point.eq9_cone_px},
                                  {"ray truth on the window", comparison.window.displacement_px}}};
-  std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v",
-                                 "random u", "random v", "rms", "p95", "gross");
+  std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u",
+                                 "bias v", "random u", "random v", "rms", "p95", "gross");
   ErrorSummary last{};
   for (Row const& row : rows) {
     last = summarize_errors(comparison.measured.displacement_px, row.truth, comparison.mask);
-    text += fmt::format("  {:<25} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:7.2f} %\n", row.name, last.bias_u_px,
-                        last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px, 100 * last.gross_fraction);
+    text += fmt::format("  {:<25} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:7.2f} %\n", row.name,
+                        last.bias_u_px, last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px,
+                        100 * last.gross_fraction);
   }
-  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three dots\n\n", last.count, comparison.measured.size(),
-                      comparison.window.left_out);
-  text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "random u", "random v", "rms");
+  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three dots\n\n", last.count,
+                      comparison.measured.size(), comparison.window.left_out);
+  text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "random u",
+                      "random v", "rms");
   auto const line = [&](BudgetTerm const& term) {
     if (!term.known()) return fmt::format("  {:<25} {:>9}\n", term.name, "unknown");
     return fmt::format("  {:<25} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f}\n", term.name, term.bias_u_px, term.bias_v_px,

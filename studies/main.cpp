@@ -24,8 +24,10 @@ namespace {
 constexpr std::array commands{
     Command{"render", "Trace the reference and the flow frame of a setup into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
-    Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case", attach_correlate},
-    Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case", attach_compare},
+    Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case",
+            attach_correlate},
+    Command{"compare", "Compare measured vectors with ray truth and theory", "gladstone compare out/case",
+            attach_compare},
     Command{"trace", "Trace given rays and say where they end and why",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
@@ -40,7 +42,8 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   std::string const name = unknown.empty() ? "" : unknown.front();
   bool const is_option = name.starts_with("-");
   std::string message = "no command is named";
-  if (!unknown.empty()) message = fmt::format("unknown {} \"{}\"", is_option ? "option" : command ? "argument" : "command", name);
+  if (!unknown.empty())
+    message = fmt::format("unknown {} \"{}\"", is_option ? "option" : command ? "argument" : "command", name);
   if (is_option) {
     known = {"--help", "--version", "--json", "--quiet", "--threads", "--device"};
     for (CLI::Option const* option : (command ? command : &app)->get_options()) {
@@ -67,13 +70,16 @@ int run(int argc, char** argv) {
   app.add_flag("--quiet", options.quiet, "No log, no progress bars");
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(CLI::Range(0, 4096));
   app.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
-  app.footer("Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 5 device error, 130 interrupted.");
+  app.footer(
+      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 5 device error, 130 "
+      "interrupted.");
   std::array<CommandBody, commands.size()> bodies;
   std::array<CLI::App*, commands.size()> parsed{};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     parsed[i] = app.add_subcommand(commands[i].name, commands[i].summary);
-    parsed[i]->footer(fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand anywhere.",
-                                  commands[i].example));
+    parsed[i]->footer(
+        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand anywhere.",
+                    commands[i].example));
     bodies[i] = commands[i].attach(*parsed[i], options);
   }
   app.allow_extras();  // what nobody knows is refused below, with the nearest name
@@ -82,7 +88,8 @@ int run(int argc, char** argv) {
   } catch (CLI::ParseError const& error) {
     return app.exit(error) == 0 ? ok : bad_input;
   }
-  auto const parsed_one = std::find_if(parsed.begin(), parsed.end(), [](CLI::App* command) { return command->parsed(); });
+  auto const parsed_one =
+      std::find_if(parsed.begin(), parsed.end(), [](CLI::App* command) { return command->parsed(); });
   if (std::vector<std::string> const unknown = app.remaining(true); !unknown.empty() || parsed_one == parsed.end()) {
     return refuse_arguments(unknown, parsed_one == parsed.end() ? nullptr : *parsed_one, app);
   }

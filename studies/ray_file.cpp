@@ -97,9 +97,9 @@ std::string traced_rays_csv(std::vector<TracedRay> const& rays) {
   std::string text = "status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px\n";
   for (TracedRay const& ray : rays) {
     Vec3d const p = ray.position / unit::millimetre;
-    text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", to_string(ray.status), p.x,
-                        p.y, p.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.optical_path / unit::millimetre,
-                        ray.pixel.x, ray.pixel.y);
+    text += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",
+                        to_string(ray.status), p.x, p.y, p.z, ray.direction.x, ray.direction.y, ray.direction.z,
+                        ray.optical_path / unit::millimetre, ray.pixel.x, ray.pixel.y);
   }
   return text;
 }

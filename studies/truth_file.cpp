@@ -27,11 +27,13 @@ struct PairDataset {
 constexpr std::array<PairDataset, 7> pair_datasets{{
     {"/dots/reference_px", &GroundTruth::reference_px, "px",
      "radiance-weighted centroid of the rays that pass the stop in the reference frame (column, row)"},
-    {"/dots/displacement_px", &GroundTruth::displacement_px, "px", "flow centroid minus reference centroid (u right, v down)"},
+    {"/dots/displacement_px", &GroundTruth::displacement_px, "px",
+     "flow centroid minus reference centroid (u right, v down)"},
     {"/dots/displacement_std_px", &GroundTruth::displacement_std_px, "px",
      "weighted standard deviation of the hits in the flow frame"},
     {"/dots/flux", &GroundTruth::flux, "fully lit px", "light of the dot in the reference and in the flow frame"},
-    {"/dots/eq9_px", &GroundTruth::eq9_px, "px", "Rajendran et al. eq. 9 along the straight chief ray, lever Z_D (u right, v down)"},
+    {"/dots/eq9_px", &GroundTruth::eq9_px, "px",
+     "Rajendran et al. eq. 9 along the straight chief ray, lever Z_D (u right, v down)"},
     {"/dots/chief_px", &GroundTruth::chief_px, "px", "the same with each slice's own distance from the dots as lever"},
     {"/dots/eq9_cone_px", &GroundTruth::eq9_cone_px, "px",
      "the same averaged over the dot's disc and the stop's pupil"},
@@ -47,7 +49,8 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   position.reserve(3 * count);
   for (Vec3d const& p : truth.position_m) position.insert(position.end(), {p.x, p.y, p.z});
   file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m",
-             "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera", "dot, (x, y, z)");
+             "dot centres in the world frame: X right, Y up as the camera sees them, Z towards the camera",
+             "dot, (x, y, z)");
   for (PairDataset const& dataset : pair_datasets) {
     file.write(dataset.name, flat(truth.*dataset.values), {count, 2}, dataset.units, dataset.description, dot_axes);
   }
@@ -66,18 +69,20 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   double const spacing[1] = {static_cast<double>(field.spacing_px)};
   file.write("/field/spacing_px", std::span<double const>(spacing), {1}, "px",
              "lattice constant of the maps: node (i, j) lies at pixel (i, j) spacing + (spacing - 1) / 2", "value");
-  file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()), {rows, columns},
-             "kg/m^3", "density averaged along the chief ray through the field", "row, column");
+  file.write("/field/density_kg_m3", std::span<double const>(field.density.data(), field.density.size()),
+             {rows, columns}, "kg/m^3", "density averaged along the chief ray through the field", "row, column");
   file.write("/field/density_gradient_kg_m4", flat(field.density_gradient), {rows, columns, 2}, "kg/m^4",
              "d rho / d(X, Y) averaged along the chief ray, Y up", "row, column, (X, Y)");
-  file.write("/field/eq9_px", flat(field.eq9_px), {rows, columns, 2}, "px", "Rajendran et al. eq. 9", "row, column, (u, v)");
+  file.write("/field/eq9_px", flat(field.eq9_px), {rows, columns, 2}, "px", "Rajendran et al. eq. 9",
+             "row, column, (u, v)");
 
   Setup const& setup = scene.setup;
   file.attribute("/dots", "interpolation",
                  setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
-  file.attribute("/dots", "conventions",
-                 "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
-                 "appear displaced against grad n");
+  file.attribute(
+      "/dots", "conventions",
+      "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
+      "appear displaced against grad n");
   file.attribute("/dots", "step_mm", scene.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);
   file.close();
@@ -94,7 +99,8 @@ GroundTruth read_truth(std::string const& path) {
   for (PairDataset const& dataset : pair_datasets) {
     std::vector<double> const values = file.read(dataset.name);
     if (values.size() != 2 * truth.size()) {
-      throw DataError(path, std::string(dataset.name) + " has another length than /dots/position_m; render the case again");
+      throw DataError(path,
+                      std::string(dataset.name) + " has another length than /dots/position_m; render the case again");
     }
     for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
   }

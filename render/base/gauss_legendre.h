@@ -9,8 +9,8 @@
 
 namespace gladstone {
 
-/// Gauss-Legendre quadrature on [-1, 1]: exact for polynomials of degree 2 n - 1 (Abramowitz & Stegun 25.4.29), nodes by
-/// Newton's method from Chebyshev's guess.
+/// Gauss-Legendre quadrature on [-1, 1]: exact for polynomials of degree 2 n - 1 (Abramowitz & Stegun 25.4.29), nodes
+/// by Newton's method from Chebyshev's guess.
 struct GaussLegendre {
   std::vector<double> node;    ///< ascending
   std::vector<double> weight;  ///< sum 2

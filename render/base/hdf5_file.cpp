@@ -139,7 +139,8 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
     constexpr std::size_t most = 20;
     bool const cut = names.size() > most;
     if (cut) names.resize(most);
-    throw DataError(path, message + (message.ends_with('?') ? " It has " : "; it has ") + quoted_list(names) + (cut ? " and more" : ""));
+    throw DataError(path, message + (message.ends_with('?') ? " It has " : "; it has ") + quoted_list(names) +
+                              (cut ? " and more" : ""));
   }
   Id const type(H5Dget_type(opened), H5Tclose);
   H5T_class_t const kind = H5Tget_class(type);

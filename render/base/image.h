@@ -22,9 +22,7 @@ class Image {
   std::size_t size() const { return pixels_.size(); }
   bool empty() const { return pixels_.empty(); }
   T& operator()(int column, int row) { return pixels_[static_cast<std::size_t>(row) * columns_ + column]; }
-  T const& operator()(int column, int row) const {
-    return pixels_[static_cast<std::size_t>(row) * columns_ + column];
-  }
+  T const& operator()(int column, int row) const { return pixels_[static_cast<std::size_t>(row) * columns_ + column]; }
   T* data() { return pixels_.data(); }
   T const* data() const { return pixels_.data(); }
   auto begin() { return pixels_.begin(); }

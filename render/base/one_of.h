@@ -7,8 +7,9 @@
 
 namespace gladstone {
 
-/// A closed set of trivially copyable types, one of them held at a time: what a list of optical elements is made of. Unlike
-/// std::variant it can be handed to a device, and visiting is a chain of comparisons that a compiler sees through.
+/// A closed set of trivially copyable types, one of them held at a time: what a list of optical elements is made of.
+/// Unlike std::variant it can be handed to a device, and visiting is a chain of comparisons that a compiler sees
+/// through.
 template <class First, class... Rest>
 class OneOf {
   static_assert(std::is_trivially_copyable_v<First> && (std::is_trivially_copyable_v<Rest> && ...));
@@ -16,8 +17,8 @@ class OneOf {
  public:
   OneOf() = default;
   template <class Held>
-    requires(std::is_same_v<Held, First> || (std::is_same_v<Held, Rest> || ...))
-  GLADSTONE_HD OneOf(Held const& held) : which_(index_of<Held>()) {
+  requires(std::is_same_v<Held, First> || (std::is_same_v<Held, Rest> || ...)) GLADSTONE_HD OneOf(Held const& held)
+      : which_(index_of<Held>()) {
     new (&storage_) Held(held);
   }
 

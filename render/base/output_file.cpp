@@ -115,7 +115,8 @@ void refuse_foreign_folder(fs::path const& place, std::string const& marker_file
                                         "); choose another folder or empty it");
 }
 
-/// Links (where the file system cannot: copies) into `fresh` what `old` holds beyond the files of `fresh` and `derived`.
+/// Links (where the file system cannot: copies) into `fresh` what `old` holds beyond the files of `fresh` and
+/// `derived`.
 void keep_what_users_added(fs::path const& old, fs::path const& fresh, std::vector<std::string> const& derived) {
   std::error_code error;
   for (fs::directory_iterator entry(old, error), end; !error && entry != end; entry.increment(error)) {
@@ -129,7 +130,8 @@ void keep_what_users_added(fs::path const& old, fs::path const& fresh, std::vect
       fs::remove_all(fresh / name, problem);
       fs::copy(entry->path(), fresh / name, options, problem);
     }
-    if (problem) throw OutputError(entry->path().string(), "cannot be kept (" + problem.message() + "); move it elsewhere");
+    if (problem)
+      throw OutputError(entry->path().string(), "cannot be kept (" + problem.message() + "); move it elsewhere");
   }
 }
 

@@ -36,8 +36,8 @@ class OutputFile {
 };
 
 /// A folder built beside its place and renamed when whole; an old folder of that name is replaced only then, and only
-/// if it is empty or was made by gladstone (holds `marker_file`). What a user put into the old one moves to the new one:
-/// everything but the files that are written anew and those derived from them, so that no user's data are lost.
+/// if it is empty or was made by gladstone (holds `marker_file`). What a user put into the old one moves to the new
+/// one: everything but the files that are written anew and those derived from them, so that no user's data are lost.
 class OutputFolder {
  public:
   /// @param derived names of files that make no sense beside new ones; they go with the old folder

@@ -20,7 +20,8 @@ int configured_threads = 0;
 void set_thread_count(int threads) { configured_threads = threads; }
 
 int thread_count() {
-  return configured_threads > 0 ? configured_threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return configured_threads > 0 ? configured_threads
+                                : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 void parallel_for(std::size_t count, std::function<void(std::size_t)> const& body) {

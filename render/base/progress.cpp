@@ -45,8 +45,8 @@ void Progress::draw(std::size_t done, bool last) {
   std::string bar(static_cast<std::size_t>(filled), '#');
   bar.resize(width, '.');
   double const seconds = last ? elapsed : (fraction > 0 ? elapsed * (1 - fraction) / fraction : 0);
-  std::fprintf(stderr, "\r%-24s [%s] %3d %%  %4.0f s %s ", label_.c_str(), bar.c_str(), static_cast<int>(100 * fraction),
-               seconds, last ? "in all" : "left  ");
+  std::fprintf(stderr, "\r%-24s [%s] %3d %%  %4.0f s %s ", label_.c_str(), bar.c_str(),
+               static_cast<int>(100 * fraction), seconds, last ? "in all" : "left  ");
   std::fflush(stderr);
   drawn_ = true;
 }

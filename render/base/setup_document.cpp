@@ -87,7 +87,7 @@ void collect_unread(SetupDocument::State& state, SetupNode const& node, SetupRec
 void set_place(SetupNode& node, SetupPlace const& place) {
   node.place = place;
   for (auto& element : node.elements) set_place(element, place);
-  for (auto& member : node.members) set_place(member.second, place);
+  for (auto& member : node.members) set_place(member.value, place);
 }
 
 std::vector<std::string> split_path(std::string const& text) {
@@ -213,7 +213,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     SetupNode* next = table->find(path[i]);
     if (!next) {
-      next = &table->members.emplace_back(path[i], SetupNode{}).second;
+      next = &table->members.emplace_back(SetupMember{path[i], SetupNode{}}).value;
       next->place.assignment = assignment;
     }
     if (next->kind != SetupNode::Kind::table) {
@@ -228,7 +228,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   if (SetupNode* const old = table->find(path.back())) {
     *old = std::move(value);
   } else {
-    table->members.emplace_back(path.back(), std::move(value));
+    table->members.push_back({path.back(), std::move(value)});
   }
 }
 

@@ -30,7 +30,7 @@ SetupNode converted(toml::node const& source) {
   if (auto const* table = source.as_table()) {
     node.kind = Kind::table;
     for (auto&& [key, value] : *table) {
-      auto& member = node.members.emplace_back(std::string(key.str()), converted(value)).second;
+      auto& member = node.members.emplace_back(SetupMember{std::string(key.str()), converted(value)}).value;
       if (key.source().begin.line > 0) member.place = place_of(key.source());
     }
   } else if (auto const* array = source.as_array()) {

@@ -17,6 +17,8 @@ struct SetupPlace {
   bool known() const { return line > 0 || !assignment.empty(); }
 };
 
+struct SetupMember;
+
 /// One value of a parsed setup. The only file that knows the TOML library is setup_node.cpp.
 struct SetupNode {
   enum class Kind { text, integer, number, boolean, date, array, table };
@@ -26,14 +28,20 @@ struct SetupNode {
   long long integer = 0;
   double number = 0.0;
   bool boolean = false;
-  std::vector<SetupNode> elements;                         ///< of an array
-  std::vector<std::pair<std::string, SetupNode>> members;  ///< of a table
-  SetupPlace place;                                        ///< of the key, where there is one
+  std::vector<SetupNode> elements;   ///< of an array
+  std::vector<SetupMember> members;  ///< of a table
+  SetupPlace place;                  ///< of the key, where there is one
 
   SetupNode const* find(std::string const& key) const;
   SetupNode* find(std::string const& key);
   bool is_number() const { return kind == Kind::integer || kind == Kind::number; }
   double as_double() const { return kind == Kind::integer ? static_cast<double>(integer) : number; }
+};
+
+/// A key of a table and its value.
+struct SetupMember {
+  std::string key;
+  SetupNode value;
 };
 
 /// Parses TOML 1.0. @throws SetupError with the parser's own description at name:line:column

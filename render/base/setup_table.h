@@ -59,8 +59,8 @@ class SetupDocument {
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;     ///< low itself is refused
-  bool allow_inf = false;    ///< TOML's inf is a value, not a mistake
+  bool low_open = false;   ///< low itself is refused
+  bool allow_inf = false;  ///< TOML's inf is a value, not a mistake
 
   static Range positive(double high = std::numeric_limits<double>::infinity()) { return {0.0, high, true, false}; }
   static Range at_least(double low, double high = std::numeric_limits<double>::infinity()) {

@@ -11,9 +11,9 @@ namespace gladstone {
 
 /// The sources of a target in the target's plane: owner of what SourcesView shows.
 struct DotPattern {
-  std::vector<Vec2d> centre;      ///< [m]
-  std::vector<double> radiance;   ///< empty: all one
-  double half_size = 0;           ///< radius of the dots, or half the side of a picture's pixels [m]
+  std::vector<Vec2d> centre;     ///< [m]
+  std::vector<double> radiance;  ///< empty: all one
+  double half_size = 0;          ///< radius of the dots, or half the side of a picture's pixels [m]
   SourceShape shape = SourceShape::disc;
 
   SourcesView<double> view(double plane_z) const {
@@ -35,8 +35,8 @@ std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter);
 /// Dots from a CSV file with the header line x_mm,y_mm. @throws DataError with file:line
 std::vector<Vec2d> dots_from_csv(std::string const& path);
 
-/// A picture as a target: every pixel a uniform square whose radiance is its grey value over the largest one; black pixels
-/// send no rays. The picture is laid over the extent, its columns along +X and its rows along -Y.
+/// A picture as a target: every pixel a uniform square whose radiance is its grey value over the largest one; black
+/// pixels send no rays. The picture is laid over the extent, its columns along +X and its rows along -Y.
 DotPattern picture_target(std::string const& path, Vec2d extent);
 
 }  // namespace gladstone

@@ -21,8 +21,8 @@ struct SourcesView {
   Vec2<T> const* centre = nullptr;  ///< [m], world X and Y
   T const* radiance = nullptr;      ///< relative to a white target [1]; null: all one
   std::uint64_t count = 0;
-  T plane_z{};                      ///< [m]
-  T half_size{};                    ///< radius of a disc, half the side of a square [m]
+  T plane_z{};    ///< [m]
+  T half_size{};  ///< radius of a disc, half the side of a square [m]
   SourceShape shape = SourceShape::disc;
 };
 
@@ -31,8 +31,8 @@ enum class PupilSampling : int { sobol, random };
 /// Which points of a source and of the pupil a ray joins. Both frames use the same points.
 template <class T>
 struct BundleView {
-  T lens_z{};          ///< plane of the pupil [m]
-  T pupil_radius{};    ///< of the disc that rays are sent to: the stop's and a margin; 0: chief rays [m]
+  T lens_z{};        ///< plane of the pupil [m]
+  T pupil_radius{};  ///< of the disc that rays are sent to: the stop's and a margin; 0: chief rays [m]
   std::uint64_t seed = 0;
   PupilSampling sampling = PupilSampling::sobol;
 };

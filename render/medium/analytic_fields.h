@@ -10,9 +10,9 @@ namespace gladstone {
 /// What every analytic field shares: a slab of given thickness about the mid-plane, endless in x and y.
 template <class T>
 struct Slab {
-  T half_thickness{};    ///< [m]
-  T gladstone_dale{};    ///< K [m^3/kg]
-  T ambient_density{};   ///< rho_0 [kg/m^3]
+  T half_thickness{};   ///< [m]
+  T gladstone_dale{};   ///< K [m^3/kg]
+  T ambient_density{};  ///< rho_0 [kg/m^3]
 
   GLADSTONE_HD Bounds<T> bounds() const {
     T const u = T(unbounded);
@@ -85,15 +85,15 @@ struct GaussianBlob : Slab<T> {
   }
 };
 
-/// A normal shock of finite thickness: rho rises from rho_1 to rho_2 as a hyperbolic tangent of the distance from a plane.
-/// The flow runs towards +x; the plane's normal lies in the x-z plane, turned by the tilt about the Y axis.
-/// The thickness is the one of the largest slope, (rho_2 - rho_1) / max(d rho / d x) (Prandtl's definition).
+/// A normal shock of finite thickness: rho rises from rho_1 to rho_2 as a hyperbolic tangent of the distance from a
+/// plane. The flow runs towards +x; the plane's normal lies in the x-z plane, turned by the tilt about the Y axis. The
+/// thickness is the one of the largest slope, (rho_2 - rho_1) / max(d rho / d x) (Prandtl's definition).
 template <class T>
 struct NormalShock : Slab<T> {
-  T upstream{};          ///< rho_1 [kg/m^3]
-  T jump{};              ///< rho_2 - rho_1 [kg/m^3]
-  T thickness{};         ///< [m]
-  T position{};          ///< where the plane cuts the X axis [m]
+  T upstream{};   ///< rho_1 [kg/m^3]
+  T jump{};       ///< rho_2 - rho_1 [kg/m^3]
+  T thickness{};  ///< [m]
+  T position{};   ///< where the plane cuts the X axis [m]
   T normal_x{1}, normal_z{0};
 
   GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {

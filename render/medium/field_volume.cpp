@@ -132,7 +132,8 @@ BuiltMedium build_analytic(MediumSetup const& setup) {
       break;
     }
     case FieldKind::none:
-    case FieldKind::file: break;
+    case FieldKind::file:
+      break;
   }
   if (field.kind == FieldKind::gaussian_plume || field.kind == FieldKind::gaussian_blob) {
     // largest slope of A exp(-r^2/a^2): sqrt(2/e) A / a

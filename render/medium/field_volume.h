@@ -10,11 +10,11 @@ namespace gladstone {
 /// The medium of a setup: owner of the grid behind the view, if there is one.
 struct BuiltMedium {
   Medium<double> view = NoMedium<double>{};
-  std::shared_ptr<void const> owner;       ///< keeps the grid's memory alive
-  double finest = 0;                       ///< smallest length on which the field changes: cell, wavelength, radius ... [m]
-  double coarsest_step = 0;                ///< largest step that is ever sensible: see plan_step [m]
-  double steepest = 0;                     ///< upper bound of |grad n|, where known [1/m]
-  RegularGrid grid;                        ///< of a file's field
+  std::shared_ptr<void const> owner;  ///< keeps the grid's memory alive
+  double finest = 0;                  ///< smallest length on which the field changes: cell, wavelength, radius ... [m]
+  double coarsest_step = 0;           ///< largest step that is ever sensible: see plan_step [m]
+  double steepest = 0;                ///< upper bound of |grad n|, where known [1/m]
+  RegularGrid grid;                   ///< of a file's field
 };
 
 /// Memory that the field of a setup will take [bytes]; opens a file to see its size.

@@ -20,8 +20,7 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
     table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
   }
   field.dataset = table.text("dataset", "");
-  std::string const quantity =
-      table.word("quantity", "density", {"density", "refractive_index", "refractivity"});
+  std::string const quantity = table.word("quantity", "density", {"density", "refractive_index", "refractivity"});
   if (quantity == "refractive_index") field.quantity = FieldQuantity::refractive_index;
   if (quantity == "refractivity") field.quantity = FieldQuantity::refractivity;
   field.scale = table.number("scale", 1.0);
@@ -64,8 +63,9 @@ void read_shock(SetupTable& table, FieldSetup& field) {
 
 FieldSetup read_field(SetupTable table) {
   FieldSetup field;
-  std::string const kind = table.word("kind", "none", {"none", "file", "uniform_gradient", "sinusoid", "gaussian_plume",
-                                                       "gaussian_blob", "normal_shock"});
+  std::string const kind =
+      table.word("kind", "none",
+                 {"none", "file", "uniform_gradient", "sinusoid", "gaussian_plume", "gaussian_blob", "normal_shock"});
   if (kind == "file") {
     field.kind = FieldKind::file;
     read_file_field(table, field);
@@ -91,7 +91,8 @@ MediumSetup read_medium_setup(SetupTable table) {
   MediumSetup setup;
   double const wavelength_nm = table.number("wavelength_nm", 532.0, {230.0, 1690.0, false, false});
   setup.wavelength = wavelength_nm * unit::nanometre;
-  auto const constant = table.number_or_word("gladstone_dale", {2.26e-4, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
+  auto const constant =
+      table.number_or_word("gladstone_dale", {2.26e-4, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
   if (constant.number) setup.gladstone_dale = *constant.number;
   if (constant.word == "ciddor") setup.gladstone_dale = gladstone_dale_ciddor(setup.wavelength);
   if (constant.word == "merzkirch") setup.gladstone_dale = gladstone_dale_merzkirch(setup.wavelength);

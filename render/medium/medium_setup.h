@@ -22,35 +22,35 @@ struct FieldSetup {
   std::string dataset;
   std::string where;  ///< of the key `file`, for messages
   FieldQuantity quantity = FieldQuantity::density;
-  double scale = 1.0;                ///< file value times scale = kg/m^3, or a pure number
-  std::optional<Vec3d> spacing;      ///< [m]
-  Vec3d center{};                    ///< [m]
+  double scale = 1.0;            ///< file value times scale = kg/m^3, or a pure number
+  std::optional<Vec3d> spacing;  ///< [m]
+  Vec3d center{};                ///< [m]
   bool extrude = false;
   std::array<bool, 3> periodic{false, false, false};
   // analytic
-  double amplitude = 0;              ///< [kg/m^3]
-  double radius = 0;                 ///< [m]
-  double wavelength = 0;             ///< of the sinusoid [m]
+  double amplitude = 0;   ///< [kg/m^3]
+  double radius = 0;      ///< [m]
+  double wavelength = 0;  ///< of the sinusoid [m]
   Vec2d direction{1, 0};
-  double phase = 0;                  ///< [rad]
-  Vec3d gradient{};                  ///< [kg/m^4]
+  double phase = 0;  ///< [rad]
+  Vec3d gradient{};  ///< [kg/m^4]
   double mach = 1;
-  double upstream_density = 0;       ///< [kg/m^3]
-  double shock_thickness = 0;        ///< [m]
-  double tilt = 0;                   ///< [rad]
-  double position = 0;               ///< [m]
+  double upstream_density = 0;  ///< [kg/m^3]
+  double shock_thickness = 0;   ///< [m]
+  double tilt = 0;              ///< [rad]
+  double position = 0;          ///< [m]
 };
 
 /// Table [medium] of a setup, in SI.
 struct MediumSetup {
-  double wavelength = 532e-9;        ///< [m]
-  double gladstone_dale = 2.26e-4;   ///< K [m^3/kg]
-  double ambient_density = 1.225;    ///< [kg/m^3]
-  double thickness = 0.01;           ///< [m]
+  double wavelength = 532e-9;       ///< [m]
+  double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
+  double ambient_density = 1.225;   ///< [kg/m^3]
+  double thickness = 0.01;          ///< [m]
   FieldInterpolation interpolation = FieldInterpolation::cubic_bspline;
   Integrator integrator = Integrator::rk4;
   Faces faces = Faces::matched;
-  std::optional<double> step_mm;     ///< [mm], kept as written; empty: auto
+  std::optional<double> step_mm;  ///< [mm], kept as written; empty: auto
   FieldSetup field;
 
   double ambient_refractivity() const { return gladstone_dale * ambient_density; }

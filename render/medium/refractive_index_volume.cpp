@@ -93,10 +93,11 @@ void RefractiveIndexVolume<Stored>::prefilter_axis(int axis) {
   auto const a = static_cast<std::size_t>(axis);
   std::array<std::ptrdiff_t, 3> const stride{1, row_, plane_};
   int const n = grid_.nodes[a];
-  int const across = axis == 0 ? 1 : 0;                                       // neighbouring lines lie along this axis
-  int const outer = 3 - axis - across;                                        // and blocks of them along this one
-  auto const lines_on = [&](int other) { return other < axis ? padded_[static_cast<std::size_t>(other)]
-                                                             : grid_.nodes[static_cast<std::size_t>(other)]; };
+  int const across = axis == 0 ? 1 : 0;  // neighbouring lines lie along this axis
+  int const outer = 3 - axis - across;   // and blocks of them along this one
+  auto const lines_on = [&](int other) {
+    return other < axis ? padded_[static_cast<std::size_t>(other)] : grid_.nodes[static_cast<std::size_t>(other)];
+  };
   auto const first_on = [&](int other) { return other < axis ? -1 : 0; };
   constexpr int block = 16;
   int const blocks = (lines_on(across) + block - 1) / block;

@@ -12,9 +12,10 @@ struct ApertureStop {
   T radius{};  ///< [m]
   T edge{};    ///< width of the zone about the edge that quadrature smooths, as a share of the stop's area; 0: sharp
 
-  /// Share of a ray's light that counts at (x, y): one inside the stop, nothing outside, and across the edge zone the integral
-  /// of the kernel (15/32)(3 - 10 t^2 + 7 t^4), whose moments 1 to 3 vanish (Gasser & Mueller 1979): integrals over the stop
-  /// keep their value to O(edge^4), while rays no longer enter or leave them by jumps. Overshoots one and zero by 6 %.
+  /// Share of a ray's light that counts at (x, y): one inside the stop, nothing outside, and across the edge zone the
+  /// integral of the kernel (15/32)(3 - 10 t^2 + 7 t^4), whose moments 1 to 3 vanish (Gasser & Mueller 1979): integrals
+  /// over the stop keep their value to O(edge^4), while rays no longer enter or leave them by jumps. Overshoots one and
+  /// zero by 6 %.
   GLADSTONE_HD T transmission(T x, T y) const {
     T const inside = T(1) - (x * x + y * y) / (radius * radius);
     if (edge <= T(0)) return inside >= T(0) ? T(1) : T(0);
@@ -25,7 +26,8 @@ struct ApertureStop {
     return T(0.5) + T(15.0 / 32.0) * t * (T(3) + tt * (T(-10.0 / 3.0) + T(1.4) * tt));
   }
 
-  /// Moves a ray to the stop's plane and weighs it. @return vignetted outside the radius, whatever the edge zone leaves of it
+  /// Moves a ray to the stop's plane and weighs it. @return vignetted outside the radius, whatever the edge zone leaves
+  /// of it
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, T& weight) const {
     T const way = (z - ray.position.z) / ray.direction.z;
     ray.position = ray.position + ray.direction * way;

@@ -13,8 +13,8 @@ struct OpticalTrain {
 
   GLADSTONE_HD void append(OpticalElement<T> const& element) { elements[count++] = element; }
 
-  /// Carries a ray through all elements. It goes on while any of its light is left, also where a stop's smoothed edge lets
-  /// part of a vignetted ray pass.
+  /// Carries a ray through all elements. It goes on while any of its light is left, also where a stop's smoothed edge
+  /// lets part of a vignetted ray pass.
   /// @return alive, vignetted, or why it ended; missed_lens for rays that do not run towards the camera
   GLADSTONE_HD RayStatus carry(Ray<T>& ray, T& weight) const {
     RayStatus status = RayStatus::alive;

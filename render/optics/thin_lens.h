@@ -5,8 +5,8 @@
 
 namespace gladstone {
 
-/// An ideal thin lens on the optical axis: exact in slopes, so stigmatic for every object plane and without aberration (a
-/// collinear map). Rays run towards +z.
+/// An ideal thin lens on the optical axis: exact in slopes, so stigmatic for every object plane and without aberration
+/// (a collinear map). Rays run towards +z.
 template <class T>
 struct ThinLens {
   T z{};             ///< principal plane [m]

@@ -46,7 +46,9 @@ void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light
   double* const corner = light_.data() + r0 * side_ + c0;
 
   switch (spot_.model) {
-    case SpotModel::none: *corner += weight; break;
+    case SpotModel::none:
+      *corner += weight;
+      break;
     case SpotModel::airy: {
       AiryTable::View const& table = spot_.airy;
       double const u = (p.x - middle_x + 0.5) * table.subdivisions, v = (p.y - middle_y + 0.5) * table.subdivisions;
@@ -54,7 +56,8 @@ void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light
       int const iv = std::min(static_cast<int>(v), table.subdivisions - 1);
       double const fu = u - iu, fv = v - iv;
       std::ptrdiff_t const footprint = static_cast<std::ptrdiff_t>(width) * width;
-      double const* const lower = table.shares + (static_cast<std::ptrdiff_t>(iv) * (table.subdivisions + 1) + iu) * footprint;
+      double const* const lower =
+          table.shares + (static_cast<std::ptrdiff_t>(iv) * (table.subdivisions + 1) + iu) * footprint;
       double const* const upper = lower + (table.subdivisions + 1) * footprint;
       for (int j = 0; j < width; ++j) {
         for (int i = 0; i < width; ++i) {
@@ -107,7 +110,8 @@ SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, doub
   // the finest thing that the source's outline is blurred by is the spot
   double const fineness = half_size_px / std::clamp(spot_px, 0.05, 2.0);
   int const radial = std::clamp(static_cast<int>(std::ceil(1.5 * fineness)) + 3, 4, 64);
-  if (shape == SourceShape::disc) return disc(radial, std::clamp(static_cast<int>(std::ceil(6 * fineness)) + 6, 12, 256));
+  if (shape == SourceShape::disc)
+    return disc(radial, std::clamp(static_cast<int>(std::ceil(6 * fineness)) + 6, 12, 256));
   SourceCubature cubature;
   GaussLegendre const nodes(2 * radial);
   for (std::size_t i = 0; i < nodes.node.size(); ++i) {
@@ -121,7 +125,8 @@ SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, doub
 
 SourceCubature make_cubature(Scene const& scene, DotPattern const& sources, SpotView const& spot) {
   double const half_size_px = sources.half_size * scene.imaging.magnification / scene.setup.camera.pixel_pitch;
-  double const spot_px = spot.model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot.gaussian.sigma;
+  double const spot_px =
+      spot.model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot.gaussian.sigma;
   return SourceCubature::make(sources.shape, half_size_px, spot_px);
 }
 
@@ -203,7 +208,8 @@ void FlowFit::fit(std::vector<RayRecord> const& rays, double stop_radius, bool e
   double value[displacement_terms];
   terms_ = basis({}, {}, rays_, extended_, value);
   least_squares<displacement_terms>(
-      rays, terms_, [this](RayRecord const& ray, double* out) { basis(ray.place, ray.pupil / stop_radius_, rays_, extended_, out); },
+      rays, terms_,
+      [this](RayRecord const& ray, double* out) { basis(ray.place, ray.pupil / stop_radius_, rays_, extended_, out); },
       &RayRecord::displacement, displacement_);
   int const bends = rays_ < 32 ? 1 : (extended ? bend_terms : 3);
   std::fill(std::begin(bend_), std::end(bend_), Vec2d{});
@@ -246,12 +252,13 @@ Vec2d FlowFit::displacement(Vec2d place, Vec2d pupil) const {
 }
 
 Vec2d FlowFit::arrival(Vec2d pupil, Vec2d place) const {
-  return pupil + bend_[0] + (pupil.x / stop_radius_) * bend_[1] + (pupil.y / stop_radius_) * bend_[2] + place.x * bend_[3] +
-         place.y * bend_[4];
+  return pupil + bend_[0] + (pupil.x / stop_radius_) * bend_[1] + (pupil.y / stop_radius_) * bend_[2] +
+         place.x * bend_[3] + place.y * bend_[4];
 }
 
 FlowFit::Jacobian FlowFit::arrival_by_pupil() const {
-  return {1 + bend_[1].x / stop_radius_, bend_[2].x / stop_radius_, bend_[1].y / stop_radius_, 1 + bend_[2].y / stop_radius_};
+  return {1 + bend_[1].x / stop_radius_, bend_[2].x / stop_radius_, bend_[1].y / stop_radius_,
+          1 + bend_[2].y / stop_radius_};
 }
 
 Vec2d FlowFit::pupil_of(Vec2d arrival, Vec2d place) const {
@@ -298,7 +305,8 @@ void DotExposure::deposit(Frame frame, Vec2d p, double weight) {
   patches_[f].deposit(p, weight, images_[f], light_per_weight_);
 }
 
-void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const& reference, RayHit<double> const& flow) {
+void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const& reference,
+                         RayHit<double> const& flow) {
   ++statuses_[0][static_cast<std::size_t>(reference.status)];
   ++statuses_[1][static_cast<std::size_t>(flow.status)];
   if (flow.status <= RayStatus::vignetted) {
@@ -315,8 +323,8 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
     Vec2d const geometric = scene_.to_pixel({emitted.ray.position.x, emitted.ray.position.y}) - plan_.origin;
     // from frame to frame, so that what the medium leaves alone is exactly zero
     bool const both = flow.weight != 0 && reference.weight != 0;
-    Vec2d const displacement = both ? flow.pixel - reference.pixel
-                                    : (flow.weight != 0 ? flow.pixel - plan_.origin - geometric : Vec2d{});
+    Vec2d const displacement =
+        both ? flow.pixel - reference.pixel : (flow.weight != 0 ? flow.pixel - plan_.origin - geometric : Vec2d{});
     rays_.push_back({half_size_px_ > 0 ? geometric / half_size_px_ : Vec2d{}, reference.at_lens, displacement,
                      flow.at_lens - reference.at_lens, emitted.weight, flow.weight});
   }
@@ -326,7 +334,10 @@ namespace {
 
 /// Points of the pupil over which a displacement that varies by `spread_px` across it is averaged.
 SourceCubature const& pupil_cubature(double spread_px) {
-  static SourceCubature const rules[] = {{{{0, 0}}, {1.0}}, SourceCubature::disc(1, 4), SourceCubature::disc(2, 6), SourceCubature::disc(3, 9),
+  static SourceCubature const rules[] = {{{{0, 0}}, {1.0}},
+                                         SourceCubature::disc(1, 4),
+                                         SourceCubature::disc(2, 6),
+                                         SourceCubature::disc(3, 9),
                                          SourceCubature::disc(5, 15)};
   return rules[spread_px == 0 ? 0 : (spread_px < 0.01 ? 1 : (spread_px < 0.05 ? 2 : (spread_px < 0.2 ? 3 : 4)))];
 }

@@ -41,8 +41,8 @@ class LightImage {
 
   void add(int column, int row, double light) {
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-    light_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)].fetch_add(
-        to_fixed_point(light), std::memory_order_relaxed);
+    light_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]
+        .fetch_add(to_fixed_point(light), std::memory_order_relaxed);
   }
   Image<double> to_light() const {
     Image<double> image(columns_, rows_);
@@ -82,13 +82,14 @@ class LightPatch {
   SpotView spot_;
   int half_;
   int side_;
-  int left_ = 0, top_ = 0;                                                   // image position of the patch's corner
-  int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;        // touched part
+  int left_ = 0, top_ = 0;                                             // image position of the patch's corner
+  int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // touched part
   std::vector<double> light_;
   std::vector<double> column_shares_, row_shares_;
 };
 
-/// Points of a unit disc (or square) with weights that integrate what a spot makes of a source to far below a grey level.
+/// Points of a unit disc (or square) with weights that integrate what a spot makes of a source to far below a grey
+/// level.
 struct SourceCubature {
   std::vector<Vec2d> points;    ///< offsets in units of the source's half size
   std::vector<double> weights;  ///< sum 1
@@ -114,17 +115,17 @@ DotPlan plan_dot(Scene const& scene, SpotView const* spot, SceneView<double> con
 
 /// What one ray tells about where the flow sends a dot's light.
 struct RayRecord {
-  Vec2d place;               ///< on the source, in units of its half size
-  Vec2d pupil;               ///< where it meets the lens plane in the reference frame [m]
-  Vec2d displacement;        ///< flow hit minus the geometric image of its place [px]
-  Vec2d bend;                ///< where it meets the lens plane in the flow frame, minus that [m]
-  double weight;             ///< radiance cos^4
-  double flow_weight;        ///< the same times what passes the stop in the flow frame
+  Vec2d place;         ///< on the source, in units of its half size
+  Vec2d pupil;         ///< where it meets the lens plane in the reference frame [m]
+  Vec2d displacement;  ///< flow hit minus the geometric image of its place [px]
+  Vec2d bend;          ///< where it meets the lens plane in the flow frame, minus that [m]
+  double weight;       ///< radiance cos^4
+  double flow_weight;  ///< the same times what passes the stop in the flow frame
 };
 
-/// A smooth model of a dot's light in the flow: displacement as a polynomial of the place on the source (cubic) and of the
-/// pupil point (quadratic), arrival on the lens plane as a linear function of both. Where the rays are few, or the source is a
-/// point, the model is simpler.
+/// A smooth model of a dot's light in the flow: displacement as a polynomial of the place on the source (cubic) and of
+/// the pupil point (quadratic), arrival on the lens plane as a linear function of both. Where the rays are few, or the
+/// source is a point, the model is simpler.
 class FlowFit {
  public:
   /// Least squares over a dot's rays.
@@ -162,11 +163,11 @@ class FlowFit {
 /// Gathers everything that one dot's rays leave behind; TracePair's Exposure on the CPU. One object a thread, one dot
 /// at a time, rays in order, so that sums are the same on any number of threads.
 ///
-/// Images use a control variate where the reference frame is known in closed form (a thin lens focused on the target maps
-/// every ray of a source's point on one image point, so the reference image is the source's disc convolved with the spot,
-/// integrated by cubature): the flow image is the same disc moved by a smooth fit to the rays' displacements, integrated
-/// likewise, plus for every ray the spot where it lands minus the spot where the fit puts it. Whatever the fit, the sum
-/// converges to the image that the rays alone would give; the better the fit, the less it scatters.
+/// Images use a control variate where the reference frame is known in closed form (a thin lens focused on the target
+/// maps every ray of a source's point on one image point, so the reference image is the source's disc convolved with
+/// the spot, integrated by cubature): the flow image is the same disc moved by a smooth fit to the rays' displacements,
+/// integrated likewise, plus for every ray the spot where it lands minus the spot where the fit puts it. Whatever the
+/// fit, the sum converges to the image that the rays alone would give; the better the fit, the less it scatters.
 class DotExposure {
  public:
   /// @param spot null: truth only, no images
@@ -201,9 +202,9 @@ class DotExposure {
   SourceCubature const& cubature_;
   bool with_image_;
   DotPlan plan_;
-  ApertureStop<double> stop_;   ///< meaningless for chief rays
-  double stop_radius_;          ///< [m]; 1 without a stop
-  double half_size_px_ = 0;     ///< of the source's image
+  ApertureStop<double> stop_;  ///< meaningless for chief rays
+  double stop_radius_;         ///< [m]; 1 without a stop
+  double half_size_px_ = 0;    ///< of the source's image
   double light_per_weight_ = 0;
   std::vector<RayRecord> rays_;  ///< of the dot, where images are controlled
   LightImage* images_[frame_count] = {};

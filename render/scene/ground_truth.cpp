@@ -4,7 +4,8 @@ namespace gladstone {
 
 void GroundTruth::resize(std::size_t count) {
   position_m.resize(count);
-  for (auto* column : {&reference_px, &displacement_px, &displacement_std_px, &flux, &eq9_px, &chief_px, &eq9_cone_px}) {
+  for (auto* column :
+       {&reference_px, &displacement_px, &displacement_std_px, &flux, &eq9_px, &chief_px, &eq9_cone_px}) {
     column->resize(count);
   }
   rays.resize(count);

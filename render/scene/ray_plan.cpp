@@ -125,8 +125,8 @@ Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium con
 
 /// Scatter between scramblings at the scene's present number of rays.
 struct Scatter {
-  double truth_variance = 0;     ///< mean over dots and components [px^2]
-  double light_variance = 0;     ///< mean over lit pixels
+  double truth_variance = 0;  ///< mean over dots and components [px^2]
+  double light_variance = 0;  ///< mean over lit pixels
   double brightest = 0;
 };
 
@@ -145,7 +145,8 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
           std::size_t const dot = dots[index];
           int const side = 2 * spot.half_width() + 49;
           Vec2d const at = scene.to_pixel(scene.dots.centre[dot]);
-          Window const window{static_cast<int>(std::floor(at.x)) - side / 2, static_cast<int>(std::floor(at.y)) - side / 2, side};
+          Window const window{static_cast<int>(std::floor(at.x)) - side / 2,
+                              static_cast<int>(std::floor(at.y)) - side / 2, side};
           std::vector<Sampled> samples;
           for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
             SceneView<double> view = scene.view();

@@ -9,20 +9,20 @@ namespace gladstone {
 
 /// How the step was chosen.
 struct StepPlan {
-  double step_mm = 0;          ///< [mm], the number that a setup file holds
-  double change_px = 0;        ///< largest change of a dot's displacement when the step is halved
+  double step_mm = 0;    ///< [mm], the number that a setup file holds
+  double change_px = 0;  ///< largest change of a dot's displacement when the step is halved
   std::size_t limiting_dot = 0;
-  double largest_bend = 0;     ///< on the lens plane, of the probing rays [m]
+  double largest_bend = 0;  ///< on the lens plane, of the probing rays [m]
 };
 
 /// How the number of rays was chosen.
 struct RaysPlan {
   std::uint64_t rays = 0;
-  double truth_error_px = 0;       ///< rms over dots, components and scramblings of the displacement's scatter
-  double image_error_levels = 0;   ///< rms over lit pixels, in grey levels of `bits`
+  double truth_error_px = 0;      ///< rms over dots, components and scramblings of the displacement's scatter
+  double image_error_levels = 0;  ///< rms over lit pixels, in grey levels of `bits`
   int bits = 0;
-  bool extrapolated = false;       ///< the errors were measured up to 4096 rays and extrapolated from there
-  bool converged = true;           ///< false: the largest number, 65536, is not enough
+  bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
+  bool converged = true;      ///< false: the largest number, 65536, is not enough
 };
 
 /// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, every dot being probed by five rays
@@ -30,9 +30,9 @@ struct RaysPlan {
 /// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
 StepPlan plan_step(Scene& scene);
 
-/// Chooses rays_per_dot: the smallest power of two for which independent scramblings scatter by less than 1e-3 px rms in
-/// truth and half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels, on a sample of up
-/// to 96 dots spread over the target. Sets scene.rays_per_dot.
+/// Chooses rays_per_dot: the smallest power of two for which independent scramblings scatter by less than 1e-3 px rms
+/// in truth and half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels, on a sample
+/// of up to 96 dots spread over the target. Sets scene.rays_per_dot.
 RaysPlan plan_rays(Scene& scene);
 
 }  // namespace gladstone

@@ -17,10 +17,10 @@ struct LightPair {
 
 /// What tracing a scene gives.
 struct Rendering {
-  LightPair light;      ///< empty where no images were asked for
+  LightPair light;  ///< empty where no images were asked for
   GroundTruth truth;
   StatusCounts statuses{};
-  std::int64_t rays = 0;   ///< traced, both frames
+  std::int64_t rays = 0;  ///< traced, both frames
 };
 
 enum class RenderImages { yes, no };
@@ -44,8 +44,8 @@ class CpuRenderer : public Renderer {
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 };
 
-/// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from; the
-/// flow does not change it, since radiance is conserved along rays.
+/// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from;
+/// the flow does not change it, since radiance is conserved along rays.
 Image<double> white_light(Scene const& scene);
 
 }  // namespace gladstone

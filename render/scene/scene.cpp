@@ -74,11 +74,15 @@ double Scene::spot_scale_px() const {
 double Scene::spot_sigma_px() const {
   SpotSize const spot{spot_scale_px()};
   switch (setup.lens.spot) {
-    case SpotModel::gaussian: return spot.matched_sigma();
-    case SpotModel::gaussian_first_zero: return spot.first_zero_diameter() / 4;
-    case SpotModel::seed_eq8: return pi * spot.first_zero_diameter() / 4;
+    case SpotModel::gaussian:
+      return spot.matched_sigma();
+    case SpotModel::gaussian_first_zero:
+      return spot.first_zero_diameter() / 4;
+    case SpotModel::seed_eq8:
+      return pi * spot.first_zero_diameter() / 4;
     case SpotModel::airy:
-    case SpotModel::none: break;
+    case SpotModel::none:
+      break;
   }
   return 0;
 }
@@ -101,10 +105,11 @@ void check_memory(Setup const& setup) {
   double const needed = field + images + dots;
   double const available = available_memory();
   if (needed <= available) return;
-  throw DataError("setup", fmt::format("needs {:.3g} GB of memory (field {:.3g}, images {:.3g}, dots {:.3g}) but this machine has "
-                                       "{:.3g} GB free; reduce camera.pixels, the field or the number of dots",
-                                       gigabytes(needed), gigabytes(field), gigabytes(images), gigabytes(dots),
-                                       gigabytes(available)));
+  throw DataError(
+      "setup",
+      fmt::format("needs {:.3g} GB of memory (field {:.3g}, images {:.3g}, dots {:.3g}) but this machine has "
+                  "{:.3g} GB free; reduce camera.pixels, the field or the number of dots",
+                  gigabytes(needed), gigabytes(field), gigabytes(images), gigabytes(dots), gigabytes(available)));
 }
 
 Scene build_scene(Setup const& setup) {
@@ -123,8 +128,12 @@ Scene build_scene(Setup const& setup) {
         scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
       }
       break;
-    case TargetKind::points: scene.dots.centre = dots_from_csv(setup.target.file); break;
-    case TargetKind::image: scene.dots = picture_target(setup.target.file, setup.target_extent()); break;
+    case TargetKind::points:
+      scene.dots.centre = dots_from_csv(setup.target.file);
+      break;
+    case TargetKind::image:
+      scene.dots = picture_target(setup.target.file, setup.target_extent());
+      break;
   }
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
 
@@ -132,10 +141,11 @@ Scene build_scene(Setup const& setup) {
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
     if (-setup.z_d > box.low.z || setup.z_a < box.high.z) {
-      throw DataError(setup.medium.field.where,
-                      fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "
-                                  "{:.6g} mm about the mid-plane; change geometry.z_a_mm, z_d_mm or medium.field.center_mm",
-                                  box.low.z / unit::millimetre, box.high.z / unit::millimetre));
+      throw DataError(
+          setup.medium.field.where,
+          fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "
+                      "{:.6g} mm about the mid-plane; change geometry.z_a_mm, z_d_mm or medium.field.center_mm",
+                      box.low.z / unit::millimetre, box.high.z / unit::millimetre));
     }
   }
   return scene;

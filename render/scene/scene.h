@@ -17,8 +17,8 @@ struct Scene {
   ImagingGeometry imaging{};
   DotPattern dots;
   BuiltMedium medium;
-  double step = 0;             ///< [m]
-  double pupil_margin = 0;     ///< by which the pupil is enlarged so that bending loses no ray [m]
+  double step = 0;          ///< [m]
+  double pupil_margin = 0;  ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
 
   /// The view that launches take; `sources` default to the scene's own dots.

@@ -10,9 +10,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_steps = 1e6;       // across the medium
-constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
-constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
+constexpr double most_steps = 1e6;      // across the medium
+constexpr double widest_spot_px = 200;  // between first zeros; f/64 gives about 10 px
+constexpr double widest_airy_px = 60;   // its table takes 0.2 GB then
 
 RenderSetup read_render_setup(SetupTable table) {
   RenderSetup setup;
@@ -43,9 +43,12 @@ SetupTable camera_table(SetupTable& root) {
 
 double Setup::focus_distance() const {
   switch (lens.focus) {
-    case Focus::target: return z_b();
-    case Focus::medium: return z_a;
-    case Focus::distance: break;
+    case Focus::target:
+      return z_b();
+    case Focus::medium:
+      return z_a;
+    case Focus::distance:
+      break;
   }
   return lens.focus_distance;
 }
@@ -98,9 +101,10 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     bool const by_distance = setup.lens.focus == Focus::distance;
     (by_distance ? lens : geometry)
         .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
-                 fmt::format("focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
-                             "image needs more than the focal length); move the lens away or take a shorter one",
-                             setup.focus_distance() / mm, setup.lens.focal_length / mm));
+                 fmt::format(
+                     "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
+                     "image needs more than the focal length); move the lens away or take a shorter one",
+                     setup.focus_distance() / mm, setup.lens.focal_length / mm));
     return warnings;  // everything else needs an image
   }
   if (setup.z_b() <= setup.lens.focal_length) {
@@ -111,29 +115,34 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
     double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
     if (-setup.z_d > centre - half) {
-      geometry.problem("z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
-                                             "z_d_mm beyond {:.6g} or make the medium thinner",
-                                             -setup.z_d < centre + half ? "inside" : "in front of", half / mm,
-                                             (half - centre) / mm));
+      geometry.problem(
+          "z_d_mm",
+          fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
+                      "z_d_mm beyond {:.6g} or make the medium thinner",
+                      -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm));
     }
     if (setup.z_a < centre + half) {
-      geometry.problem("z_a_mm", fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
-                                             "z_a_mm or make the medium thinner",
-                                             half / mm));
+      geometry.problem("z_a_mm",
+                       fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
+                                   "z_a_mm or make the medium thinner",
+                                   half / mm));
     }
   }
-  if (setup.medium.step_mm && kind != FieldKind::none && setup.medium.thickness / mm > most_steps * *setup.medium.step_mm) {
-    root.table("medium").problem("step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
-                                                        "most); use \"auto\" or a longer step",
-                                                        setup.medium.thickness / mm / *setup.medium.step_mm, most_steps));
+  if (setup.medium.step_mm && kind != FieldKind::none &&
+      setup.medium.thickness / mm > most_steps * *setup.medium.step_mm) {
+    root.table("medium").problem(
+        "step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
+                               "most); use \"auto\" or a longer step",
+                               setup.medium.thickness / mm / *setup.medium.step_mm, most_steps));
   }
   double const magnification = setup.imaging().magnification;
   double const px = setup.camera.pixel_pitch / magnification;
   Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
   if (setup.target.extent_m && (setup.target.extent_m->x < view.x || setup.target.extent_m->y < view.y)) {
-    target.problem("extent_mm", fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target; "
-                                            "enlarge the target or leave extent_mm out",
-                                            view.x / mm, view.y / mm));
+    target.problem("extent_mm",
+                   fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target; "
+                               "enlarge the target or leave extent_mm out",
+                               view.x / mm, view.y / mm));
   }
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.dot_diameter() / px;
@@ -143,14 +152,16 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
             : 2.44 * setup.medium.wavelength * setup.lens.f_number * (1 + magnification) / setup.camera.pixel_pitch;
     double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
     if (diffraction_px > widest_px) {
-      lens.problem("f_number", fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
-                                           "the lens or focus farther away",
-                                           diffraction_px, widest_px));
+      lens.problem("f_number",
+                   fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
+                               "the lens or focus farther away",
+                               diffraction_px, widest_px));
     }
     double const image_px = std::hypot(diameter_px, diffraction_px);
     if (image_px < 2) {
       warnings.push_back(fmt::format(
-          "dot images are {:.2f} px wide: below 2 px correlation locks to whole pixels; enlarge target.dot_diameter_px", image_px));
+          "dot images are {:.2f} px wide: below 2 px correlation locks to whole pixels; enlarge target.dot_diameter_px",
+          image_px));
     }
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
@@ -164,15 +175,18 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     if (!(count >= 1)) {
       target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
     } else if (count > 4e9) {
-      target.problem("dots_per_32px_window",
-                     fmt::format("gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
-                                 "decrease it, camera.pixels or target.extent_mm",
-                                 count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
+      target.problem(
+          "dots_per_32px_window",
+          fmt::format(
+              "gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
+              "decrease it, camera.pixels or target.extent_mm",
+              count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
     } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
-      target.problem("dots_per_32px_window",
-                     fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
-                                 "fewer or smaller dots, or arrangement = \"regular\"",
-                                 100 * coverage));
+      target.problem(
+          "dots_per_32px_window",
+          fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
+                      "fewer or smaller dots, or arrangement = \"regular\"",
+                      100 * coverage));
     }
   }
   return warnings;

@@ -26,13 +26,15 @@ struct Setup {
   MediumSetup medium;
   TargetSetup target;
   RenderSetup render;
-  double z_a = 0.75;  ///< lens to the medium's mid-plane [m]
-  double z_d = 0.25;  ///< the medium's mid-plane to the dots [m]
+  double z_a = 0.75;        ///< lens to the medium's mid-plane [m]
+  double z_d = 0.25;        ///< the medium's mid-plane to the dots [m]
   int view_margin_px = 64;  ///< by which a target of default extent reaches beyond the view: the first pass's window
 
   double z_b() const { return z_a + z_d; }
   double focus_distance() const;
-  ImagingGeometry imaging() const { return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b()); }
+  ImagingGeometry imaging() const {
+    return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b());
+  }
   double ambient_index() const { return 1 + medium.ambient_refractivity(); }
   /// Width and height of the target [m].
   Vec2d target_extent() const;

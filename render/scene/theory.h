@@ -42,8 +42,8 @@ GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T>
   return sum;
 }
 
-/// Displacement on the sensor that a deflection integral stands for [px]: dots appear displaced against grad n, and rows
-/// run downwards. Rajendran et al. eq. 9: M Z_D / (n_0 p) times the integral.
+/// Displacement on the sensor that a deflection integral stands for [px]: dots appear displaced against grad n, and
+/// rows run downwards. Rajendran et al. eq. 9: M Z_D / (n_0 p) times the integral.
 /// @param magnification M; lever Z_D [m] with `plain` integrals, 1 with `levered` ones; n0 ambient index; pitch [m]
 template <class T>
 GLADSTONE_HD Vec2<T> theory_displacement(Vec2<T> integral, T lever, T magnification, T n0, T pitch) {

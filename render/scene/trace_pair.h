@@ -20,9 +20,9 @@ struct RayIndex {
 template <class T>
 struct RayHit {
   RayStatus status = RayStatus::alive;
-  Vec2<T> pixel{};   ///< on the sensor's plane [px]; defined where reaches_sensor_plane(status)
-  T weight{};        ///< radiance cos^4 at the source [1]
-  Vec2<T> at_lens{}; ///< where it met the lens plane [m]
+  Vec2<T> pixel{};    ///< on the sensor's plane [px]; defined where reaches_sensor_plane(status)
+  T weight{};         ///< radiance cos^4 at the source [1]
+  Vec2<T> at_lens{};  ///< where it met the lens plane [m]
 };
 
 /// True for rays that count for truth: past the stop and on the sensor's plane, inside its area or not.
@@ -47,7 +47,8 @@ GLADSTONE_HD RayHit<T> through_camera(SceneView<T> const& scene, Ray<T> ray, T w
 
 /// From where a ray leaves the medium through the camera.
 template <class T>
-GLADSTONE_HD RayHit<T> after_medium(SceneView<T> const& scene, Ray<T> const& start, MediumPassage<T> const& way, T weight) {
+GLADSTONE_HD RayHit<T> after_medium(SceneView<T> const& scene, Ray<T> const& start, MediumPassage<T> const& way,
+                                    T weight) {
   if (way.status != RayStatus::alive) {
     RayHit<T> lost;
     lost.status = way.status;

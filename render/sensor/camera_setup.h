@@ -10,10 +10,10 @@ namespace gladstone {
 /// Table [camera.noise]; where it is absent the sensor is ideal.
 struct NoiseSetup {
   bool enabled = false;
-  double full_well_e = 30000;         ///< electrons at full scale; also the scale of an ideal sensor's exposure
-  double read_noise_e = 3.0;          ///< standard deviation [e]
-  double dark_current_e = 0.0;        ///< mean per frame [e]
-  double quantum_efficiency = 0.6;    ///< electrons per photon
+  double full_well_e = 30000;       ///< electrons at full scale; also the scale of an ideal sensor's exposure
+  double read_noise_e = 3.0;        ///< standard deviation [e]
+  double dark_current_e = 0.0;      ///< mean per frame [e]
+  double quantum_efficiency = 0.6;  ///< electrons per photon
   bool shot_noise = true;
   std::uint64_t seed = 1;
 };
@@ -22,10 +22,10 @@ struct NoiseSetup {
 struct CameraSetup {
   int columns = 512;
   int rows = 512;
-  double pixel_pitch = 10e-6;                ///< [m]
+  double pixel_pitch = 10e-6;  ///< [m]
   int bit_depth = 16;
-  std::optional<double> exposure_e;          ///< electrons in a fully lit pixel on the axis; empty: auto
-  double offset_dn = 0;                      ///< black level
+  std::optional<double> exposure_e;  ///< electrons in a fully lit pixel on the axis; empty: auto
+  double offset_dn = 0;              ///< black level
   NoiseSetup noise;
 };
 

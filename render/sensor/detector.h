@@ -10,8 +10,8 @@ namespace gladstone {
 
 /// A recorded frame.
 struct Recording {
-  Image<std::uint16_t> image;     ///< grey levels, unshifted
-  std::size_t saturated = 0;      ///< pixels at full well or full scale
+  Image<std::uint16_t> image;  ///< grey levels, unshifted
+  std::size_t saturated = 0;   ///< pixels at full well or full scale
 };
 
 /// Turns light into grey levels. Light is measured in fully lit pixels on the axis (1 = a pixel that sees white paper).

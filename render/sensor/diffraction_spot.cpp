@@ -10,7 +10,8 @@
 namespace gladstone {
 namespace {
 
-/// Irradiance of the Airy pattern at radius r, in units of N (1 + M) lambda; 1 on the axis (Born & Wolf, section 8.5.2).
+/// Irradiance of the Airy pattern at radius r, in units of N (1 + M) lambda; 1 on the axis (Born & Wolf,
+/// section 8.5.2).
 double airy(double r) {
   double const v = pi * r;
   if (v < 1e-4) return 1 - v * v / 4;

@@ -14,7 +14,15 @@ class App;
 namespace gladstone {
 
 /// Exit codes of the executable.
-enum ExitCode : int { ok = 0, check_missed = 1, bad_input = 2, incomplete = 3, infeasible = 4, device_error = 5, interrupted_by_user = 130 };
+enum ExitCode : int {
+  ok = 0,
+  check_missed = 1,
+  bad_input = 2,
+  incomplete = 3,
+  infeasible = 4,
+  device_error = 5,
+  interrupted_by_user = 130
+};
 
 /// Options that every command has.
 struct GlobalOptions {

@@ -20,10 +20,14 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     std::string output, config;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("input", arguments->inputs, "A case folder, or two images: reference and flow")->required()->expected(1, 2);
+  app.add_option("input", arguments->inputs, "A case folder, or two images: reference and flow")
+      ->required()
+      ->expected(1, 2);
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
   app.add_option("--config", arguments->config, "TOML file with a table [correlate]");
-  app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")->expected(1)->take_all();
+  app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")
+      ->expected(1)
+      ->take_all();
   return [arguments, &options] {
     if (options.device == "cuda") options.renderer();
     std::string const& output = arguments->output;
@@ -31,14 +35,16 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       throw OutputError(output, "has an ending that is neither .h5 nor .csv; choose one of them");
     }
     bool const configured = !arguments->config.empty() || !arguments->overrides.empty();
-    CorrelationFile const other = !arguments->config.empty() ? read_correlation_file(arguments->config, arguments->overrides)
-                                                             : default_correlation(arguments->overrides);
+    CorrelationFile const other = !arguments->config.empty()
+                                      ? read_correlation_file(arguments->config, arguments->overrides)
+                                      : default_correlation(arguments->overrides);
     Measurement measurement;
     std::string written = output;
     if (arguments->inputs.size() == 1) {
       std::string const& folder = arguments->inputs[0];
       if (!std::filesystem::is_directory(folder)) {
-        throw DataError(folder, "is not a case folder (give one, or two images: gladstone correlate A.tif B.tif -o vectors.csv)");
+        throw DataError(
+            folder, "is not a case folder (give one, or two images: gladstone correlate A.tif B.tif -o vectors.csv)");
       }
       measurement = correlate_case(folder, output, configured ? &other : nullptr);
       if (written.empty()) written = in_case(folder, case_file::vectors);
@@ -50,13 +56,17 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
-    nlohmann::json const json{{"vectors", measurement.field.size()}, {"file", written},
-                              {"valid", counts[0]},                  {"replaced", counts[1]},
-                              {"masked", counts[2]},                 {"invalid", counts[3]},
-                              {"device", "cpu"},                     {"seconds_correlate", measurement.seconds}};
+    nlohmann::json const json{{"vectors", measurement.field.size()},
+                              {"file", written},
+                              {"valid", counts[0]},
+                              {"replaced", counts[1]},
+                              {"masked", counts[2]},
+                              {"invalid", counts[3]},
+                              {"device", "cpu"},
+                              {"seconds_correlate", measurement.seconds}};
     print_result(options, json.dump(2),
-                 fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, measurement.field.size(), counts[1],
-                             counts[3], measurement.seconds));
+                 fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, measurement.field.size(),
+                             counts[1], counts[3], measurement.seconds));
     return ok;
   };
 }

@@ -42,16 +42,18 @@ int describe_field(std::string const& path, std::string const& dataset, GlobalOp
                             {"maximum", high},
                             {"steepest_gradient", {steepest[0], steepest[1], steepest[2]}},
                             {"units", "as in the file; lengths are taken as mm unless spacing_mm is given"}};
-  print_result(options, json.dump(2),
-               fmt::format("{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
-                           "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z",
-                           source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y,
-                           grid.spacing.z, low, high, steepest[0], steepest[1], steepest[2]));
+  print_result(
+      options, json.dump(2),
+      fmt::format(
+          "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
+          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z",
+          source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y, grid.spacing.z,
+          low, high, steepest[0], steepest[1], steepest[2]));
   return ok;
 }
 
-/// Mean e^-2 diameter d of the dots from the picture's autocorrelation at a shift of one pixel: Gaussian dots of standard
-/// deviation d/4 have a Gaussian autocorrelation of variance d^2/8.
+/// Mean e^-2 diameter d of the dots from the picture's autocorrelation at a shift of one pixel: Gaussian dots of
+/// standard deviation d/4 have a Gaussian autocorrelation of variance d^2/8.
 double dot_diameter_px(Image<double> const& image, double mean) {
   double zero = 0, one = 0;
   for (int row = 0; row < image.rows(); ++row) {
@@ -72,13 +74,18 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
   double mean = 0;
   for (double value : image) mean += value / static_cast<double>(image.size());
   double const diameter = dot_diameter_px(image, mean);
-  nlohmann::json const json{{"columns", image.columns()}, {"rows", image.rows()},
-                            {"bit_depth", metadata.bit_depth}, {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
-                            {"minimum", *least}, {"maximum", *most}, {"mean", mean},
-                            {"dot_diameter_px", std::isfinite(diameter) ? nlohmann::json(diameter) : nlohmann::json(nullptr)}};
+  nlohmann::json const json{
+      {"columns", image.columns()},
+      {"rows", image.rows()},
+      {"bit_depth", metadata.bit_depth},
+      {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
+      {"minimum", *least},
+      {"maximum", *most},
+      {"mean", mean},
+      {"dot_diameter_px", std::isfinite(diameter) ? nlohmann::json(diameter) : nlohmann::json(nullptr)}};
   print_result(options, json.dump(2),
-               fmt::format("{}: {} x {} px, {} bits, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2)", path,
-                           image.columns(), image.rows(), metadata.bit_depth, *least, *most, mean, diameter));
+               fmt::format("{}: {} x {} px, {} bits, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2)",
+                           path, image.columns(), image.rows(), metadata.bit_depth, *least, *most, mean, diameter));
   return ok;
 }
 

@@ -16,15 +16,18 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("setup", arguments->setup, "Setup file (TOML)")->required();
   app.add_option("-o,--output", arguments->folder, "Case folder to make")->required();
-  app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")->take_all()->expected(1)->trigger_on_parse(false);
+  app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")
+      ->take_all()
+      ->expected(1)
+      ->trigger_on_parse(false);
   return [arguments, &options] {
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
     auto const renderer = options.renderer();
     std::string const summary = render_to_folder(loaded, *renderer, arguments->folder);
     auto const json = nlohmann::json::parse(summary);
     print_result(options, summary,
-                 fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.1f} s on {}", arguments->folder,
-                             json["dots"].get<long long>(), json["rays_per_dot"].get<long long>(),
+                 fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.1f} s on {}",
+                             arguments->folder, json["dots"].get<long long>(), json["rays_per_dot"].get<long long>(),
                              json["step_mm"].get<double>(), json["magnification"].get<double>(),
                              json["seconds_render"].get<double>(), json["device"].get<std::string>()));
     return ok;

@@ -1,5 +1,3 @@
-#include "render/optics/optical_train.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 
 #include "render/base/units.h"
 #include "render/optics/lens_setup.h"
+#include "render/optics/optical_train.h"
 
 namespace gladstone {
 namespace {
@@ -124,7 +123,8 @@ TEST(ThinLens, StopsExactlyAtItsRadius) {
   EXPECT_EQ(status_at(0.004 * (1 + 4e-16)), RayStatus::vignetted);
 }
 
-// The edge kernel has moments 1, 0, 0, 0: a parabola in the enclosed area integrates over the smoothed stop as over the sharp one.
+// The edge kernel has moments 1, 0, 0, 0: a parabola in the enclosed area integrates over the smoothed stop as over the
+// sharp one.
 TEST(ApertureStop, SmoothedEdgeIntegratesParabolasExactly) {
   ApertureStop<double> const smooth{0, 1, 0.3};
   double sums[4] = {};
