@@ -91,11 +91,12 @@ void LightPatch::flush(LightImage* image, double light_per_weight) {
   low_column_ = high_column_ = low_row_ = high_row_ = 0;
 }
 
-SourceCubature SourceCubature::disc(int radial, int angular) {
+SourceCubature SourceCubature::disc(int radial, int innermost, int outermost) {
   SourceCubature cubature;
   GaussLegendre const nodes(radial);
   for (int i = 0; i < radial; ++i) {
     double const r = std::sqrt(0.5 * (1 + nodes.node[static_cast<std::size_t>(i)]));
+    int const angular = static_cast<int>(std::ceil(innermost + (outermost - innermost) * r));
     for (int k = 0; k < angular; ++k) {
       double const angle = 2 * pi * (k + 0.5 * (i % 2)) / angular;
       cubature.points.push_back({r * std::cos(angle), r * std::sin(angle)});
@@ -109,9 +110,11 @@ SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, doub
   if (half_size_px == 0) return {{{0, 0}}, {1.0}};
   // the finest thing that the source's outline is blurred by is the spot
   double const fineness = half_size_px / std::clamp(spot_px, 0.05, 2.0);
+  if (shape == SourceShape::disc) {
+    return disc(std::clamp(static_cast<int>(std::ceil(fineness)) + 2, 3, 64), 6,
+                std::clamp(static_cast<int>(std::ceil(4 * fineness)) + 6, 9, 256));
+  }
   int const radial = std::clamp(static_cast<int>(std::ceil(1.5 * fineness)) + 3, 4, 64);
-  if (shape == SourceShape::disc)
-    return disc(radial, std::clamp(static_cast<int>(std::ceil(6 * fineness)) + 6, 12, 256));
   SourceCubature cubature;
   GaussLegendre const nodes(2 * radial);
   for (std::size_t i = 0; i < nodes.node.size(); ++i) {
@@ -335,10 +338,10 @@ namespace {
 /// Points of the pupil over which a displacement that varies by `spread_px` across it is averaged.
 SourceCubature const& pupil_cubature(double spread_px) {
   static SourceCubature const rules[] = {{{{0, 0}}, {1.0}},
-                                         SourceCubature::disc(1, 4),
-                                         SourceCubature::disc(2, 6),
-                                         SourceCubature::disc(3, 9),
-                                         SourceCubature::disc(5, 15)};
+                                         SourceCubature::disc(1, 3, 3),
+                                         SourceCubature::disc(2, 6, 6),
+                                         SourceCubature::disc(3, 9, 9),
+                                         SourceCubature::disc(5, 15, 15)};
   return rules[spread_px == 0 ? 0 : (spread_px < 0.01 ? 1 : (spread_px < 0.05 ? 2 : (spread_px < 0.2 ? 3 : 4)))];
 }
 

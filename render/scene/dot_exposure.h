@@ -95,8 +95,10 @@ struct SourceCubature {
   std::vector<double> weights;  ///< sum 1
 
   /// Uniform over the unit disc: Gauss-Legendre in r^2 times equal angles, turned by half a step from ring to ring.
-  static SourceCubature disc(int radial, int angular);
-  /// Disc as above. Square: Gauss-Legendre in both directions. A point: itself.
+  /// @param innermost,outermost points on a ring of radius zero and one; between them in proportion
+  static SourceCubature disc(int radial, int innermost, int outermost);
+  /// Disc as above; a spot that is wider than a twentieth of the disc is integrated to 1e-5 of the peak, a Table 1 dot
+  /// to 4e-7. Square: Gauss-Legendre in both directions. A point: itself.
   /// @param half_size_px of the source's image; the finer the spot beside it, the more points
   static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
 };
