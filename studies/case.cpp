@@ -18,6 +18,8 @@
 namespace gladstone {
 namespace {
 
+constexpr int map_spacing_px = 2;  // of the maps in truth.h5: turbulence's fronts are a few pixels wide
+
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
   for (int window : loaded.correlate.window_px) {
@@ -27,6 +29,27 @@ void cross_check_windows(CaseSetup& loaded) {
         .problem("window_px",
                  fmt::format("a window of {} px is larger than the image of {} x {} px; use smaller windows", window,
                              camera.columns, camera.rows));
+  }
+}
+
+/// Places check_memory's refusal, "table.key: message", in the setup. A field file that cannot be read is left to those
+/// who read it.
+void cross_check_memory(CaseSetup& loaded) {
+  try {
+    check_memory(loaded.setup);
+  } catch (DataError const& error) {
+    std::string const text = error.what();
+    SetupTable root = loaded.document.root();
+    auto const place = [&](std::string const& path, std::vector<SetupTable> tables) {
+      std::string const start = path + ": ";
+      if (!text.starts_with(start)) return;
+      SetupTable table = tables.empty() ? root.table(path.substr(0, path.find('.'))) : tables.front();
+      table.problem(path.substr(path.rfind('.') + 1), text.substr(start.size()));
+    };
+    place("camera.pixels", root.tables("camera"));
+    place("medium.field.file", root.table("medium").tables("field"));
+    place("target.dots_per_32px_window", {});
+    place("render.rays_per_dot", {});
   }
 }
 
@@ -56,6 +79,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
     loaded.warnings = cross_check(loaded.setup, root);
     cross_check_windows(loaded);
   }
+  if (!loaded.document.has_problems()) cross_check_memory(loaded);
   loaded.document.finish();
   return loaded;
 }
@@ -134,7 +158,7 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   write_tiff(place(case_file::flow), flow.image, metadata);
   FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
   write_truth(place(case_file::truth), scene, rendered.rendering.truth, rendered.rendering.statuses,
-              map_field(scene, 4), origin);
+              map_field(scene, map_spacing_px), origin);
   OutputFile::write_text(place(case_file::setup), resolved);
 
   auto const unseen =

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -126,6 +127,21 @@ Loaded load_vectors(std::string const& path, CaseSetup const& loaded, GroundTrut
   return vectors;
 }
 
+/// A file that a case should hold by now. @param command that makes it
+std::string made_file(std::string const& folder, char const* name, std::string const& command) {
+  std::string path = in_case(folder, name);
+  if (!std::filesystem::exists(path)) throw DataError(path, "is not there; make it with: " + command);
+  return path;
+}
+
+/// Where the vectors are. @throws DataError where they are not
+std::string vectors_path(std::string const& folder, std::string const& given) {
+  if (given.empty()) return made_file(folder, case_file::vectors, "gladstone correlate " + folder);
+  if (!std::filesystem::exists(given)) throw DataError(given, "does not exist; check --vectors");
+  if (std::filesystem::is_directory(given)) throw DataError(given, "is a folder; name a file of vectors");
+  return given;
+}
+
 }  // namespace
 
 GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
@@ -152,9 +168,11 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
 }
 
 Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options) {
-  CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
-  GroundTruth const dots = read_truth(in_case(folder, case_file::truth));
-  std::string const path = options.vectors.empty() ? in_case(folder, case_file::vectors) : options.vectors;
+  std::string const setup = in_case(folder, case_file::setup);
+  std::string const truth = made_file(folder, case_file::truth, "gladstone render " + setup + " -o " + folder);
+  std::string const path = vectors_path(folder, options.vectors);
+  CaseSetup loaded = load_case_setup(setup, {});
+  GroundTruth const dots = read_truth(truth);
   Loaded vectors = load_vectors(path, loaded, dots, options);
 
   Comparison comparison;

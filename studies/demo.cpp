@@ -34,10 +34,16 @@ constexpr Instant instants[] = {
     {"late", "t = 6.00, decayed", "hbdt512_late_slice.h5"},
 };
 
-SeedFigure4Instant figure_instant(std::string const& heading, std::string const& folder) {
-  std::string const truth_path = in_case(folder, case_file::truth);
-  FieldMap const field = read_field_map(truth_path);
-  GroundTruth const truth = read_truth(truth_path);
+MapAxes axes_of(FieldMap const& field) {
+  Vec2d const first = field.position_px(0, 0);
+  MapAxes axes;
+  axes.x_first = first.x;
+  axes.y_first = first.y;
+  axes.x_step = axes.y_step = field.spacing_px;
+  return axes;
+}
+
+SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& field, GroundTruth const& truth) {
   int const columns = field.density.columns(), rows = field.density.rows();
   SeedFigure4Instant instant;
   instant.heading = heading;
@@ -92,6 +98,7 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
   std::string const shared = shared_folder();
   std::string rows, reports;
   std::vector<SeedFigure4Instant> panels;
+  MapAxes axes;  // of both: one camera
   for (Instant const& instant : instants) {
     spdlog::info("{}: {}", instant.name, instant.heading);
     std::string const place = (fs::path(folder) / instant.name).string();
@@ -117,12 +124,12 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
     } catch (GnuplotMissing const& missing) {
       spdlog::warn("{}", missing.what());
     }
-    panels.push_back(figure_instant(instant.heading, place));
+    std::string const truth_path = in_case(place, case_file::truth);
+    FieldMap const field = read_field_map(truth_path);
+    axes = axes_of(field);
+    panels.push_back(figure_instant(instant.heading, field, read_truth(truth_path)));
   }
   try {
-    MapAxes axes;
-    axes.x_first = axes.y_first = 1.5;
-    axes.x_step = axes.y_step = 4.0;
     write_seed_figure4((fs::path(folder) / "figure4.png").string(), axes, panels);
   } catch (GnuplotMissing const& missing) {
     spdlog::warn("{}", missing.what());

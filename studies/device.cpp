@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <nlohmann/json.hpp>
+
 #include "cuda/backend.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
@@ -21,6 +23,12 @@ std::unique_ptr<Renderer> GlobalOptions::renderer() const {
 
 std::string version_text() {
   return fmt::format("gladstone {} ({})\nbackends: cpu\nCUDA: {}", version, git_sha1, cuda::description());
+}
+
+std::string version_json() {
+  return nlohmann::json{
+      {"version", version}, {"commit", git_sha1}, {"backends", {"cpu"}}, {"cuda", cuda::description()}}
+      .dump(2);
 }
 
 }  // namespace gladstone

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <iostream>
 #include <new>
+#include <string_view>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
@@ -85,6 +86,11 @@ int run(int argc, char** argv) {
   app.allow_extras();  // what nobody knows is refused below, with the nearest name
   try {
     app.parse(argc, argv);
+  } catch (CLI::CallForVersion const&) {
+    // parsing stopped there: --json may stand on either side
+    options.json = std::find(argv + 1, argv + argc, std::string_view("--json")) != argv + argc;
+    print_result(options, version_json(), version_text());
+    return ok;
   } catch (CLI::ParseError const& error) {
     return app.exit(error) == 0 ? ok : bad_input;
   }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -17,6 +19,12 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// A direction of any length, scaled by its largest component first: its square would overflow or vanish.
+Vec3d unit_direction(Vec3d d) {
+  double const largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+  return normalized(Vec3d{d.x / largest, d.y / largest, d.z / largest});
+}
+
 TracedRay dead(RayStatus status) { return {status, {nan, nan, nan}, {nan, nan, nan}, nan, {nan, nan}}; }
 
 template <class Medium>
@@ -26,6 +34,10 @@ TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<dou
   TracedRay traced{RayStatus::alive, start.position, start.direction, 0.0, {nan, nan}};
   if (way.crossed) {
     traced.position = exit_position(start, way);
+    // along a slab without end there is no face to leave by
+    if (std::max(std::abs(traced.position.x), std::abs(traced.position.y)) >= unbounded) {
+      return dead(RayStatus::lost_in_medium);
+    }
     traced.direction = exit_direction(start, way);
     traced.optical_path = way.optical_path;
   }
@@ -49,6 +61,7 @@ TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<dou
 }  // namespace
 
 std::vector<Ray<double>> read_rays(std::string const& path) {
+  if (std::filesystem::is_directory(path)) throw DataError(path, "is a folder; name a table of rays with --rays");
   std::ifstream file(path);
   if (!file) throw DataError(path, "cannot be opened (missing or not readable); check --rays");
   std::string line;
@@ -71,11 +84,11 @@ std::vector<Ray<double>> read_rays(std::string const& path) {
       at = rest + 1;
     }
     Vec3d const direction{v[3], v[4], v[5]};
-    if (!good || !(length(direction) > 0)) {
+    if (!good || direction == Vec3d{}) {
       throw DataError(fmt::format("{}:{}", path, number),
                       fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", line));
     }
-    rays.push_back({Vec3d{v[0], v[1], v[2]} * unit::millimetre, normalized(direction)});
+    rays.push_back({Vec3d{v[0], v[1], v[2]} * unit::millimetre, unit_direction(direction)});
   }
   return rays;
 }

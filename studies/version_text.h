@@ -6,5 +6,7 @@ namespace gladstone {
 
 /// What --version prints: version, commit, backends.
 std::string version_text();
+/// The same as one JSON object.
+std::string version_json();
 
 }  // namespace gladstone

@@ -188,7 +188,8 @@ Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
   } else {
     throw DataError(path, std::string("cannot be opened (") + std::strerror(errno) + ')');
   }
-  if (H5Fis_hdf5(path.c_str()) <= 0) throw DataError(path, "is not an HDF5 file");
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw DataError(path, "is not an HDF5 file; check the name, or make or fetch it again");
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
   H5Pset_file_locking(access, false, true);  // we only read, perhaps from a file system without locks

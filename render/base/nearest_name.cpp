@@ -26,7 +26,10 @@ std::optional<std::string> nearest_name(std::string_view word, std::vector<std::
   std::optional<std::string> nearest;
   std::size_t smallest = 0;
   for (auto const& candidate : candidates) {
-    std::size_t const distance = edit_distance(word, candidate);
+    // a name without its unit means the one with it
+    bool const without_unit =
+        !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
+    std::size_t const distance = without_unit ? 1 : edit_distance(word, candidate);
     std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
     if (distance > allowed || (nearest && distance >= smallest)) continue;
     nearest = candidate;

@@ -137,7 +137,7 @@ void keep_what_users_added(fs::path const& old, fs::path const& fresh, std::vect
 
 }  // namespace
 
-OutputFile::OutputFile(std::string path) {
+OutputFile::OutputFile(std::string const& path) {
   fs::path const place = final_place(path);
   std::error_code error;
   auto const status = fs::status(place, error);
@@ -195,7 +195,7 @@ void OutputFile::write_text(std::string const& path, std::string const& text) {
   file.commit();
 }
 
-OutputFolder::OutputFolder(std::string path, std::string marker_file, std::vector<std::string> derived)
+OutputFolder::OutputFolder(std::string const& path, std::string marker_file, std::vector<std::string> derived)
     : marker_file_(std::move(marker_file)), derived_(std::move(derived)) {
   fs::path const place = final_place(path);
   std::error_code error;

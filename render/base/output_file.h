@@ -13,7 +13,7 @@ class OutputFile {
  public:
   /// Makes the folder where it is missing, and an empty temporary file, so that what cannot be written is known early.
   /// A link is followed. @throws OutputError where the folder cannot be written, or `path` is a folder or a device
-  explicit OutputFile(std::string path);
+  explicit OutputFile(std::string const& path);
   ~OutputFile();
   OutputFile(OutputFile const&) = delete;
   OutputFile& operator=(OutputFile const&) = delete;
@@ -42,7 +42,7 @@ class OutputFolder {
  public:
   /// @param derived names of files that make no sense beside new ones; they go with the old folder
   /// @throws OutputError where it cannot be made, `path` is a file, or holds data that gladstone did not write
-  OutputFolder(std::string path, std::string marker_file, std::vector<std::string> derived = {});
+  OutputFolder(std::string const& path, std::string marker_file, std::vector<std::string> derived = {});
   ~OutputFolder();
   OutputFolder(OutputFolder const&) = delete;
   OutputFolder& operator=(OutputFolder const&) = delete;

@@ -75,6 +75,20 @@ SetupNode const* SetupNode::find(std::string const& key) const {
 
 SetupNode* SetupNode::find(std::string const& key) { return const_cast<SetupNode*>(std::as_const(*this).find(key)); }
 
+namespace {
+
+/// What usually is behind a complaint of the parser; may be empty.
+std::string cure(std::string_view complaint) {
+  auto const says = [&](char const* words) { return complaint.find(words) != std::string_view::npos; };
+  if (says("parsing boolean") || says("determine value type")) return "; put texts in quotes";
+  if (says("saw ','")) return "; write a number with a decimal point, several values in brackets";
+  if (says("cannot redefine")) return "; name it once, with all of its keys";
+  if (says("expected value")) return "; give a value or remove the key";
+  return "";
+}
+
+}  // namespace
+
 SetupNode parse_toml(std::string_view text, std::string const& name) {
   try {
     SetupNode root = converted(toml::parse(text));
@@ -83,7 +97,7 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
   } catch (toml::parse_error const& error) {
     auto const begin = error.source().begin;
     throw SetupError({{name + ':' + std::to_string(begin.line) + ':' + std::to_string(begin.column),
-                       "is not TOML: " + std::string(error.description())}});
+                       "is not TOML: " + std::string(error.description()) + cure(error.description())}});
   }
 }
 

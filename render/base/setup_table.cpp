@@ -115,7 +115,9 @@ SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::strin
   if (!node) return nullptr;
   std::string const form = "an array of " + counted(at_least, at_most) + ' ' + wanted;
   if (node->kind != Kind::array) {
-    table.problem(key, wrong_kind(form, *node));
+    std::string const bracketed = node->kind == Kind::text ? '[' + node->text + ']' : std::string();
+    bool const brackets_are_missing = !bracketed.empty() && parse_toml_value(bracketed);
+    table.problem(key, wrong_kind(form, *node) + (brackets_are_missing ? "; write " + bracketed : ""));
     return nullptr;
   }
   std::size_t const count = node->elements.size();

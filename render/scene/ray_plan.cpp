@@ -260,12 +260,12 @@ RaysPlan plan_rays(Scene& scene) {
   if (!plan.converged && before > 0) {
     // beyond what is measured, errors go on falling as they did last
     double const order = std::clamp(std::log2(before / excess), 0.5, 1.0);
-    std::uint64_t const measured = scene.rays_per_dot;
+    auto const measured = static_cast<double>(scene.rays_per_dot);
     while (scene.rays_per_dot < most && excess > 1) {
       scene.rays_per_dot *= 2;
       excess *= std::pow(2.0, -order);
     }
-    double const gain = std::pow(static_cast<double>(scene.rays_per_dot / measured), -order);
+    double const gain = std::pow(static_cast<double>(scene.rays_per_dot) / measured, -order);
     plan.truth_error_px *= gain;
     plan.image_error_levels *= gain;
     plan.extrapolated = true;

@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "render/medium/density_field.h"
+#include "render/scene/dot_exposure.h"
 
 namespace gladstone {
 namespace {
@@ -30,6 +36,51 @@ double available_memory() {
 }
 
 double gigabytes(double bytes) { return bytes / 1e9; }
+
+/// What every thread keeps of one dot's rays while it renders images (DotExposure) [bytes].
+double ray_record_bytes(Setup const& setup) {
+  bool const kept =
+      setup.lens.focus == Focus::target && setup.lens.spot != SpotModel::none && std::isfinite(setup.lens.f_number);
+  if (!kept) return 0;
+  std::uint64_t const rays = setup.render.rays_per_dot.value_or(std::uint64_t{1} << 16);  // the most "auto" takes
+  // a list that doubles as it grows holds one and a half times its last size for a moment
+  return 1.5 * static_cast<double>(std::bit_ceil(rays) * sizeof(RayRecord)) * thread_count();
+}
+
+/// Lowest density of a file's field [kg/m^3]. @pre its quantity is density
+double lowest_density(MediumSetup const& setup, BuiltMedium const& medium) {
+  auto const lowest = [&]<class Stored>(Stored) {
+    return std::static_pointer_cast<RefractiveIndexVolume<Stored> const>(medium.owner)->lowest();
+  };
+  return (setup.field.extrude ? lowest(double{}) : lowest(float{})) /
+         setup.gladstone_dale;  // as build_medium stores it
+}
+
+/// Refuses a file with densities below zero, which no gas has, with their count and the first place.
+void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium) {
+  FieldSetup const& field = setup.field;
+  if (field.kind != FieldKind::file || field.quantity != FieldQuantity::density) return;
+  double const lowest = lowest_density(setup, medium);
+  if (lowest >= 0) return;
+  auto const source = open_field(field.file, field.dataset);
+  RegularGrid const& grid = source->grid();
+  auto const width = static_cast<std::size_t>(grid.nodes[0]);
+  std::vector<float> plane(width * static_cast<std::size_t>(grid.nodes[1]));
+  std::size_t count = 0;
+  std::string first;
+  for (int k = 0; k < grid.nodes[2]; ++k) {
+    throw_if_interrupted();
+    source->read_planes(k, 1, plane);
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      if (field.scale * static_cast<double>(plane[i]) >= 0) continue;
+      if (count++ == 0) first = fmt::format("{}, {}, {}", i % width, i / width, k);
+    }
+  }
+  throw DataError(field.file,
+                  fmt::format("dataset \"{}\": {} of {} points are negative densities (the first at node x, y, z = {}; "
+                              "the lowest is {:.6g} kg/m^3); mend the field, or check medium.field.quantity and scale",
+                              source->name(), count, grid.size(), first, lowest));
+}
 
 }  // namespace
 
@@ -98,18 +149,26 @@ Vec2d Scene::to_target(Vec2d pixel) const {
 }
 
 void check_memory(Setup const& setup) {
-  double const field = static_cast<double>(medium_bytes_needed(setup.medium));
+  struct Need {
+    char const* key;  ///< that it can be reduced by
+    double bytes;
+  };
   double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
-  double const images = pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t));
-  double const dots = (setup.target.kind == TargetKind::dots ? setup.dot_count() : 0.0) * 200;
-  double const needed = field + images + dots;
+  Need const images{"camera.pixels", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))};
+  Need const field{"medium.field.file", static_cast<double>(medium_bytes_needed(setup.medium))};
+  Need const dots{"target.dots_per_32px_window", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0};
+  Need const rays{"render.rays_per_dot", ray_record_bytes(setup)};
+  double const needed = field.bytes + images.bytes + dots.bytes + rays.bytes;
   double const available = available_memory();
   if (needed <= available) return;
+  Need const most =
+      std::max({images, field, dots, rays}, [](Need const& a, Need const& b) { return a.bytes < b.bytes; });
   throw DataError(
-      "setup",
-      fmt::format("needs {:.3g} GB of memory (field {:.3g}, images {:.3g}, dots {:.3g}) but this machine has "
-                  "{:.3g} GB free; reduce camera.pixels, the field or the number of dots",
-                  gigabytes(needed), gigabytes(field), gigabytes(images), gigabytes(dots), gigabytes(available)));
+      most.key,
+      fmt::format("needs {:.3g} GB of memory (images {:.3g}, field {:.3g}, dots {:.3g}, rays of a dot {:.3g}) but this "
+                  "machine has {:.3g} GB free; reduce {}",
+                  gigabytes(needed), gigabytes(images.bytes), gigabytes(field.bytes), gigabytes(dots.bytes),
+                  gigabytes(rays.bytes), gigabytes(available), most.key));
 }
 
 Scene build_scene(Setup const& setup) {
@@ -138,6 +197,7 @@ Scene build_scene(Setup const& setup) {
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
 
   scene.medium = build_medium(setup.medium);
+  refuse_negative_density(setup.medium, scene.medium);
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
     if (-setup.z_d > box.low.z || setup.z_a < box.high.z) {

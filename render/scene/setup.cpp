@@ -10,9 +10,11 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_steps = 1e6;      // across the medium
-constexpr double widest_spot_px = 200;  // between first zeros; f/64 gives about 10 px
-constexpr double widest_airy_px = 60;   // its table takes 0.2 GB then
+constexpr double most_steps = 1e6;       // across the medium
+constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
+constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
+constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
+constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air takes a half space
 
 RenderSetup read_render_setup(SetupTable table) {
   RenderSetup setup;
@@ -37,6 +39,54 @@ SetupTable camera_table(SetupTable& root) {
     root.problem("camera", "is an array of several cameras, which is not available yet (one camera a setup); keep one");
   }
   return cameras.empty() ? root.table("camera") : cameras.front();
+}
+
+/// A hint where a length in mm looks like one in metres; empty where it does not.
+std::string metres_hint(double length) {
+  double const millimetres = length / unit::millimetre;
+  if (!(millimetres < 2)) return "";
+  return fmt::format(" (lengths are in mm: {0:.6g} mm was given, {0:.6g} m are {1:.6g} mm)", millimetres,
+                     1e3 * millimetres);
+}
+
+/// Half width and height of what dots' rays cross of the medium [m].
+Vec2d half_extent_at_medium(Setup const& setup) {
+  Vec2d const target = setup.target_extent();
+  double const pupil = setup.imaging().entrance_pupil / 2;
+  Vec2d half{};
+  for (double const z : {-setup.medium.thickness / 2, setup.medium.thickness / 2}) {
+    double const way = (setup.z_d + z) / setup.z_b();  // from the dots to the lens
+    half.x = std::max(half.x, target.x / 2 * (1 - way) + pupil * way);
+    half.y = std::max(half.y, target.y / 2 * (1 - way) + pupil * way);
+  }
+  return half;
+}
+
+/// Densities of closed forms below zero, which no gas has. A uniform gradient has them somewhere whatever it is: there
+/// it is a warning, and optically linear beyond.
+void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+  FieldSetup const& field = setup.medium.field;
+  double const ambient = setup.medium.ambient_density;
+  bool const wave = field.kind == FieldKind::sinusoid;
+  if (wave || field.kind == FieldKind::gaussian_plume || field.kind == FieldKind::gaussian_blob) {
+    double const lowest = ambient - (wave ? std::abs(field.amplitude) : -field.amplitude);
+    if (lowest >= 0) return;
+    medium.tables("field").front().problem(
+        "amplitude_kg_m3",
+        fmt::format("makes the density negative, {:.6g} kg/m^3 at the lowest (about medium.ambient_density_kg_m3 = "
+                    "{:.6g}); reduce the amplitude or increase the ambient density",
+                    lowest, ambient));
+  } else if (field.kind == FieldKind::uniform_gradient) {
+    Vec2d const half = half_extent_at_medium(setup);
+    double const lowest = ambient - std::abs(field.gradient.x) * half.x - std::abs(field.gradient.y) * half.y -
+                          std::abs(field.gradient.z) * setup.medium.thickness / 2;
+    if (lowest >= 0) return;
+    warnings.push_back(
+        fmt::format("medium.field.gradient_kg_m4: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
+                    "the {:.4g} x {:.4g} mm that rays cross (no gas has that); reduce the gradient or increase "
+                    "medium.ambient_density_kg_m3",
+                    lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+  }
 }
 
 }  // namespace
@@ -97,35 +147,44 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   std::vector<std::string> warnings;
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), geometry = root.table("geometry"), target = root.table("target");
+  if (setup.lens.f_number < fastest_lens) {
+    lens.problem("f_number", fmt::format("is below {} (no lens in air opens wider than twice its focal length); stop "
+                                         "it down",
+                                         fastest_lens));
+    return warnings;  // everything else needs an aperture
+  }
   if (setup.focus_distance() <= setup.lens.focal_length) {
     bool const by_distance = setup.lens.focus == Focus::distance;
     (by_distance ? lens : geometry)
         .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
                  fmt::format(
                      "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
-                     "image needs more than the focal length); move the lens away or take a shorter one",
-                     setup.focus_distance() / mm, setup.lens.focal_length / mm));
+                     "image needs more than the focal length); move the lens away or take a shorter one{}",
+                     setup.focus_distance() / mm, setup.lens.focal_length / mm, metres_hint(setup.focus_distance())));
     return warnings;  // everything else needs an image
   }
   if (setup.z_b() <= setup.lens.focal_length) {
     geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
     return warnings;
   }
+  if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty()) {
+    warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
+  }
   FieldKind const kind = setup.medium.field.kind;
   if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
     double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
     if (-setup.z_d > centre - half) {
       geometry.problem(
-          "z_d_mm",
-          fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
-                      "z_d_mm beyond {:.6g} or make the medium thinner",
-                      -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm));
+          "z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
+                                "z_d_mm beyond {:.6g} or make the medium thinner{}",
+                                -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm,
+                                metres_hint(setup.z_d)));
     }
     if (setup.z_a < centre + half) {
       geometry.problem("z_a_mm",
                        fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
-                                   "z_a_mm or make the medium thinner",
-                                   half / mm));
+                                   "z_a_mm or make the medium thinner{}",
+                                   half / mm, metres_hint(setup.z_a)));
     }
   }
   if (setup.medium.step_mm && kind != FieldKind::none &&
@@ -135,6 +194,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                "most); use \"auto\" or a longer step",
                                setup.medium.thickness / mm / *setup.medium.step_mm, most_steps));
   }
+  cross_check_density(setup, root.table("medium"), warnings);
   double const magnification = setup.imaging().magnification;
   double const px = setup.camera.pixel_pitch / magnification;
   Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
@@ -151,7 +211,12 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
             ? 0.0
             : 2.44 * setup.medium.wavelength * setup.lens.f_number * (1 + magnification) / setup.camera.pixel_pitch;
     double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
-    if (diffraction_px > widest_px) {
+    if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
+      camera_table(root).problem("pixel_pitch_um",
+                                 fmt::format("makes the diffraction spot {:.4g} px wide ({} at most: nothing could be "
+                                             "seen); pitches are in um, and pixels of cameras are 1 to 20 of them wide",
+                                             diffraction_px, widest_px));
+    } else if (diffraction_px > widest_px) {
       lens.problem("f_number",
                    fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
                                "the lens or focus farther away",

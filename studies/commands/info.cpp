@@ -96,10 +96,18 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
     std::string kind, file, dataset;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("kind", arguments->kind, "field or image")->required()->check(CLI::IsMember({"field", "image"}));
-  app.add_option("file", arguments->file, "The file")->required();
+  app.add_option("kind", arguments->kind, "field or image")
+      ->required()
+      ->check(CLI::IsMember({"field", "image", "lens", "mie"}));
+  app.add_option("file", arguments->file, "The file");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   return [arguments, &options] {
+    if (arguments->kind == "lens" || arguments->kind == "mie") {
+      throw DataError(
+          "info " + arguments->kind,
+          "is not available yet (this version simulates BOS with a thin lens); use info field or info image");
+    }
+    if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
     return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, options)
                                       : describe_image(arguments->file, options);
   };

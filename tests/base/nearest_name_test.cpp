@@ -16,6 +16,7 @@ TEST(EditDistance, CountsSingleCharacterEdits) {
 TEST(NearestName, IsTheLikelyMeaningOrNothing) {
   EXPECT_EQ(nearest_name("f_nuber", {"focus", "f_number", "file"}), "f_number");
   EXPECT_EQ(nearest_name("focal_length", {"file", "focal_length_mm"}), "focal_length_mm");
+  EXPECT_EQ(nearest_name("z_a", {"z_d_mm", "z_a_mm"}), "z_a_mm");  // the unit forgotten
   EXPECT_EQ(nearest_name("wavelength", {"file", "kind"}), std::nullopt);
   EXPECT_EQ(nearest_name("x", {}), std::nullopt);
 }

@@ -38,6 +38,11 @@ void report_rendering(benchmark::State& state, Scene& scene, int threads, Render
   state.counters["steps/s"] = steps_of(scene) / fastest;
 }
 
+/// Renderings take long enough to be timed one by one, by report_rendering.
+void four_renderings(benchmark::internal::Benchmark* run) {
+  run->UseManualTime()->Iterations(4)->Unit(benchmark::kMillisecond);
+}
+
 constexpr int per_side = 32;
 constexpr std::uint64_t rays_per_dot = 64;
 
@@ -45,54 +50,33 @@ void render_volume(benchmark::State& state) {
   Scene scene = volume_scene(static_cast<int>(state.range(0)), per_side, rays_per_dot);
   report_rendering(state, scene, static_cast<int>(state.range(1)));
 }
-BENCHMARK(render_volume)
-    ->ArgNames({"nodes", "threads"})
-    ->ArgsProduct({{64, 128}, {1, 2}})
-    ->UseManualTime()
-    ->Iterations(4)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(render_volume)->ArgNames({"nodes", "threads"})->ArgsProduct({{64, 128}, {1, 2}})->Apply(four_renderings);
 
 void render_volume_truth_only(benchmark::State& state) {
   Scene scene = volume_scene(static_cast<int>(state.range(0)), per_side, rays_per_dot);
   report_rendering(state, scene, 1, RenderImages::no);
 }
-BENCHMARK(render_volume_truth_only)
-    ->ArgName("nodes")
-    ->Arg(64)
-    ->UseManualTime()
-    ->Iterations(4)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(render_volume_truth_only)->ArgName("nodes")->Arg(64)->Apply(four_renderings);
 
 void render_volume_straight(benchmark::State& state) {
   Scene scene = volume_scene(static_cast<int>(state.range(0)), per_side, rays_per_dot);
   scene.setup.medium.integrator = Integrator::straight;
   report_rendering(state, scene, 1);
 }
-BENCHMARK(render_volume_straight)
-    ->ArgName("nodes")
-    ->Arg(64)
-    ->UseManualTime()
-    ->Iterations(4)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(render_volume_straight)->ArgName("nodes")->Arg(64)->Apply(four_renderings);
 
 void render_plane(benchmark::State& state) {
   Scene scene = plane_scene(85, rays_per_dot);
   report_rendering(state, scene, static_cast<int>(state.range(0)));
 }
-BENCHMARK(render_plane)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->UseManualTime()
-    ->Iterations(4)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(render_plane)->ArgName("threads")->Arg(1)->Arg(2)->Apply(four_renderings);
 
 void render_empty(benchmark::State& state) {
   Scene scene = table1_scene(85, rays_per_dot);
   plan_step(scene);
   report_rendering(state, scene, 1);
 }
-BENCHMARK(render_empty)->UseManualTime()->Iterations(4)->Unit(benchmark::kMillisecond);
+BENCHMARK(render_empty)->Apply(four_renderings);
 
 /// The rays of a scene where they enter the volume.
 std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {

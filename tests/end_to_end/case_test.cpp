@@ -42,6 +42,14 @@ TEST_F(Case, SummaryHasItsKeysAndTheMagnificationOfTheThinLens) {
   EXPECT_EQ(summary["gladstone_dale"], 2.26e-4);
 }
 
+TEST_F(Case, MapsOfTheFieldAreOneNodeEveryTwoPixels) {
+  render("case", {"--set", "camera.pixels=[64, 48]"});
+  Hdf5Reader const truth(in("case/truth.h5").string());
+  EXPECT_EQ(truth.read("/field/spacing_px"), std::vector<double>{2});
+  EXPECT_EQ(truth.shape("/field/density_kg_m3"), (std::vector<std::size_t>{24, 32}));
+  EXPECT_EQ(truth.shape("/field/eq9_px"), (std::vector<std::size_t>{24, 32, 2}));
+}
+
 TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
   render("case");
   succeed({"correlate", "case"});

@@ -40,6 +40,26 @@ TEST_F(CommandLine, VersionTellsTheBackends) {
   EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("gladstone "), HasSubstr("backends: cpu"), HasSubstr("CUDA")));
 }
 
+TEST_F(CommandLine, VersionTellsTheSameAsJson) {
+  Outcome const text = gladstone({"--version"});
+  for (auto const& arguments :
+       {std::vector<std::string>{"--version", "--json"}, {"--json", "--version"}, {"render", "--version", "--json"}}) {
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 0);
+    auto const json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["backends"], nlohmann::json::array({"cpu"}));
+    for (char const* key : {"version", "commit", "cuda"}) {
+      EXPECT_THAT(text.out, HasSubstr(json[key].get<std::string>())) << key;
+    }
+  }
+}
+
+TEST_F(CommandLine, InfoThatIsDueLaterIsRefusedByName) {
+  expect_refused({"info", "lens", "a.zmx"}, 2, {"info lens: is not available yet", "use info field or info image"});
+  expect_refused({"info", "mie"}, 2, {"info mie: is not available yet"});
+  expect_refused({"info", "image"}, 2, {"info image: needs a file"});
+}
+
 TEST_F(CommandLine, EveryHelpHasAnExample) {
   for (std::string const command : {"render", "correlate", "compare", "trace", "info", "validate", "demo"}) {
     EXPECT_THAT(succeed({"--help"}), HasSubstr(command));

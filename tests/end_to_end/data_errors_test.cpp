@@ -63,6 +63,26 @@ TEST_F(DataErrors, HolesOfTheDatabaseAreCounted) {
   expect_setup_refused(file_setup("field.h5"), {"field.h5: ", "\"density\"", "3 of 64 points are holes"});
 }
 
+TEST_F(DataErrors, NegativeDensitiesAreCountedAndPlaced) {
+  auto values = ramp(64);
+  values[21] = -2.5;  // node 1, 1, 1 of 4 x 4 x 4
+  values[50] = -0.5;
+  write_field("field.h5", {4, 4, 4}, values);
+  expect_setup_refused(
+      file_setup("field.h5", "scale = 0.01"),
+      {"field.h5: ", "\"density\"", "2 of 64 points are negative densities", "x, y, z = 1, 1, 1", "-0.025 kg/m^3"});
+  write_field("plane.h5", {1, 8, 8}, ramp(64));
+  expect_setup_refused(file_setup("plane.h5", "extrude = true\nscale = -0.01"),
+                       {"plane.h5: ", "64 of 64 points are negative densities", "-0.64 kg/m^3", "scale"});
+}
+
+// Below one is an index that a plasma has.
+TEST_F(DataErrors, NegativeRefractivitiesAreNone) {
+  write_field("plane.h5", {1, 8, 8}, ramp(64));
+  write("setup.toml", file_setup("plane.h5", "extrude = true\nquantity = \"refractivity\"\nscale = -1e-7"));
+  render("case");
+}
+
 TEST_F(DataErrors, TruncatedNrrd) {
   std::string const header =
       "NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\nspacings: 1 1 1\n\n";
@@ -130,8 +150,11 @@ TEST_F(DataErrors, AFolderThatIsNoCase) {
 
 TEST_F(DataErrors, CompareWithoutVectors) {
   render("case");
-  expect_refused({"compare", "case"}, 2, {"case/vectors.h5: does not exist"});
-  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: "});
+  expect_refused({"compare", "case"}, 2, {"case/vectors.h5: is not there", "gladstone correlate case"});
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: does not exist; check --vectors"});
+  expect_refused({"compare", "case", "--vectors", "case"}, 2, {"case: is a folder"});
+  std::filesystem::remove(in("case/truth.h5"));
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not there", "gladstone render case/setup.toml -o case"});
 }
 
 TEST_F(DataErrors, DamagedTruth) {

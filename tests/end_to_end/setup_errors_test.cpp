@@ -54,6 +54,44 @@ TEST_F(SetupErrors, AbsurdSizeIsRefusedWithItsMemoryBeforeItIsAllocated) {
   refused("[64, 64]", "[1000000, 1000000]", "dots_per_32px_window", {"GB of memory", "camera.pixels"});
 }
 
+TEST_F(SetupErrors, TooLittleMemoryStandsAtTheKeyThatTakesMost) {
+  std::string text = with(small_setup, "[64, 64]", "[1000000, 1000000]");
+  text = with(text, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.001");
+  expect_setup_refused(text,
+                       {"setup.toml:" + place_of(text, "pixels") + ": camera.pixels = [1000000, 1000000]: needs"});
+  // 2^24 records of 80 bytes in a list that doubles, in 4000 threads: 8 TB
+  write("setup.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 10000000"));
+  expect_refused({"render", "setup.toml", "-o", "case", "--threads", "4000"}, 2,
+                 {"setup.toml:" + place_of(read("setup.toml"), "rays_per_dot"), "rays of a dot 8.05e+03",
+                  "reduce render.rays_per_dot"});
+}
+
+TEST_F(SetupErrors, NoLensOpensWiderThanHalfASpace) {
+  refused("f_number = 11.0", "f_number = 1e-300", "f_number", {"is below 0.5", "stop it down"});
+}
+
+TEST_F(SetupErrors, NegativeDensitiesOfClosedForms) {
+  std::string const gradient = "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]";
+  refused(gradient, "kind = \"sinusoid\"\namplitude_kg_m3 = -1.5\nwavelength_mm = 8", "amplitude_kg_m3",
+          {"makes the density negative, -0.275 kg/m^3", "reduce the amplitude"});
+  for (std::string const kind : {"gaussian_blob", "gaussian_plume"}) {
+    refused(gradient, "kind = \"" + kind + "\"\namplitude_kg_m3 = -2\nradius_mm = 3", "amplitude_kg_m3",
+            {"makes the density negative, -0.775 kg/m^3", "increase the ambient density"});
+  }
+}
+
+TEST_F(SetupErrors, LengthsThatLookLikeMetres) {
+  refused("z_a_mm = 750.0\nz_d_mm = 250.0", "z_a_mm = 0.75\nz_d_mm = 0.25", "z_a_mm",
+          {"focus is impossible", "lengths are in mm: 1 mm was given, 1 m are 1000 mm"});
+  refused("z_d_mm = 250.0", "z_d_mm = 0.25", "z_d_mm", {"inside the medium", "0.25 m are 250 mm"});
+  refused("pixel_pitch_um = 10.0", "pixel_pitch_um = 10e-6", "pixel_pitch_um", {"pitches are in um"});
+  refused("z_a_mm", "z_a", "z_a", {"unknown key \"z_a\"", "did you mean \"z_a_mm\"?"});
+}
+
+TEST_F(SetupErrors, CommonSlipsInTomlComeWithTheirCure) {
+  refused("\"bos\"", "bos", "bos", {"is not TOML", "put texts in quotes"});
+}
+
 TEST_F(SetupErrors, UnknownKindListsThoseThatExist) {
   refused("\"uniform_gradient\"", "\"uniform_gradiant\"", "kind",
           {"\"gaussian_plume\"", "did you mean \"uniform_gradient\"?"});
@@ -137,6 +175,7 @@ TEST_F(SetupErrors, SetWithoutSenseIsRefusedAsSuch) {
   refuse("lens.fnumber=3", "did you mean \"f_number\"?");
   refuse("lens.f_number=-3", "must be greater than 0");
   refuse("schema.deep=1", "not a table");
+  refuse("camera.pixels=64,64", "write [64,64]");
 }
 
 }  // namespace

@@ -68,6 +68,28 @@ TEST_F(Trace, ARayThatMissesComesBackAsItWentIn) {
   EXPECT_EQ(rows[1].path, 0);
 }
 
+// Directions whose squares overflow or vanish are directions all the same.
+TEST_F(Trace, DirectionsMayHaveAnyLength) {
+  auto const rows = trace("0,0,-250,3e-3,0,1\n0,0,-250,3e197,0,1e200\n0,0,-250,3e-203,0,1e-200\n", "all");
+  ASSERT_EQ(rows.size(), 3u);
+  for (Row const& row : rows) {
+    EXPECT_EQ(row.status, "alive");
+    EXPECT_NEAR(row.dx, rows[0].dx, 1e-15);
+    EXPECT_NEAR(row.column, rows[0].column, 1e-9);
+  }
+}
+
+// A closed form's slab has no end along X and Y: a ray along it has no face to leave by.
+TEST_F(Trace, ARayAlongAnEndlessSlabIsLostInIt) {
+  write("setup.toml", with(small_setup, "[20.0, 10.0, 0.0]", "[0.0, 0.0, 0.0]"));
+  auto const rows = trace("0,0,0,1,0,0\n0,0,0,0,-1,1e-200\n", "medium");
+  ASSERT_EQ(rows.size(), 2u);
+  for (Row const& row : rows) {
+    EXPECT_EQ(row.status, "lost_in_medium");
+    EXPECT_TRUE(std::isnan(row.x) && std::isnan(row.path));
+  }
+}
+
 TEST_F(Trace, RowsKeepTheirOrderAndSayWhy) {
   // through the pupil's middle; past the stop of 105/11/2 = 4.8 mm; from a dot far outside the view; away from the lens
   auto const rows = trace("0,0,-250,0,0,1\n0,0,-250,0.02,0,1\n100,0,-250,-0.1,0,1\n0,0,100,0,0,-1\n", "all");
@@ -110,6 +132,8 @@ TEST_F(Trace, BadRaysAreRefusedWithTheirLine) {
   refused(header + "0,0,nan,0,0,1\n", "rays.csv:2: ");
   expect_refused({"trace", "setup.toml", "--rays", "nowhere.csv", "-o", "out.csv"}, 2,
                  {"nowhere.csv: cannot be opened"});
+  std::filesystem::create_directory(in("folder"));
+  expect_refused({"trace", "setup.toml", "--rays", "folder", "-o", "out.csv"}, 2, {"folder: is a folder"});
 }
 
 }  // namespace

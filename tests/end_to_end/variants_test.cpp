@@ -196,6 +196,7 @@ TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
       gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[1e300, 0, 0]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("dots are not seen in one of the frames"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field.gradient_kg_m4: the density is negative"));
 }
 
 }  // namespace

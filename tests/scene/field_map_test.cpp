@@ -54,9 +54,7 @@ TEST(StrainMap, OfAUniformGradientIsZero) {
 // differences over 2 h lower it by sin(k h)/(k h); h = 4 px are 0.256 mm at the medium, k h = 0.2.
 TEST(StrainMap, OfASinusoidHasItsKnownAmplitude) {
   auto setup = table1_setup(512);
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = 8e-3;
-  setup.medium.field.amplitude = 0.02;
+  setup.medium.field = sinusoid(0.02, 8e-3);
   Scene const scene = scene_with_dots(setup, {{64, 64}}, 1);
   StrainMap const map = map_strain(scene);
   double const k = 2 * pi / 8e-3, n0 = 1 + 2.26e-4 * 1.225;
@@ -72,13 +70,10 @@ TEST(StrainMap, OfASinusoidHasItsKnownAmplitude) {
 // acos(1/3)/pi = 39 % of the view, to the lattice's 0.03 and the net's percent.
 TEST(StrainMap, FindsCausticsWhereRaysConverge) {
   auto setup = table1_setup(512);
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = 16e-3;
-  setup.medium.field.direction = {0, 1};
   double const k = 2 * pi / 16e-3;
   // H at 16 mm: 1 - v^2/8 + v^4/192 with v = pi 2.386/16
   double const v = pi * 2.386364 / 16, kept = 1 - v * v / 8 + std::pow(v, 4) / 192;
-  setup.medium.field.amplitude = 3 / (0.75 * 0.25 * 2.26e-4 * 0.01 * k * k * kept);
+  setup.medium.field = sinusoid(3 / (0.75 * 0.25 * 2.26e-4 * 0.01 * k * k * kept), 16e-3, {0, 1});
   StrainMap const map = map_strain(scene_with_dots(setup, {{64, 64}}, 1));
   EXPECT_NEAR(*std::max_element(map.caustic.begin(), map.caustic.end()), 3, 0.1);
   // 32.7 mm are 2.04 periods; the part beyond two periods shifts the fraction by up to 2 %

@@ -109,9 +109,7 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
 // freedom in truth: 6.5 %), so three such deviations are allowed.
 TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
   auto setup = table1_setup(64);
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = 5e-3;
-  setup.medium.field.amplitude = 0.1;
+  setup.medium.field = sinusoid(0.1, 5e-3);
   std::vector<Vec2d> at;
   for (Vec2d const p : lattice(64, 5, 12)) at.push_back(p);
   at.resize(20);

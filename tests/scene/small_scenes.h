@@ -27,6 +27,16 @@ inline FieldSetup uniform_gradient(double along_x, double along_y, double along_
   return field;
 }
 
+/// rho = ambient + amplitude sin(2 pi d . x / wavelength) [kg/m^3, m]
+inline FieldSetup sinusoid(double amplitude, double wavelength, Vec2d direction = {1, 0}) {
+  FieldSetup field;
+  field.kind = FieldKind::sinusoid;
+  field.amplitude = amplitude;
+  field.wavelength = wavelength;
+  field.direction = direction;
+  return field;
+}
+
 /// The DNS plane of that name, as the demo maps it: 1.225 kg/m^3, 32 mm, periodic in x and y, stacked over the
 /// thickness.
 inline FieldSetup dns_plane(std::string const& instant) {
