@@ -63,16 +63,16 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
   for (int frame = 0; spot && frame < frame_count; ++frame) {
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  SourceCubature const cubature = spot ? make_cubature(scene, sources, *spot) : SourceCubature{};
+  OwnedLightModel const light(scene, sources, spot);
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
-    DotExposure exposure(scene, sources, spot, cubature);
+    DotExposure exposure(light.model, spot != nullptr);
     GroundTruth& truth = pass.rendering.truth;
     for (std::size_t dot = begin; dot < end; ++dot) {
       Vec2d const centre = sources.centre[dot];
       truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
-      exposure.begin(plan_dot(scene, spot, pair.scene, dot), targets, light_per_ray);
+      exposure.begin(centre, sources.radiance.empty() ? 1.0 : sources.radiance[dot], targets, light_per_ray);
       trace_dot(pair, dot, scene.rays_per_dot, exposure);
       exposure.finish(truth, dot);
       if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);

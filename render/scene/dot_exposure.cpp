@@ -1,6 +1,5 @@
 #include "render/scene/dot_exposure.h"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 
@@ -126,175 +125,54 @@ SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, doub
   return cubature;
 }
 
-SourceCubature make_cubature(Scene const& scene, DotPattern const& sources, SpotView const& spot) {
-  double const half_size_px = sources.half_size * scene.imaging.magnification / scene.setup.camera.pixel_pitch;
-  double const spot_px =
-      spot.model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot.gaussian.sigma;
-  return SourceCubature::make(sources.shape, half_size_px, spot_px);
-}
-
-DotPlan plan_dot(Scene const& scene, SpotView const* spot, SceneView<double> const& view, std::uint64_t dot) {
-  Vec2d const centre = view.sources.centre[dot];
-  DotPlan plan;
-  plan.origin = scene.to_pixel(centre);
-  plan.control = spot != nullptr && spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
-  // the mean of cos^4 over the stop, whose points are |P|^2 = R^2/2 from the axis in the mean
-  double const stop = scene.imaging.entrance_pupil / 2;
-  double const share = view.bundle.pupil_radius > 0 ? stop / view.bundle.pupil_radius : 1.0;
-  double const distance = view.bundle.lens_z - view.sources.plane_z;
-  double const spread = 1 + (gladstone::dot(centre, centre) + 0.5 * stop * stop) / (distance * distance);
-  double const radiance = view.sources.radiance ? view.sources.radiance[dot] : 1.0;
-  plan.expected_weight = static_cast<double>(scene.rays_per_dot) * share * share * radiance / (spread * spread);
-  return plan;
-}
-
 namespace {
 
-/// Weighted least squares of two right-hand sides: coefficients of `terms` basis functions, zero where undetermined.
-template <int MostTerms, class Basis>
-void least_squares(std::vector<RayRecord> const& rays, int terms, Basis&& basis, Vec2d RayRecord::*target, Vec2d* out) {
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, MostTerms, MostTerms>;
-  using Right = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, MostTerms, 2>;
-  Matrix normal = Matrix::Zero(terms, terms);
-  Right right = Right::Zero(terms, 2);
-  for (RayRecord const& ray : rays) {
-    if (!(ray.flow_weight > 0)) continue;
-    double value[MostTerms];
-    basis(ray, value);
-    for (int row = 0; row < terms; ++row) {
-      double const scaled = ray.flow_weight * value[row];
-      for (int column = 0; column <= row; ++column) normal(row, column) += scaled * value[column];
-      right(row, 0) += scaled * (ray.*target).x;
-      right(row, 1) += scaled * (ray.*target).y;
-    }
-  }
-  Right const solution = normal.template selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  bool const sound = solution.allFinite();
-  for (int term = 0; term < terms; ++term) out[term] = sound ? Vec2d{solution(term, 0), solution(term, 1)} : Vec2d{};
+CubatureView view_of(SourceCubature const& rule) {
+  return {rule.points.data(), rule.weights.data(), static_cast<int>(rule.points.size())};
 }
 
 }  // namespace
 
-int FlowFit::basis(Vec2d x, Vec2d p, std::size_t rays, bool extended, double* value) {
-  int n = 0;
-  value[n++] = 1;
-  if (rays < 32) return n;
-  value[n++] = p.x;
-  value[n++] = p.y;
-  if (extended) {
-    value[n++] = x.x;
-    value[n++] = x.y;
+OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot)
+    : pupil{{{{0, 0}}, {1.0}},
+            SourceCubature::disc(1, 3, 3),
+            SourceCubature::disc(2, 6, 6),
+            SourceCubature::disc(3, 9, 9),
+            SourceCubature::disc(5, 15, 15)} {
+  CameraSetup const& camera = scene.setup.camera;
+  bool const has_stop = !scene.chief_rays_only();
+  double const stop_radius = scene.imaging.entrance_pupil / 2;
+  TargetImage& image = model.image;
+  image.axis_px = scene.to_pixel({});
+  image.px_per_metre = scene.imaging.magnification / camera.pixel_pitch;
+  image.source_half = sources.half_size;
+  image.has_stop = has_stop;
+  if (has_stop) {
+    image.stop = scene.aperture_stop();
+    image.stop_radius = stop_radius;
   }
-  if (rays < 96) return n;
-  value[n++] = p.x * p.x;
-  value[n++] = p.x * p.y;
-  value[n++] = p.y * p.y;
-  if (!extended) return n;
-  for (double const place : {x.x, x.y}) {
-    value[n++] = place * p.x;
-    value[n++] = place * p.y;
-  }
-  value[n++] = x.x * x.x;
-  value[n++] = x.x * x.y;
-  value[n++] = x.y * x.y;
-  value[n++] = x.x * x.x * x.x;
-  value[n++] = x.x * x.x * x.y;
-  value[n++] = x.x * x.y * x.y;
-  value[n++] = x.y * x.y * x.y;
-  return n;
+  double const share = has_stop ? stop_radius / scene.pupil_radius() : 1.0;
+  model.expected_weight = static_cast<double>(scene.rays_per_dot) * share * share;
+  model.mean_pupil2 = 0.5 * stop_radius * stop_radius;
+  model.distance = scene.setup.z_a + scene.setup.z_d;
+  if (!spot) return;
+  model.spot = *spot;
+  model.controlled = spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
+  double const spot_px =
+      spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
+  source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
+  model.source = view_of(source);
+  for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
 }
 
-void FlowFit::fit(std::vector<RayRecord> const& rays, double stop_radius, bool extended) {
-  stop_radius_ = stop_radius;
-  rays_ = rays.size();
-  extended_ = extended;
-  double value[displacement_terms];
-  terms_ = basis({}, {}, rays_, extended_, value);
-  least_squares<displacement_terms>(
-      rays, terms_,
-      [this](RayRecord const& ray, double* out) { basis(ray.place, ray.pupil / stop_radius_, rays_, extended_, out); },
-      &RayRecord::displacement, displacement_);
-  int const bends = rays_ < 32 ? 1 : (extended ? bend_terms : 3);
-  std::fill(std::begin(bend_), std::end(bend_), Vec2d{});
-  least_squares<bend_terms>(
-      rays, bends,
-      [this](RayRecord const& ray, double* out) {
-        out[0] = 1;
-        out[1] = ray.pupil.x / stop_radius_;
-        out[2] = ray.pupil.y / stop_radius_;
-        out[3] = ray.place.x;
-        out[4] = ray.place.y;
-      },
-      &RayRecord::bend, bend_);
-
-  // where the field is finer than a polynomial can follow, the mean serves as well and is cheaper to integrate
-  double weight = 0, unexplained = 0, square = 0;
-  Vec2d mean{};
-  for (RayRecord const& ray : rays) {
-    Vec2d const rest = ray.displacement - displacement(ray.place, ray.pupil);
-    weight += ray.flow_weight;
-    mean += ray.flow_weight * ray.displacement;
-    square += ray.flow_weight * dot(ray.displacement, ray.displacement);
-    unexplained += ray.flow_weight * dot(rest, rest);
-  }
-  if (!(weight > 0)) return;
-  mean = mean / weight;
-  if (unexplained > 0.1 * (square - weight * dot(mean, mean))) {
-    terms_ = 1;
-    displacement_[0] = mean;
-  }
+DotExposure::DotExposure(LightModel const& model, bool with_images) : model_(model), with_images_(with_images) {
+  if (with_images) patches_.assign(frame_count, LightPatch(model.spot));
 }
 
-Vec2d FlowFit::displacement(Vec2d place, Vec2d pupil) const {
-  if (terms_ == 1) return displacement_[0];
-  double value[displacement_terms];
-  basis(place, pupil / stop_radius_, rays_, extended_, value);
-  Vec2d sum{};
-  for (int term = 0; term < terms_; ++term) sum += value[term] * displacement_[term];
-  return sum;
-}
-
-Vec2d FlowFit::arrival(Vec2d pupil, Vec2d place) const {
-  return pupil + bend_[0] + (pupil.x / stop_radius_) * bend_[1] + (pupil.y / stop_radius_) * bend_[2] +
-         place.x * bend_[3] + place.y * bend_[4];
-}
-
-FlowFit::Jacobian FlowFit::arrival_by_pupil() const {
-  return {1 + bend_[1].x / stop_radius_, bend_[2].x / stop_radius_, bend_[1].y / stop_radius_,
-          1 + bend_[2].y / stop_radius_};
-}
-
-Vec2d FlowFit::pupil_of(Vec2d arrival, Vec2d place) const {
-  Vec2d const q = arrival - bend_[0] - place.x * bend_[3] - place.y * bend_[4];
-  Jacobian const j = arrival_by_pupil();
-  double const scale = 1 / j.determinant();
-  return {scale * (j.d * q.x - j.b * q.y), scale * (j.a * q.y - j.c * q.x)};
-}
-
-double FlowFit::area_ratio() const { return 1 / arrival_by_pupil().determinant(); }
-
-double FlowFit::pupil_spread() const {
-  Vec2d const centre = displacement({}, {});
-  double spread = 0;
-  for (Vec2d const rim : {Vec2d{1, 0}, Vec2d{0, 1}, Vec2d{-1, 0}, Vec2d{0, -1}}) {
-    spread = std::max(spread, length(displacement({}, stop_radius_ * rim) - centre));
-  }
-  return spread;
-}
-
-DotExposure::DotExposure(Scene const& scene, DotPattern const& sources, SpotView const* spot,
-                         SourceCubature const& cubature)
-    : scene_(scene),
-      cubature_(cubature),
-      with_image_(spot != nullptr),
-      stop_(scene.aperture_stop()),
-      stop_radius_(scene.chief_rays_only() ? 1.0 : stop_.radius),
-      half_size_px_(sources.half_size * scene.imaging.magnification / scene.setup.camera.pixel_pitch) {
-  if (spot) patches_.assign(frame_count, LightPatch(*spot));
-}
-
-void DotExposure::begin(DotPlan const& plan, LightImage* const (&images)[frame_count], double light_per_weight) {
-  plan_ = plan;
+void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&images)[frame_count],
+                        double light_per_weight) {
+  centre_ = centre;
+  plan_ = DotPlan::make(model_, centre, radiance);
   light_per_weight_ = light_per_weight;
   for (int frame = 0; frame < frame_count; ++frame) {
     images_[frame] = images[frame];
@@ -303,9 +181,10 @@ void DotExposure::begin(DotPlan const& plan, LightImage* const (&images)[frame_c
   rays_.clear();
 }
 
-void DotExposure::deposit(Frame frame, Vec2d p, double weight) {
+void DotExposure::deposit(Frame frame, Deposit const& light) {
+  if (light.weight == 0) return;
   auto const f = static_cast<std::size_t>(frame);
-  patches_[f].deposit(p, weight, images_[f], light_per_weight_);
+  patches_[f].deposit(light.at, light.weight, images_[f], light_per_weight_);
 }
 
 void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const& reference,
@@ -316,78 +195,70 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
     Vec2d const bend = flow.at_lens - emitted.pupil;
     largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
   }
-  RayHit<double> const* const hits[frame_count] = {&reference, &flow};
-  for (std::size_t f = 0; f < frame_count; ++f) {
-    if (hits[f]->weight == 0) continue;
-    sums_[f].add(hits[f]->pixel - plan_.origin, hits[f]->weight, reaches_sensor_plane(hits[f]->status));
-    if (with_image_ && !plan_.control) deposit(static_cast<Frame>(f), hits[f]->pixel, hits[f]->weight);
-  }
-  if (with_image_ && plan_.control) {
-    Vec2d const geometric = scene_.to_pixel({emitted.ray.position.x, emitted.ray.position.y}) - plan_.origin;
-    // from frame to frame, so that what the medium leaves alone is exactly zero
-    bool const both = flow.weight != 0 && reference.weight != 0;
-    Vec2d const displacement =
-        both ? flow.pixel - reference.pixel : (flow.weight != 0 ? flow.pixel - plan_.origin - geometric : Vec2d{});
-    rays_.push_back({half_size_px_ > 0 ? geometric / half_size_px_ : Vec2d{}, reference.at_lens, displacement,
-                     flow.at_lens - reference.at_lens, emitted.weight, flow.weight});
+  RayRecord<double> const ray = make_record(model_.image, centre_, plan_.origin, emitted, reference, flow);
+  sums_[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
+  sums_[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
+  if (!with_images_) return;
+  if (model_.controlled) {
+    rays_.push_back(ray);
+  } else {
+    deposit(Frame::reference, {plan_.origin + ray.reference, ray.reference_weight});
+    deposit(Frame::flow, {plan_.origin + ray.flow, ray.flow_weight});
   }
 }
 
-namespace {
-
-/// Points of the pupil over which a displacement that varies by `spread_px` across it is averaged.
-SourceCubature const& pupil_cubature(double spread_px) {
-  static SourceCubature const rules[] = {{{{0, 0}}, {1.0}},
-                                         SourceCubature::disc(1, 3, 3),
-                                         SourceCubature::disc(2, 6, 6),
-                                         SourceCubature::disc(3, 9, 9),
-                                         SourceCubature::disc(5, 15, 15)};
-  return rules[spread_px == 0 ? 0 : (spread_px < 0.01 ? 1 : (spread_px < 0.05 ? 2 : (spread_px < 0.2 ? 3 : 4)))];
-}
-
-}  // namespace
-
-void DotExposure::deposit_controlled() {
+FlowFit DotExposure::fit_flow() const {
   FlowFit fit;
-  fit.fit(rays_, stop_radius_, half_size_px_ > 0);
-  SourceCubature const& pupil = pupil_cubature(fit.pupil_spread());
-  double const flow_share = fit.area_ratio();
-  for (std::size_t i = 0; i < cubature_.points.size(); ++i) {
-    Vec2d const place = cubature_.points[i];
-    Vec2d const p = plan_.origin + half_size_px_ * place;
-    double const weight = plan_.expected_weight * cubature_.weights[i];
-    deposit(Frame::reference, p, weight);
-    for (std::size_t k = 0; k < pupil.points.size(); ++k) {
-      Vec2d const moved = fit.displacement(place, fit.pupil_of(stop_radius_ * pupil.points[k], place));
-      deposit(Frame::flow, p + moved, weight * flow_share * pupil.weights[k]);
+  fit.prepare(rays_.size(), model_.image.stop_radius, model_.image.source_half > 0);
+  double sums[FlowFit::most_sums] = {};
+  int const factors = fit.factor_count(), terms = factors - FlowFit::targets;
+  for (RayRecord<double> const& ray : rays_) {
+    if (!(ray.flow_weight > 0)) continue;
+    double factor[FlowFit::most_factors];
+    fit.factors(ray, flow_displacement(model_, ray), factor);
+    double* sum = sums;
+    for (int row = 0; row < factors; ++row) {
+      double const weighted = ray.flow_weight * factor[row];
+      for (int column = 0; column <= std::min(row, terms - 1); ++column) *sum++ += weighted * factor[column];
     }
   }
-  for (RayRecord const& ray : rays_) {
-    Vec2d const p = plan_.origin + half_size_px_ * ray.place;
-    Vec2d const arrival = fit.arrival(ray.pupil, ray.place);
-    double const expected = ray.weight * (scene_.chief_rays_only() ? 1.0 : stop_.transmission(arrival.x, arrival.y));
-    Vec2d const moved = fit.displacement(ray.place, ray.pupil);
-    if (moved == ray.displacement && expected == ray.flow_weight) continue;
-    if (ray.flow_weight != 0) deposit(Frame::flow, p + ray.displacement, ray.flow_weight);
-    if (expected != 0) deposit(Frame::flow, p + moved, -expected);
+  if (!(sums[0] > 0)) return fit;
+  int const first_target = terms * (terms + 1) / 2;
+  Vec2d const mean = Vec2d{sums[first_target], sums[first_target + terms]} / sums[0];
+  fit.solve(sums, 0, 1, [] {});
+  double unexplained = 0, square = 0;
+  for (RayRecord<double> const& ray : rays_) {
+    if (!(ray.flow_weight > 0)) continue;
+    Vec2d const hit = flow_displacement(model_, ray), rest = hit - fit.displacement(ray.place, ray.pupil);
+    square += ray.flow_weight * dot(hit - mean, hit - mean);
+    unexplained += ray.flow_weight * dot(rest, rest);
+  }
+  fit.settle(mean, unexplained, square);
+  return fit;
+}
+
+void DotExposure::deposit_controlled() {
+  FlowFit const fit = fit_flow();
+  CubatureView const& pupil = model_.pupil[pupil_rule(fit.pupil_spread())];
+  for (int i = 0; i < model_.source.count; ++i) {
+    deposit(Frame::reference, reference_light(model_, plan_, i));
+    for (int k = 0; k < pupil.count; ++k) deposit(Frame::flow, expected_light(model_, plan_, fit, pupil, i, k));
+  }
+  for (RayRecord<double> const& ray : rays_) {
+    Remainder const rest = remaining_light(model_, plan_, fit, ray);
+    deposit(Frame::flow, rest.landed);
+    deposit(Frame::flow, rest.expected);
   }
 }
 
 void DotExposure::finish(GroundTruth& truth, std::size_t dot) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  if (with_image_) {
+  if (with_images_) {
     finish_light();
     for (int frame = 0; frame < frame_count; ++frame) {
       patches_[static_cast<std::size_t>(frame)].flush(images_[frame], light_per_weight_);
     }
   }
-  bool const seen[2] = {sums_[0].weight > 0, sums_[1].weight > 0};
-  Vec2d const none{nan, nan};
-  truth.reference_px[dot] = seen[0] ? plan_.origin + sums_[0].mean() : none;
-  truth.displacement_px[dot] = seen[0] && seen[1] ? sums_[1].mean() - sums_[0].mean() : none;
-  truth.displacement_std_px[dot] = seen[1] ? sums_[1].deviation() : none;
-  truth.flux[dot] = {sums_[0].weight * light_per_weight_, sums_[1].weight * light_per_weight_};
-  truth.rays[dot] = {sums_[0].count, sums_[1].count};
+  truth.set_hits(dot, plan_.origin, sums_[0], sums_[1], light_per_weight_);
 }
 
 }  // namespace gladstone

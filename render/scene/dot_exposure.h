@@ -9,26 +9,13 @@
 
 #include "render/base/image.h"
 #include "render/base/interrupt.h"
-#include "render/optics/lens_setup.h"
+#include "render/scene/dot_light.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/scene.h"
 #include "render/scene/trace_pair.h"
 #include "render/sensor/exposure.h"
 
 namespace gladstone {
-
-/// The spot that every ray leaves on the sensor; one model a launch.
-struct SpotView {
-  SpotModel model = SpotModel::none;
-  GaussianSpot<double> gaussian;  ///< for the three Gaussian models
-  AiryTable::View airy;           ///< for SpotModel::airy
-
-  /// Pixels a ray's light reaches to each side of its own.
-  int half_width() const {
-    if (model == SpotModel::none) return 0;
-    return model == SpotModel::airy ? airy.half_width : gaussian.half_width();
-  }
-};
 
 /// The spot of a scene's lens; an Airy table is built into `airy`, which must outlive the view.
 SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy);
@@ -103,81 +90,27 @@ struct SourceCubature {
   static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
 };
 
-SourceCubature make_cubature(Scene const& scene, DotPattern const& sources, SpotView const& spot);
+/// A scene's light model with the rules that it integrates by; the spot's Airy table is the caller's.
+struct OwnedLightModel {
+  LightModel model;
+  SourceCubature source;
+  SourceCubature pupil[pupil_rules];
 
-/// What is known of a dot's light before its rays are traced.
-struct DotPlan {
-  Vec2d origin{};              ///< image of the dot's centre without medium [px]
-  double expected_weight = 0;  ///< sum of the weights of all rays that pass the stop, expected
-  bool control = false;        ///< see DotExposure
-};
-
-/// @param spot null: no images
-DotPlan plan_dot(Scene const& scene, SpotView const* spot, SceneView<double> const& view, std::uint64_t dot);
-
-/// What one ray tells about where the flow sends a dot's light.
-struct RayRecord {
-  Vec2d place;         ///< on the source, in units of its half size
-  Vec2d pupil;         ///< where it meets the lens plane in the reference frame [m]
-  Vec2d displacement;  ///< flow hit minus the geometric image of its place [px]
-  Vec2d bend;          ///< where it meets the lens plane in the flow frame, minus that [m]
-  double weight;       ///< radiance cos^4
-  double flow_weight;  ///< the same times what passes the stop in the flow frame
-};
-
-/// A smooth model of a dot's light in the flow: displacement as a polynomial of the place on the source (cubic) and of
-/// the pupil point (quadratic), arrival on the lens plane as a linear function of both. Where the rays are few, or the
-/// source is a point, the model is simpler.
-class FlowFit {
- public:
-  /// Least squares over a dot's rays.
-  /// @param extended false: the source is a point
-  void fit(std::vector<RayRecord> const& rays, double stop_radius, bool extended);
-
-  Vec2d displacement(Vec2d place, Vec2d pupil) const;
-  /// Where a ray is expected to arrive on the lens plane, and the pupil point of a ray that arrives there [m].
-  Vec2d arrival(Vec2d pupil, Vec2d place) const;
-  Vec2d pupil_of(Vec2d arrival, Vec2d place) const;
-  /// Pupil area that arrives on a unit of the stop's area.
-  double area_ratio() const;
-  /// How far the pupil's rim moves the displacement [px].
-  double pupil_spread() const;
-
- private:
-  static constexpr int displacement_terms = 19;
-  static constexpr int bend_terms = 5;  ///< 1, pupil x, y, place x, y
-  std::size_t rays_ = 0;
-  bool extended_ = false;
-  double stop_radius_ = 1;
-  int terms_ = 0;
-  Vec2d displacement_[displacement_terms];
-  Vec2d bend_[bend_terms];
-
-  static int basis(Vec2d place, Vec2d pupil, std::size_t rays, bool extended, double* value);
-  /// d arrival / d pupil: [[a, b], [c, d]] and its determinant.
-  struct Jacobian {
-    double a, b, c, d;
-    double determinant() const { return a * d - b * c; }
-  };
-  Jacobian arrival_by_pupil() const;
+  /// @param spot null: no images
+  OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot);
+  OwnedLightModel(OwnedLightModel const&) = delete;  // the model points into the rules
+  OwnedLightModel& operator=(OwnedLightModel const&) = delete;
 };
 
 /// Gathers everything that one dot's rays leave behind; TracePair's Exposure on the CPU. One object a thread, one dot
 /// at a time, rays in order, so that sums are the same on any number of threads.
-///
-/// Images use a control variate where the reference frame is known in closed form (a thin lens focused on the target
-/// maps every ray of a source's point on one image point, so the reference image is the source's disc convolved with
-/// the spot, integrated by cubature): the flow image is the same disc moved by a smooth fit to the rays' displacements,
-/// integrated likewise, plus for every ray the spot where it lands minus the spot where the fit puts it. Whatever the
-/// fit, the sum converges to the image that the rays alone would give; the better the fit, the less it scatters.
 class DotExposure {
  public:
-  /// @param spot null: truth only, no images
-  /// @param scene,cubature outlive the exposure
-  DotExposure(Scene const& scene, DotPattern const& sources, SpotView const* spot, SourceCubature const& cubature);
+  /// @param model outlives the exposure @param with_images false: truth only
+  DotExposure(LightModel const& model, bool with_images);
 
-  /// Starts a dot. @param plan says where its light is expected
-  void begin(DotPlan const& plan, LightImage* const (&images)[frame_count], double light_per_weight);
+  /// Starts a dot. @param centre of the source [m] @param images null: its light is not sent anywhere
+  void begin(Vec2d centre, double radiance, LightImage* const (&images)[frame_count], double light_per_weight);
 
   /// What TracePair leaves behind for one ray.
   void record(EmittedRay<double> const& emitted, RayHit<double> const& reference, RayHit<double> const& flow);
@@ -186,7 +119,7 @@ class DotExposure {
   void finish(GroundTruth& truth, std::size_t dot);
   /// Completes the patches without sending them anywhere.
   void finish_light() {
-    if (with_image_ && plan_.control) deposit_controlled();
+    if (with_images_ && model_.controlled) deposit_controlled();
   }
 
   LightPatch const& patch(Frame frame) const { return patches_[static_cast<std::size_t>(frame)]; }
@@ -196,19 +129,16 @@ class DotExposure {
   double largest_bend() const { return std::sqrt(largest_bend2_); }
 
  private:
-  void deposit(Frame frame, Vec2d p, double weight);
-
+  void deposit(Frame frame, Deposit const& light);
+  FlowFit fit_flow() const;
   void deposit_controlled();
 
-  Scene const& scene_;
-  SourceCubature const& cubature_;
-  bool with_image_;
+  LightModel const& model_;
+  bool with_images_;
+  Vec2d centre_{};
   DotPlan plan_;
-  ApertureStop<double> stop_;  ///< meaningless for chief rays
-  double stop_radius_;         ///< [m]; 1 without a stop
-  double half_size_px_ = 0;    ///< of the source's image
   double light_per_weight_ = 0;
-  std::vector<RayRecord> rays_;  ///< of the dot, where images are controlled
+  std::vector<RayRecord<double>> rays_;  ///< of the dot, where images are controlled
   LightImage* images_[frame_count] = {};
   std::vector<LightPatch> patches_;
   CentroidSum<double> sums_[frame_count];

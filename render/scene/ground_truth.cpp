@@ -1,5 +1,7 @@
 #include "render/scene/ground_truth.h"
 
+#include <limits>
+
 namespace gladstone {
 
 void GroundTruth::resize(std::size_t count) {
@@ -9,6 +11,18 @@ void GroundTruth::resize(std::size_t count) {
     column->resize(count);
   }
   rays.resize(count);
+}
+
+void GroundTruth::set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> const& reference,
+                           CentroidSum<double> const& flow, double light_per_weight) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Vec2d const none{nan, nan};
+  bool const seen[2] = {reference.weight > 0, flow.weight > 0};
+  reference_px[dot] = seen[0] ? origin + reference.mean() : none;
+  displacement_px[dot] = seen[0] && seen[1] ? flow.mean() - reference.mean() : none;
+  displacement_std_px[dot] = seen[1] ? flow.deviation() : none;
+  flux[dot] = {reference.weight * light_per_weight, flow.weight * light_per_weight};
+  rays[dot] = {reference.count, flow.count};
 }
 
 DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px) {

@@ -10,6 +10,37 @@
 
 namespace gladstone {
 
+/// Weighted sums of one dot's hits in one frame, about an origin near them so that no digits are lost.
+template <class T>
+struct CentroidSum {
+  T weight{};
+  Vec2<T> first{};
+  Vec2<T> second{};
+  std::int64_t count = 0;
+
+  GLADSTONE_HD void add(Vec2<T> p, T w, bool counts) {
+    weight += w;
+    first += w * p;
+    second += Vec2<T>{w * p.x * p.x, w * p.y * p.y};
+    count += counts ? 1 : 0;
+  }
+  GLADSTONE_HD CentroidSum& operator+=(CentroidSum const& o) {
+    weight += o.weight;
+    first += o.first;
+    second += o.second;
+    count += o.count;
+    return *this;
+  }
+  Vec2<T> mean() const { return first / weight; }
+  Vec2<T> deviation() const {
+    using std::sqrt;
+    Vec2<T> const m = mean();
+    T const x = second.x / weight - m.x * m.x;
+    T const y = second.y / weight - m.y * m.y;
+    return {x > T(0) ? sqrt(x) : T(0), y > T(0) ? sqrt(y) : T(0)};
+  }
+};
+
 /// What a camera sees of every dot (ray truth), and what theory says of it; all in px, flow minus reference.
 struct GroundTruth {
   std::vector<Vec3d> position_m;
@@ -24,30 +55,9 @@ struct GroundTruth {
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);
-};
-
-/// Weighted sums of one dot's hits in one frame, about an origin near them so that no digits are lost.
-template <class T>
-struct CentroidSum {
-  T weight{};
-  Vec2<T> first{};
-  Vec2<T> second{};
-  std::int64_t count = 0;
-
-  void add(Vec2<T> p, T w, bool counts) {
-    weight += w;
-    first += w * p;
-    second += Vec2<T>{w * p.x * p.x, w * p.y * p.y};
-    count += counts ? 1 : 0;
-  }
-  Vec2<T> mean() const { return first / weight; }
-  Vec2<T> deviation() const {
-    using std::sqrt;
-    Vec2<T> const m = mean();
-    T const x = second.x / weight - m.x * m.x;
-    T const y = second.y / weight - m.y * m.y;
-    return {x > T(0) ? sqrt(x) : T(0), y > T(0) ? sqrt(y) : T(0)};
-  }
+  /// Writes what the rays of a dot say. @param origin that the sums' places count from [px]
+  void set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> const& reference, CentroidSum<double> const& flow,
+                double light_per_weight);
 };
 
 /// Counts of rays by RayStatus in each frame.

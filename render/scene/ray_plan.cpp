@@ -103,13 +103,13 @@ struct Window {
 };
 
 template <class Medium>
-Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium const& medium, SpotView const& spot,
-                   SourceCubature const& cubature, std::size_t dot, Window const& window) {
-  DotExposure exposure(scene, scene.dots, &spot, cubature);
+Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium const& medium, LightModel const& light,
+                   std::size_t dot, Window const& window) {
+  DotExposure exposure(light, true);
   LightImage* const nowhere[frame_count] = {};
   double const scale = scene.light_per_ray(scene.dots);
   TracePair<double, Medium> const pair{view, medium};
-  exposure.begin(plan_dot(scene, &spot, pair.scene, dot), nowhere, scale);
+  exposure.begin(scene.dots.centre[dot], scene.dots.radiance.empty() ? 1.0 : scene.dots.radiance[dot], nowhere, scale);
   trace_dot(pair, dot, scene.rays_per_dot, exposure);
   exposure.finish_light();
   Sampled sampled;
@@ -138,7 +138,7 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
     std::vector<double> mean, variance;
   };
   std::vector<PerDot> measured(dots.size());
-  SourceCubature const cubature = make_cubature(scene, scene.dots, spot);
+  OwnedLightModel const light(scene, scene.dots, &spot);
   std::visit(
       [&](auto const& medium) {
         parallel_for(dots.size(), [&](std::size_t index) {
@@ -151,7 +151,7 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
           for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
             SceneView<double> view = scene.view();
             view.bundle.seed = repeat_seed(view.bundle.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-            samples.push_back(sample_dot(scene, view, medium, spot, cubature, dot, window));
+            samples.push_back(sample_dot(scene, view, medium, light.model, dot, window));
           }
           PerDot& result = measured[index];
           auto const unbiased = [&](auto const& value_of) {

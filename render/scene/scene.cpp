@@ -44,7 +44,7 @@ double ray_record_bytes(Setup const& setup) {
   if (!kept) return 0;
   std::uint64_t const rays = setup.render.rays_per_dot.value_or(std::uint64_t{1} << 16);  // the most "auto" takes
   // a list that doubles as it grows holds one and a half times its last size for a moment
-  return 1.5 * static_cast<double>(std::bit_ceil(rays) * sizeof(RayRecord)) * thread_count();
+  return 1.5 * static_cast<double>(std::bit_ceil(rays) * sizeof(RayRecord<double>)) * thread_count();
 }
 
 /// Lowest density of a file's field [kg/m^3]. @pre its quantity is density

@@ -1,0 +1,112 @@
+#pragma once
+
+#include "render/optics/lens_setup.h"
+#include "render/scene/flow_fit.h"
+#include "render/sensor/diffraction_spot.h"
+
+/// How a dot's rays become light on the sensor, for every device: where light is to be laid down, and how much of it.
+namespace gladstone {
+
+/// The spot that every ray leaves on the sensor; one model a launch.
+struct SpotView {
+  SpotModel model = SpotModel::none;
+  GaussianSpot<double> gaussian;  ///< for the three Gaussian models
+  AiryTable::View airy;           ///< for SpotModel::airy
+
+  /// Pixels a ray's light reaches to each side of its own.
+  GLADSTONE_HD int half_width() const {
+    if (model == SpotModel::none) return 0;
+    return model == SpotModel::airy ? airy.half_width : gaussian.half_width();
+  }
+};
+
+/// Points of a unit disc (or square) with weights of sum one, as a view.
+struct CubatureView {
+  Vec2d const* points = nullptr;  ///< in units of the half size
+  double const* weights = nullptr;
+  int count = 0;
+};
+
+/// The rules over the stop, from one point on: the more the displacement varies across it, the finer.
+inline constexpr int pupil_rules = 5;
+GLADSTONE_HD inline int pupil_rule(double spread_px) {
+  return spread_px == 0 ? 0 : (spread_px < 0.01 ? 1 : (spread_px < 0.05 ? 2 : (spread_px < 0.2 ? 3 : 4)));
+}
+
+/// How the images of all dots are made.
+///
+/// Where the reference frame is known in closed form (a thin lens focused on the target maps every ray of a source's
+/// point on one image point, so the reference image is the source's disc convolved with the spot), the rays serve as a
+/// control variate's remainder: the flow image is the same disc moved by a smooth fit to the rays' displacements, both
+/// discs integrated by cubature, plus for every ray the spot where it lands minus the spot where the fit puts it.
+/// Whatever the fit, the sum converges to the image that the rays alone would give; the better the fit, the less it
+/// scatters. Elsewhere every ray's spot is laid down where it lands.
+struct LightModel {
+  TargetImage image;
+  SpotView spot;
+  bool controlled = false;
+  double expected_weight = 0;  ///< sum of the weights of a dot's rays that pass the stop, expected, but for cos^4
+  double mean_pupil2 = 0;      ///< mean |P|^2 over the stop [m^2]
+  double distance = 0;         ///< target to lens plane [m]
+  CubatureView source;
+  CubatureView pupil[pupil_rules];
+};
+
+/// Some light to be laid down around a point.
+struct Deposit {
+  Vec2d at{};       ///< [px]
+  double weight{};  ///< 0: nothing
+};
+
+/// What is known of a dot's light before its rays are traced.
+struct DotPlan {
+  Vec2d origin{};              ///< image of the dot's centre without medium [px]
+  double expected_weight = 0;  ///< of all its rays that pass the stop
+
+  GLADSTONE_HD static DotPlan make(LightModel const& model, Vec2d centre, double radiance) {
+    double const spread = 1 + (dot(centre, centre) + model.mean_pupil2) / (model.distance * model.distance);
+    return {model.image.to_pixel(centre), model.expected_weight * radiance / (spread * spread)};
+  }
+};
+
+/// Displacement of a ray of a controlled dot: from hit to hit, so that what the medium leaves alone is exactly zero;
+/// from the geometric image of its place where it passes in the flow alone [px].
+GLADSTONE_HD inline Vec2d flow_displacement(LightModel const& model, RayRecord<double> const& ray) {
+  if (ray.flow_weight == 0) return {};
+  return ray.reference_weight != 0 ? ray.flow - ray.reference : ray.flow - model.image.half_size_px() * ray.place;
+}
+
+/// Light that the i-th point of the source leaves in the reference frame.
+GLADSTONE_HD inline Deposit reference_light(LightModel const& model, DotPlan const& plan, int i) {
+  return {plan.origin + model.image.half_size_px() * model.source.points[i],
+          plan.expected_weight * model.source.weights[i]};
+}
+
+/// Light that the fit expects in the flow from the i-th point of the source through the k-th point of the stop.
+GLADSTONE_HD inline Deposit expected_light(LightModel const& model, DotPlan const& plan, FlowFit const& fit,
+                                           CubatureView const& pupil, int i, int k) {
+  Vec2d const place = model.source.points[i];
+  Vec2d const through = fit.pupil_of(model.image.stop_radius * pupil.points[k], place);
+  Deposit light = reference_light(model, plan, i);
+  light.at += fit.displacement(place, through);
+  light.weight *= fit.area_ratio() * pupil.weights[k];
+  return light;
+}
+
+/// Where a ray's light lands in the flow, and, negative, where the fit has put it already; both nothing where they
+/// agree.
+struct Remainder {
+  Deposit landed, expected;
+};
+GLADSTONE_HD inline Remainder remaining_light(LightModel const& model, DotPlan const& plan, FlowFit const& fit,
+                                              RayRecord<double> const& ray) {
+  Vec2d const p = plan.origin + model.image.half_size_px() * ray.place;
+  Vec2d const arrival = fit.arrival(ray.pupil, ray.place);
+  double const expected =
+      ray.weight * (model.image.has_stop ? model.image.stop.transmission(arrival.x, arrival.y) : 1.0);
+  Vec2d const moved = fit.displacement(ray.place, ray.pupil), hit = flow_displacement(model, ray);
+  if (moved == hit && expected == ray.flow_weight) return {};
+  return {{p + hit, ray.flow_weight}, {p + moved, -expected}};
+}
+
+}  // namespace gladstone
