@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -35,6 +34,39 @@ GLADSTONE_HD void bspline_weights(T t, T* w) {
     w[4] = c * (T(1) + t * (T(5) + t * (T(10) + t * (T(10) + t * (T(5) - T(5) * t)))));
     w[5] = c * t2 * t2 * t;
   }
+}
+
+/// Index of the pixel that reflection at the centres of the outermost pixels puts at i.
+GLADSTONE_HD inline int mirrored_index(int i, int count) {
+  if (count == 1) return 0;
+  int const period = 2 * (count - 1);
+  int const k = (i < 0 ? -i : i) % period;
+  return k < count ? k : period - k;
+}
+
+/// Poles of the recursive filter that turns samples into B-spline coefficients, Unser et al. (1993), table 1.
+/// @param degree 3 or 5
+inline std::vector<double> bspline_poles(int degree) {
+  if (degree == 3) return {-0.26794919243112270647};  // sqrt(3) - 2
+  return {-0.43057534709997377, -0.04309628820326465};
+}
+
+/// That filter as a sum over neighbours, for devices where recursion is slow: coefficient i is the sum over k of
+/// tap |k| times sample i + k. @return the taps from k = 0 on, down to 1e-14 of the first
+inline std::vector<double> bspline_taps(int degree) {
+  constexpr int most = 48;
+  std::vector<double> taps(most, 0.0);
+  taps[0] = 1.0;
+  for (double const z : bspline_poles(degree)) {
+    // one pole: gain times z^|k|; the sum of the response is 1
+    double const gain = (1.0 - z) / (1.0 + z);
+    std::vector<double> next(most, 0.0);
+    for (int k = 0; k < most; ++k)
+      for (int m = -most + 1; m < most; ++m) next[k] += gain * std::pow(z, std::abs(k - m)) * taps[std::abs(m)];
+    taps = next;
+  }
+  while (std::abs(taps.back()) < 1e-14 * taps.front()) taps.pop_back();
+  return taps;
 }
 
 /// B-spline coefficients of an image with a margin of mirrored ones, so that evaluation needs no test at the border.
@@ -98,30 +130,17 @@ class BsplineImage {
 
   T* row(int j) { return coefficients_.data() + static_cast<std::size_t>(j + View::margin_before) * stride_; }
 
-  /// Index of the pixel that reflection puts at i.
-  static int mirrored(int i, int count) {
-    if (count == 1) return 0;
-    int const period = 2 * (count - 1);
-    int const k = std::abs(i) % period;
-    return k < count ? k : period - k;
-  }
-
   /// Turns `count` samples of `block` interleaved lines into coefficients.
   static void filter_lines(double* c, int count, int degree) {
     if (count == 1) return;
-    static constexpr std::array<double, 1> cubic{-0.26794919243112270647};  // sqrt(3) - 2
-    static constexpr std::array<double, 2> quintic{-0.43057534709997377, -0.04309628820326465};
-    double const* poles = degree == 3 ? cubic.data() : quintic.data();
-    int const pole_count = degree == 3 ? 1 : 2;
-    for (int p = 0; p < pole_count; ++p) {
-      double const z = poles[p];
+    for (double const z : bspline_poles(degree)) {
       double const gain = (1.0 - z) * (1.0 - 1.0 / z);
       for (int i = 0; i < count * block; ++i) c[i] *= gain;
       // first causal value: the reflected signal summed until z^k is below rounding
       int const horizon = static_cast<int>(std::ceil(std::log(1e-17) / std::log(std::abs(z))));
       for (int l = 0; l < block; ++l) {
         double sum = 0.0, power = 1.0;
-        for (int k = 0; k < horizon; ++k, power *= z) sum += power * c[mirrored(k, count) * block + l];
+        for (int k = 0; k < horizon; ++k, power *= z) sum += power * c[mirrored_index(k, count) * block + l];
         c[l] = sum;
       }
       for (int i = 1; i < count; ++i)
@@ -144,7 +163,7 @@ class BsplineImage {
         T* out = row(first + l);
         for (int i = -View::margin_before; i < columns_ + View::margin_after; ++i)
           out[i + View::margin_before] =
-              static_cast<T>(lines[static_cast<std::size_t>(mirrored(i, columns_)) * block + l]);
+              static_cast<T>(lines[static_cast<std::size_t>(mirrored_index(i, columns_)) * block + l]);
       }
     });
   }
@@ -163,7 +182,7 @@ class BsplineImage {
 
   void mirror_rows() {
     for (int j = -View::margin_before; j < rows_ + View::margin_after; ++j)
-      if (j < 0 || j >= rows_) std::copy_n(row(mirrored(j, rows_)), stride_, row(j));
+      if (j < 0 || j >= rows_) std::copy_n(row(mirrored_index(j, rows_)), stride_, row(j));
   }
 
   int columns_;

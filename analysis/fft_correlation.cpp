@@ -4,8 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "analysis/axis_weights.h"
 #include "analysis/fourier_plan.h"
-#include "analysis/subpixel_peak.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -14,51 +14,6 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t windows_per_chunk = 32;  // even: windows are transformed in pairs
-constexpr double largest_peak_ratio = 1000.0;
-/// Contrast (weighted rms over that of the whole image) below which a window is rounding, not signal.
-constexpr double smallest_contrast = 1e-6;
-/// Part of a window's weight that must be on known pixels.
-constexpr double smallest_known_part = 0.5;
-
-/// The weights of the windows along one axis, cut off at the image's border, and their autocorrelation.
-class AxisWeights {
- public:
-  AxisWeights(InterrogationGrid const& grid, int windows, int image_length, WindowWeighting weighting)
-      : size_(2 * grid.window_px) {
-    for (int k = 0; k < windows; ++k) {
-      int const first = k * grid.spacing_px - grid.window_px / 2;
-      first_.push_back(first);
-      for (int i = 0; i < size_; ++i) {
-        bool const inside = first + i >= 0 && first + i < image_length;
-        double const offset = i - 0.5 * (size_ - 1);
-        double const weight = axis_weight(weighting, offset, static_cast<double>(grid.window_px));
-        weight_.push_back(inside ? static_cast<float>(weight) : 0.0f);
-      }
-      float const* w = weight_.data() + static_cast<std::size_t>(k) * size_;
-      for (int lag = 0; lag < lags(); ++lag) {
-        double sum = 0.0;
-        for (int i = 0; i + lag < size_; ++i) sum += static_cast<double>(w[i]) * w[i + lag];
-        autocorrelation_.push_back(sum);
-      }
-    }
-  }
-
-  int size() const { return size_; }
-  int first(int window) const { return first_[window]; }
-  float const* weight(int window) const { return weight_.data() + static_cast<std::size_t>(window) * size_; }
-  /// Sum of w(i) w(i + lag), |lag| <= size/4 + 1.
-  double autocorrelation(int window, int lag) const {
-    return autocorrelation_[static_cast<std::size_t>(window) * lags() + std::abs(lag)];
-  }
-
- private:
-  int lags() const { return size_ / 4 + 2; }
-
-  int size_;
-  std::vector<int> first_;
-  std::vector<float> weight_;
-  std::vector<double> autocorrelation_;
-};
 
 /// Tells quickly whether a rectangle of the image is known throughout.
 class KnownTiles {
@@ -89,10 +44,10 @@ class KnownTiles {
 /// Correlates windows one pair after the other with its own scratch memory.
 class PairwiseCorrelation {
  public:
-  PairwiseCorrelation(ImagePair const& pair, InterrogationGrid const& grid, AxisWeights const& x, AxisWeights const& y,
-                      KnownTiles const& tiles, int radius)
-      : pair_(pair), grid_(grid), x_(x), y_(y), tiles_(tiles), radius_(radius), plan_(make_fourier_plan(x.size())) {
-    std::size_t const values = static_cast<std::size_t>(x.size()) * x.size();
+  PairwiseCorrelation(ImagePair const& pair, InterrogationGrid const& grid, AxisWeightsView const& x,
+                      AxisWeightsView const& y, KnownTiles const& tiles, int radius)
+      : pair_(pair), grid_(grid), x_(x), y_(y), tiles_(tiles), radius_(radius), plan_(make_fourier_plan(x.size)) {
+    std::size_t const values = static_cast<std::size_t>(x.size) * x.size;
     window_.resize(values);
     spectrum_[0].resize(values);
     spectrum_[1].resize(values);
@@ -118,7 +73,7 @@ class PairwiseCorrelation {
   /// Fills window_ and returns the factor that makes the plane a correlation coefficient; 0 where there is nothing
   /// to correlate.
   double load(std::size_t index, WindowCorrelation& result) {
-    int const size = x_.size();
+    int const size = x_.size;
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
     WindowView<float> view{};
@@ -142,7 +97,7 @@ class PairwiseCorrelation {
 
     WindowSums<float> sums;
     for (int j = view.begin_y; j < view.end_y; ++j) sums += sum_row(view, j);
-    if (!complete && sums.weight < smallest_known_part * full_weight(view)) {
+    if (!complete && sums.weight < smallest_known_part * x_.sum(column) * y_.sum(row)) {
       result.outcome = WindowCorrelation::Outcome::masked;
       return 0.0;
     }
@@ -153,28 +108,15 @@ class PairwiseCorrelation {
     WindowEnergy<float> energy;
     for (int j = view.begin_y; j < view.end_y; ++j)
       energy += load_row(view, j, mean_reference, mean_flow, out + 2 * static_cast<std::size_t>(j) * size);
-    double const least = smallest_contrast * pair_.contrast;
-    double const faint = least * least * grid_.window_px * grid_.window_px;
-    if (!(energy.core_reference > faint && energy.core_flow > faint)) {
-      result.outcome = WindowCorrelation::Outcome::no_signal;
-      return 0.0;
-    }
-    return 1.0 / (std::sqrt(static_cast<double>(energy.reference) * energy.flow) * size * size);
-  }
-
-  static double full_weight(WindowView<float> const& view) {
-    double x = 0.0, y = 0.0;
-    for (int i = 0; i < view.size; ++i) {
-      x += view.weight_x[i];
-      y += view.weight_y[i];
-    }
-    return x * y;
+    double const scale = plane_scale(energy, pair_.contrast, grid_.window_px, size);
+    if (scale == 0.0) result.outcome = WindowCorrelation::Outcome::no_signal;
+    return scale;
   }
 
   /// Writes the cross spectra of both windows, C0 + i C1, to window_. An absent window has scale 0 and a finite
   /// spectrum left over from before.
   void join(double const* scale) {
-    int const size = x_.size();
+    int const size = x_.size;
     float const scale0 = static_cast<float>(scale[0]), scale1 = static_cast<float>(scale[1]);
     for (int j = 0; j <= size / 2; ++j) {
       // the rows j = 0 and size/2 are their own mirrors: each column is then written twice, with equal values
@@ -202,7 +144,7 @@ class PairwiseCorrelation {
   void pick(std::size_t index, float const* values, WindowCorrelation& result) const {
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
-    PlaneView<float> const plane{values, x_.size(), 2};
+    PlaneView<float> const plane{values, x_.size, 2};
     PeakList<float> const found = find_peaks(plane, radius_);
     if (found.count == 0) {
       result.outcome = WindowCorrelation::Outcome::no_signal;
@@ -210,21 +152,16 @@ class PairwiseCorrelation {
     }
     result.outcome = WindowCorrelation::Outcome::measured;
     result.peaks = found.count;
-    for (int p = 0; p < found.count; ++p) {
-      PlanePeak<float> const& peak = found.peak[p];
-      auto const along_x = [&](int d) { return plane(peak.x + d, peak.y) / x_.autocorrelation(column, peak.x + d); };
-      auto const along_y = [&](int d) { return plane(peak.x, peak.y + d) / y_.autocorrelation(row, peak.y + d); };
-      result.shift[p] = {peak.x + gaussian_peak_offset(along_x(-1), along_x(0), along_x(1)),
-                         peak.y + gaussian_peak_offset(along_y(-1), along_y(0), along_y(1))};
-    }
-    double const second = found.count > 1 ? found.peak[1].height : 0.0;
-    result.peak_ratio = std::min(largest_peak_ratio, found.peak[0].height / std::max(second, 1e-12));
+    for (int p = 0; p < found.count; ++p)
+      result.shift[p] = {refined_shift(plane, found.peak[p], Axis::x, x_, column),
+                         refined_shift(plane, found.peak[p], Axis::y, y_, row)};
+    result.peak_ratio = peak_ratio(found.peak[0].height, found.count > 1 ? found.peak[1].height : 0.0);
   }
 
   ImagePair const& pair_;
   InterrogationGrid const& grid_;
-  AxisWeights const& x_;
-  AxisWeights const& y_;
+  AxisWeightsView x_;
+  AxisWeightsView y_;
   KnownTiles const& tiles_;
   int radius_;
   std::unique_ptr<FourierPlan> plan_;
@@ -244,7 +181,7 @@ std::vector<WindowCorrelation> correlate_windows(ImagePair const& pair, Interrog
   std::vector<WindowCorrelation> results(grid.size());
   Progress progress(label, grid.size());
   parallel_chunks(grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    PairwiseCorrelation correlation(pair, grid, x, y, tiles, search_radius_px);
+    PairwiseCorrelation correlation(pair, grid, x.view(), y.view(), tiles, search_radius_px);
     correlation(begin, end, results);
     progress.advance(end - begin);
   });

@@ -1,24 +1,14 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
 #include "analysis/interrogation_grid.h"
 #include "analysis/window_deformation.h"
+#include "analysis/window_measurement.h"
 #include "analysis/window_ops.h"
-#include "render/base/vec.h"
 
 namespace gladstone {
-
-/// What the correlation of one window gave.
-struct WindowCorrelation {
-  enum class Outcome { measured, no_signal, masked };
-  Outcome outcome = Outcome::no_signal;
-  int peaks = 0;                 ///< candidates found, at most 3
-  std::array<Vec2d, 3> shift{};  ///< subpixel positions of the highest peaks, highest first [px]
-  double peak_ratio = 0.0;       ///< height of the highest over the second highest peak, at most 1000
-};
 
 /// Correlates every window of a grid: weighted mean removed, weighted, cross-correlated by Fourier transform over a
 /// square of twice the nominal window (so that shifts up to half a window never wrap), peaks by three-point Gaussian.

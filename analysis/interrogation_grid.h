@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "render/base/contracts.h"
+#include "render/base/host_device.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
@@ -17,11 +18,13 @@ struct InterrogationGrid {
   int columns = 0;     ///< windows in a row; 0 where the image is smaller than a window
   int rows = 0;
 
-  std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  GLADSTONE_HD std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   /// Centre of the windows of grid column (or row) `index` along its axis [px]: (window_px - 1)/2 from the window's
   /// first pixel, hence half-integer for the even windows we use.
-  double centre(int index) const { return 0.5 * (window_px - 1) + static_cast<double>(index) * spacing_px; }
-  Vec2d centre(std::size_t vector) const {
+  GLADSTONE_HD double centre(int index) const {
+    return 0.5 * (window_px - 1) + static_cast<double>(index) * spacing_px;
+  }
+  GLADSTONE_HD Vec2d centre(std::size_t vector) const {
     return {centre(static_cast<int>(vector % static_cast<std::size_t>(columns))),
             centre(static_cast<int>(vector / static_cast<std::size_t>(columns)))};
   }

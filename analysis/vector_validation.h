@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,33 +12,43 @@
 
 namespace gladstone {
 
-/// Sorts a few values in place and gives their median. @pre count > 0
-template <class T>
-GLADSTONE_HD T median_in_place(T* values, int count) {
-  for (int i = 1; i < count; ++i) {
-    T const value = values[i];
-    int k = i;
-    for (; k > 0 && values[k - 1] > value; --k) values[k] = values[k - 1];
-    values[k] = value;
-  }
-  return count % 2 == 1 ? values[count / 2] : (values[count / 2 - 1] + values[count / 2]) / T(2);
-}
-
-/// A vector's neighbours on its grid, at most the 3x3 around it without itself.
+/// A vector's neighbours on its grid, at most the 3x3 around it without itself. Only compile-time indices, so that a
+/// GPU holds them in registers.
 template <class T>
 struct Neighbours {
   static constexpr int capacity = 8;
   Vec2<T> value[capacity];
   int count = 0;
 
+  GLADSTONE_HD void append(Vec2<T> v) {
+    for (int k = 0; k < capacity; ++k)
+      if (k == count) value[k] = v;
+    ++count;
+  }
+  /// Median of of(k) for k < count. @pre count > 0
+  template <class Of>
+  GLADSTONE_HD T median_of(Of const& of) const {
+    // sorts all places, the empty ones last, by exchanging neighbours
+    T v[capacity];
+    for (int k = 0; k < capacity; ++k) v[k] = k < count ? of(k) : std::numeric_limits<T>::infinity();
+    for (int round = 0; round < capacity; ++round)
+      for (int k = 0; k < capacity / 2; ++k) {
+        int const i = 2 * k + round % 2;
+        if (i + 1 >= capacity || !(v[i] > v[i + 1])) continue;
+        T const high = v[i];
+        v[i] = v[i + 1];
+        v[i + 1] = high;
+      }
+    T below{}, above{};
+    for (int k = 0; k < capacity; ++k) {
+      if (k == (count - 1) / 2) below = v[k];
+      if (k == count / 2) above = v[k];
+    }
+    return count % 2 == 1 ? above : (below + above) / T(2);
+  }
   /// Median of each component. @pre count > 0
   GLADSTONE_HD Vec2<T> median() const {
-    T x[capacity], y[capacity];
-    for (int i = 0; i < count; ++i) {
-      x[i] = value[i].x;
-      y[i] = value[i].y;
-    }
-    return {median_in_place(x, count), median_in_place(y, count)};
+    return {median_of([&](int k) { return value[k].x; }), median_of([&](int k) { return value[k].y; })};
   }
 };
 
@@ -48,13 +59,9 @@ template <class T>
 GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon) {
   using std::abs;
   Vec2<T> const median = neighbours.median();
-  T x[Neighbours<T>::capacity], y[Neighbours<T>::capacity];
-  for (int i = 0; i < neighbours.count; ++i) {
-    x[i] = abs(neighbours.value[i].x - median.x);
-    y[i] = abs(neighbours.value[i].y - median.y);
-  }
-  return length(Vec2<T>{(vector.x - median.x) / (median_in_place(x, neighbours.count) + epsilon),
-                        (vector.y - median.y) / (median_in_place(y, neighbours.count) + epsilon)});
+  T const spread_x = neighbours.median_of([&](int k) { return abs(neighbours.value[k].x - median.x); });
+  T const spread_y = neighbours.median_of([&](int k) { return abs(neighbours.value[k].y - median.y); });
+  return length(Vec2<T>{(vector.x - median.x) / (spread_x + epsilon), (vector.y - median.y) / (spread_y + epsilon)});
 }
 
 /// One vector of a grid under validation.
@@ -70,6 +77,112 @@ struct ValidationRule {
   double threshold = 2.0;   ///< of the normalised median residual
   double epsilon_px = 0.1;  ///< its noise level
 };
+
+/// The neighbours of vector i of a grid for which usable(index) holds, in reading order.
+/// @param displacement of a vector by its index
+/// @param offset       receives the neighbours' positions on the grid relative to i
+template <class Displacement, class Usable>
+GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Displacement const& displacement,
+                                              Usable const& usable, Neighbours<double>& offset) {
+  int const column = i % columns, row = i / columns;
+  Neighbours<double> result;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      bool const inside = column + x >= 0 && column + x < columns && row + y >= 0 && row + y < rows;
+      int const k = i + y * columns + x;
+      if (!inside || (x == 0 && y == 0) || !usable(k)) continue;
+      offset.append({static_cast<double>(x), static_cast<double>(y)});
+      result.append(displacement(k));
+    }
+  return result;
+}
+
+template <class Displacement, class Usable>
+GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Displacement const& displacement,
+                                              Usable const& usable) {
+  Neighbours<double> offset;
+  return neighbours_of(i, columns, rows, displacement, usable, offset);
+}
+
+/// The neighbours less the slopes of the plane that fits them best (least squares); as they are where all lie in one
+/// line.
+GLADSTONE_HD inline Neighbours<double> without_slope(Neighbours<double> neighbours, Neighbours<double> const& offset) {
+  // normal equations with the mean taken out; the offsets are whole, so that the determinant is exact
+  double const n = neighbours.count;
+  Vec2d sum, value_sum;
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  Vec2d x_value, y_value;
+  for (int k = 0; k < Neighbours<double>::capacity; ++k) {
+    if (k >= neighbours.count) continue;
+    Vec2d const o = offset.value[k], value = neighbours.value[k];
+    sum += o;
+    value_sum += value;
+    xx += o.x * o.x;
+    xy += o.x * o.y;
+    yy += o.y * o.y;
+    x_value += o.x * value;
+    y_value += o.y * value;
+  }
+  double const a = n * xx - sum.x * sum.x, b = n * xy - sum.x * sum.y, c = n * yy - sum.y * sum.y;
+  double const determinant = a * c - b * b;
+  if (determinant == 0.0) return neighbours;
+  Vec2d const right_x = n * x_value - sum.x * value_sum, right_y = n * y_value - sum.y * value_sum;
+  Vec2d const slope_x = (c * right_x - b * right_y) / determinant, slope_y = (a * right_y - b * right_x) / determinant;
+  for (int k = 0; k < Neighbours<double>::capacity; ++k)
+    if (k < neighbours.count) neighbours.value[k] -= offset.value[k].x * slope_x + offset.value[k].y * slope_y;
+  return neighbours;
+}
+
+/// Fewest neighbours by which a vector can be judged.
+constexpr int fewest_neighbours = 3;
+
+GLADSTONE_HD inline bool is_sound(VectorStatus status) {
+  return status == VectorStatus::valid || status == VectorStatus::replaced;
+}
+
+/// Whether vector i is valid but does not agree with its valid neighbours (validate_vectors).
+GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
+                                     ValidationRule const& rule) {
+  if (vectors[i].status != VectorStatus::valid) return false;
+  Neighbours<double> offset;
+  Neighbours<double> const around = neighbours_of(
+      i, columns, rows, [&](int k) { return vectors[k].displacement; },
+      [&](int k) { return vectors[k].status == VectorStatus::valid; }, offset);
+  auto const agrees = [&](Neighbours<double> const& neighbours) {
+    return normalised_median_residual(vectors[i].displacement, neighbours, rule.epsilon_px) <= rule.threshold;
+  };
+  if (around.count < fewest_neighbours || agrees(around)) return false;
+  return !(around.count < Neighbours<double>::capacity && agrees(without_slope(around, offset)));
+}
+
+/// Finds what replaces the spurious vector i. @return false where too few neighbours are sound
+GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
+                                          ValidationRule const& rule, Vec2d& value) {
+  Neighbours<double> const around = neighbours_of(
+      i, columns, rows, [&](int k) { return vectors[k].displacement; },
+      [&](int k) { return is_sound(vectors[k].status); });
+  if (around.count < fewest_neighbours) return false;
+  value = around.median();
+  for (int k = vectors[i].alternative_count - 1; k >= 0; --k)
+    if (normalised_median_residual(vectors[i].alternatives[k], around, rule.epsilon_px) <= rule.threshold)
+      value = vectors[i].alternatives[k];
+  return true;
+}
+
+/// Finds what fills the unknown node i from the known around it. @return false where there is none
+template <class Known>
+GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
+  Neighbours<double> const around = neighbours_of(
+      i, columns, rows, [&](int k) { return nodes[k]; }, known);
+  if (around.count == 0) return false;
+  value = around.median();
+  return true;
+}
+
+/// The middle of three nodes in a line after averaging with weights (1 6 1)/8.
+GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after) {
+  return 0.125 * (before + 6.0 * middle + after);
+}
 
 /// Finds spurious vectors among the valid ones of a grid, row by row, and replaces them: by the next correlation peak
 /// that agrees with the sound neighbours, else by their median (status replaced); where too few neighbours are sound,

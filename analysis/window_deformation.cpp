@@ -12,27 +12,12 @@ namespace {
 
 constexpr std::size_t rows_per_chunk = 8;
 
-/// Weights of Keys' kernel (a = -1/2) for the nodes at -1, 0, 1, 2, for a point t past node 0.
-void cubic_convolution(double t, double* w) {
-  w[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
-  w[1] = 1.0 + 0.5 * t * t * (-5.0 + 3.0 * t);
-  w[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
-  w[3] = 0.5 * t * t * (t - 1.0);
-}
-
 template <int degree>
 void deform_rows(BsplineView<float> reference, BsplineView<float> flow, ImagePair const& original,
                  DensePredictor const& predictor, ImagePair& pair) {
   int const columns = pair.columns, rows = pair.rows;
-  auto const inside = [&](float x, float y) {
-    return x >= -0.5f && x <= static_cast<float>(columns) - 0.5f && y >= -0.5f && y <= static_cast<float>(rows) - 0.5f;
-  };
-  auto const known = [&](float x, float y) {
-    if (!inside(x, y)) return 0.0f;
-    if (original.available.empty()) return 1.0f;
-    int const i = std::clamp(static_cast<int>(std::lround(x)), 0, columns - 1);
-    int const j = std::clamp(static_cast<int>(std::lround(y)), 0, rows - 1);
-    return original.available[static_cast<std::size_t>(j) * columns + i];
+  auto const known = [&](int i, int j) {
+    return original.available.empty() ? 1.0f : original.available[static_cast<std::size_t>(j) * columns + i];
   };
   parallel_chunks(static_cast<std::size_t>(rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<float> u(static_cast<std::size_t>(columns)), v(u);
@@ -40,11 +25,10 @@ void deform_rows(BsplineView<float> reference, BsplineView<float> flow, ImagePai
       predictor.row(static_cast<int>(j), u, v);
       std::size_t const at = j * static_cast<std::size_t>(columns);
       for (int i = 0; i < columns; ++i) {
-        float const half_u = 0.5f * u[i], half_v = 0.5f * v[i];
-        float const x = static_cast<float>(i), y = static_cast<float>(j);
-        pair.reference[at + i] = reference.sample<degree>(i, static_cast<int>(j), -half_u, -half_v);
-        pair.flow[at + i] = flow.sample<degree>(i, static_cast<int>(j), half_u, half_v);
-        pair.available[at + i] = std::min(known(x - half_u, y - half_v), known(x + half_u, y + half_v));
+        DeformedPixel const pixel = deformed_pixel<degree>(reference, flow, i, static_cast<int>(j), u[i], v[i], known);
+        pair.reference[at + i] = pixel.reference;
+        pair.flow[at + i] = pixel.flow;
+        pair.available[at + i] = pixel.available;
       }
     }
   });
@@ -90,58 +74,24 @@ DensePredictor::DensePredictor(InterrogationGrid const& grid, std::span<Vec2d co
                                int image_rows)
     : grid_(grid) {
   GLADSTONE_EXPECTS(grid.size() > 0 && nodes.size() == grid.size());
-  // ghost nodes reach past the image on all sides; their slope is taken over half a window, not over noise
-  double const beyond = std::max(
-      {grid.centre(0), image_columns - grid.centre(grid.columns - 1), image_rows - grid.centre(grid.rows - 1)});
-  ghosts_ = static_cast<int>(std::ceil(beyond / grid.spacing_px)) + 2;
+  ghosts_ = ghost_nodes(grid, image_columns, image_rows);
   columns_ = grid.columns + 2 * ghosts_;
-  int const rows = grid.rows + 2 * ghosts_;
-  nodes_.resize(static_cast<std::size_t>(columns_) * rows);
-  auto const extended = [&](int k, int count, auto const& value) {
-    int const base = std::min(count - 1, std::max(1, grid.window_px / (2 * grid.spacing_px)));
-    if (k >= 0 && k < count) return value(k);
-    int const edge = k < 0 ? 0 : count - 1;
-    if (base < 1) return value(edge);
-    int const inner = k < 0 ? base : count - 1 - base;
-    int const steps = k < 0 ? -k : k - edge;
-    return value(edge) + (static_cast<double>(steps) / base) * (value(edge) - value(inner));
-  };
-  for (int j = 0; j < rows; ++j)
+  rows_ = grid.rows + 2 * ghosts_;
+  nodes_.resize(static_cast<std::size_t>(columns_) * rows_);
+  for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i)
-      nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended(j - ghosts_, grid.rows, [&](int row) {
-        return extended(i - ghosts_, grid.columns,
-                        [&](int column) { return nodes[static_cast<std::size_t>(row) * grid.columns + column]; });
-      });
+      nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended_node(grid, nodes.data(), i - ghosts_, j - ghosts_);
   column_taps_.reserve(static_cast<std::size_t>(image_columns));
-  for (int i = 0; i < image_columns; ++i) column_taps_.push_back(taps(i, columns_));
-}
-
-DensePredictor::Taps DensePredictor::taps(double position_px, int nodes) const {
-  double const node = (position_px - grid_.centre(0)) / grid_.spacing_px + ghosts_;
-  double const clamped = std::clamp(node, 1.0, static_cast<double>(nodes - 3));
-  int const base = std::min(static_cast<int>(clamped), nodes - 3);
-  Taps result{base - 1, {}};
-  cubic_convolution(clamped - base, result.weight);
-  return result;
-}
-
-Vec2d DensePredictor::at(Vec2d position_px) const {
-  int const rows = static_cast<int>(nodes_.size()) / columns_;
-  Taps const x = taps(position_px.x, columns_), y = taps(position_px.y, rows);
-  Vec2d sum;
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i)
-      sum += (y.weight[j] * x.weight[i]) * nodes_[static_cast<std::size_t>(y.first + j) * columns_ + x.first + i];
-  return sum;
+  for (int i = 0; i < image_columns; ++i) column_taps_.push_back(view().taps(i, columns_));
 }
 
 void DensePredictor::row(int image_row, std::span<float> u, std::span<float> v) const {
-  Taps const y = taps(image_row, static_cast<int>(nodes_.size()) / columns_);
+  PredictorView::Taps const y = view().taps(image_row, rows_);
   std::vector<Vec2d> line(static_cast<std::size_t>(columns_));
   for (int i = 0; i < columns_; ++i)
     for (int j = 0; j < 4; ++j) line[i] += y.weight[j] * nodes_[static_cast<std::size_t>(y.first + j) * columns_ + i];
   for (std::size_t i = 0; i < column_taps_.size(); ++i) {
-    Taps const& x = column_taps_[i];
+    PredictorView::Taps const& x = column_taps_[i];
     Vec2d sum;
     for (int k = 0; k < 4; ++k) sum += x.weight[k] * line[x.first + k];
     u[i] = static_cast<float>(sum.x);

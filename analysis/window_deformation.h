@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "analysis/bspline_image.h"
 #include "analysis/interrogation_grid.h"
+#include "analysis/predictor_view.h"
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
@@ -27,23 +29,50 @@ class DensePredictor {
   /// @param nodes displacement [px] at grid.centre(i), all finite; grid.size() of them
   DensePredictor(InterrogationGrid const& grid, std::span<Vec2d const> nodes, int image_columns, int image_rows);
 
-  Vec2d at(Vec2d position_px) const;
+  Vec2d at(Vec2d position_px) const { return view().at(position_px); }
   /// Displacement at every pixel centre of an image row. @param u, v one value per column
   void row(int image_row, std::span<float> u, std::span<float> v) const;
 
- private:
-  struct Taps {
-    int first;
-    double weight[4];
-  };
-  Taps taps(double position_px, int nodes) const;
+  PredictorView view() const { return {grid_, ghosts_, columns_, rows_, nodes_.data()}; }
 
+ private:
   InterrogationGrid grid_;
   int ghosts_;
   int columns_;  // with the ghost nodes
+  int rows_;
   std::vector<Vec2d> nodes_;
-  std::vector<Taps> column_taps_;
+  std::vector<PredictorView::Taps> column_taps_;
 };
+
+/// One pixel of a deformed pair.
+struct DeformedPixel {
+  float reference;
+  float flow;
+  float available;
+};
+
+/// Pixel (i, j) of reference(x - d/2) and flow(x + d/2).
+/// @param u, v  the displacement d there [px]
+/// @param known 1 where both original images are known at a pixel (column, row), 0 elsewhere
+template <int degree, class Known>
+GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, BsplineView<float> const& flow, int i,
+                                          int j, float u, float v, Known const& known) {
+  int const columns = reference.columns, rows = reference.rows;
+  auto const nearest = [](float position, int count) {
+    int const k = static_cast<int>(std::lround(position));
+    return k < 0 ? 0 : (k > count - 1 ? count - 1 : k);
+  };
+  auto const known_at = [&](float x, float y) {
+    bool const inside =
+        x >= -0.5f && x <= static_cast<float>(columns) - 0.5f && y >= -0.5f && y <= static_cast<float>(rows) - 0.5f;
+    return inside ? known(nearest(x, columns), nearest(y, rows)) : 0.0f;
+  };
+  float const half_u = 0.5f * u, half_v = 0.5f * v;
+  float const x = static_cast<float>(i), y = static_cast<float>(j);
+  float const in_reference = known_at(x - half_u, y - half_v), in_flow = known_at(x + half_u, y + half_v);
+  return {reference.sample<degree>(i, j, -half_u, -half_v), flow.sample<degree>(i, j, half_u, half_v),
+          in_reference < in_flow ? in_reference : in_flow};
+}
 
 /// Deforms both images of a pair by half a displacement each, in opposite directions (Scarano, Meas. Sci. Technol. 13
 /// (2002) R1; Wereley & Meinhart, Exp. Fluids 31 (2001) 258): a pattern that moved by exactly the predictor coincides

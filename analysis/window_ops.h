@@ -214,39 +214,52 @@ struct PeakList {
   int count = 0;
 };
 
-/// Finds the highest positive local maxima with |dx|, |dy| <= radius; of two closer than `apart` pixels on both axes
-/// only the higher counts, so that a ragged peak is not its own rival. Equal heights: the first in reading order.
+/// Whether v, the plane's value at (x, y), is above its eight neighbours; of equal ones the first in reading order is.
+template <class Plane, class T>
+GLADSTONE_HD bool is_maximum(Plane const& plane, int x, int y, T v) {
+  return v > plane(x - 1, y - 1) && v > plane(x, y - 1) && v > plane(x + 1, y - 1) && v > plane(x - 1, y) &&
+         v >= plane(x + 1, y) && v >= plane(x - 1, y + 1) && v >= plane(x, y + 1) && v >= plane(x + 1, y + 1);
+}
+
+/// Whether a peak of height v is high enough for the list.
+template <class T>
+GLADSTONE_HD bool can_enter(PeakList<T> const& found, T v) {
+  return found.count < PeakList<T>::capacity || v > found.peak[PeakList<T>::capacity - 1].height;
+}
+
+/// Whether two peaks are less than `apart` pixels from each other on both axes: then only the higher counts.
+template <class T>
+GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b, int apart = 3) {
+  int const dx = a.x - b.x, dy = a.y - b.y;
+  return dx < apart && -dx < apart && dy < apart && -dy < apart;
+}
+
+/// Puts a local maximum that can_enter() into the list, unless a higher one is close; lower ones that are close drop
+/// out. Maxima come in reading order.
+template <class T>
+GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate) {
+  int place = 0;
+  for (; place < found.count && !(candidate.height > found.peak[place].height); ++place)
+    if (are_close(found.peak[place], candidate)) return;
+  // behind the higher ones; lower ones follow if they are far enough and there is room
+  PeakList<T> next;
+  for (int k = 0; k < place; ++k) next.peak[next.count++] = found.peak[k];
+  next.peak[next.count++] = candidate;
+  for (int k = place; k < found.count && next.count < PeakList<T>::capacity; ++k)
+    if (!are_close(found.peak[k], candidate)) next.peak[next.count++] = found.peak[k];
+  found = next;
+}
+
+/// Finds the highest positive local maxima with |dx|, |dy| <= radius; of two closer than three pixels on both axes only
+/// the higher counts, so that a ragged peak is not its own rival. Equal heights: the first in reading order.
 /// @pre radius + 1 < size/2
 template <class T>
-GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius, int apart = 3) {
+GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {
   PeakList<T> found;
-  auto const near = [apart](PlanePeak<T> const& p, int x, int y) {
-    int const dx = p.x - x, dy = p.y - y;
-    return dx < apart && -dx < apart && dy < apart && -dy < apart;
-  };
   for (int y = -radius; y <= radius; ++y)
     for (int x = -radius; x <= radius; ++x) {
       T const v = plane(x, y);
-      if (!(v > T(0)) || (found.count == PeakList<T>::capacity && !(v > found.peak[PeakList<T>::capacity - 1].height)))
-        continue;
-      bool const maximum = v > plane(x - 1, y - 1) && v > plane(x, y - 1) && v > plane(x + 1, y - 1) &&
-                           v > plane(x - 1, y) && v >= plane(x + 1, y) && v >= plane(x - 1, y + 1) &&
-                           v >= plane(x, y + 1) && v >= plane(x + 1, y + 1);
-      if (!maximum) continue;
-      int place = 0;
-      bool shadowed = false;
-      while (place < found.count && !(v > found.peak[place].height)) {
-        shadowed = shadowed || near(found.peak[place], x, y);
-        ++place;
-      }
-      if (shadowed) continue;
-      // behind the higher ones; lower ones follow if they are far enough and there is room
-      PeakList<T> next;
-      for (int k = 0; k < place; ++k) next.peak[next.count++] = found.peak[k];
-      next.peak[next.count++] = {x, y, v};
-      for (int k = place; k < found.count && next.count < PeakList<T>::capacity; ++k)
-        if (!near(found.peak[k], x, y)) next.peak[next.count++] = found.peak[k];
-      found = next;
+      if (v > T(0) && can_enter(found, v) && is_maximum(plane, x, y, v)) insert_peak(found, {x, y, v});
     }
   return found;
 }

@@ -22,6 +22,11 @@ endif()
 add_library(gladstone_flags INTERFACE)
 target_compile_options(gladstone_flags INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow ${GLADSTONE_USAGE_FLAGS}>)
+# Device code takes constexpr functions of the shared headers as they are.
+list(JOIN GLADSTONE_USAGE_FLAGS "," usage_flags)
+target_compile_options(gladstone_flags INTERFACE
+  $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra,${usage_flags}>)
 if(GLADSTONE_WARNINGS_AS_ERRORS)
-  target_compile_options(gladstone_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>)
+  target_compile_options(gladstone_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Werror>
+                                                   $<$<COMPILE_LANGUAGE:CUDA>:-Werror=all-warnings>)
 endif()

@@ -1,15 +1,18 @@
 #include <string>
 
 #include "cuda/backend.h"
+#include "render/base/error.h"
 
 namespace gladstone::cuda {
 
 bool compiled_in() { return false; }
 
-std::string description() {
-  std::string const toolkit = GLADSTONE_CUDA_VERSION;
-  return "CUDA toolkit: " + (toolkit.empty() ? "not found" : "found (" + toolkit + ")") +
-         ", GPU renderer not part of this version";
-}
+std::string description() { return "not compiled in (no CUDA toolkit was found when this was built)"; }
+
+DeviceState device_state() { return {false, "this gladstone was built without CUDA"}; }
+
+std::unique_ptr<Renderer> make_renderer() { throw DeviceError(device_state().text); }
+
+std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw DeviceError(device_state().text); }
 
 }  // namespace gladstone::cuda

@@ -26,6 +26,17 @@ struct Lanes {
     for (int i = 0; i < N; ++i) a.v[i] = static_cast<T>(from[i]);
     return a;
   }
+  /// The same from memory that nobody writes while a device runs.
+  template <class Stored>
+  GLADSTONE_HD static Lanes fetch(Stored const* from) {
+#if defined(__CUDA_ARCH__)
+    Lanes a;
+    for (int i = 0; i < N; ++i) a.v[i] = static_cast<T>(__ldg(from + i));
+    return a;
+#else
+    return load(from);
+#endif
+  }
   /// Every lane equal to lane `i`.
   GLADSTONE_HD Lanes spread(int i) const { return all(v[i]); }
 
@@ -43,13 +54,6 @@ struct Lanes {
     for (int i = 0; i < N; ++i) a.v[i] = a.v[i] < low ? low : (a.v[i] > high ? high : a.v[i]);
     return a;
   }
-  /// Sum over the lanes, in pairs.
-  GLADSTONE_HD T sum() const {
-    if constexpr (N == 4) return (v[0] + v[1]) + (v[2] + v[3]);
-    T s = v[0];
-    for (int i = 1; i < N; ++i) s += v[i];
-    return s;
-  }
 };
 
 #ifdef GLADSTONE_AVX2_LANES
@@ -62,32 +66,36 @@ struct Lanes<double, 4> {
   static Lanes load(double const* from) { return {_mm256_loadu_pd(from)}; }
   // the compiler's own conversion of four floats takes three times as long
   static Lanes load(float const* from) { return {_mm256_cvtps_pd(_mm_loadu_ps(from))}; }
+  template <class Stored>
+  static Lanes fetch(Stored const* from) {
+    return load(from);
+  }
   Lanes spread(int i) const { return all(v[i]); }
 
   friend Lanes operator+(Lanes a, Lanes b) { return {a.v + b.v}; }
   friend Lanes operator*(Lanes a, Lanes b) { return {a.v * b.v}; }
   Lanes clamped(double low, double high) const { return {_mm256_min_pd(_mm256_max_pd(v, all(low).v), all(high).v)}; }
-  double sum() const { return (v[0] + v[1]) + (v[2] + v[3]); }
 };
 #endif
 
-/// The sums over the lanes of four stencils at once.
+/// The scalar products of four rows with weights: out[i] = sum of row i times weights i over the lanes.
 template <class T, int N>
-GLADSTONE_HD void sum_lanes(Lanes<T, N> const& a, Lanes<T, N> const& b, Lanes<T, N> const& c, Lanes<T, N> const& d,
-                            T (&out)[4]) {
+GLADSTONE_HD void scalar_products(Lanes<T, N> const (&row)[4], Lanes<T, N> const (&weights)[4], T (&out)[4]) {
 #ifdef GLADSTONE_AVX2_LANES
   if constexpr (requires { typename Lanes<T, N>::Register; }) {
-    auto const ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6) + __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
-    auto const cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6) + __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+    auto const a = row[0].v * weights[0].v, b = row[1].v * weights[1].v;
+    auto const c = row[2].v * weights[2].v, d = row[3].v * weights[3].v;
+    auto const ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    auto const cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
     auto const sums = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
     for (int i = 0; i < 4; ++i) out[i] = sums[i];
     return;
   }
 #endif
-  out[0] = a.sum();
-  out[1] = b.sum();
-  out[2] = c.sum();
-  out[3] = d.sum();
+  for (int i = 0; i < 4; ++i) {
+    out[i] = row[i].v[0] * weights[i].v[0];
+    for (int k = 1; k < N; ++k) out[i] += row[i].v[k] * weights[i].v[k];
+  }
 }
 
 }  // namespace gladstone

@@ -16,6 +16,7 @@ struct DotPattern {
   double half_size = 0;          ///< radius of the dots, or half the side of a picture's pixels [m]
   SourceShape shape = SourceShape::disc;
 
+  double radiance_of(std::size_t dot) const { return radiance.empty() ? 1.0 : radiance[dot]; }
   SourcesView<double> view(double plane_z) const {
     return {centre.data(), radiance.empty() ? nullptr : radiance.data(), centre.size(), plane_z, half_size, shape};
   }

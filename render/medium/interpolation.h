@@ -18,6 +18,19 @@ struct CubicBspline {
     constexpr T weight[4][4] = {{s, t, s, T(0)}, {-h, T(0), h, T(0)}, {h, T(-1), h, T(0)}, {-s, h, -h, s}};
     constexpr T slope[3][4] = {{-h, T(0), h, T(0)}, {T(1), T(-2), T(1), T(0)}, {-h, T(1.5), T(-1.5), h}};
     using Four = Lanes<T, 4>;
+#if defined(__CUDA_ARCH__)
+    // the same polynomials with the fewest operations, where lanes are not side by side
+    T const v = T(1) - u, uu = u * u, vv = v * v;
+    w.v[0] = s * v * vv;
+    w.v[1] = t + uu * (h * u - T(1));
+    w.v[3] = s * u * uu;
+    w.v[2] = T(1) - w.v[0] - w.v[1] - w.v[3];
+    d.v[0] = -h * vv;
+    d.v[1] = u * (T(1.5) * u - T(2));
+    d.v[3] = h * uu;
+    d.v[2] = -d.v[0] - d.v[1] - d.v[3];
+    return;
+#endif
     Four const x = Four::all(u);
     Four const xx = x * x;
     w = (Four::load(weight[0]) + Four::load(weight[1]) * x) + (Four::load(weight[2]) + Four::load(weight[3]) * x) * xx;

@@ -3,11 +3,21 @@
 #include "render/base/host_device.h"
 #include "render/medium/index_sample.h"
 
-/// Before a loop over a few rays: keep every ray's numbers in registers.
-#if defined(__CUDACC__) || defined(__clang__)
+/// Before a loop over a few rays: keep every ray's numbers in registers. Before the loop over a step's stages: a device
+/// is better off with one copy of the sampling code, whose registers and instructions are scarce. (nvcc's host pass
+/// knows no such pragmas.)
+#if defined(__CUDA_ARCH__)
 #define GLADSTONE_UNROLL _Pragma("unroll")
+#define GLADSTONE_STAGES _Pragma("unroll 1")
+#elif defined(__CUDACC__)
+#define GLADSTONE_UNROLL
+#define GLADSTONE_STAGES
+#elif defined(__clang__)
+#define GLADSTONE_UNROLL _Pragma("unroll")
+#define GLADSTONE_STAGES _Pragma("unroll")
 #else
 #define GLADSTONE_UNROLL _Pragma("GCC unroll 8")
+#define GLADSTONE_STAGES _Pragma("GCC unroll 3")
 #endif
 
 namespace gladstone {
@@ -51,27 +61,26 @@ template <class T, class Medium>
 /// Sharma's three samples of a step for N rays, stage by stage, so that no ray's samples wait for another's.
 /// @param bent 1: rk4; 0: the gradients are taken along the undeflected ray
 template <class T, class Medium, int N>
-GLADSTONE_HD void step_increments(Medium const& medium, T bent, Vec3<T> const (&R)[N], Vec3<T> const (&direction)[N],
-                                  T const (&dt)[N], StepIncrement<T> (&add)[N]) {
-  Force<T> first[N], middle[N], last[N];
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) first[i] = force_at<T>(medium, R[i]);
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const A = first[i].d * dt[i];
-    middle[i] = force_at<T>(medium, R[i] + (T(0.5) * direction[i] + (bent * T(0.125)) * A) * dt[i]);
-  }
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const B = middle[i].d * dt[i];
-    last[i] = force_at<T>(medium, R[i] + (direction[i] + (bent * T(0.5)) * B) * dt[i]);
-  }
-  T const sixth = T(1.0 / 6.0);
-  GLADSTONE_UNROLL
-  for (int i = 0; i < N; ++i) {
-    Vec3<T> const A = first[i].d * dt[i], B = middle[i].d * dt[i], C = last[i].d * dt[i];
-    add[i] = {(sixth * dt[i]) * (A + T(2) * B), sixth * (A + T(4) * B + C),
-              (sixth * dt[i]) * (first[i].n2 + T(4) * middle[i].n2 + last[i].n2), last[i].d};
+[[gnu::always_inline]] GLADSTONE_HD inline void step_increments(Medium const& medium, T bent, Vec3<T> const (&R)[N],
+                                                                Vec3<T> const (&direction)[N], T const (&dt)[N],
+                                                                StepIncrement<T> (&add)[N]) {
+  // where a stage samples, and what its K = dt n grad n counts for: positions (A + 2 B)/6, directions (A + 4 B + C)/6
+  Vec3<T> K[N]{};
+  for (int i = 0; i < N; ++i) add[i] = {};
+  GLADSTONE_STAGES
+  for (int stage = 0; stage < 3; ++stage) {
+    T const along = T(0.5) * T(stage), across = bent * T(stage == 0 ? 0.0 : (stage == 1 ? 0.125 : 0.5));
+    T const moves = T(stage == 0 ? 1.0 / 6.0 : (stage == 1 ? 1.0 / 3.0 : 0.0)),
+            turns = T(stage == 1 ? 2.0 / 3.0 : 1.0 / 6.0);
+    GLADSTONE_UNROLL
+    for (int i = 0; i < N; ++i) {
+      Force<T> const force = force_at<T>(medium, R[i] + (along * direction[i] + across * K[i]) * dt[i]);
+      K[i] = force.d * dt[i];
+      add[i].position += (moves * dt[i]) * K[i];
+      add[i].optical_direction += turns * K[i];
+      add[i].optical_path += (turns * dt[i]) * force.n2;
+      add[i].last_force = force.d;
+    }
   }
 }
 

@@ -45,7 +45,7 @@ struct GriddedIndex {
     T sum[4];
     if constexpr (Dimensions == 2) {
       Sums const sums = contract_rows(corner, wy, dy);
-      sum_lanes(sums.value * wx, sums.value * dx, sums.dy * wx, Row::all(T(0)), sum);
+      scalar_products({sums.value, sums.value, sums.dy, Row::all(T(0))}, {wx, dx, wx, wx}, sum);
     } else {
       // contract y first for every plane, then z, then x: 12 S + S^2 (2 S) products instead of 4 S^3
       Row wz, dz;
@@ -58,7 +58,7 @@ struct GriddedIndex {
         along_y = wz.spread(k) * sums.dy + along_y;
         along_z = dz.spread(k) * sums.value + along_z;
       }
-      sum_lanes(value * wx, value * dx, along_y * wx, along_z * wx, sum);
+      scalar_products({value, value, along_y, along_z}, {wx, dx, wx, wx}, sum);
     }
     return finish(sum[0], sum[1], sum[2], sum[3]);
   }
@@ -87,10 +87,10 @@ struct GriddedIndex {
   }
 
   GLADSTONE_HD Sums contract_rows(Stored const* corner, Row const& wy, Row const& dy) const {
-    Row c = Row::load(corner);
+    Row c = Row::fetch(corner);
     Sums sums{wy.spread(0) * c, dy.spread(0) * c};
     for (int j = 1; j < Basis::support; ++j) {
-      c = Row::load(corner + j * row);
+      c = Row::fetch(corner + j * row);
       sums.value = wy.spread(j) * c + sums.value;
       sums.dy = dy.spread(j) * c + sums.dy;
     }

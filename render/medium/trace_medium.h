@@ -119,10 +119,15 @@ GLADSTONE_HD WayOut<T> way_out(Bounds<T> const& box, Vec3<T> R, Vec3<T> directio
   return out;
 }
 
+/// Axis of the face by which a ray at R that runs along `direction` has left a box; -1: it has not. A ray that has just
+/// entered, and by rounding stands in front of its face, runs towards it.
 template <class T>
-GLADSTONE_HD bool outside(Bounds<T> const& box, Vec3<T> R) {
-  return R.x < box.low.x || R.x > box.high.x || R.y < box.low.y || R.y > box.high.y || R.z < box.low.z ||
-         R.z > box.high.z;
+GLADSTONE_HD int face_left_by(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction) {
+  for (int axis = 2; axis >= 0; --axis) {
+    if (R[axis] < box.low[axis] && direction[axis] < T(0)) return axis;
+    if (R[axis] > box.high[axis] && direction[axis] > T(0)) return axis;
+  }
+  return -1;
 }
 
 /// Change of the optical direction's component along a face's normal when the index goes from |T| = n_from to n_to and
@@ -153,27 +158,23 @@ template <class T, class Medium>
 [[gnu::noinline]] GLADSTONE_HD PartialStep<T> bisect_exit(Medium const& medium, Integrator integrator,
                                                           Bounds<T> const& box, RayState<T> from, T dt) {
   PartialStep<T> part{false, dt, {}, 2};
-  Vec3<T> beyond{};
   T inside = T(0), next = dt;
   for (int trial = 0; trial <= 64; ++trial) {
     StepIncrement<T> const add = step_increment(medium, integrator, from.position, from.optical_direction, next);
     Vec3<T> const reached = from.position + from.optical_direction * next + add.position;
-    bool const left = outside(box, reached);
+    int const left_by = face_left_by(box, reached, from.optical_direction + add.optical_direction);
     if (trial == 0) part.add = add;
-    if (trial == 0 && !left) return part;
-    if (left) {
+    if (trial == 0 && left_by < 0) return part;
+    if (left_by >= 0) {
       part.step = next;
       part.add = add;
-      beyond = reached;
+      part.axis = left_by;
     } else {
       inside = next;
     }
     next = T(0.5) * (inside + part.step);
   }
   part.leaves = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (beyond[axis] < box.low[axis] || beyond[axis] > box.high[axis]) part.axis = axis;
-  }
   return part;
 }
 
@@ -240,10 +241,11 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
   return crossing;
 }
 
-/// Takes a ray that has entered to where it leaves.
+/// Takes a ray that has entered to where it leaves. Out of line, so that a device's loop over whole steps keeps its
+/// registers.
 template <class T, class Medium>
-GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& options, Ray<T> const& start,
-                               Crossing<T>& crossing) {
+[[gnu::noinline]] GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& options,
+                                                 Ray<T> const& start, Crossing<T>& crossing) {
   if (crossing.steps_left == 0) return;
   MediumPassage<T>& way = crossing.way;
   Bounds<T> const& box = crossing.box;
@@ -264,12 +266,11 @@ GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& op
     StepIncrement<T> add = step_increment(medium, options.integrator, where, along, step);
     if (!landing) {
       Vec3<T> const reached = where + along * step + add.position;
-      if (options.integrator != Integrator::straight && outside(box, reached)) {
+      int const left_by = face_left_by(box, reached, along + add.optical_direction);
+      if (options.integrator != Integrator::straight && left_by >= 0) {
         // a curved ray left in mid-step: land on the face that it crossed
         landing = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          if (reached[axis] < box.low[axis] || reached[axis] > box.high[axis]) out.axis = axis;
-        }
+        out.axis = left_by;
       }
     }
     if (landing && options.integrator != Integrator::straight) {
@@ -326,6 +327,46 @@ GLADSTONE_HD void leave_medium(Medium const& medium, TracingOptions<T> const& op
   way.status = RayStatus::lost_in_medium;
 }
 
+/// Takes rays that have entered through the middle of a medium in step, as long as all of them are sure to stay inside
+/// for one more step: what is special about a last step is left to the single ray.
+template <class T, class Medium, int N>
+GLADSTONE_HD void cross_together(Medium const& medium, Ray<T> const (&start)[N], Crossing<T> (&crossing)[N]) {
+  // copies, so that a device keeps them in registers
+  Crossing<T> ray[N];
+  for (int i = 0; i < N; ++i) ray[i] = crossing[i];
+  Vec3<T> R[N], direction[N];
+  T dt[N];
+  StepIncrement<T> add[N];
+  Bounds<T> const box = medium.bounds();
+  while (true) {
+    bool stay = true;
+    for (int i = 0; i < N; ++i) {
+      MediumPassage<T> const& way = ray[i].way;
+      R[i] = start[i].position + way.straight * (way.entry + way.t) + way.shift;
+      direction[i] = way.straight + way.turn;
+      dt[i] = ray[i].dt;
+      stay &= ray[i].steps_left > 1 && !may_reach_face(box, R[i], direction[i], dt[i]);
+    }
+    if (!stay) break;
+    step_increments(medium, T(1), R, direction, dt, add);
+    for (int i = 0; i < N; ++i) {
+      stay &=
+          face_left_by(box, R[i] + direction[i] * dt[i] + add[i].position, direction[i] + add[i].optical_direction) < 0;
+    }
+    if (!stay) break;
+    for (int i = 0; i < N; ++i) {
+      MediumPassage<T>& way = ray[i].way;
+      way.shift += way.turn * dt[i] + add[i].position;
+      way.turn += add[i].optical_direction;
+      way.optical_path += add[i].optical_path;
+      way.t += dt[i];
+      ray[i].dt = ray[i].whole_step;
+      --ray[i].steps_left;
+    }
+  }
+  for (int i = 0; i < N; ++i) crossing[i] = ray[i];
+}
+
 }  // namespace detail
 
 /// Carries a ray through a medium: straight to its face, along the ray equation with steps of at most options.step
@@ -352,34 +393,7 @@ GLADSTONE_HD void trace_medium(Medium const& medium, TracingOptions<T> const& op
     crossing[i] = detail::enter_medium(medium, options, start[i]);
     together &= crossing[i].steps_left > 0;
   }
-  // as long as all are in mid-medium; what is special about a last step is left to the single ray
-  Vec3<T> R[N], direction[N];
-  T dt[N];
-  StepIncrement<T> add[N];
-  while (together) {
-    for (int i = 0; i < N; ++i) {
-      MediumPassage<T> const& so_far = crossing[i].way;
-      R[i] = start[i].position + so_far.straight * (so_far.entry + so_far.t) + so_far.shift;
-      direction[i] = so_far.straight + so_far.turn;
-      dt[i] = crossing[i].dt;
-      together &= crossing[i].steps_left > 1 && !detail::may_reach_face(crossing[i].box, R[i], direction[i], dt[i]);
-    }
-    if (!together) break;
-    step_increments(medium, T(1), R, direction, dt, add);
-    for (int i = 0; i < N; ++i) {
-      together &= !detail::outside(crossing[i].box, R[i] + direction[i] * dt[i] + add[i].position);
-    }
-    if (!together) break;
-    for (int i = 0; i < N; ++i) {
-      MediumPassage<T>& so_far = crossing[i].way;
-      so_far.shift += so_far.turn * dt[i] + add[i].position;
-      so_far.turn += add[i].optical_direction;
-      so_far.optical_path += add[i].optical_path;
-      so_far.t += dt[i];
-      crossing[i].dt = crossing[i].whole_step;
-      --crossing[i].steps_left;
-    }
-  }
+  if (together) detail::cross_together(medium, start, crossing);
   for (int i = 0; i < N; ++i) {
     detail::leave_medium(medium, options, start[i], crossing[i]);
     way[i] = crossing[i].way;

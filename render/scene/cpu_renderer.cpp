@@ -18,31 +18,14 @@ namespace {
 
 /// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
 template <class Medium>
-void record_theory(Scene const& scene, SceneView<double> const& view, Medium const& medium, std::size_t dot,
+void record_theory(TheoryModel const& model, SceneView<double> const& view, Medium const& medium, std::size_t dot,
                    std::uint64_t rays, GroundTruth& truth) {
-  double const step = std::min(scene.step, scene.medium.coarsest_step);
-  double const n0 = scene.setup.ambient_index();
-  auto const displacement = [&](Vec2d integral, double lever) {
-    return theory_displacement(integral, lever, scene.imaging.magnification, n0, scene.setup.camera.pixel_pitch);
-  };
-  Vec2d const centre = view.sources.centre[dot];
-  Vec3d const start{centre.x, centre.y, view.sources.plane_z};
-  Ray<double> const chief{start, normalized(Vec3d{-centre.x, -centre.y, view.bundle.lens_z - start.z})};
-  GradientIntegral<double> const along = integrate_gradient(medium, chief, step);
-  truth.eq9_px[dot] = displacement(along.plain, scene.setup.z_d);
-  truth.chief_px[dot] = displacement(along.levered, 1.0);
-
-  Vec2d sum{};
-  double weight = 0;
+  ConeSum cone;
   for (std::uint64_t ray = 0; ray < rays; ++ray) {
     if (ray % rays_between_polls == 0) throw_if_interrupted();
-    EmittedRay<double> const emitted = emit(view.sources, view.bundle, dot, ray);
-    if (!scene.chief_rays_only() && 2 * length(emitted.pupil) > scene.imaging.entrance_pupil) continue;
-    sum += emitted.weight * integrate_gradient(medium, emitted.ray, step).levered;
-    weight += emitted.weight;
+    cone.add(model, view, medium, dot, ray);
   }
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  truth.eq9_cone_px[dot] = weight > 0 ? displacement(sum / weight, 1.0) : Vec2d{nan, nan};
+  truth.set_theory(dot, model, integrate_chief(model, view, medium, dot), cone);
 }
 
 struct Pass {
@@ -64,6 +47,7 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
   OwnedLightModel const light(scene, sources, spot);
+  TheoryModel const theory_model = scene.theory_model();
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
@@ -72,10 +56,12 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
     for (std::size_t dot = begin; dot < end; ++dot) {
       Vec2d const centre = sources.centre[dot];
       truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
-      exposure.begin(centre, sources.radiance.empty() ? 1.0 : sources.radiance[dot], targets, light_per_ray);
+      exposure.begin(centre, sources.radiance_of(dot), targets, light_per_ray);
       trace_dot(pair, dot, scene.rays_per_dot, exposure);
       exposure.finish(truth, dot);
-      if (theory == RenderTheory::yes) record_theory(scene, pair.scene, medium, dot, scene.rays_per_dot, truth);
+      if (theory == RenderTheory::yes) {
+        record_theory(theory_model, pair.scene, medium, dot, scene.rays_per_dot, truth);
+      }
     }
     progress.advance(end - begin);
     std::lock_guard const lock(merge);
@@ -102,18 +88,19 @@ Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderIma
           return trace_all(scene, sources, medium, images == RenderImages::yes ? &spot : nullptr, theory);
         },
         scene.medium.view);
-    bool const complete = scene.chief_rays_only() || pass.largest_bend <= scene.pupil_margin;
-    if (complete) {
-      if (images == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {
-        Image<double> const white = white_light(scene);
-        for (Image<double>* frame : {&pass.rendering.light.reference, &pass.rendering.light.flow}) {
-          std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
-                         [](double paper, double dots) { return paper - dots; });
-        }
-      }
+    if (scene.covers_bend(pass.largest_bend)) {
+      if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
       return std::move(pass.rendering);
     }
-    scene.pupil_margin = 1.02 * pass.largest_bend;
+  }
+}
+
+void apply_polarity(Scene const& scene, LightPair& light) {
+  if (scene.setup.target.polarity != Polarity::dark) return;
+  Image<double> const white = white_light(scene);
+  for (Image<double>* frame : {&light.reference, &light.flow}) {
+    std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
+                   [](double paper, double dots) { return paper - dots; });
   }
 }
 

@@ -48,26 +48,13 @@ void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light
     case SpotModel::none:
       *corner += weight;
       break;
-    case SpotModel::airy: {
-      AiryTable::View const& table = spot_.airy;
-      double const u = (p.x - middle_x + 0.5) * table.subdivisions, v = (p.y - middle_y + 0.5) * table.subdivisions;
-      int const iu = std::min(static_cast<int>(u), table.subdivisions - 1);
-      int const iv = std::min(static_cast<int>(v), table.subdivisions - 1);
-      double const fu = u - iu, fv = v - iv;
-      std::ptrdiff_t const footprint = static_cast<std::ptrdiff_t>(width) * width;
-      double const* const lower =
-          table.shares + (static_cast<std::ptrdiff_t>(iv) * (table.subdivisions + 1) + iu) * footprint;
-      double const* const upper = lower + (table.subdivisions + 1) * footprint;
+    case SpotModel::airy:
       for (int j = 0; j < width; ++j) {
         for (int i = 0; i < width; ++i) {
-          std::ptrdiff_t const at = static_cast<std::ptrdiff_t>(j) * width + i;
-          double const low = lower[at] + fu * (lower[at + footprint] - lower[at]);
-          double const high = upper[at] + fu * (upper[at + footprint] - upper[at]);
-          corner[j * side_ + i] += weight * (low + fv * (high - low));
+          corner[j * side_ + i] += weight * spot_.airy.share(p.x - middle_x, p.y - middle_y, j, i);
         }
       }
       break;
-    }
     default: {
       spot_.gaussian.shares(p.x, column, width, column_shares_.data());
       spot_.gaussian.shares(p.y, row, width, row_shares_.data());
@@ -105,6 +92,16 @@ SourceCubature SourceCubature::disc(int radial, int innermost, int outermost) {
   return cubature;
 }
 
+SourceCubature SourceCubature::radon() {
+  SourceCubature cubature{{{0, 0}}, {0.25}};
+  for (int k = 0; k < 6; ++k) {
+    double const angle = pi * k / 3;
+    cubature.points.push_back({std::sqrt(2.0 / 3.0) * std::cos(angle), std::sqrt(2.0 / 3.0) * std::sin(angle)});
+    cubature.weights.push_back(0.125);
+  }
+  return cubature;
+}
+
 SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, double spot_px) {
   if (half_size_px == 0) return {{{0, 0}}, {1.0}};
   // the finest thing that the source's outline is blurred by is the spot
@@ -136,7 +133,7 @@ CubatureView view_of(SourceCubature const& rule) {
 OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot)
     : pupil{{{{0, 0}}, {1.0}},
             SourceCubature::disc(1, 3, 3),
-            SourceCubature::disc(2, 6, 6),
+            SourceCubature::radon(),
             SourceCubature::disc(3, 9, 9),
             SourceCubature::disc(5, 15, 15)} {
   CameraSetup const& camera = scene.setup.camera;
@@ -178,6 +175,7 @@ void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&image
     images_[frame] = images[frame];
     sums_[frame] = {};
   }
+  moved_ = false;
   rays_.clear();
 }
 
@@ -198,6 +196,7 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
   RayRecord<double> const ray = make_record(model_.image, centre_, plan_.origin, emitted, reference, flow);
   sums_[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
   sums_[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
+  moved_ |= ray.moved();
   if (!with_images_) return;
   if (model_.controlled) {
     rays_.push_back(ray);
@@ -238,6 +237,12 @@ FlowFit DotExposure::fit_flow() const {
 }
 
 void DotExposure::deposit_controlled() {
+  if (!moved_) {
+    for (Frame const frame : {Frame::reference, Frame::flow}) {
+      for (int i = 0; i < model_.source.count; ++i) deposit(frame, reference_light(model_, plan_, i));
+    }
+    return;
+  }
   FlowFit const fit = fit_flow();
   CubatureView const& pupil = model_.pupil[pupil_rule(fit.pupil_spread())];
   for (int i = 0; i < model_.source.count; ++i) {

@@ -84,6 +84,8 @@ struct SourceCubature {
   /// Uniform over the unit disc: Gauss-Legendre in r^2 times equal angles, turned by half a step from ring to ring.
   /// @param innermost,outermost points on a ring of radius zero and one; between them in proportion
   static SourceCubature disc(int radial, int innermost, int outermost);
+  /// Seven points, exact up to degree 5 over the unit disc (Radon 1948; Stroud 1971, S2: 5-1).
+  static SourceCubature radon();
   /// Disc as above; a spot that is wider than a twentieth of the disc is integrated to 1e-5 of the peak, a Table 1 dot
   /// to 4e-7. Square: Gauss-Legendre in both directions. A point: itself.
   /// @param half_size_px of the source's image; the finer the spot beside it, the more points
@@ -142,6 +144,7 @@ class DotExposure {
   LightImage* images_[frame_count] = {};
   std::vector<LightPatch> patches_;
   CentroidSum<double> sums_[frame_count];
+  bool moved_ = false;  ///< whether the flow did anything to any of its rays
   StatusCounts statuses_{};
   double largest_bend2_ = 0;
 };

@@ -27,10 +27,11 @@ struct CubatureView {
   int count = 0;
 };
 
-/// The rules over the stop, from one point on: the more the displacement varies across it, the finer.
+/// The rules over the stop, from one point on: the more the displacement varies across it, the finer. Each keeps what a
+/// Gaussian spot of 0.25 px or more makes of the spread to 1e-5 of its peak.
 inline constexpr int pupil_rules = 5;
 GLADSTONE_HD inline int pupil_rule(double spread_px) {
-  return spread_px == 0 ? 0 : (spread_px < 0.01 ? 1 : (spread_px < 0.05 ? 2 : (spread_px < 0.2 ? 3 : 4)));
+  return spread_px == 0 ? 0 : (spread_px < 0.02 ? 1 : (spread_px < 0.2 ? 2 : (spread_px < 0.6 ? 3 : 4)));
 }
 
 /// How the images of all dots are made.

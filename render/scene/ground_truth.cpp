@@ -25,6 +25,14 @@ void GroundTruth::set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> co
   rays[dot] = {reference.count, flow.count};
 }
 
+void GroundTruth::set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
+                             ConeSum const& cone) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  eq9_px[dot] = model.displacement(chief.plain, model.lever);
+  chief_px[dot] = model.displacement(chief.levered, 1.0);
+  eq9_cone_px[dot] = cone.weight > 0 ? model.displacement(cone.levered / cone.weight, 1.0) : Vec2d{nan, nan};
+}
+
 DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px) {
   DisplacementField field;
   field.displacement_px = displacement_px;

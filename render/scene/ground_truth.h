@@ -7,6 +7,7 @@
 #include "render/base/displacement_field.h"
 #include "render/base/ray.h"
 #include "render/base/vec.h"
+#include "render/scene/theory.h"
 
 namespace gladstone {
 
@@ -58,6 +59,9 @@ struct GroundTruth {
   /// Writes what the rays of a dot say. @param origin that the sums' places count from [px]
   void set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> const& reference, CentroidSum<double> const& flow,
                 double light_per_weight);
+  /// Writes what theory says of it.
+  void set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
+                  ConeSum const& cone);
 };
 
 /// Counts of rays by RayStatus in each frame.

@@ -109,7 +109,7 @@ Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium con
   LightImage* const nowhere[frame_count] = {};
   double const scale = scene.light_per_ray(scene.dots);
   TracePair<double, Medium> const pair{view, medium};
-  exposure.begin(scene.dots.centre[dot], scene.dots.radiance.empty() ? 1.0 : scene.dots.radiance[dot], nowhere, scale);
+  exposure.begin(scene.dots.centre[dot], scene.dots.radiance_of(dot), nowhere, scale);
   trace_dot(pair, dot, scene.rays_per_dot, exposure);
   exposure.finish_light();
   Sampled sampled;

@@ -17,7 +17,7 @@ struct TargetImage {
   GLADSTONE_HD Vec2d to_pixel(Vec2d on_target) const {
     return {axis_px.x + px_per_metre * on_target.x, axis_px.y - px_per_metre * on_target.y};
   }
-  double half_size_px() const { return source_half * px_per_metre; }
+  GLADSTONE_HD double half_size_px() const { return source_half * px_per_metre; }
 };
 
 /// What one ray tells of its dot's light in both frames.
@@ -35,6 +35,10 @@ struct RayRecord {
   bool flow_counts = false;
 
   GLADSTONE_HD Vec2<T> bend() const { return arrival - pupil; }
+  /// Whether the flow did anything to it.
+  GLADSTONE_HD bool moved() const {
+    return !(flow == reference && arrival == pupil && flow_weight == reference_weight);
+  }
 };
 
 /// @param origin image of the dot's centre [px]

@@ -44,6 +44,9 @@ class CpuRenderer : public Renderer {
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 };
 
+/// Turns the light that bright dots send into what the target's polarity says: dark dots are taken from a white target.
+void apply_polarity(Scene const& scene, LightPair& light);
+
 /// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from;
 /// the flow does not change it, since radiance is conserved along rays.
 Image<double> white_light(Scene const& scene);

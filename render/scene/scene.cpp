@@ -102,6 +102,21 @@ double Scene::stop_edge() const { return 1.2 / std::pow(static_cast<double>(rays
 
 ApertureStop<double> Scene::aperture_stop() const { return {setup.z_a, imaging.entrance_pupil / 2, stop_edge()}; }
 
+TheoryModel Scene::theory_model() const {
+  return {std::min(step, medium.coarsest_step),
+          setup.z_d,
+          imaging.magnification,
+          setup.ambient_index(),
+          setup.camera.pixel_pitch,
+          imaging.entrance_pupil / 2};
+}
+
+bool Scene::covers_bend(double largest_bend) {
+  if (chief_rays_only() || largest_bend <= pupil_margin) return true;
+  pupil_margin = 1.02 * largest_bend;
+  return false;
+}
+
 double Scene::pupil_radius() const {
   double const stop = imaging.entrance_pupil / 2;
   return stop * std::sqrt(1 + stop_edge() / 2) + pupil_margin;

@@ -7,6 +7,7 @@
 #include "render/medium/field_volume.h"
 #include "render/scene/scene_view.h"
 #include "render/scene/setup.h"
+#include "render/scene/theory.h"
 #include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
@@ -29,6 +30,11 @@ struct Scene {
   double stop_edge() const;
   /// The stop in the lens plane. @pre not chief_rays_only()
   ApertureStop<double> aperture_stop() const;
+  /// What Eq. 9 takes.
+  TheoryModel theory_model() const;
+  /// Whether the pupil is wide enough for rays that the medium moves this far on the lens plane [m]; if not, it is
+  /// widened, and the scene is to be traced again.
+  bool covers_bend(double largest_bend);
   /// Radius of the disc in the lens plane that rays are sent to [m].
   double pupil_radius() const;
   /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.

@@ -26,10 +26,7 @@ RenderSetup read_render_setup(SetupTable table) {
   }
   if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
-  if (table.word("precision", "double", {"double", "single"}) == "single") {
-    table.problem("precision",
-                  "\"single\" is not available yet (the single-precision preview comes with CUDA); use \"double\"");
-  }
+  if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
   return setup;
 }
 

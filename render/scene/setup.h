@@ -13,10 +13,14 @@
 namespace gladstone {
 
 /// Table [render] of a setup.
+/// Scalar that rays are traced in. Truth is double; single is the GPU's preview.
+enum class Precision { double_precision, single };
+
 struct RenderSetup {
   std::optional<std::uint64_t> rays_per_dot;  ///< empty: auto
   PupilSampling sampling = PupilSampling::sobol;
   std::uint64_t seed = 1;
+  Precision precision = Precision::double_precision;
 };
 
 /// Everything that rendering a BOS pair needs, in SI.

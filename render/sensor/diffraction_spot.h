@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "render/base/host_device.h"
@@ -71,6 +72,27 @@ class AiryTable {
     double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
     int subdivisions = 0;            ///< table steps a pixel; subdivisions + 1 positions an axis
     int half_width = 0;              ///< [px]
+
+    /// Numbers in `shares`.
+    std::size_t count() const {
+      auto const positions = static_cast<std::size_t>(subdivisions + 1),
+                 width = static_cast<std::size_t>(2 * half_width + 1);
+      return positions * positions * width * width;
+    }
+    /// Share of the footprint's pixel (column, row) for light centred at (x, y) in [-0.5, 0.5], from its middle pixel.
+    GLADSTONE_HD double share(double x, double y, int row, int column) const {
+      double const u = (x + 0.5) * subdivisions, v = (y + 0.5) * subdivisions;
+      int const iu = static_cast<int>(u) < subdivisions ? static_cast<int>(u) : subdivisions - 1;
+      int const iv = static_cast<int>(v) < subdivisions ? static_cast<int>(v) : subdivisions - 1;
+      double const fu = u - iu, fv = v - iv;
+      long long const width = 2 * half_width + 1, footprint = width * width;
+      double const* const lower =
+          shares + (static_cast<long long>(iv) * (subdivisions + 1) + iu) * footprint + row * width + column;
+      double const* const upper = lower + (subdivisions + 1) * footprint;
+      double const low = lower[0] + fu * (lower[footprint] - lower[0]);
+      double const high = upper[0] + fu * (upper[footprint] - upper[0]);
+      return low + fv * (high - low);
+    }
   };
 
   /// @param scale_px N (1 + M) lambda in pixels

@@ -29,8 +29,9 @@ inline double smooth_refractivity(Vec3d p, unsigned seed) {
 
 /// Table 1 with no medium yet and `per_side`^2 dots of 3 px on a square lattice whose rays all cross the volume from
 /// face to face; a fixed number of rays per dot.
-inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot) {
+inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
   Setup setup;
+  setup.camera.columns = setup.camera.rows = pixels;
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = 1;
   Scene scene = build_scene(setup);
@@ -44,8 +45,11 @@ inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot) {
   return scene;
 }
 
+enum class Interpolate { spline, linear };
+
 /// Table 1 through a cube of nodes^3, 32.7 mm wide, RK4 with steps of one cell.
-inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot) {
+inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
+                          Interpolate interpolate = Interpolate::spline) {
   Scene scene = table1_scene(per_side, rays_per_dot);
   RegularGrid grid;
   grid.nodes = {nodes, nodes, nodes};
@@ -64,8 +68,14 @@ inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot) {
     }
   };
   using Volume = RefractiveIndexVolume<float>;
-  auto const volume = std::make_shared<Volume const>(grid, Volume::Interpolation::cubic_bspline, 1.0, 0.0, fill);
-  scene.medium.view = volume->view<double, CubicBspline, 3>(0, 0);
+  bool const spline = interpolate == Interpolate::spline;
+  auto const volume = std::make_shared<Volume const>(
+      grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, 1.0, 0.0, fill);
+  if (spline) {
+    scene.medium.view = volume->view<double, CubicBspline, 3>(0, 0);
+  } else {
+    scene.medium.view = volume->view<double, Linear, 3>(0, 0);
+  }
   scene.medium.owner = volume;
   scene.medium.grid = grid;
   scene.medium.finest = scene.medium.coarsest_step = cell;
@@ -76,8 +86,8 @@ inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot) {
 }
 
 /// Table 1 through the late DNS plane, stacked over 10 mm as in the demo.
-inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot) {
-  Scene scene = table1_scene(per_side, rays_per_dot);
+inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
+  Scene scene = table1_scene(per_side, rays_per_dot, pixels);
   MediumSetup& medium = scene.setup.medium;
   medium.field.kind = FieldKind::file;
   medium.field.file = std::string(GLADSTONE_DATA_DIR) + "/fields/hbdt512_late_slice.h5";

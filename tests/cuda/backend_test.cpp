@@ -4,15 +4,34 @@
 
 #include <string>
 
+#include "render/base/error.h"
+
 namespace gladstone::cuda {
 namespace {
 
-/// A toolkit that was seen is not a renderer that can run: the line for --version keeps the two apart.
-TEST(CudaBackend, SaysWhichToolkitWasSeenAndThatNoRendererIsThere) {
-  EXPECT_FALSE(compiled_in());
-  std::string const toolkit = GLADSTONE_CUDA_VERSION;
-  std::string const seen = toolkit.empty() ? "not found" : "found (" + toolkit + ")";
-  EXPECT_EQ(description(), "CUDA toolkit: " + seen + ", GPU renderer not part of this version");
+/// What was compiled in and what can run are two things; both have words.
+TEST(CudaBackend, SaysWhatItIsAndWhetherItCanRun) {
+  EXPECT_EQ(compiled_in(), description().find("not compiled in") == std::string::npos) << description();
+  DeviceState const state = device_state();
+  EXPECT_FALSE(state.text.empty());
+  if (!compiled_in()) {
+    EXPECT_FALSE(state.usable);
+  }
+}
+
+TEST(CudaBackend, RefusesWithoutADeviceWithItsReason) {
+  DeviceState const state = device_state();
+  if (state.usable) {
+    EXPECT_EQ(make_renderer()->device(), "cuda");
+    return;
+  }
+  try {
+    make_renderer();
+    FAIL() << "a renderer without a device";
+  } catch (DeviceError const& error) {
+    EXPECT_EQ(std::string(error.what()), state.text);
+  }
+  EXPECT_THROW(make_correlator({}), DeviceError);
 }
 
 }  // namespace

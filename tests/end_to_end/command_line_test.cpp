@@ -24,14 +24,15 @@ TEST_F(CommandLine, WhatIsRequiredIsNamed) {
 }
 
 TEST_F(CommandLine, AGpuThatCannotBeHadIsADeviceError) {
-  Outcome const version = gladstone({"--version"});
-  if (version.out.find("GPU renderer not part") == std::string::npos) GTEST_SKIP() << "this program has a GPU renderer";
+  // hides every GPU from the program, whatever this machine has
+  setenv("CUDA_VISIBLE_DEVICES", "", 1);
   for (std::vector<std::string> const& command :
        {std::vector<std::string>{"render", "setup.toml", "-o", "case"}, {"validate"}}) {
     auto arguments = command;
     arguments.insert(arguments.end(), {"--device", "cuda"});
     expect_refused(arguments, 5, {"device error: ", "use --device cpu or auto"});
   }
+  unsetenv("CUDA_VISIBLE_DEVICES");
 }
 
 TEST_F(CommandLine, VersionTellsTheBackends) {
@@ -47,7 +48,7 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
     Outcome const outcome = gladstone(arguments);
     EXPECT_EQ(outcome.exit_code, 0);
     auto const json = nlohmann::json::parse(outcome.out);
-    EXPECT_EQ(json["backends"], nlohmann::json::array({"cpu"}));
+    EXPECT_EQ(json["backends"][0], "cpu");
     for (char const* key : {"version", "commit", "cuda"}) {
       EXPECT_THAT(text.out, HasSubstr(json[key].get<std::string>())) << key;
     }

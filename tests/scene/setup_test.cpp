@@ -84,7 +84,6 @@ TEST(Setup, DotsThatCannotFindRoomAreRefused) {
 }
 
 TEST(Setup, WhatIsDueLaterIsRefusedByName) {
-  EXPECT_THAT([] { read("[render]\nprecision = \"single\"\n"); }, refused("2:1", "\"single\" is not available yet"));
   EXPECT_THAT([] { read("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
   EXPECT_THAT([] { read("experiment = \"calibration\"\n"); }, refused("1:1", "\"calibration\" is not available yet"));
   EXPECT_THAT([] { read("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));

@@ -1,0 +1,55 @@
+#include "cuda/backend.h"
+
+#include <cuda_runtime_api.h>
+#include <fmt/format.h>
+
+#include <string>
+
+#include "cuda/cuda_correlator.h"
+#include "cuda/cuda_error.h"
+#include "cuda/cuda_renderer.h"
+
+namespace gladstone::cuda {
+namespace {
+
+/// @throws DeviceError where no device can be used
+void require_device() {
+  if (DeviceState const state = device_state(); !state.usable) throw DeviceError(state.text);
+}
+
+}  // namespace
+
+bool compiled_in() { return true; }
+
+std::string description() {
+  return "compiled in, CUDA toolkit " GLADSTONE_CUDA_VERSION ", for sm_" GLADSTONE_CUDA_ARCHITECTURES;
+}
+
+DeviceState device_state() {
+  int count = 0;
+  cudaError_t status = cudaGetDeviceCount(&count);
+  if (status == cudaSuccess && count == 0) status = cudaErrorNoDevice;
+  cudaDeviceProp device{};
+  if (status == cudaSuccess) status = cudaGetDeviceProperties(&device, 0);
+  // creates the context: an exclusive or broken device says so here
+  if (status == cudaSuccess) status = cudaFree(nullptr);
+  if (status == cudaErrorInsufficientDriver)
+    return {false, "the NVIDIA driver is absent or older than this CUDA build needs"};
+  if (status != cudaSuccess) {
+    cudaGetLastError();
+    return {false, fmt::format("no usable CUDA device: {}", cudaGetErrorString(status))};
+  }
+  return {true, fmt::format("{}, {:.0f} GiB", device.name, static_cast<double>(device.totalGlobalMem) / 0x1p30)};
+}
+
+std::unique_ptr<Renderer> make_renderer() {
+  require_device();
+  return std::make_unique<CudaRenderer>();
+}
+
+std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
+  require_device();
+  return std::make_unique<CudaCorrelator>(settings);
+}
+
+}  // namespace gladstone::cuda

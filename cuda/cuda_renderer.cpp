@@ -1,0 +1,246 @@
+#include "cuda/cuda_renderer.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cuda/expose_dots.h"
+#include "render/base/interrupt.h"
+#include "render/base/progress.h"
+#include "render/scene/dot_exposure.h"
+
+namespace gladstone::cuda {
+namespace {
+
+/// Memory for the records of one batch of dots [bytes].
+constexpr std::size_t most_record_bytes = std::size_t{2} << 30;
+
+/// The sources' arrays on the device, in both scalars where both are needed.
+class MirroredSources {
+ public:
+  explicit MirroredSources(DotPattern const& sources)
+      : centre_(sources.centre.data(), sources.centre.size(), "the dots"),
+        radiance_(sources.radiance.data(), sources.radiance.size(), "the dots") {}
+
+  void mirror_single(DotPattern const& sources) {
+    std::vector<Vec2<float>> centre;
+    for (Vec2d const c : sources.centre) centre.push_back(cast<float>(c));
+    std::vector<float> const radiance(sources.radiance.begin(), sources.radiance.end());
+    single_centre_ = DeviceArray<Vec2<float>>(centre.data(), centre.size(), "the dots");
+    single_radiance_ = DeviceArray<float>(radiance.data(), radiance.size(), "the dots");
+  }
+
+  SceneView<double> place(SceneView<double> view) const {
+    view.sources.centre = centre_.data();
+    view.sources.radiance = radiance_.data();
+    return view;
+  }
+  SceneView<float> place(SceneView<float> view) const {
+    view.sources.centre = single_centre_.data();
+    view.sources.radiance = single_radiance_.data();
+    return view;
+  }
+
+ private:
+  DeviceArray<Vec2d> centre_;
+  DeviceArray<double> radiance_;
+  DeviceArray<Vec2<float>> single_centre_;
+  DeviceArray<float> single_radiance_;
+};
+
+/// A light model with its tables on the device.
+class MirroredLightModel {
+ public:
+  explicit MirroredLightModel(LightModel const& host) : model_(host) {
+    model_.source = mirrored(host.source, 0);
+    for (int rule = 0; rule < pupil_rules; ++rule) model_.pupil[rule] = mirrored(host.pupil[rule], 1 + rule);
+    if (host.spot.model == SpotModel::airy) {
+      airy_ = DeviceArray<double>(host.spot.airy.shares, host.spot.airy.count(), "the Airy table");
+      model_.spot.airy.shares = airy_.data();
+    }
+  }
+  LightModel const& model() const { return model_; }
+
+ private:
+  CubatureView mirrored(CubatureView const& rule, int slot) {
+    auto const count = static_cast<std::size_t>(rule.count);
+    points_[slot] = DeviceArray<Vec2d>(rule.points, count, "a cubature");
+    weights_[slot] = DeviceArray<double>(rule.weights, count, "a cubature");
+    return {points_[slot].data(), weights_[slot].data(), rule.count};
+  }
+
+  LightModel model_;
+  DeviceArray<Vec2d> points_[1 + pupil_rules];
+  DeviceArray<double> weights_[1 + pupil_rules];
+  DeviceArray<double> airy_;
+};
+
+/// Both frames on the device.
+class ImagePairOnDevice {
+ public:
+  ImagePairOnDevice(int columns, int rows) : columns_(columns), rows_(rows) {
+    for (auto& frame : light_) {
+      frame = DeviceArray<unsigned long long>(pixels(), "the images");
+      frame.zero();
+    }
+  }
+  DeviceImages view(double light_per_weight) {
+    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
+  }
+  LightPair to_host() const {
+    DeviceArray<double> light(pixels(), "the images");
+    LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
+    for (int frame = 0; frame < frame_count; ++frame) {
+      to_light(light_[frame].data(), light.data(), pixels());
+      light.download((frame == 0 ? pair.reference : pair.flow).data(), pixels());
+    }
+    return pair;
+  }
+
+ private:
+  std::size_t pixels() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+
+  int columns_, rows_;
+  DeviceArray<unsigned long long> light_[frame_count];
+};
+
+/// Records for as many dots as fit: fewer, where the device is short of memory, but at least one.
+template <class T>
+DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t rays, std::uint64_t& dots_a_batch) {
+  dots_a_batch = std::clamp<std::uint64_t>(most_record_bytes / (rays * sizeof(RayRecord<T>)), 1, dots);
+  while (true) {
+    try {
+      return DeviceArray<RayRecord<T>>(dots_a_batch * rays, "the rays of a batch of dots");
+    } catch (OutOfDeviceMemory const&) {
+      if (dots_a_batch == 1) throw;
+      dots_a_batch /= 2;
+    }
+  }
+}
+
+struct Pass {
+  Rendering rendering;
+  double largest_bend = 0;
+};
+
+/// One try at a scene. @param images null: truth only
+template <class T>
+Pass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
+               MirroredMedium const& medium, SpotView const* spot, RenderTheory theory) {
+  std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
+  Pass pass;
+  GroundTruth& truth = pass.rendering.truth;
+  truth.resize(dots);
+  for (std::size_t dot = 0; dot < dots; ++dot) {
+    truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
+  }
+  pass.rendering.rays = 2 * static_cast<std::int64_t>(dots * rays);
+
+  OwnedLightModel const host_light(scene, sources, spot);
+  MirroredLightModel const light(host_light.model);
+  SceneView<double> const view = on_device.place(scene.view(sources));
+  SceneView<T> const traced = on_device.place([&] {
+    if constexpr (std::is_same_v<T, double>) {
+      return view;
+    } else {
+      return cast<T>(view);
+    }
+  }());
+  double const light_per_ray = scene.light_per_ray(sources);
+  std::optional<ImagePairOnDevice> images;
+  if (spot) images.emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+  DeviceImages const frames = images ? images->view(light_per_ray) : DeviceImages{};
+  if (dots > 0) {
+    DeviceArray<TraceTally> tally(1, "counters");
+    tally.zero();
+    DeviceArray<DotSums> sums(dots, "the dots' truth");
+    DeviceArray<DotTheory> integrals(theory == RenderTheory::yes ? dots : 0, "the dots' theory");
+    std::uint64_t dots_a_batch = 0;
+    DeviceArray<RayRecord<T>> records = allocate_records<T>(dots, rays, dots_a_batch);
+    Progress progress(spot ? "tracing rays" : "tracing truth", dots);
+    for (Batch batch{0, 0, rays}; batch.first < dots; batch.first += batch.dots) {
+      throw_if_interrupted();
+      batch.dots = std::min(dots_a_batch, dots - batch.first);
+      trace_rays<T>(traced, medium.view<T>(), light.model().image, batch, records.data(), tally.data());
+      expose_dots<T>(light.model(), view.sources, batch, records.data(), frames, sums.data() + batch.first);
+      if (theory == RenderTheory::yes) {
+        integrate_dots(scene.theory_model(), view, medium.view<double>(), batch, integrals.data() + batch.first);
+      }
+      if (dots_a_batch < dots) check(cudaDeviceSynchronize(), "a batch of dots");
+      progress.advance(batch.dots);
+    }
+
+    std::vector<DotSums> hits(dots);
+    sums.download(hits.data(), dots);
+    for (std::size_t dot = 0; dot < dots; ++dot) {
+      truth.set_hits(dot, hits[dot].origin, hits[dot].hits[0], hits[dot].hits[1], light_per_ray);
+    }
+    if (theory == RenderTheory::yes) {
+      std::vector<DotTheory> along(dots);
+      integrals.download(along.data(), dots);
+      for (std::size_t dot = 0; dot < dots; ++dot)
+        truth.set_theory(dot, scene.theory_model(), along[dot].along, along[dot].cone);
+    }
+    TraceTally counted{};
+    tally.download(&counted, 1);
+    pass.largest_bend = std::sqrt(std::bit_cast<double>(counted.largest_bend2));
+    for (std::size_t frame = 0; frame < 2; ++frame) {
+      for (std::size_t status = 0; status < ray_status_count; ++status) {
+        pass.rendering.statuses[frame][status] = static_cast<std::int64_t>(counted.statuses[frame][status]);
+      }
+    }
+  }
+  if (images) pass.rendering.light = images->to_host();
+  return pass;
+}
+
+/// Freed memory stays with the process, so that the next rendering does not wait for the driver.
+void keep_freed_memory() {
+  int device = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  cudaMemPool_t pool = nullptr;
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "cudaDeviceGetDefaultMemPool");
+  std::uint64_t all = ~std::uint64_t{0};
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "cudaMemPoolSetAttribute");
+}
+
+}  // namespace
+
+struct CudaRenderer::Uploads {
+  std::shared_ptr<void const> owner;  ///< of the medium that is on the device
+  MirroredMedium medium;
+  bool wide = false;
+};
+
+CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_memory(); }
+CudaRenderer::~CudaRenderer() = default;
+
+Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  bool const single = scene.setup.render.precision == Precision::single;
+  std::optional<AiryTable> airy;
+  SpotView const spot = make_spot(scene, airy);
+  // an upload of the same grid serves again; views without a grid cost nothing to mirror
+  if (!scene.medium.owner || uploads_->owner != scene.medium.owner || uploads_->wide == single) {
+    uploads_->medium = MirroredMedium();
+    uploads_->medium = MirroredMedium(scene.medium.view, !single);
+    uploads_->owner = scene.medium.owner;
+    uploads_->wide = !single;
+  }
+  MirroredSources on_device(sources);
+  if (single) on_device.mirror_single(sources);
+  while (true) {
+    auto const trace = [&]<class T>(T) {
+      return trace_all<T>(scene, sources, on_device, uploads_->medium, images == RenderImages::yes ? &spot : nullptr,
+                          theory);
+    };
+    Pass pass = single ? trace(float{}) : trace(double{});
+    if (scene.covers_bend(pass.largest_bend)) {
+      if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
+      return std::move(pass.rendering);
+    }
+  }
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "cuda/cuda_error.h"
+
+namespace gladstone::cuda {
+
+/// Memory on the device from its pool, in the order of the default stream; freed with its owner.
+template <class T>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  /// @param what_for named in the message should memory be short. Contents are undefined. @throws OutOfDeviceMemory
+  DeviceArray(std::size_t size, std::string const& what_for) : size_(size) {
+    if (size == 0) return;
+    cudaError_t const status = cudaMallocAsync(reinterpret_cast<void**>(&data_), size * sizeof(T), nullptr);
+    if (status == cudaErrorMemoryAllocation) {
+      cudaGetLastError();  // the failure is not sticky: forget it
+      throw OutOfDeviceMemory(what_for, size * sizeof(T));
+    }
+    check(status, "cudaMallocAsync");
+  }
+  DeviceArray(T const* host, std::size_t size, std::string const& what_for) : DeviceArray(size, what_for) {
+    upload(host);
+  }
+  DeviceArray(DeviceArray&& other) noexcept
+      : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  DeviceArray(DeviceArray const&) = delete;
+  DeviceArray& operator=(DeviceArray const&) = delete;
+  ~DeviceArray() {
+    if (data_) cudaFreeAsync(data_, nullptr);
+  }
+
+  T* data() { return data_; }
+  T const* data() const { return data_; }
+  std::size_t size() const { return size_; }
+
+  /// Copies size() elements from `host`.
+  void upload(T const* host) {
+    if (size_ > 0)
+      check(cudaMemcpy(data_, host, size_ * sizeof(T), cudaMemcpyHostToDevice), "cudaMemcpy to the device");
+  }
+  /// Copies the first `count` elements to `host`; waits for the work before it.
+  void download(T* host, std::size_t count) const {
+    if (count > 0)
+      check(cudaMemcpy(host, data_, count * sizeof(T), cudaMemcpyDeviceToHost), "cudaMemcpy from the device");
+  }
+  void zero() {
+    if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "cudaMemset");
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace gladstone::cuda

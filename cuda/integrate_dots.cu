@@ -1,0 +1,46 @@
+#include "cuda/block_sum.cuh"
+#include "cuda/trace_rays.cuh"
+
+namespace gladstone::cuda {
+namespace {
+
+constexpr int threads = 128;
+
+struct WeightedSum {
+  ConeSum cone;
+  __device__ WeightedSum& operator+=(WeightedSum const& o) {
+    cone.levered += o.cone.levered;
+    cone.weight += o.cone.weight;
+    return *this;
+  }
+};
+
+template <class Medium>
+__global__ void __launch_bounds__(threads)
+    integrate_dots_kernel(TheoryModel const model, SceneView<double> const view, Medium const medium, Batch const batch,
+                          DotTheory* const out) {
+  __shared__ unsigned char storage[threads * sizeof(WeightedSum)];
+  auto* const shared = reinterpret_cast<WeightedSum*>(storage);
+  for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
+    std::uint64_t const dot = batch.first + i;
+    WeightedSum sum;
+    for (std::uint64_t ray = threadIdx.x; ray < batch.rays; ray += threads) sum.cone.add(model, view, medium, dot, ray);
+    sum = block_sum(sum, shared);
+    if (threadIdx.x == 0) out[i] = {integrate_chief(model, view, medium, dot), sum.cone};
+  }
+}
+
+}  // namespace
+
+void integrate_dots(TheoryModel const& model, SceneView<double> const& view, DeviceMedium<double> const& medium,
+                    Batch const& batch, DotTheory* out) {
+  std::visit(
+      [&](auto const& held) {
+        auto* const kernel = integrate_dots_kernel<std::remove_cvref_t<decltype(held)>>;
+        kernel<<<blocks_for(kernel, threads, 0, batch.dots), threads>>>(model, view, held, batch, out);
+        check_launch("integrate_dots");
+      },
+      medium);
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,151 @@
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "cuda/backend.h"
+#include "cuda/correlation_kernels.h"
+#include "cuda/cuda_correlator.h"
+#include "cuda/device_array.h"
+#include "tests/analysis/support/particle_pair.h"
+
+namespace gladstone::bench {
+namespace {
+
+using cuda::DeviceArray;
+using cuda::DeviceImage;
+
+testing::ParticlePair const& particle_pair(int size) {
+  static std::vector<std::pair<int, testing::ParticlePair>> made;
+  for (auto const& [there, pair] : made)
+    if (there == size) return pair;
+  testing::ParticleSettings particles;
+  particles.columns = particles.rows = size;
+  made.emplace_back(size, testing::render_particle_pair(particles, [](Vec2d p) {
+                      return Vec2d{1.7 + std::sin(0.01 * p.y), 0.8 * std::cos(0.012 * p.x)};
+                    }));
+  return made.back().second;
+}
+
+/// A pair on the device.
+struct DevicePairOfImages {
+  explicit DevicePairOfImages(int wanted)
+      : size(wanted),
+        reference(particle_pair(size).reference.data(), particle_pair(size).reference.size(), "benchmark"),
+        flow(particle_pair(size).flow.data(), particle_pair(size).flow.size(), "benchmark") {}
+  DeviceImage first() const { return {reference.data(), size, size}; }
+  DeviceImage second() const { return {flow.data(), size, size}; }
+  int size;
+  DeviceArray<double> reference, flow;
+};
+
+bool no_device(benchmark::State& state) {
+  cuda::DeviceState const device = cuda::device_state();
+  if (!device.usable) state.SkipWithError(device.text.c_str());
+  return !device.usable;
+}
+
+void set_rate(benchmark::State& state, std::size_t vectors) {
+  state.counters["vectors"] = static_cast<double>(vectors);
+  state.counters["vectors/s"] =
+      benchmark::Counter(static_cast<double>(vectors), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// From window to subpixel shift alone: two launches, 4096 x 4096 px, windows 1/4 of their size apart.
+/// @param range(0) nominal window [px]
+void correlate_windows(benchmark::State& state) {
+  if (no_device(state)) return;
+  DevicePairOfImages const images(4096);
+  int const size = images.size;
+  std::size_t const pixels = static_cast<std::size_t>(size) * size;
+  InterrogationGrid const grid = make_interrogation_grid(size, size, static_cast<int>(state.range(0)), 0.75);
+  AxisWeights const weights(grid, grid.columns, size, WindowWeighting::gaussian);
+  char const* const purpose = "benchmark";
+  DeviceArray<float> const axis(weights.weights().data(), weights.weights().size(), purpose);
+  DeviceArray<double> const lags(weights.autocorrelations().data(), weights.autocorrelations().size(), purpose);
+  DeviceArray<double> const sums(weights.sums().data(), weights.sums().size(), purpose);
+  AxisWeightsView view = weights.view();
+  view.weights = axis.data();
+  view.autocorrelations = lags.data();
+  view.sums = sums.data();
+  DeviceArray<cuda::GreyPair> greys(pixels, purpose);
+  DeviceArray<float> contrast(1, purpose);
+  DeviceArray<cuda::LevelKeys> keys(1, purpose);
+  DeviceArray<cuda::WindowPeaks> peaks(grid.size(), purpose);
+  DeviceArray<WindowCorrelation> results(grid.size(), purpose);
+  cuda::DevicePair const pair{greys.data(), size, size};
+  cuda::prepare_pair(images.first(), images.second(), keys.data(), contrast.data(), pair);
+  cuda::WindowJob const job{pair, contrast.data(), grid, view, view, grid.window_px / 2, results.data()};
+  cudaEvent_t begin, end;
+  cuda::check(cudaEventCreate(&begin), "cudaEventCreate");
+  cuda::check(cudaEventCreate(&end), "cudaEventCreate");
+  cuda::correlate_windows_in_registers(job, peaks.data());
+  for (auto _ : state) {
+    cuda::check(cudaEventRecord(begin), "cudaEventRecord");
+    cuda::correlate_windows_in_registers(job, peaks.data());
+    cuda::check(cudaEventRecord(end), "cudaEventRecord");
+    cuda::check(cudaEventSynchronize(end), "cudaEventSynchronize");
+    float milliseconds = 0.0f;
+    cuda::check(cudaEventElapsedTime(&milliseconds, begin, end), "cudaEventElapsedTime");
+    state.SetIterationTime(1e-3 * static_cast<double>(milliseconds));
+  }
+  set_rate(state, grid.size());
+  cudaEventDestroy(begin);
+  cudaEventDestroy(end);
+}
+BENCHMARK(correlate_windows)
+    ->Name("cuda_correlate_windows")
+    ->ArgName("window")
+    ->Arg(32)
+    ->Arg(16)
+    ->UseManualTime()
+    ->Iterations(20)
+    ->Repetitions(3)
+    ->Unit(benchmark::kMillisecond);
+
+/// Images on the device to vectors on the host, memory kept from the pair before.
+void correlate(benchmark::State& state, CorrelationSettings const& settings, int size) {
+  if (no_device(state)) return;
+  DevicePairOfImages const images(size);
+  cuda::CudaCorrelator const correlator(settings);
+  DisplacementField const expected = correlator.correlate(particle_pair(size).reference, particle_pair(size).flow);
+  std::size_t vectors = 0;
+  for (auto _ : state) {
+    auto const begin = std::chrono::steady_clock::now();
+    DisplacementField const field = correlator.correlate(images.first(), images.second());
+    state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    vectors = field.size();
+    if (std::memcmp(field.displacement_px.data(), expected.displacement_px.data(), vectors * sizeof(Vec2d)) != 0)
+      state.SkipWithError("images on the device and on the host gave different vectors");
+  }
+  set_rate(state, vectors);
+}
+
+void single_pass(benchmark::State& state) {
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  settings.overlap = 0.75;
+  correlate(state, settings, 4096);
+}
+BENCHMARK(single_pass)
+    ->Name("cuda_correlate_single_pass")
+    ->UseManualTime()
+    ->Iterations(10)
+    ->Unit(benchmark::kMillisecond);
+
+/// The demo's passes. @param range(0) side of the images [px]
+void multi_pass(benchmark::State& state) { correlate(state, {}, static_cast<int>(state.range(0))); }
+BENCHMARK(multi_pass)
+    ->Name("cuda_correlate_multi_pass")
+    ->ArgName("size")
+    ->Arg(512)
+    ->Arg(1024)
+    ->Arg(4096)
+    ->UseManualTime()
+    ->Iterations(20)
+    ->Repetitions(3)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gladstone::bench

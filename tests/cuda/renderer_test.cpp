@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cuda/backend.h"
+#include "render/sensor/exposure.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+using BosSetup = Setup;  // testing::Test has a Setup of its own
+
+/// A grey level of 16 bits when the brightest pixel of a frame is at 90 % of full scale.
+double grey_level(Image<double> const& frame) { return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535); }
+
+double largest_difference(Image<double> const& a, Image<double> const& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a.data()[i] - b.data()[i]));
+  return most;
+}
+
+double largest_difference(std::vector<Vec2d> const& a, std::vector<Vec2d> const& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::isnan(a[i].x) && std::isnan(b[i].x)) continue;
+    double const here = length(a[i] - b[i]);
+    most = here >= 0 ? std::max(most, here) : 1e300;
+  }
+  return most;
+}
+
+bool same_bits(Image<double> const& a, Image<double> const& b) { return std::equal(a.begin(), a.end(), b.begin()); }
+
+class CudaRendererTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!cuda::device_state().usable) GTEST_SKIP() << cuda::device_state().text;
+    renderer_ = cuda::make_renderer();
+  }
+  Rendering on_device(Scene& scene) {
+    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  }
+
+  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to a grey level, counts exactly.
+  void expect_as_on_cpu(Scene scene) {
+    Scene again = scene;
+    Rendering const cpu = render_all(scene), gpu = on_device(again);
+    EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.displacement_std_px, gpu.truth.displacement_std_px), 1e-6);
+    EXPECT_LT(largest_difference(cpu.truth.eq9_px, gpu.truth.eq9_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.chief_px, gpu.truth.chief_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.eq9_cone_px, gpu.truth.eq9_cone_px), 1e-9);
+    EXPECT_EQ(cpu.truth.rays, gpu.truth.rays);
+    EXPECT_EQ(cpu.statuses, gpu.statuses);
+    EXPECT_EQ(cpu.rays, gpu.rays);
+    EXPECT_NEAR(scene.pupil_margin, again.pupil_margin, 1e-12);
+    double const level = grey_level(cpu.light.reference);
+    EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), 0.01 * level);
+    EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), 0.01 * level);
+  }
+
+  Scene scene_of(FieldSetup const& field, std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
+    BosSetup setup = table1_setup(96);
+    setup.medium.field = field;
+    if (change) change(setup);
+    std::vector<Vec2d> places = lattice(96, 6, 14);
+    for (Vec2d& place : places) place += {0.0173, 0.0091};  // off the pixels' edges, where rounding moves a spot's cut
+    return scene_with_dots(setup, places, rays);
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+};
+
+TEST_F(CudaRendererTest, NoMedium) { expect_as_on_cpu(scene_of({}, 100)); }
+TEST_F(CudaRendererTest, UniformGradient) { expect_as_on_cpu(scene_of(uniform_gradient(20, -8, 3), 128)); }
+TEST_F(CudaRendererTest, Sinusoid) { expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 333)); }
+TEST_F(CudaRendererTest, DnsPlane) { expect_as_on_cpu(scene_of(dns_plane("kepeak"), 257)); }
+TEST_F(CudaRendererTest, FewRays) { expect_as_on_cpu(scene_of(dns_plane("late"), 7)); }
+
+TEST_F(CudaRendererTest, PlumeBlobAndShock) {
+  for (FieldKind const kind : {FieldKind::gaussian_plume, FieldKind::gaussian_blob, FieldKind::normal_shock}) {
+    FieldSetup field;
+    field.kind = kind;
+    field.amplitude = -0.2;
+    field.radius = 5e-3;
+    field.mach = 1.2;
+    field.upstream_density = 1.225;
+    field.shock_thickness = 1e-3;
+    expect_as_on_cpu(scene_of(field, 64));
+  }
+}
+
+TEST_F(CudaRendererTest, VolumesSplineAndLinear) {
+  for (bool const spline : {true, false}) {
+    std::string const path = testing::TempDir() + "gladstone_cuda_volume.nrrd";
+    std::ofstream file(path, std::ios::binary);
+    file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
+    for (int i = 0; i < 12 * 14 * 10; ++i) {
+      auto const number =
+          static_cast<float>(1.2 + 0.05 * std::sin(0.7 * (i % 12) + 0.4 * (i / 12 % 14) + 0.5 * (i / 168)));
+      file.write(reinterpret_cast<char const*>(&number), sizeof number);
+    }
+    file.close();
+    FieldSetup field;
+    field.kind = FieldKind::file;
+    field.file = path;
+    field.where = "test";
+    field.spacing = Vec3d{1.5e-3, 1.5e-3, 1.5e-3};
+    expect_as_on_cpu(scene_of(field, 200, [&](BosSetup& setup) {
+      if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
+    }));
+  }
+}
+
+TEST_F(CudaRendererTest, EulerStraightAndRefractingFaces) {
+  expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::euler; }));
+  expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::straight; }));
+  expect_as_on_cpu(scene_of(uniform_gradient(20, 5), 64, [](BosSetup& s) { s.medium.faces = Faces::refract; }));
+}
+
+TEST_F(CudaRendererTest, SpotsFocusAndPolarity) {
+  for (SpotModel const spot : {SpotModel::airy, SpotModel::none, SpotModel::gaussian_first_zero}) {
+    expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& s) { s.lens.spot = spot; }));
+  }
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.lens.focus = Focus::medium; }));
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.target.polarity = Polarity::dark; }));
+}
+
+TEST_F(CudaRendererTest, ChiefRaysPointsAndRandomPupil) {
+  double const pinhole = std::numeric_limits<double>::infinity();
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [&](BosSetup& s) { s.lens.f_number = pinhole; }));
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.target.dot_diameter_px = 0; }));
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.render.sampling = PupilSampling::random; }));
+}
+
+TEST_F(CudaRendererTest, TwoRunsGiveTheSameBits) {
+  Scene scene = scene_of(dns_plane("kepeak"), 500);
+  Rendering const one = on_device(scene), two = on_device(scene);
+  EXPECT_TRUE(same_bits(one.light.reference, two.light.reference));
+  EXPECT_TRUE(same_bits(one.light.flow, two.light.flow));
+  EXPECT_EQ(one.truth.displacement_px, two.truth.displacement_px);
+  EXPECT_EQ(one.truth.eq9_cone_px, two.truth.eq9_cone_px);
+}
+
+/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
+TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
+  Scene scene = scene_of(dns_plane("late"), 256), preview = scene;
+  preview.setup.render.precision = Precision::single;
+  Rendering const exact = on_device(scene), rough = on_device(preview);
+  double const off = largest_difference(exact.truth.displacement_px, rough.truth.displacement_px);
+  EXPECT_LT(off, 1e-3);
+  EXPECT_GT(off, 1e-9);
+  EXPECT_LT(largest_difference(exact.light.flow, rough.light.flow), 16 * grey_level(exact.light.flow));
+}
+
+TEST_F(CudaRendererTest, NothingToTraceIsNoError) {
+  Scene scene = scene_of({}, 16);
+  scene.dots.centre.clear();
+  Rendering const empty = on_device(scene);
+  EXPECT_EQ(empty.truth.size(), 0u);
+  EXPECT_EQ(*std::max_element(empty.light.flow.begin(), empty.light.flow.end()), 0);
+}
+
+}  // namespace
+}  // namespace gladstone
