@@ -298,9 +298,10 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   drawn.push_back(folder + "/error_histograms.png");
   write_error_histograms(drawn.back(), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
+    DisplacementField truth = measured;
+    truth.displacement_px = comparison.point.displacement_px;
     drawn.push_back(folder + "/error_against_gradient.png");
-    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", comparison.strain,
-                                 series);
+    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", truth, series);
   }
   drawn.push_back(folder + "/error_budget.png");
   write_budget_bars(drawn.back(), "Error budget, from Eq. 9 to the measurement", comparison.budget);
