@@ -167,6 +167,18 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
   return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
 }
 
+std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point) {
+  if (scene.setup.lens.focus == Focus::target) return point.displacement_px;
+  // the sensor stays where it is, and with it the magnification; the lens is made to image the target on it
+  scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
+  scene.setup.lens.focus = Focus::target;
+  DotPattern virtual_dots;
+  virtual_dots.half_size = scene.dots.half_size;
+  virtual_dots.shape = scene.dots.shape;
+  for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
+  return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
+}
+
 Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options) {
   std::string const setup = in_case(folder, case_file::setup);
   std::string const truth = made_file(folder, case_file::truth, "gladstone render " + setup + " -o " + folder);
@@ -184,6 +196,7 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   PreparedCase prepared = prepare_case(loaded);
   Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
   comparison.point = truth_at_points(scene, renderer, measured.position_px, options.truth_at, RenderTheory::yes);
+  comparison.thin_lens = ideal_lens_truth(scene, renderer, comparison.point);
   comparison.strain = strain_at(scene, measured.position_px, vectors.settings.window_px.back());
 
   CorrelationSettings const& settings = vectors.settings;
@@ -201,7 +214,8 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   }
 
   std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.point.eq9_px,
-                                                 comparison.point.eq9_cone_px, comparison.window.displacement_px};
+                                                 comparison.point.eq9_cone_px, comparison.thin_lens,
+                                                 comparison.window.displacement_px};
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
@@ -212,7 +226,7 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
   }
   std::vector<BudgetStage> const stages{
       {"eq9", comparison.point.eq9_px},           {"straight", comparison.point.chief_px},
-      {"eq9_cone", comparison.point.eq9_cone_px}, {"thin_lens", comparison.point.displacement_px},
+      {"eq9_cone", comparison.point.eq9_cone_px}, {"thin_lens", comparison.thin_lens},
       {"lens", comparison.point.displacement_px}, {"window", comparison.window.displacement_px},
       {"noise_free", comparison.noise_free},      {"measured", measured.displacement_px},
   };
@@ -298,9 +312,10 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   drawn.push_back(folder + "/error_histograms.png");
   write_error_histograms(drawn.back(), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
+    DisplacementField truth = measured;
+    truth.displacement_px = comparison.point.displacement_px;
     drawn.push_back(folder + "/error_against_gradient.png");
-    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", comparison.strain,
-                                 series);
+    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", truth, series);
   }
   drawn.push_back(folder + "/error_budget.png");
   write_budget_bars(drawn.back(), "Error budget, from Eq. 9 to the measurement", comparison.budget);

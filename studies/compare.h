@@ -24,7 +24,8 @@ struct CompareOptions {
 /// Everything that is known at every vector: the chain from Eq. 9 to the measurement.
 struct Comparison {
   DisplacementField measured;
-  GroundTruth point;  ///< truth and theory of the virtual dot whose place the vector is
+  GroundTruth point;             ///< truth and theory of the virtual dot whose place the vector is
+  std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them
   WindowTruth window;
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
   std::vector<double> strain;     ///< largest of Eq. 9 on each vector's window [px/px]
@@ -38,6 +39,11 @@ struct Comparison {
 /// correction with few rays, then the truth and theory there with all of them.
 GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory);
+
+/// Displacements of those virtual dots through an ideal thin lens that images the target sharply at the scene's own
+/// magnification, with the same rays and the same stop: where a ray ends is where it seems to come from on the target.
+/// What the actual lens adds, defocus included, is the budget's aberration.
+std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
 
 /// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
 Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options);

@@ -23,6 +23,7 @@ constexpr double truth_tolerance_px = 1e-3;
 constexpr double image_tolerance_levels = 0.5;
 constexpr int scramblings = 4;
 constexpr std::size_t sample_dots = 96;
+constexpr double widest_image_px = 100;  // of a dot that is measured whole
 
 /// Displacements of all dots by five shared rays each, and how far the lens plane sees them bent.
 struct Probe {
@@ -86,64 +87,75 @@ void measure_change(Probe const& coarse, Probe const& fine, StepPlan& plan) {
 
 /// What one scrambling of one dot gives: its displacement, and its light in both frames over a window.
 struct Sampled {
-  Vec2d displacement;
+  Vec2d displacement{};
   std::vector<double> light;
 };
 
-/// A window of one frame that collects a dot's light around a fixed pixel.
+/// A square of pixels about a dot.
 struct Window {
   int left, top, side;
-
-  void collect(LightPatch const& patch, double scale, double* out) const {
-    patch.for_each_touched([&](int column, int row, double weight) {
-      int const i = column - left, j = row - top;
-      if (i >= 0 && j >= 0 && i < side && j < side) out[j * side + i] += weight * scale;
-    });
-  }
 };
 
 template <class Medium>
-Sampled sample_dot(Scene const& scene, SceneView<double> const& view, Medium const& medium, LightModel const& light,
-                   std::size_t dot, Window const& window) {
-  DotExposure exposure(light, true);
-  LightImage* const nowhere[frame_count] = {};
-  double const scale = scene.light_per_ray(scene.dots);
+Sampled sample_dot(Scene const& scene, SceneView<double> view, Medium const& medium, LightModel model, std::size_t dot,
+                   Window const& window) {
+  // pixels are counted from the window's corner: the sensor's own first pixel moves, its axis does not
+  view.sensor.columns -= 2 * window.left;
+  view.sensor.rows -= 2 * window.top;
+  model.image.axis_px = model.image.axis_px - Vec2d{static_cast<double>(window.left), static_cast<double>(window.top)};
+  LightImage frames[frame_count] = {{window.side, window.side}, {window.side, window.side}};
+  LightImage* const images[frame_count] = {&frames[0], &frames[1]};
+  DotExposure exposure(model, true);
   TracePair<double, Medium> const pair{view, medium};
-  exposure.begin(scene.dots.centre[dot], scene.dots.radiance_of(dot), nowhere, scale);
+  exposure.begin(scene.dots.centre[dot], scene.dots.radiance_of(dot), images, scene.light_per_ray(scene.dots));
   trace_dot(pair, dot, scene.rays_per_dot, exposure);
-  exposure.finish_light();
+  GroundTruth truth;
+  truth.resize(1);
+  exposure.finish(truth, 0);
   Sampled sampled;
-  auto const area = static_cast<std::size_t>(window.side * window.side);
-  sampled.light.assign(2 * area, 0.0);
-  window.collect(exposure.patch(Frame::reference), scale, sampled.light.data());
-  window.collect(exposure.patch(Frame::flow), scale, sampled.light.data() + area);
-  CentroidSum<double> const& reference = exposure.sum(Frame::reference);
-  CentroidSum<double> const& flow = exposure.sum(Frame::flow);
-  if (reference.weight > 0 && flow.weight > 0) sampled.displacement = flow.mean() - reference.mean();
+  if (std::isfinite(truth.displacement_px[0].x)) sampled.displacement = truth.displacement_px[0];
+  for (LightImage const& frame : frames) {
+    Image<double> const light = frame.to_light();
+    sampled.light.insert(sampled.light.end(), light.begin(), light.end());
+  }
   return sampled;
 }
 
 /// Scatter between scramblings at the scene's present number of rays.
 struct Scatter {
   double truth_variance = 0;  ///< mean over dots and components [px^2]
-  double light_variance = 0;  ///< mean over lit pixels
-  double brightest = 0;
+  double light_variance = 0;  ///< mean over lit pixels of the worse frame
+  double brightest = 0;       ///< pixel of both frames, where dots overlap too
 };
 
-/// @param level light of one grey level where known, else 0: then 90 % of full scale is at the brightest pixel met
-Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots, SpotView const& spot, double level,
-                        double levels_at_peak) {
+/// Width of a dot's image without diffraction and medium: its disc and its blur out of focus [px].
+double image_width_px(Scene const& scene) {
+  double const sharp = 1 / (1 / scene.setup.lens.focal_length - 1 / scene.setup.z_b());
+  double const blur = scene.imaging.entrance_pupil * std::abs(1 - scene.imaging.image_distance / sharp);
+  return (2 * scene.dots.half_size * scene.imaging.magnification + blur) / scene.setup.camera.pixel_pitch;
+}
+
+/// What dots look like on average in one frame: sums over a dot's pixels.
+struct MeanDot {
+  double light = 0, square = 0;  ///< of the light and of its square
+  double variance = 0, lit = 0;  ///< over lit pixels: of the light's variance, and their number
+};
+
+/// @param density dots a pixel, placed at random
+/// @param level light of one grey level where known, else 0: then 90 % of full scale is at the brightest pixel
+Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots, double density, SpotView const& spot,
+                        double level, double levels_at_peak) {
   struct PerDot {
     double displacement_variance = 0;
     std::vector<double> mean, variance;
   };
   std::vector<PerDot> measured(dots.size());
   OwnedLightModel const light(scene, scene.dots, &spot);
+  int const side = 2 * spot.half_width() + 49 + static_cast<int>(std::min(image_width_px(scene), widest_image_px));
   std::visit(
       [&](auto const& medium) {
         parallel_for(dots.size(), [&](std::size_t index) {
           std::size_t const dot = dots[index];
-          int const side = 2 * spot.half_width() + 49;
           Vec2d const at = scene.to_pixel(scene.dots.centre[dot]);
           Window const window{static_cast<int>(std::floor(at.x)) - side / 2,
                               static_cast<int>(std::floor(at.y)) - side / 2, side};
@@ -172,35 +184,95 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
       scene.medium.view);
 
   Scatter scatter;
-  for (PerDot const& dot : measured) {
-    scatter.truth_variance += dot.displacement_variance / static_cast<double>(measured.size());
-    scatter.brightest = std::max(scatter.brightest, *std::max_element(dot.mean.begin(), dot.mean.end()));
-  }
-  double const lit = level > 0 ? level : scatter.brightest / levels_at_peak;
-  std::size_t lit_pixels = 0;
-  for (PerDot const& dot : measured) {
-    for (std::size_t i = 0; i < dot.mean.size(); ++i) {
-      if (dot.mean[i] < lit) continue;
-      scatter.light_variance += dot.variance[i];
-      ++lit_pixels;
+  auto const share = 1 / static_cast<double>(dots.size());
+  MeanDot frames[frame_count];
+  auto const sum_over_frame = [&](int frame, auto const& add) {
+    std::size_t const area = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
+    std::size_t const first = static_cast<std::size_t>(frame) * area;
+    for (PerDot const& dot : measured) {
+      for (std::size_t i = first; i < first + area; ++i) add(dot.mean[i], dot.variance[i]);
     }
+  };
+  for (PerDot const& dot : measured) scatter.truth_variance += share * dot.displacement_variance;
+  for (int frame = 0; frame < frame_count; ++frame) {
+    MeanDot& sums = frames[frame];
+    sum_over_frame(frame, [&](double mean, double variance) {
+      sums.light += share * mean;
+      sums.square += share * (mean * mean + variance * (1 - 1.0 / scramblings));  // of one scrambling
+      scatter.brightest = std::max(scatter.brightest, mean);
+    });
+    // many dots at random overlap to a level of this mean and variance (Campbell's theorem)
+    double const overlapping = density * sums.light + 3 * std::sqrt(density * sums.square);
+    scatter.brightest = std::max(scatter.brightest, overlapping);
   }
-  if (lit_pixels > 0) scatter.light_variance /= static_cast<double>(lit_pixels);
+  double const threshold = level > 0 ? level : scatter.brightest / levels_at_peak;
+  for (int frame = 0; frame < frame_count; ++frame) {
+    MeanDot& sums = frames[frame];
+    sum_over_frame(frame, [&](double mean, double variance) {
+      if (mean < threshold) return;
+      sums.variance += share * variance;
+      sums.lit += share;
+    });
+    // the share of a picture that n dots a pixel light with k pixels each is 1 - exp(-n k); they add their variances
+    double const pixels = density > 0 ? -std::expm1(-density * sums.lit) / density : sums.lit;
+    if (pixels > 0) scatter.light_variance = std::max(scatter.light_variance, sums.variance / pixels);
+  }
   return scatter;
 }
 
-/// Dots spread evenly over the list (random dots are in random order, regular ones row by row), only those in view.
-std::vector<std::size_t> choose_sample(Scene const& scene) {
+/// The scene's dots in view; where there is none, the first.
+std::vector<std::size_t> dots_in_view(Scene const& scene) {
   std::vector<std::size_t> in_view;
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
     if (scene.view().sensor.covers(scene.to_pixel(scene.dots.centre[dot]))) in_view.push_back(dot);
   }
   if (in_view.empty() && !scene.dots.centre.empty()) in_view.push_back(0);
+  return in_view;
+}
+
+/// Spread evenly over the list: random dots are in random order, regular ones row by row.
+std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& in_view) {
   if (in_view.size() <= sample_dots) return in_view;
   std::vector<std::size_t> sample;
   for (std::size_t i = 0; i < sample_dots; ++i) sample.push_back(in_view[i * in_view.size() / sample_dots]);
   return sample;
 }
+
+/// Measures a scene's errors at its present number of rays; what does not depend on that number is made once.
+class RayErrors {
+ public:
+  explicit RayErrors(Scene const& scene) : scene_(scene), spot_(make_spot(scene, airy_)) {
+    CameraSetup const& camera = scene.setup.camera;
+    std::vector<std::size_t> const in_view = dots_in_view(scene);
+    sample_ = choose_sample(in_view);
+    density_ = static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows);
+    bits_ = std::min(camera.bit_depth, 12);
+    double const full_scale = std::pow(2.0, bits_) - 1;
+    // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
+    level_ = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
+    at_peak_ = 0.9 * full_scale;
+  }
+
+  RaysPlan measure() const {
+    RaysPlan plan;
+    plan.rays = scene_.rays_per_dot;
+    plan.bits = bits_;
+    if (sample_.empty()) return plan;
+    Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, level_, at_peak_);
+    double const light_per_level = level_ > 0 ? level_ : scatter.brightest / at_peak_;
+    plan.truth_error_px = std::sqrt(scatter.truth_variance);
+    plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
+    return plan;
+  }
+
+ private:
+  Scene const& scene_;
+  std::optional<AiryTable> airy_;
+  SpotView spot_;
+  std::vector<std::size_t> sample_;
+  double density_, level_, at_peak_;  // dots a pixel, light of a grey level or 0, levels of the brightest pixel
+  int bits_;
+};
 
 }  // namespace
 
@@ -227,6 +299,8 @@ StepPlan plan_step(Scene& scene) {
   return plan;
 }
 
+RaysPlan measure_rays(Scene const& scene) { return RayErrors(scene).measure(); }
+
 RaysPlan plan_rays(Scene& scene) {
   RaysPlan plan;
   plan.bits = std::min(scene.setup.camera.bit_depth, 12);
@@ -234,42 +308,33 @@ RaysPlan plan_rays(Scene& scene) {
     scene.rays_per_dot = plan.rays = *scene.setup.render.rays_per_dot;
     return plan;
   }
-  std::optional<AiryTable> airy;
-  SpotView const spot = make_spot(scene, airy);
-  std::vector<std::size_t> const sample = choose_sample(scene);
-  CameraSetup const& camera = scene.setup.camera;
-  double const full_scale = std::pow(2.0, plan.bits) - 1;
-  // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
-  double const level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
-  double const at_peak = 0.9 * full_scale;
+  RayErrors const errors(scene);
   constexpr std::uint64_t most = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
   bool const single_ray = scene.chief_rays_only() && scene.dots.half_size == 0;
   Progress progress("choosing the rays", 8);
-  double excess = 0, before = 0;  // errors over their tolerances, whichever is larger
+  std::vector<double> excess;  // errors over their tolerances, whichever is larger, from doubling to doubling
   for (scene.rays_per_dot = single_ray ? 1 : 32;; scene.rays_per_dot *= 2) {
-    Scatter const scatter = measure_scatter(scene, sample, spot, level, at_peak);
-    double const light_per_level = level > 0 ? level : scatter.brightest / at_peak;
-    plan.truth_error_px = std::sqrt(scatter.truth_variance);
-    plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
-    before = excess;
-    excess = std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels);
-    plan.converged = excess <= 1;
+    plan = errors.measure();
+    excess.push_back(
+        std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels));
+    plan.converged = excess.back() <= 1;
     progress.advance();
     if (plan.converged || scene.rays_per_dot >= most_measured) break;
   }
-  if (!plan.converged && before > 0) {
-    // beyond what is measured, errors go on falling as they did last
-    double const order = std::clamp(std::log2(before / excess), 0.5, 1.0);
+  if (!plan.converged) {
+    // beyond what is measured, errors go on falling as they did over the last three doublings
+    double const order = std::clamp(std::log2(excess[excess.size() - 4] / excess.back()) / 3, 0.5, 1.0);
     auto const measured = static_cast<double>(scene.rays_per_dot);
-    while (scene.rays_per_dot < most && excess > 1) {
+    double rest = excess.back();
+    while (scene.rays_per_dot < most && rest > 1) {
       scene.rays_per_dot *= 2;
-      excess *= std::pow(2.0, -order);
+      rest *= std::pow(2.0, -order);
     }
     double const gain = std::pow(static_cast<double>(scene.rays_per_dot) / measured, -order);
     plan.truth_error_px *= gain;
     plan.image_error_levels *= gain;
     plan.extrapolated = true;
-    plan.converged = excess <= 1;
+    plan.converged = rest <= 1;
   }
   plan.rays = scene.rays_per_dot;
   return plan;

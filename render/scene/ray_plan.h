@@ -19,7 +19,7 @@ struct StepPlan {
 struct RaysPlan {
   std::uint64_t rays = 0;
   double truth_error_px = 0;      ///< rms over dots, components and scramblings of the displacement's scatter
-  double image_error_levels = 0;  ///< rms over lit pixels, in grey levels of `bits`
+  double image_error_levels = 0;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
   bool converged = true;      ///< false: the largest number, 65536, is not enough
@@ -30,9 +30,14 @@ struct RaysPlan {
 /// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
 StepPlan plan_step(Scene& scene);
 
-/// Chooses rays_per_dot: the smallest power of two for which independent scramblings scatter by less than 1e-3 px rms
-/// in truth and half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels, on a sample
-/// of up to 96 dots spread over the target. Sets scene.rays_per_dot.
+/// Errors at the scene's present number of rays: how far independent scramblings of it scatter on a sample of up to 96
+/// dots spread over the target, each traced four times. Images as they are where dots overlap: pixels that several dots
+/// light have the sum of their variances, and "auto" exposes for the brightest pixel that dots at random make.
+RaysPlan measure_rays(Scene const& scene);
+
+/// Chooses rays_per_dot: the smallest power of two for which measure_rays() finds less than 1e-3 px rms in truth and
+/// half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. Sets
+/// scene.rays_per_dot.
 RaysPlan plan_rays(Scene& scene);
 
 }  // namespace gladstone

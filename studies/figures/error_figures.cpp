@@ -118,9 +118,10 @@ void write_error_histograms(std::string const& path, std::string const& title, s
   plot.write(path);
 }
 
-void write_error_against_gradient(std::string const& path, std::string const& title,
-                                  std::vector<double> const& gradient, std::vector<ErrorSeries> const& series) {
+void write_error_against_gradient(std::string const& path, std::string const& title, DisplacementField const& truth,
+                                  std::vector<ErrorSeries> const& series) {
   GLADSTONE_EXPECTS(!series.empty());
+  std::vector<double> const gradient = local_gradient(truth);
   int const legend = 22 * static_cast<int>(series.size()) + 6;
   GnuplotFigure plot(820, 520 + legend);
   set_title(plot, title);
@@ -128,7 +129,7 @@ void write_error_against_gradient(std::string const& path, std::string const& ti
   place(plot, 96, 790, 50 + legend, plot.height_px() - 60);
   plot.command(
       fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2", 1.0 - 46.0 / plot.height_px()));
-  plot.command("set xlabel 'local gradient of the true displacement [px/px]'");
+  plot.command("set xlabel 'local gradient of the true displacement, from vector to vector [px/px]'");
   plot.command("set ylabel 'magnitude of the error [px]' offset -0.5,0");
   plot.command("set logscale y; set format y '%g'");
   plot.command("set style fill transparent solid 0.15 noborder");

@@ -21,11 +21,11 @@ struct ErrorSeries {
 /// legend. The axis reaches to the 99 % quantile of the widest series, at most to 8 times that of the narrowest.
 void write_error_histograms(std::string const& path, std::string const& title, std::vector<ErrorSeries> const& series);
 
-/// Median magnitude of the error against the local gradient of the displacement, in up to 15 bins of equal count, with
-/// the band from the 10th to the 90th percentile.
-/// @param gradient at the vectors of every series [px/px], see local_gradient()
-void write_error_against_gradient(std::string const& path, std::string const& title,
-                                  std::vector<double> const& gradient, std::vector<ErrorSeries> const& series);
+/// Median magnitude of the error against the local gradient of the true displacement, local_gradient(truth), in up to
+/// 15 bins of equal count, with the band from the 10th to the 90th percentile.
+/// @param truth at the vectors of every series
+void write_error_against_gradient(std::string const& path, std::string const& title, DisplacementField const& truth,
+                                  std::vector<ErrorSeries> const& series);
 
 /// Largest singular value of grad(displacement) at every vector of a grid [px/px], by central differences, one-sided at
 /// the edges; NaN where a neighbour is missing. @pre field.columns and rows are set

@@ -73,6 +73,33 @@ TEST_F(Case, ErrorsHaveTheirKeysAndTheBudgetAddsUp) {
   EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
 }
 
+// Out of focus, what the lens does to a dot is aberration; what the medium does stays the refraction that an ideal lens
+// in focus sees, times the magnification: 0.6 % larger with the focus at 950 mm instead of 1000 mm, 4 % at 750 mm.
+TEST_F(Case, DefocusIsAberrationAndNotRefraction) {
+  write("wave.toml", with(with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                               "kind = \"sinusoid\"\namplitude_kg_m3 = 0.05\nwavelength_mm = 4.0"),
+                          "rays_per_dot = 32", "rays_per_dot = 1024"));
+  auto const terms = [&](std::string const& folder, std::vector<std::string> const& options) {
+    render(folder, options, "wave.toml");
+    succeed({"correlate", folder});
+    succeed({"compare", folder, "--no-figures"});
+    auto const errors = nlohmann::json::parse(read(folder + "/errors.json"));
+    EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+    return errors["budget"]["terms"];
+  };
+  auto const rms = [](nlohmann::json const& of, char const* term) { return of[term]["rms_px"].get<double>(); };
+  auto const sharp = terms("sharp", {}), named = terms("named", {"--set", "lens.focus_distance_mm=1000.0"}),
+             soft = terms("soft", {"--set", "lens.focus_distance_mm=950.0"}),
+             medium = terms("medium", {"--set", "lens.focus=medium"});
+  EXPECT_EQ(rms(sharp, "aberration"), 0);
+  EXPECT_LT(rms(named, "aberration"), 1e-9) << "the same lens, traced as the ideal one too";
+  EXPECT_GT(rms(sharp, "refraction"), 0.002);
+  for (auto const& blurred : {soft, medium}) {
+    EXPECT_NEAR(rms(blurred, "refraction") / rms(sharp, "refraction"), 1, 0.05);
+    EXPECT_GT(rms(blurred, "aberration"), 5 * rms(blurred, "refraction"));
+  }
+}
+
 TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   render("case");
   succeed({"correlate", "case", "-o", "v.csv"});

@@ -104,12 +104,11 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
   EXPECT_GT(plan.image_error_levels, 0.5);
 }
 
-// The promise: truth to 1e-3 px rms and the picture to half a grey level of 12 bits rms over lit pixels, against 16
-// times as many rays of another scrambling. The plan estimates both from four scramblings of 20 dots (120 degrees of
-// freedom in truth: 6.5 %), so three such deviations are allowed.
+// The promise: truth to 1e-3 px rms and the flow picture, which scatters more, to half a grey level of 12 bits rms over
+// lit pixels, against 16 times as many rays of another scrambling, which add less than a hundredth.
 TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
   auto setup = table1_setup(64);
-  setup.medium.field = sinusoid(0.1, 5e-3);
+  setup.medium.field = sinusoid(0.015, 5e-3);
   std::vector<Vec2d> at;
   for (Vec2d const p : lattice(64, 5, 12)) at.push_back(p);
   at.resize(20);
@@ -132,7 +131,7 @@ TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
     Vec2d const error = chosen.truth.displacement_px[i] - reference.truth.displacement_px[i];
     square += dot(error, error) / (2.0 * static_cast<double>(at.size()));
   }
-  EXPECT_LT(std::sqrt(square), 1.2e-3);
+  EXPECT_LT(std::sqrt(square), 1e-3);
 
   Image<double> const &a = chosen.light.flow, &b = reference.light.flow;
   double const level = *std::max_element(b.begin(), b.end()) / (0.9 * 4095);
@@ -144,7 +143,57 @@ TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
     ++lit;
   }
   ASSERT_GT(lit, 100);
-  EXPECT_LT(std::sqrt(error / lit), 0.6);
+  EXPECT_LT(std::sqrt(error / lit), 0.5);
+}
+
+/// rms over lit pixels of the scatter of one picture, from two of other seeds, in grey levels of 12 bits when the
+/// brightest pixel of both frames is at 90 % of full scale; the worse frame's.
+double scatter_of_pictures(Scene scene) {
+  LightPair const one = render_all(scene).light;
+  scene.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
+  LightPair const other = render_all(scene).light;
+  double const level = std::max(*std::max_element(one.reference.begin(), one.reference.end()),
+                                *std::max_element(one.flow.begin(), one.flow.end())) /
+                       (0.9 * 4095);
+  double worse = 0;
+  for (auto frame : {&LightPair::reference, &LightPair::flow}) {
+    double square = 0;
+    int lit = 0;
+    for (std::size_t i = 0; i < (one.*frame).size(); ++i) {
+      double const a = (one.*frame).data()[i], b = (other.*frame).data()[i];
+      if (a + b < 2 * level) continue;
+      square += (a - b) * (a - b) / (2 * level * level);
+      ++lit;
+    }
+    worse = std::max(worse, std::sqrt(square / std::max(lit, 1)));
+  }
+  return worse;
+}
+
+// What is said of pictures from single dots holds for the pictures of all of them: in focus, where the reference is
+// nearly exact and only the flow scatters, and out of focus, where discs of 39 px lie over each other twenty deep and
+// every ray's light stays where it lands. The scatter itself is found to a few percent; the brightest pixel, of which
+// it is a share, is estimated as three standard deviations above the mean where dots overlap: 25 %.
+TEST(MeasureRays, FindsTheScatterOfWholePictures) {
+  struct Case {
+    char const* name;
+    Focus focus;
+    FieldSetup field;
+    std::uint64_t rays;
+  };
+  for (Case const& one :
+       {Case{"sinusoid", Focus::target, sinusoid(0.1, 5e-3), 256}, Case{"late", Focus::target, dns_plane("late"), 256},
+        Case{"defocused", Focus::medium, sinusoid(0.1, 5e-3), 2048}}) {
+    auto setup = table1_setup(64);
+    setup.lens.focus = one.focus;
+    setup.medium.field = one.field;
+    setup.view_margin_px = 32;
+    Scene scene = build_scene(setup);
+    plan_step(scene);
+    scene.rays_per_dot = one.rays;
+    double const estimated = measure_rays(scene).image_error_levels, found = scatter_of_pictures(scene);
+    EXPECT_NEAR(estimated / found, 1, 0.25) << one.name << ": " << estimated << " levels for " << found;
+  }
 }
 
 }  // namespace

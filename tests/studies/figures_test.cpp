@@ -106,16 +106,18 @@ TEST_F(Figures, SeedFigure4HasFourColumnsAndTwoRowsAnInstant) {
 }
 
 TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
-  std::vector<double> gradient;
+  DisplacementField truth;
+  truth.columns = truth.rows = 20;
   ErrorSeries series{"against truth", {}};
   for (int i = 0; i < 400; ++i) {
-    gradient.push_back(0.001 * i);
+    truth.position_px.push_back({8.0 * (i % 20), 8.0 * (i / 20)});
+    truth.displacement_px.push_back({1e-4 * i * i, 0.0});
     series.error_px.push_back({0.01 * std::sin(i), 0.02 * std::cos(1.3 * i)});
   }
   ErrorSeries const nothing{"against nothing",
                             std::vector<Vec2d>(400, Vec2d{std::numeric_limits<double>::quiet_NaN(), 0.0})};
   write_error_histograms(path("histogram.png"), "errors", {series, nothing});
-  write_error_against_gradient(path("gradient.png"), "errors", gradient, {series, nothing});
+  write_error_against_gradient(path("gradient.png"), "errors", truth, {series, nothing});
   std::vector<BudgetStage> const stages{{"eq9", std::vector<Vec2d>(400)}, {"measured", series.error_px}};
   write_budget_bars(path("budget.png"), "budget", error_budget(stages, VectorMask(400, 1)));
   for (char const* name : {"histogram.png", "gradient.png", "budget.png"}) {
