@@ -18,7 +18,10 @@ LINT_PACKAGES := clang-format clang-tidy
 
 ROOMS := render analysis cuda studies
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
-TIDY_SOURCES = $(shell find $(ROOMS) -name '*.cpp')
+# of the rooms, what this build compiles
+space := $(subst ,, )
+TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
+	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
 
 .PHONY: build test demo bench lint format install clean help packages configure
 .DEFAULT_GOAL := build
@@ -40,7 +43,7 @@ bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--be
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)
 	clang-format --dry-run -Werror $(SOURCES)
-	@printf '%s\n' $(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 clang-tidy -p $(BUILD) --quiet
+	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 clang-tidy -p $(BUILD) --quiet
 
 format:  ## rewrite the sources in the project's format
 	@cmake/install_packages.sh clang-format

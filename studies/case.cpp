@@ -121,6 +121,15 @@ PreparedCase prepare_case(CaseSetup& loaded) {
   return prepared;
 }
 
+namespace {
+
+/// The preview is the GPU's alone; the CPU gives better than was asked for.
+bool single_precision(Setup const& setup, Renderer const& renderer) {
+  return setup.render.precision == Precision::single && renderer.device() == "cuda";
+}
+
+}  // namespace
+
 RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheory theory) {
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
@@ -138,6 +147,13 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   namespace fs = std::filesystem;
   OutputFolder output(folder, case_file::setup, {case_file::derived.begin(), case_file::derived.end()});
   PreparedCase prepared = prepare_case(loaded);
+  if (single_precision(loaded.setup, renderer)) {
+    warn(prepared.warnings,
+         "render.precision = \"single\" is a preview: displacements carry some 1e-5 px of rounding; use \"double\" for "
+         "truth");
+  } else if (loaded.setup.render.precision == Precision::single) {
+    warn(prepared.warnings, "render.precision = \"single\" is the GPU's preview: the CPU has rendered in double");
+  }
   RenderedCase rendered = render_case(prepared, renderer, RenderTheory::yes);
   Scene const& scene = prepared.scene;
   CameraSetup const& camera = scene.setup.camera;
@@ -183,6 +199,7 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
       {"dots", scene.dots.centre.size()},
       {"dots_unseen", unseen},
       {"device", renderer.device()},
+      {"precision", single_precision(scene.setup, renderer) ? "single (preview)" : "double"},
       {"rays",
        {{"traced", rendered.rendering.rays},
         {"reference", status_counts(rendered.rendering.statuses, 0)},

@@ -179,7 +179,8 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
   return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 
-Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options) {
+Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options) {
+  Renderer& renderer = *device.renderer;
   std::string const setup = in_case(folder, case_file::setup);
   std::string const truth = made_file(folder, case_file::truth, "gladstone render " + setup + " -o " + folder);
   std::string const path = vectors_path(folder, options.vectors);
@@ -209,7 +210,7 @@ Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOp
     Detector const detector(scene.setup.camera, rendered.exposure_e);
     LightPair const& light = rendered.rendering.light;
     DisplacementField again =
-        make_correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
+        device.correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 

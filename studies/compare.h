@@ -10,6 +10,7 @@
 #include "analysis/window_truth.h"
 #include "render/scene/renderer.h"
 #include "studies/case.h"
+#include "studies/device.h"
 
 namespace gladstone {
 
@@ -46,7 +47,7 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
 
 /// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
-Comparison compare_case(std::string const& folder, Renderer& renderer, CompareOptions const& options);
+Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
 
 /// errors.json: for each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
 std::string errors_json(Comparison const& comparison);

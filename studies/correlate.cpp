@@ -27,7 +27,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
 
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
-                             CorrelationSettings const& settings) {
+                             CorrelationSettings const& settings, Device const& device) {
   if (reference.columns() != flow.columns() || reference.rows() != flow.rows()) {
     throw DataError(flow_name,
                     fmt::format("is {} x {} px but {} is {} x {} (both frames need one size)", flow.columns(),
@@ -40,7 +40,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                                 reference.columns(), reference.rows(), largest));
   }
   auto const start = std::chrono::steady_clock::now();
-  Measurement measurement{make_correlator(settings)->correlate(reference, flow), 0};
+  Measurement measurement{device.correlator(settings)->correlate(reference, flow), 0};
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -53,13 +53,15 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
   return read_document(SetupDocument::from_text("", "defaults"), overrides);
 }
 
-Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other) {
+Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
+                           Device const& device) {
   std::string const reference = in_case(folder, case_file::reference), flow = in_case(folder, case_file::flow);
   CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
-  Measurement measurement = correlate_frames(reference, read_image(reference), flow, read_image(flow), settings);
+  Measurement measurement =
+      correlate_frames(reference, read_image(reference), flow, read_image(flow), settings, device);
   FileOrigin origin{"gladstone vectors", 1, other ? other->resolved : loaded.document.resolved(),
-                    loaded.setup.render.seed, "cpu"};
+                    loaded.setup.render.seed, device.name()};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

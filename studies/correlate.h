@@ -5,6 +5,7 @@
 #include "analysis/correlation_settings.h"
 #include "render/base/displacement_field.h"
 #include "render/base/image.h"
+#include "studies/device.h"
 
 namespace gladstone {
 
@@ -17,7 +18,7 @@ struct Measurement {
 /// Correlates two frames. @throws DataError where they differ in size or are smaller than a window
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
-                             CorrelationSettings const& settings);
+                             CorrelationSettings const& settings, Device const& device);
 
 /// Reads the [correlate] table of a setup or of a file with nothing else. @throws SetupError
 struct CorrelationFile {
@@ -28,6 +29,7 @@ CorrelationFile read_correlation_file(std::string const& path, std::vector<std::
 CorrelationFile default_correlation(std::vector<std::string> const& overrides);
 
 /// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv).
-Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other);
+Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
+                           Device const& device);
 
 }  // namespace gladstone

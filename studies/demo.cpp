@@ -105,7 +105,7 @@ std::string shared_folder() {
                   "studies/cases/table1.toml is not there (incomplete installation); install gladstone again");
 }
 
-std::string run_demo(std::string const& folder, Renderer& renderer) {
+std::string run_demo(std::string const& folder, Device const& device) {
   namespace fs = std::filesystem;
   auto const start = std::chrono::steady_clock::now();
   std::string const shared = shared_folder();
@@ -118,12 +118,12 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
     CaseSetup loaded = load_case_setup(shared + "/studies/cases/table1.toml",
                                        {fmt::format("medium.field.file=\"{}/data/fields/{}\"", shared, instant.file),
                                         fmt::format("render.rays_per_dot={}", instant.rays)});
-    render_to_folder(loaded, renderer, place);
+    render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
-    Measurement const measured = correlate_case(place, "", nullptr);
+    Measurement const measured = correlate_case(place, "", nullptr, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),
                  measured.seconds);
-    Comparison const comparison = compare_case(place, renderer, {});
+    Comparison const comparison = compare_case(place, device, {});
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     rows += table_row(fmt::format("{}, all vectors", instant.name), comparison, comparison.mask);
     rows += table_row(fmt::format("{}, strain <= {}", instant.name, gentle_strain), comparison,
@@ -166,7 +166,7 @@ std::string run_demo(std::string const& folder, Renderer& renderer) {
       rows + "\n" + reports +
       fmt::format(
           "Made in {:.0f} s on {}. Each folder holds the images, truth.h5, vectors.h5, errors.json and figures.\n",
-          seconds, renderer.device());
+          seconds, device.name());
   OutputFile::write_text((fs::path(folder) / "summary.md").string(), text);
   return text;
 }

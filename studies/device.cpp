@@ -1,3 +1,5 @@
+#include "studies/device.h"
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -7,24 +9,23 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
-#include "studies/commands/command.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
 
-std::unique_ptr<Renderer> GlobalOptions::renderer() const {
-  if (device != "cpu") {
+Device open_device(std::string const& wanted) {
+  std::string instead;
+  if (wanted != "cpu") {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      return cuda::make_renderer();
+      return {cuda::make_renderer(), cuda::make_correlator};
     }
-    if (device == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
-    spdlog::info("device: cpu, {} threads ({})", thread_count(), state.text);
-  } else {
-    spdlog::info("device: cpu, {} threads", thread_count());
+    if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
+    instead = " (" + state.text + ")";
   }
-  return std::make_unique<CpuRenderer>();
+  spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
+  return {std::make_unique<CpuRenderer>(), make_correlator};
 }
 
 std::string version_text() {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/scene/renderer.h"
+#include "studies/device.h"
 
 namespace CLI {
 class App;
@@ -31,8 +31,8 @@ struct GlobalOptions {
   int threads = 0;
   std::string device = "auto";
 
-  /// The renderer of the device asked for; says which one runs. @throws DeviceError where it cannot be had
-  std::unique_ptr<Renderer> renderer() const;
+  /// As gladstone::open_device.
+  Device open_device() const { return gladstone::open_device(device); }
 };
 
 /// A command adds its options to its sub-application and returns what is to be run: a function giving the exit code.

@@ -29,11 +29,11 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
                  "Axes and sign of foreign vectors instead of detecting them: y-up,v-up,swapped,offset=-0.5");
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   return [arguments, &options] {
-    auto const renderer = options.renderer();
+    Device const device = options.open_device();
     CompareOptions compare = arguments->compare;
     if (arguments->truth_at == "reference") compare.truth_at = TruthAt::reference;
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;
-    Comparison const comparison = compare_case(arguments->folder, *renderer, compare);
+    Comparison const comparison = compare_case(arguments->folder, device, compare);
     std::string const json = errors_json(comparison);
     OutputFile::write_text(in_case(arguments->folder, case_file::errors), json);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);

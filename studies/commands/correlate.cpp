@@ -29,7 +29,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->take_all();
   return [arguments, &options] {
-    if (options.device == "cuda") options.renderer();
+    Device const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {
       throw OutputError(output, "has an ending that is neither .h5 nor .csv; choose one of them");
@@ -46,13 +46,13 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
         throw DataError(
             folder, "is not a case folder (give one, or two images: gladstone correlate A.tif B.tif -o vectors.csv)");
       }
-      measurement = correlate_case(folder, output, configured ? &other : nullptr);
+      measurement = correlate_case(folder, output, configured ? &other : nullptr, device);
       if (written.empty()) written = in_case(folder, case_file::vectors);
     } else {
       if (output.empty()) throw OutputError("correlate", "two images need -o FILE.h5 or FILE.csv");
       std::string const &a = arguments->inputs[0], &b = arguments->inputs[1];
-      measurement = correlate_frames(a, read_image(a), b, read_image(b), other.settings);
-      write_vectors(output, measurement.field, {"gladstone vectors", 1, other.resolved, 0, "cpu"});
+      measurement = correlate_frames(a, read_image(a), b, read_image(b), other.settings, device);
+      write_vectors(output, measurement.field, {"gladstone vectors", 1, other.resolved, 0, device.name()});
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
@@ -62,7 +62,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                               {"replaced", counts[1]},
                               {"masked", counts[2]},
                               {"invalid", counts[3]},
-                              {"device", "cpu"},
+                              {"device", device.name()},
                               {"seconds_correlate", measurement.seconds}};
     print_result(options, json.dump(2),
                  fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, measurement.field.size(),

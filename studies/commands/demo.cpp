@@ -11,8 +11,7 @@ CommandBody attach_demo(CLI::App& app, GlobalOptions const& options) {
   auto folder = std::make_shared<std::string>("out/demo");
   app.add_option("-o,--output", *folder, "Folder for the cases, figure4.png and summary.md")->capture_default_str();
   return [folder, &options] {
-    auto const renderer = options.renderer();
-    std::string const summary = run_demo(*folder, *renderer);
+    std::string const summary = run_demo(*folder, options.open_device());
     print_result(options, nlohmann::json{{"folder", *folder}, {"summary", summary}}.dump(2), summary);
     return ok;
   };

@@ -22,7 +22,7 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->trigger_on_parse(false);
   return [arguments, &options] {
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
-    auto const renderer = options.renderer();
+    auto const renderer = options.open_device().renderer;
     std::string const summary = render_to_folder(loaded, *renderer, arguments->folder);
     auto const json = nlohmann::json::parse(summary);
     print_result(options, summary,

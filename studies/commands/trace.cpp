@@ -25,7 +25,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
   return [arguments, &options] {
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
     std::vector<Ray<double>> const rays = read_rays(arguments->rays);
-    if (options.device == "cuda") options.renderer();
+    if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
     plan_step(scene);
     Through const through = arguments->through == "medium"   ? Through::medium

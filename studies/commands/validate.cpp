@@ -46,7 +46,7 @@ std::string to_text(std::vector<OracleResult> const& results, std::size_t missed
 
 CommandBody attach_validate(CLI::App&, GlobalOptions const& options) {
   return [&options] {
-    auto const renderer = options.renderer();
+    auto const renderer = options.open_device().renderer;
     std::vector<OracleResult> const results = run_oracles(*renderer);
     auto const missed = static_cast<std::size_t>(
         std::count_if(results.begin(), results.end(), [](OracleResult const& result) { return !result.passed(); }));

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "analysis/correlator.h"
+#include "render/scene/renderer.h"
+
+namespace gladstone {
+
+/// Where a command computes: both halves of the chain on the CPU's cores, or both on a GPU.
+struct Device {
+  std::unique_ptr<Renderer> renderer;
+  std::function<std::unique_ptr<Correlator>(CorrelationSettings const&)> correlator;
+
+  std::string name() const { return renderer->device(); }
+};
+
+/// @param wanted "cpu", "cuda", or "auto": the GPU where one can be used. Says on the log which it is.
+/// @throws DeviceError where "cuda" cannot be had, with the reason
+Device open_device(std::string const& wanted);
+
+}  // namespace gladstone
