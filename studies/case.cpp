@@ -90,6 +90,7 @@ PreparedCase prepare_case(CaseSetup& loaded) {
   for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
   prepared.scene = build_scene(loaded.setup);
   Scene& scene = prepared.scene;
+  for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
   prepared.step = plan_step(scene);
   if (prepared.step.change_px >= 1e-4) {
     warn(

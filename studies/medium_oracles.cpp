@@ -135,7 +135,7 @@ double spline_polynomial_error(Renderer&) {
   RegularGrid grid;
   grid.nodes = {7, 7, 1};
   using Plane = RefractiveIndexVolume<double>;
-  Plane const plane(grid, Plane::Interpolation::cubic_bspline, 1, 0, [&](int, int, std::span<float> out) {
+  Plane const plane(grid, Plane::Interpolation::cubic_bspline, 1, 0, [&](int, int, std::span<double> out) {
     for (std::size_t i = 0; i < out.size(); ++i) {
       std::size_t const column = i % 7, row = i / 7;
       out[i] = static_cast<float>(f(static_cast<double>(column)) * f(static_cast<double>(row)));  // whole: exact

@@ -228,6 +228,19 @@ std::vector<std::size_t> Hdf5Reader::shape(std::string const& dataset) const {
   return shape_of(handle_->open(path_, dataset));
 }
 
+int Hdf5Reader::significant_bits(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  Id const opened = handle_->open(path_, dataset);
+  Id const type(H5Dget_type(opened), H5Tclose);
+  std::size_t mantissa = H5Tget_precision(type);
+  if (H5Tget_class(type) == H5T_FLOAT) {
+    std::size_t sign = 0, exponent = 0, exponent_size = 0, at = 0;
+    H5Tget_fields(type, &sign, &exponent, &exponent_size, &at, &mantissa);
+    ++mantissa;  // the leading one is not stored
+  }
+  return static_cast<int>(mantissa);
+}
+
 std::vector<double> Hdf5Reader::read(std::string const& dataset) const {
   Lock const lock(library_lock());
   return read_whole<double>(handle_->open(path_, dataset), H5T_NATIVE_DOUBLE, path_, dataset);
@@ -239,7 +252,7 @@ std::vector<std::int64_t> Hdf5Reader::read_integers(std::string const& dataset) 
 }
 
 void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::size_t count,
-                           std::span<float> out) const {
+                           std::span<double> out) const {
   Lock const lock(library_lock());
   hid_t const opened = handle_->open_rows(path_, dataset);
   auto const shape = shape_of(opened);
@@ -252,7 +265,7 @@ void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::s
   Id const on_disk(H5Dget_space(opened), H5Sclose);
   H5Sselect_hyperslab(on_disk, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
   Id const in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-  if (H5Dread(opened, H5T_NATIVE_FLOAT, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
+  if (H5Dread(opened, H5T_NATIVE_DOUBLE, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
     throw DataError(path_, "dataset \"" + dataset + "\" cannot be read (the file is damaged or cut short)");
   }
 }

@@ -30,11 +30,13 @@ class Hdf5Reader {
   /// Names of the datasets in the root group, for messages.
   std::vector<std::string> dataset_names() const;
   std::vector<std::size_t> shape(std::string const& dataset) const;
+  /// Bits of precision of the stored numbers: 24 for float, 53 for double, an integer's width.
+  int significant_bits(std::string const& dataset) const;
   /// A whole dataset converted to double / integers; a dataset of another type class (string, compound) is an error.
   std::vector<double> read(std::string const& dataset) const;
   std::vector<std::int64_t> read_integers(std::string const& dataset) const;
-  /// Rows [first, first + count) of the leading axis, as float; `out` has exactly their size.
-  void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<float> out) const;
+  /// Rows [first, first + count) of the leading axis, converted to double; `out` has exactly their size.
+  void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<double> out) const;
   /// A text or numeric attribute of the root as text; empty where there is none.
   std::string attribute(std::string const& name) const;
 

@@ -11,8 +11,8 @@
 
 namespace gladstone {
 
-/// A gridded field in a file, before it is read: its grid is known, its values are read slab by slab straight into
-/// their final place, so that a volume is never held twice.
+/// A gridded field in a file, before it is read: its grid is known, its values are read slab by slab, so that a volume
+/// is never held twice.
 class FieldSource {
  public:
   virtual ~FieldSource() = default;
@@ -22,9 +22,13 @@ class FieldSource {
   virtual RegularGrid const& grid() const = 0;
   /// What the numbers are called in the file ("Density_0001"), for messages.
   virtual std::string const& name() const = 0;
-  /// Reads planes [first_plane, first_plane + count) of constant z, x fastest, as raw file values.
-  /// @throws DataError for holes (JHTDB's -999.9, with their count in what was read), NaN and truncated data
-  virtual void read_planes(int first_plane, int count, std::span<float> out) = 0;
+  /// Bits of precision of the stored numbers: 24 for float, 53 for double, an integer's width.
+  virtual int significant_bits() const = 0;
+  /// Reads planes [first_plane, first_plane + count) of constant z, x fastest, as raw file values with all their
+  /// digits.
+  /// @throws DataError for holes (JHTDB's -999.9) and numbers that are NaN or beyond a float, with their count, and for
+  ///         truncated data
+  virtual void read_planes(int first_plane, int count, std::span<double> out) = 0;
 };
 
 /// Opens a field file: one row per format in density_field.cpp (.h5 JHTDB cut-out, .nrrd, .nhdr).

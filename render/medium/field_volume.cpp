@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
@@ -38,6 +40,20 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   return grid;
 }
 
+/// What is lost where a file holds n itself with so few bits that n - 1 keeps few of them; empty where nothing is.
+/// @param low, high  smallest and largest refractivity
+std::string lost_digits(FieldSetup const& field, FieldSource const& source, double low, double high) {
+  int const bits = source.significant_bits();
+  if (field.quantity != FieldQuantity::refractive_index || bits > std::numeric_limits<float>::digits) return {};
+  double const largest = (1 + high) / std::abs(field.scale);
+  double const step = std::abs(field.scale) * std::ldexp(1.0, std::ilogb(largest) + 1 - bits);
+  return fmt::format(
+      "medium.field.quantity: {} of {} holds refractive indices in {} bits, so n - 1 is known in steps of {:.2g} only, "
+      "{:.2g} % of its range in this field (digits are lost that nothing brings back, and gradients are noisy); write "
+      "the file as refractivity (n - 1) or density, or in double",
+      source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
+}
+
 template <class Stored, int Dimensions>
 BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldSource& source) {
   using Volume = RefractiveIndexVolume<Stored>;
@@ -47,13 +63,15 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   double const shift = field.quantity == FieldQuantity::refractive_index ? -1.0 : 0.0;
   auto const volume = std::make_shared<Volume const>(
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
-      [&](int first, int count, std::span<float> out) { source.read_planes(first, count, out); });
+      [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
   if (volume->lowest() <= -0.5 || volume->highest() >= 3.0) {
     throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no such medium); check "
                                             "medium.field.quantity and scale",
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;
+  std::string lost = lost_digits(field, source, volume->lowest(), volume->highest());
+  if (!lost.empty()) built.warnings.push_back(std::move(lost));
   double const half = setup.thickness / 2;
   double const low = field.center.z - half, high = field.center.z + half;
   if (spline) {

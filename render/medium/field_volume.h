@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "render/medium/medium.h"
 #include "render/medium/medium_setup.h"
@@ -15,6 +17,7 @@ struct BuiltMedium {
   double coarsest_step = 0;           ///< largest step that is ever sensible: see plan_step [m]
   double steepest = 0;                ///< upper bound of |grad n|, where known [1/m]
   RegularGrid grid;                   ///< of a file's field
+  std::vector<std::string> warnings;  ///< of what the file's numbers cannot give
 };
 
 /// Memory that the field of a setup will take [bytes]; opens a file to see its size.

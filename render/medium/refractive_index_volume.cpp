@@ -44,32 +44,32 @@ RefractiveIndexVolume<Stored>::RefractiveIndexVolume(RegularGrid const& grid, In
   plane_ = static_cast<std::ptrdiff_t>(padded_[0]) * padded_[1];
   coefficients_.resize(static_cast<std::size_t>(plane_) * static_cast<std::size_t>(padded_[2]));
 
-  // read slab by slab (about 16 MB at a time) straight into place
+  // read slab by slab (about 16 MB at a time) and put into place: in double until the offset is taken off
   int const nx = grid.nodes[0], ny = grid.nodes[1], nz = grid.nodes[2];
   std::size_t const plane_values = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
-  int const slab = std::clamp(static_cast<int>((std::size_t{4} << 20) / plane_values), 1, nz);
-  std::vector<float> buffer(plane_values * static_cast<std::size_t>(slab));
+  int const slab = std::clamp(static_cast<int>((std::size_t{2} << 20) / plane_values), 1, nz);
+  std::vector<double> buffer(plane_values * static_cast<std::size_t>(slab));
   double first_value = 0, low = std::numeric_limits<double>::infinity(), high = -low;
   Progress progress("reading the field", static_cast<std::size_t>(nz));
   for (int k0 = 0; k0 < nz; k0 += slab) {
     int const count = std::min(slab, nz - k0);
     fill(k0, count, std::span(buffer).first(plane_values * static_cast<std::size_t>(count)));
-    if (k0 == 0) first_value = static_cast<double>(buffer[0]);
+    if (k0 == 0) first_value = buffer[0];
     std::mutex extremes;
     parallel_for(static_cast<std::size_t>(count) * static_cast<std::size_t>(ny), [&](std::size_t line) {
       int const j = static_cast<int>(line % static_cast<std::size_t>(ny));
       int const k = static_cast<int>(line / static_cast<std::size_t>(ny));
-      float const* from = buffer.data() + line * static_cast<std::size_t>(nx);
+      double const* from = buffer.data() + line * static_cast<std::size_t>(nx);
       Stored* to = coefficients_.data() + index(0, j, k0 + k);
-      float line_low = from[0], line_high = from[0];
+      double line_low = from[0], line_high = from[0];
       for (int i = 0; i < nx; ++i) {
-        to[i] = static_cast<Stored>(scale * (static_cast<double>(from[i]) - first_value));
+        to[i] = static_cast<Stored>(scale * (from[i] - first_value));
         line_low = std::min(line_low, from[i]);
         line_high = std::max(line_high, from[i]);
       }
       std::lock_guard const lock(extremes);
-      low = std::min<double>(low, line_low);
-      high = std::max<double>(high, line_high);
+      low = std::min(low, line_low);
+      high = std::max(high, line_high);
     });
     progress.advance(static_cast<std::size_t>(count));
   }

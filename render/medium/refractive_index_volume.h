@@ -110,8 +110,9 @@ class RefractiveIndexVolume {
  public:
   enum class Interpolation { cubic_bspline, trilinear };
 
-  /// Gives planes of constant z, x fastest: `fill(first_plane, count, out)` with refractivities.
-  using PlaneFiller = std::function<void(int first_plane, int count, std::span<float> out)>;
+  /// Gives planes of constant z, x fastest: `fill(first_plane, count, out)` with file values, in double: only what is
+  /// left of them after scale, shift and offset is rounded to Stored.
+  using PlaneFiller = std::function<void(int first_plane, int count, std::span<double> out)>;
 
   /// @param grid   nodes, spacing [m], origin [m]; a plane (nodes[2] = 1) has no z dependence
   /// @param scale  stored refractivity = scale times file value plus shift, minus offset()

@@ -65,14 +65,14 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
   auto const source = open_field(field.file, field.dataset);
   RegularGrid const& grid = source->grid();
   auto const width = static_cast<std::size_t>(grid.nodes[0]);
-  std::vector<float> plane(width * static_cast<std::size_t>(grid.nodes[1]));
+  std::vector<double> plane(width * static_cast<std::size_t>(grid.nodes[1]));
   std::size_t count = 0;
   std::string first;
   for (int k = 0; k < grid.nodes[2]; ++k) {
     throw_if_interrupted();
     source->read_planes(k, 1, plane);
     for (std::size_t i = 0; i < plane.size(); ++i) {
-      if (field.scale * static_cast<double>(plane[i]) >= 0) continue;
+      if (field.scale * plane[i] >= 0) continue;
       if (count++ == 0) first = fmt::format("{}, {}, {}", i % width, i / width, k);
     }
   }

@@ -17,13 +17,13 @@ int describe_field(std::string const& path, std::string const& dataset, GlobalOp
   auto const source = open_field(path, dataset);
   RegularGrid const& grid = source->grid();
   auto const plane = static_cast<std::size_t>(grid.nodes[0]) * static_cast<std::size_t>(grid.nodes[1]);
-  std::vector<float> values(plane), before;
+  std::vector<double> values(plane), before;
   double low = HUGE_VAL, high = -HUGE_VAL, steepest[3] = {};
   for (int k = 0; k < grid.nodes[2]; ++k) {
     source->read_planes(k, 1, values);
     auto const [least, most] = std::minmax_element(values.begin(), values.end());
-    low = std::min<double>(low, *least);
-    high = std::max<double>(high, *most);
+    low = std::min(low, *least);
+    high = std::max(high, *most);
     auto const slope = [&](double a, double b, int axis) {
       steepest[axis] = std::max(steepest[axis], std::abs(a - b) / grid.spacing[axis]);
     };

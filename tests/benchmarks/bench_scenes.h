@@ -56,7 +56,7 @@ inline Scene volume_scene(int nodes, int per_side, std::uint64_t rays_per_dot,
   double const cell = volume_width / (nodes - 1);
   grid.spacing = {cell, cell, cell};
   grid.origin = {-volume_width / 2, -volume_width / 2, -volume_width / 2};
-  auto const fill = [&](int first, int count, std::span<float> out) {
+  auto const fill = [&](int first, int count, std::span<double> out) {
     std::size_t at = 0;
     for (int k = first; k < first + count; ++k) {
       for (int j = 0; j < nodes; ++j) {

@@ -40,8 +40,8 @@ class FieldFiles : public testing::Test {
   fs::path folder_;
 };
 
-std::vector<float> read_all(FieldSource& source) {
-  std::vector<float> values(source.grid().size());
+std::vector<double> read_all(FieldSource& source) {
+  std::vector<double> values(source.grid().size());
   source.read_planes(0, source.grid().nodes[2], values);
   return values;
 }
@@ -106,7 +106,7 @@ TEST_F(JhtdbField, LayoutWithCoordinatesGivesGridAndValues) {
   auto const expected = numbered(4, 3, 2);
   auto const values = read_all(*source);
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], expected[i]);
-  std::vector<float> plane(12);
+  std::vector<double> plane(12);
   source->read_planes(1, 1, plane);
   EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // x = 1, y = 2 of z = 1
 }
@@ -132,6 +132,7 @@ TEST_F(JhtdbField, RealCutOutIsRead) {
   std::string const folder = GLADSTONE_DATA_DIR "/fields/";
   for (auto const* name : {"hbdt512_kepeak_slice.h5", "hbdt512_late_slice.h5"}) {
     auto const source = open_field(folder + name, "");
+    EXPECT_EQ(source->significant_bits(), 24) << "the database's cut-outs are floats";
     EXPECT_EQ(source->name(), "Density_0001");
     EXPECT_THAT(source->grid().nodes, ElementsAre(512, 512, 1));
     // a periodic box of 2 pi in 512 nodes; coordinates rounded to float
@@ -186,7 +187,7 @@ TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
   auto field = density(4, 3, 5);
   field.values[7] = field.values[30] = field.values[59] = -999.9;
   auto const source = open_field(write({field}), "");
-  std::vector<float> plane(12);
+  std::vector<double> plane(12);
   EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are sound
   EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
               refused("cutout.h5", "dataset \"Density_0001\": 3 of 60 points are holes (-999.9"));
@@ -199,6 +200,24 @@ TEST_F(JhtdbField, NanAndInfinityAreRefused) {
   field.values[5] = 1e300;  // infinite as a float
   auto const source = open_field(write({field}), "");
   EXPECT_THAT([&] { read_all(*source); }, refused("Density_0001", "3 of 24 points are nan or infinite"));
+}
+
+// n of air differs from 1 by 2.7e-4: what a gradient is made of stands behind the seventh digit, where a float ends.
+TEST_F(FieldFiles, DoublesKeepAllTheirDigits) {
+  std::vector<double> const values{1 + 2.7e-4, 1 + 2.7e-4 + 1e-12, 0.1, -1.0 / 3};
+  std::string const h5 = in_folder("n.h5");
+  Hdf5Writer writer(h5, {"test", 1, "", 0, "cpu"});
+  writer.write("n", values, {1, 2, 2}, "1", "test", "z, y, x");
+  writer.close();
+  std::string const nrrd = in_folder("n.nrrd");
+  std::ofstream(nrrd, std::ios::binary)
+      << "NRRD0004\ntype: double\ndimension: 2\nsizes: 2 2\nendian: little\nencoding: raw\n\n"
+      << std::string(reinterpret_cast<char const*>(values.data()), sizeof(double) * values.size());
+  for (auto const& path : {h5, nrrd}) {
+    auto const source = open_field(path, "");
+    EXPECT_EQ(read_all(*source), values) << path;
+    EXPECT_EQ(source->significant_bits(), 53) << path;
+  }
 }
 
 TEST_F(JhtdbField, WrongRankNamesTheShape) {
@@ -330,7 +349,7 @@ TEST_F(NrrdField, CompressedPlanesComeInAnyOrder) {
   std::string const content = header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" +
                               gzipped(bytes<float>(numbered(4, 3, 2)));
   auto const source = open_field(write("a.nrrd", content), "");
-  std::vector<float> plane(12);
+  std::vector<double> plane(12);
   for (int const z : {1, 0, 1, 1, 0}) {
     source->read_planes(z, 1, plane);
     EXPECT_EQ(plane[5], 100.0f * static_cast<float>(z) + 11.0f);

@@ -56,6 +56,9 @@ class FieldVolume : public testing::Test {
   static double refractivity(BuiltMedium const& built, Vec3d p) {
     return std::visit([&](auto const& medium) { return medium.sample(p).refractivity; }, built.view);
   }
+  static Vec3d gradient(BuiltMedium const& built, Vec3d p) {
+    return std::visit([&](auto const& medium) { return medium.sample(p).gradient; }, built.view);
+  }
   static Bounds<double> bounds(BuiltMedium const& built) {
     return std::visit([](auto const& medium) { return medium.bounds(); }, built.view);
   }
@@ -116,7 +119,63 @@ TEST_F(FieldVolume, QuantitiesBecomeRefractivities) {
   auto index = file_setup(5, 5, 5, [&](int i, int j, int k) { return (1 + 2 * K * rho(i, j, k)) / 2; });
   index.field.quantity = FieldQuantity::refractive_index;
   index.field.scale = 2;
-  expect(index, 2e-7);  // n in a float file has lost these digits before we see it
+  expect(index, 1e-10);  // n in double, to 2e-16; only what is left of n - 1 becomes a float
+}
+
+// n in double and n - 1 in double are one field: nodes of both are good to a float's ulp of the range K g L = 7.2e-6,
+// 4e-13, and gradients on 0.1 mm to twice that over a cell, 9e-9 / m of 2.3e-3 / m. (n in float: steps of 1.2e-7, half
+// the gradient of a cell.) Eq. 9's integral over the thickness is K g L_z; the spline reproduces the ramp.
+TEST_F(FieldVolume, RefractiveIndexInDoubleKeepsItsGradient) {
+  double const K = 2.26e-4, g = 10, cell = 1e-4;  // [m^3/kg], [kg/m^4], [m]
+  auto const excess = [&](int i, int j, int k) { return K * (1.225 + g * cell * (i + 0.5 * j - 0.25 * k)); };
+  auto const built = [&](FieldQuantity quantity, double unity, FieldInterpolation interpolation) {
+    auto setup = file_setup(33, 5, 11, [&](int i, int j, int k) { return unity + excess(i, j, k); });
+    setup.field.quantity = quantity;
+    setup.field.spacing = Vec3d{cell, cell, cell};
+    setup.interpolation = interpolation;
+    return build_medium(setup);
+  };
+  for (auto interpolation : {FieldInterpolation::cubic_bspline, FieldInterpolation::trilinear}) {
+    BuiltMedium const index = built(FieldQuantity::refractive_index, 1, interpolation);
+    BuiltMedium const refractivities = built(FieldQuantity::refractivity, 0, interpolation);
+    EXPECT_TRUE(index.warnings.empty());
+    for (double x = -1.55e-3; x < 1.6e-3; x += 0.13e-3) {
+      Vec3d integral{};  // of grad n along z
+      int const slices = 64;
+      double const depth = 10 * cell;
+      for (int slice = 0; slice < slices; ++slice) {
+        Vec3d const p{x, 0.5e-4, depth * ((slice + 0.5) / slices - 0.5)};
+        Vec3d const slope = gradient(index, p);
+        EXPECT_NEAR(refractivity(index, p), refractivity(refractivities, p), 1e-12);
+        EXPECT_LT(length(slope - gradient(refractivities, p)), 2e-8);
+        integral = integral + slope * (depth / slices);
+      }
+      EXPECT_NEAR(integral.x, K * g * depth, 1e-5 * K * g * depth);
+      EXPECT_NEAR(integral.y, 0.5 * K * g * depth, 1e-5 * K * g * depth);
+    }
+  }
+}
+
+TEST_F(FieldVolume, RefractiveIndexInFloatIsWarnedOf) {
+  std::string const path = (folder_ / "n.nrrd").string();
+  std::vector<float> values;
+  for (int i = 0; i < 64; ++i) values.push_back(1.00027f + 1e-6f * static_cast<float>(i % 4));
+  std::ofstream(path, std::ios::binary)
+      << "NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\n\n"
+      << std::string(reinterpret_cast<char const*>(values.data()), sizeof(float) * values.size());
+  MediumSetup setup;
+  setup.field.kind = FieldKind::file;
+  setup.field.file = path;
+  setup.field.quantity = FieldQuantity::refractive_index;
+  setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
+  auto const warnings = build_medium(setup).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  // an ulp of 1.00027 is 2^-23 = 1.2e-7, 4 % of the range of 3e-6
+  EXPECT_THAT(warnings[0], testing::HasSubstr("holds refractive indices in 24 bits, so n - 1 is known in steps of "
+                                              "1.2e-07 only, 4 % of its range"));
+  EXPECT_THAT(warnings[0], testing::HasSubstr("write the file as refractivity (n - 1) or density"));
+  setup.field.quantity = FieldQuantity::density;
+  EXPECT_TRUE(build_medium(setup).warnings.empty()) << "floats are enough for a density";
 }
 
 TEST_F(FieldVolume, ExtrudedPlaneFillsTheThickness) {

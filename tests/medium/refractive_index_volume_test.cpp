@@ -238,7 +238,7 @@ TEST(ExtrudedPlane, EqualsTheStackedVolume) {
 
 TEST(RefractiveIndexVolume, ScaleAndShiftMakeRefractivities) {
   RegularGrid const grid = open_grid(3, 3, 3);
-  auto const ramp = [](int first, int count, std::span<float> out) {
+  auto const ramp = [](int first, int count, std::span<double> out) {
     for (int i = 0; i < 9 * count; ++i) out[static_cast<std::size_t>(i)] = static_cast<float>(10 + i + 9 * first);
   };
   RefractiveIndexVolume<float> const volume(grid, RefractiveIndexVolume<float>::Interpolation::trilinear, 0.5, -1,

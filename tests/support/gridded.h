@@ -24,7 +24,7 @@ inline RegularGrid open_grid(int nx, int ny, int nz, Vec3d spacing = {1, 1, 1}, 
 template <class Stored>
 RefractiveIndexVolume<Stored> sampled(RegularGrid const& grid, Refractivity const& f, bool spline = true) {
   using Volume = RefractiveIndexVolume<Stored>;
-  auto const fill = [&](int first, int count, std::span<float> out) {
+  auto const fill = [&](int first, int count, std::span<double> out) {
     std::size_t at = 0;
     for (int k = first; k < first + count; ++k) {
       for (int j = 0; j < grid.nodes[1]; ++j) {

@@ -14,10 +14,10 @@ class CheckedSource : public FieldSource {
 
   RegularGrid const& grid() const override { return grid_; }
   std::string const& name() const override { return name_; }
-  void read_planes(int first_plane, int count, std::span<float> out) final;
+  void read_planes(int first_plane, int count, std::span<double> out) final;
 
  protected:
-  virtual void read_raw_planes(int first_plane, int count, std::span<float> out) = 0;
+  virtual void read_raw_planes(int first_plane, int count, std::span<double> out) = 0;
 
   std::string path_;
   std::string name_;

@@ -119,7 +119,9 @@ class JhtdbSource final : public CheckedSource {
     grid_.spacing = {axes[0].step, axes[1].step, axes[2].step};
   }
 
-  void read_raw_planes(int first_plane, int count, std::span<float> out) override {
+  int significant_bits() const override { return file_.significant_bits(name_); }
+
+  void read_raw_planes(int first_plane, int count, std::span<double> out) override {
     file_.read_rows(name_, static_cast<std::size_t>(first_plane), static_cast<std::size_t>(count), out);
   }
 

@@ -170,16 +170,16 @@ class NrrdBytes {
 };
 
 template <class Stored>
-void convert(std::vector<char> const& bytes, bool swap, std::span<float> out) {
+void convert(std::vector<char> const& bytes, bool swap, std::span<double> out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     std::array<char, sizeof(Stored)> value;
     std::copy_n(bytes.data() + i * sizeof(Stored), sizeof(Stored), value.data());
     if (swap) std::reverse(value.begin(), value.end());
-    out[i] = static_cast<float>(std::bit_cast<Stored>(value));
+    out[i] = static_cast<double>(std::bit_cast<Stored>(value));
   }
 }
 
-void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, std::span<float> out) {
+void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, std::span<double> out) {
   using Type = NrrdHeader::Type;
   switch (type) {
     case Type::int8:
@@ -217,7 +217,9 @@ class NrrdSource final : public CheckedSource {
   }
 
  private:
-  void read_raw_planes(int first_plane, int count, std::span<float> out) override {
+  int significant_bits() const override { return header_.significant_bits(); }
+
+  void read_raw_planes(int first_plane, int count, std::span<double> out) override {
     std::size_t const plane_bytes = header_.plane_bytes();
     std::size_t const plane = plane_bytes / header_.value_bytes();
     bool const swap = header_.big_endian != (std::endian::native == std::endian::big);

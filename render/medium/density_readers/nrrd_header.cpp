@@ -238,6 +238,12 @@ std::size_t NrrdHeader::value_bytes() const {
   return std::find_if(all.begin(), all.end(), [&](TypeName const& name) { return name.type == type; })->bytes;
 }
 
+int NrrdHeader::significant_bits() const {
+  if (type == Type::float32) return std::numeric_limits<float>::digits;
+  if (type == Type::float64) return std::numeric_limits<double>::digits;
+  return 8 * static_cast<int>(value_bytes());
+}
+
 std::size_t NrrdHeader::plane_bytes() const {
   return value_bytes() * static_cast<std::size_t>(sizes[0]) * static_cast<std::size_t>(sizes[1]);
 }

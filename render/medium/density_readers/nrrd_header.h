@@ -25,6 +25,7 @@ struct NrrdHeader {
   long long byte_skip = 0;                       ///< bytes before the data, as decompressed; -1: data end the file
 
   std::size_t value_bytes() const;
+  int significant_bits() const;  ///< of a value: 24 for float, 53 for double, an integer's width
   std::size_t plane_bytes() const;
   std::size_t data_bytes() const { return plane_bytes() * static_cast<std::size_t>(sizes[2]); }
 };
