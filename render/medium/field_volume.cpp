@@ -54,6 +54,16 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
+double finest_cell(FieldSetup const& field, RegularGrid const& grid) {
+  double const across = std::min(grid.spacing.x, grid.spacing.y);
+  return field.extrude ? across : std::min(across, grid.spacing.z);
+}
+
+/// Cells that the coarsest sensible step crosses: within them a spline is smooth and a trilinear field is not.
+double cells_a_step(MediumSetup const& setup) {
+  return setup.interpolation == FieldInterpolation::cubic_bspline ? 2 : 0.25;
+}
+
 template <class Stored, int Dimensions>
 BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldSource& source) {
   using Volume = RefractiveIndexVolume<Stored>;
@@ -82,10 +92,8 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   built.owner = volume;
   built.grid = grid;
   built.steepest = volume->steepest();
-  built.finest = std::min(grid.spacing.x, grid.spacing.y);
-  if (Dimensions == 3) built.finest = std::min(built.finest, grid.spacing.z);
-  double const depth = Dimensions == 3 ? grid.spacing.z * grid.nodes[2] : setup.thickness;
-  built.coarsest_step = spline ? (Dimensions == 3 ? 2 * built.finest : depth / 4) : built.finest / 4;
+  built.finest = finest_cell(field, grid);
+  built.coarsest_step = spline && field.extrude ? setup.thickness / 4 : cells_a_step(setup) * built.finest;
   return built;
 }
 
@@ -169,6 +177,13 @@ std::size_t medium_bytes_needed(MediumSetup const& setup) {
   RegularGrid const& grid = source->grid();
   return grid.nodes[2] == 1 ? RefractiveIndexVolume<double>::bytes_needed(grid)
                             : RefractiveIndexVolume<float>::bytes_needed(grid);
+}
+
+double steps_across(MediumSetup const& setup) {
+  if (setup.field.kind != FieldKind::file) return setup.thickness / build_analytic(setup).coarsest_step;
+  RegularGrid const grid = world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset));
+  double const depth = setup.field.extrude ? setup.thickness : grid.spacing.z * grid.nodes[2];
+  return depth / (cells_a_step(setup) * finest_cell(setup.field, grid));
 }
 
 BuiltMedium build_medium(MediumSetup const& setup) {

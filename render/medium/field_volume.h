@@ -23,6 +23,11 @@ struct BuiltMedium {
 /// Memory that the field of a setup will take [bytes]; opens a file to see its size.
 std::size_t medium_bytes_needed(MediumSetup const& setup);
 
+/// Steps across the medium that follow what the field changes on: a quarter of a wavelength or of a shock's thickness,
+/// half a radius, two cells (trilinear: a quarter); at least four. Opens a file to see its grid.
+/// @throws DataError for a file that cannot be read
+double steps_across(MediumSetup const& setup);
+
 /// Builds the medium; a file is read, scaled to n - 1 and prefiltered, with progress.
 /// @throws DataError for files that are missing, broken or of the wrong shape
 BuiltMedium build_medium(MediumSetup const& setup);

@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/medium/field_volume.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double most_steps = 1e6;       // across the medium
+constexpr double most_steps = 1e6;       // across the medium: 10 nm each in 10 mm
 constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
 constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
 constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
@@ -84,6 +85,50 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
                     "medium.ambient_density_kg_m3",
                     lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
   }
+}
+
+/// The key of the length on which a field changes.
+std::string length_key(FieldSetup const& field) {
+  switch (field.kind) {
+    case FieldKind::sinusoid:
+      return "wavelength_mm";
+    case FieldKind::gaussian_plume:
+    case FieldKind::gaussian_blob:
+      return "radius_mm";
+    case FieldKind::normal_shock:
+      return "shock_thickness_mm";
+    case FieldKind::file:
+      return field.spacing ? "spacing_mm" : "file";
+    case FieldKind::none:
+    case FieldKind::uniform_gradient:
+      break;
+  }
+  return "kind";
+}
+
+/// Refuses what no ray would ever come to the end of: a step, or a length of the field, that is tiny beside the medium.
+/// A file that cannot be read is left to those who read it.
+void cross_check_steps(Setup const& setup, SetupTable medium) {
+  FieldKind const kind = setup.medium.field.kind;
+  if (kind == FieldKind::none) return;
+  double const thickness_mm = setup.medium.thickness / unit::millimetre;
+  if (setup.medium.step_mm && thickness_mm > most_steps * *setup.medium.step_mm) {
+    medium.problem("step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
+                                          "most); use \"auto\" or a longer step",
+                                          thickness_mm / *setup.medium.step_mm, most_steps));
+  }
+  double steps = 0;
+  try {
+    steps = steps_across(setup.medium);
+  } catch (DataError const&) {
+    return;
+  }
+  if (steps <= most_steps) return;
+  std::string const key = length_key(setup.medium.field);
+  medium.tables("field").front().problem(
+      key, fmt::format("makes the field so fine that a ray would need {:.3g} steps across the medium ({:.0g} at most); "
+                       "{}lengths are in mm",
+                       steps, most_steps, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));
 }
 
 }  // namespace
@@ -184,13 +229,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                    half / mm, metres_hint(setup.z_a)));
     }
   }
-  if (setup.medium.step_mm && kind != FieldKind::none &&
-      setup.medium.thickness / mm > most_steps * *setup.medium.step_mm) {
-    root.table("medium").problem(
-        "step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "
-                               "most); use \"auto\" or a longer step",
-                               setup.medium.thickness / mm / *setup.medium.step_mm, most_steps));
-  }
+  cross_check_steps(setup, root.table("medium"));
   cross_check_density(setup, root.table("medium"), warnings);
   double const magnification = setup.imaging().magnification;
   double const px = setup.camera.pixel_pitch / magnification;

@@ -51,8 +51,9 @@ struct Setup {
 /// Reads the tables of a BOS setup through the rooms' readers; what is due later is refused by name.
 Setup read_setup(SetupTable root);
 
-/// Cross-checks that need physics, not files: focus, planes, field of view, dot size, dot coverage. Problems go to the
-/// setup's document with their keys; warnings are returned.
+/// Cross-checks by physics: focus, planes, steps across the medium, field of view, dot size, dot coverage. Of files
+/// only the size of the field's grid is looked at. Problems go to the setup's document with their keys; warnings are
+/// returned.
 std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

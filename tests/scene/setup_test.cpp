@@ -63,6 +63,33 @@ TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
               IsEmpty());  // no field, no medium
 }
 
+// Rays follow a wave in quarters of its length, a shock in quarters of its thickness, a plume in halves of its radius,
+// a trilinear grid in quarters of a cell: 1e6 steps across 10 mm at most, whoever asks for them.
+TEST(Setup, LengthsThatNoRayGetsToTheEndOfAreRefusedAtTheirKey) {
+  std::string const wave = "[medium.field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 0.1\nwavelength_mm = ";
+  EXPECT_THAT([&] { read(wave + "1e-9\n"); },
+              refused("4:1", "would need 4e+10 steps across the medium (1e+06 at most)"));
+  EXPECT_THAT(read(wave + "1e-3\n").warnings, IsEmpty());
+  EXPECT_THAT(
+      [] {
+        read(
+            "[medium.field]\nkind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1\n"
+            "shock_thickness_mm = 1e-7\n");
+      },
+      refused("5:1", "would need 4e+08 steps"));
+  for (std::string const kind : {"gaussian_plume", "gaussian_blob"}) {
+    EXPECT_THAT([&] { read("[medium.field]\nkind = \"" + kind + "\"\namplitude_kg_m3 = 0.1\nradius_mm = 1e-7\n"); },
+                refused("4:1", "would need 2e+08 steps"));
+  }
+  std::string const plane =
+      "[medium]\ninterpolation = \"trilinear\"\n[medium.field]\nkind = \"file\"\nfile = \"" GLADSTONE_DATA_DIR
+      "/fields/hbdt512_late_slice.h5\"\nextrude = true\nspacing_mm = ";
+  EXPECT_THAT([&] { read(plane + "[1e-7, 1e-7, 1]\n"); }, refused("7:1", "would need 4e+08 steps"));
+  EXPECT_THAT(read(plane + "[0.0625, 0.0625, 1]\n").warnings, IsEmpty());
+  EXPECT_THAT([&] { read("[medium]\nstep_mm = 1e-9\n[medium.field]\nkind = \"uniform_gradient\"\n"); },
+              refused("2:1", "would need 1e+10 steps"));
+}
+
 TEST(Setup, TheTargetMustFillTheView) {
   EXPECT_THAT([] { read("[target]\nextent_mm = [40, 60]\n"); }, refused("2:1", "larger than the target"));
   EXPECT_THAT(read("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
