@@ -118,7 +118,11 @@ PreparedCase prepare_case(CaseSetup& loaded) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  root.table("render").resolve("rays_per_dot", static_cast<double>(prepared.rays.rays));
+  root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
+  if (loaded.setup.target.kind != TargetKind::points) {
+    Vec2d const extent = loaded.setup.target_extent();
+    root.table("target").resolve("extent_mm", {extent.x / unit::millimetre, extent.y / unit::millimetre});
+  }
   return prepared;
 }
 
@@ -196,7 +200,8 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
       {"spot",
        {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
-        {"first_zero_diameter_px", SpotSize{scene.spot_scale_px()}.first_zero_diameter()}}},
+        {"first_zero_diameter_px", scene.setup.spot_diameter_px()},
+        {"sigma_px", scene.spot_sigma_px() > 0 ? nlohmann::json(scene.spot_sigma_px()) : nlohmann::json(nullptr)}}},
       {"dots", scene.dots.centre.size()},
       {"dots_unseen", unseen},
       {"device", renderer.device()},

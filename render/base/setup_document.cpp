@@ -64,6 +64,7 @@ std::string unread_message(SetupDocument::State const& state, std::vector<std::s
 
 void collect_unread(SetupDocument::State& state, SetupNode const& node, SetupRecord const& record,
                     std::vector<std::string>& path) {
+  if (record.excused) return;
   for (auto const& [key, value] : node.members) {
     auto const* const entry = record.find(key);
     if (!entry || !entry->read) {

@@ -21,6 +21,7 @@ struct SetupRecord {
 
   std::deque<Entry> entries;  ///< a deque, so that records keep their place
   bool present = false;       ///< the table is written in the setup
+  bool excused = false;       ///< keys that nobody read are no mistakes here
 
   Entry& entry(std::string const& key);
   Entry const* find(std::string const& key) const;

@@ -108,6 +108,14 @@ void use(SetupDocument::State& state, std::vector<std::string> const& table, std
   if (!entry.resolved) entry.value = value;
 }
 
+/// What a key came to in the end.
+void settle(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key,
+            std::string const& value) {
+  auto& entry = known(state, table, key);
+  entry.value = value;
+  entry.resolved = true;
+}
+
 /// The elements of an array with an allowed count and, each, nothing to object to; null, with problems, otherwise.
 template <class Objection>
 SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::string const& key, std::string const& wanted,
@@ -295,6 +303,16 @@ std::string SetupTable::word(std::string const& key, std::string const& fallback
   return value;
 }
 
+std::string SetupTable::kind_word(std::string const& key, std::string const& fallback,
+                                  std::vector<std::string> const& words) {
+  std::size_t const problems = state_->problems.size();
+  std::string value = word(key, fallback, words);
+  if (state_->problems.size() > problems) excuse();
+  return value;
+}
+
+void SetupTable::excuse() { state_->record_of(path_).excused = true; }
+
 std::string SetupTable::required_word(std::string const& key, std::vector<std::string> const& words) {
   if (!has(key)) problem(key, "is missing; give " + quoted_list(words));
   return word(key, words.empty() ? "" : words.front(), words);
@@ -363,10 +381,14 @@ std::vector<bool> SetupTable::booleans(std::string const& key, std::vector<bool>
   return values;
 }
 
-void SetupTable::resolve(std::string const& key, double value) {
-  auto& entry = known(*state_, path_, key);
-  entry.value = toml_text(value);
-  entry.resolved = true;
+void SetupTable::resolve(std::string const& key, double value) { settle(*state_, path_, key, toml_text(value)); }
+
+void SetupTable::resolve(std::string const& key, long long value) {
+  settle(*state_, path_, key, std::to_string(value));
+}
+
+void SetupTable::resolve(std::string const& key, std::vector<double> const& values) {
+  settle(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
 }
 
 void SetupTable::refuse(std::string const& key, std::string const& reason) {

@@ -121,8 +121,15 @@ class SetupTable {
                                   std::size_t at_most, long long low, long long high);
   std::vector<bool> booleans(std::string const& key, std::vector<bool> const& fallback, std::size_t count);
 
-  /// Writes what an "auto" came to into the resolved setup.
+  /// Writes what an "auto", or a default that hangs on other keys, came to into the resolved setup.
   void resolve(std::string const& key, double value);
+  void resolve(std::string const& key, long long value);
+  void resolve(std::string const& key, std::vector<double> const& values);
+
+  /// As word(), for the key that says which others the table has: where it is wrong, they are excused.
+  std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
+  /// Takes every key of the table as read: what they mean hangs on one that was refused.
+  void excuse();
 
   /// Refuses the key if it is there: `reason` says why, e.g. "is not available yet: thin lenses only".
   void refuse(std::string const& key, std::string const& reason);

@@ -9,7 +9,7 @@ namespace gladstone {
 
 TargetSetup read_target_setup(SetupTable table) {
   TargetSetup setup;
-  std::string const kind = table.word("kind", "dots", {"dots", "grid", "points", "image"});
+  std::string const kind = table.kind_word("kind", "dots", {"dots", "grid", "points", "image"});
   if (kind == "points") setup.kind = TargetKind::points;
   if (kind == "image") setup.kind = TargetKind::image;
   if (setup.kind == TargetKind::dots) {

@@ -63,9 +63,9 @@ void read_shock(SetupTable& table, FieldSetup& field) {
 
 FieldSetup read_field(SetupTable table) {
   FieldSetup field;
-  std::string const kind =
-      table.word("kind", "none",
-                 {"none", "file", "uniform_gradient", "sinusoid", "gaussian_plume", "gaussian_blob", "normal_shock"});
+  std::string const kind = table.kind_word(
+      "kind", "none",
+      {"none", "file", "uniform_gradient", "sinusoid", "gaussian_plume", "gaussian_blob", "normal_shock"});
   if (kind == "file") {
     field.kind = FieldKind::file;
     read_file_field(table, field);
@@ -109,6 +109,7 @@ MediumSetup read_medium_setup(SetupTable table) {
   auto fields = table.tables("field");
   if (fields.size() > 1) {
     table.problem("field", "is an array of several fields, which is not available yet (one field a setup); keep one");
+    for (std::size_t other = 1; other < fields.size(); ++other) fields[other].excuse();
   }
   setup.field = read_field(fields.empty() ? table.table("field") : fields.front());
   return setup;

@@ -8,7 +8,8 @@ namespace gladstone {
 
 LensSetup read_lens_setup(SetupTable table) {
   LensSetup setup;
-  if (table.word("model", "thin", {"thin", "prescription"}) == "prescription") {
+  if (table.kind_word("model", "thin", {"thin", "prescription"}) == "prescription") {
+    table.excuse();
     table.problem("model", "\"prescription\" is not available yet (this version has the thin lens only); use \"thin\"");
   }
   table.refuse("file", "is not available yet (lens prescriptions are not part of this version); use model = \"thin\"");

@@ -132,10 +132,7 @@ double Scene::light_per_ray(DotPattern const& sources) const {
   return area * enlarged * enlarged / static_cast<double>(rays_per_dot);
 }
 
-double Scene::spot_scale_px() const {
-  if (chief_rays_only()) return 0;
-  return imaging.image_distance / imaging.entrance_pupil * setup.medium.wavelength / setup.camera.pixel_pitch;
-}
+double Scene::spot_scale_px() const { return setup.spot_scale_px(); }
 
 double Scene::spot_sigma_px() const {
   SpotSize const spot{spot_scale_px()};

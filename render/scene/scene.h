@@ -41,7 +41,7 @@ struct Scene {
   double light_per_ray(DotPattern const& sources) const;
   /// Radius of a Gaussian spot [px]; 0: none.
   double spot_sigma_px() const;
-  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays.
+  /// As Setup::spot_scale_px.
   double spot_scale_px() const;
   /// Where the chief ray of a point of the target ends without medium [px], and back [m].
   Vec2d to_pixel(Vec2d on_target) const;

@@ -7,6 +7,7 @@
 
 #include "render/base/units.h"
 #include "render/medium/field_volume.h"
+#include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
 namespace {
@@ -24,6 +25,7 @@ RenderSetup read_render_setup(SetupTable table) {
       table.problem("rays_per_dot", "is not a whole number (rays are counted); use a whole number or \"auto\"");
     }
     setup.rays_per_dot = static_cast<std::uint64_t>(*rays);
+    table.resolve("rays_per_dot", static_cast<long long>(*rays));
   }
   if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
@@ -35,6 +37,7 @@ SetupTable camera_table(SetupTable& root) {
   auto cameras = root.tables("camera");
   if (cameras.size() > 1) {
     root.problem("camera", "is an array of several cameras, which is not available yet (one camera a setup); keep one");
+    for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].excuse();
   }
   return cameras.empty() ? root.table("camera") : cameras.front();
 }
@@ -86,6 +89,9 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
                     lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
   }
 }
+
+/// Spots whose diameter is told as four standard deviations, see Setup::spot_diameter_px.
+bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero || spot == SpotModel::seed_eq8; }
 
 /// The key of the length on which a field changes.
 std::string length_key(FieldSetup const& field) {
@@ -147,13 +153,26 @@ double Setup::focus_distance() const {
 
 Vec2d Setup::target_extent() const {
   if (target.extent_m) return *target.extent_m;
-  double const px = camera.pixel_pitch / imaging().magnification;
-  return {(camera.columns + 2.0 * view_margin_px) * px, (camera.rows + 2.0 * view_margin_px) * px};
+  // through mm, so that the resolved setup, which holds mm, gives the same dots to the last bit
+  double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
+  return Vec2d{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm} *
+         unit::millimetre;
 }
 
 double Setup::dot_diameter() const {
   if (target.dot_diameter_m) return *target.dot_diameter_m;
   return target.dot_diameter_px.value_or(0.0) * camera.pixel_pitch / imaging().magnification;
+}
+
+double Setup::spot_scale_px() const {
+  ImagingGeometry const geometry = imaging();
+  if (geometry.entrance_pupil == 0) return 0;
+  return geometry.image_distance / geometry.entrance_pupil * medium.wavelength / camera.pixel_pitch;
+}
+
+double Setup::spot_diameter_px() const {
+  if (lens.spot == SpotModel::none) return 0;
+  return SpotSize{spot_scale_px()}.first_zero_diameter() * (lens.spot == SpotModel::seed_eq8 ? pi : 1.0);
 }
 
 double Setup::dot_count() const {
@@ -242,10 +261,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   }
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.dot_diameter() / px;
-    double const diffraction_px =
-        std::isinf(setup.lens.f_number) || setup.lens.spot == SpotModel::none
-            ? 0.0
-            : 2.44 * setup.medium.wavelength * setup.lens.f_number * (1 + magnification) / setup.camera.pixel_pitch;
+    double const diffraction_px = setup.spot_diameter_px();
     double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
     if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
       camera_table(root).problem("pixel_pitch_um",
@@ -261,8 +277,10 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     double const image_px = std::hypot(diameter_px, diffraction_px);
     if (image_px < 2) {
       warnings.push_back(fmt::format(
-          "dot images are {:.2f} px wide: below 2 px correlation locks to whole pixels; enlarge target.dot_diameter_px",
-          image_px));
+          "dot images are {:.2f} px wide (geometric image {:.2f} px, diffraction spot {:.2f} px {}): below 2 "
+          "px correlation locks to whole pixels; enlarge target.dot_diameter_px",
+          image_px, diameter_px, diffraction_px,
+          four_sigma(setup.lens.spot) ? "over four standard deviations" : "between its first zeros"));
     }
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");

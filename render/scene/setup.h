@@ -44,6 +44,12 @@ struct Setup {
   Vec2d target_extent() const;
   /// Diameter of a dot on the target [m].
   double dot_diameter() const;
+  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays.
+  double spot_scale_px() const;
+  /// Diameter d_d of the diffraction spot that is drawn [px]: between the first zeros of the Airy pattern for "airy"
+  /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
+  /// "seed_eq8" (pi times that, as the seed prints it); 0 without a spot.
+  double spot_diameter_px() const;
   /// Number of dots on the target, for kind = "dots".
   double dot_count() const;
 };

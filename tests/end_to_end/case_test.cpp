@@ -5,6 +5,7 @@
 namespace gladstone::end_to_end {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
@@ -133,6 +134,24 @@ TEST_F(Case, TheResolvedSetupRendersTheSameBitsAgain) {
   render("second", {}, "first/setup.toml");
   expect_same_case("first", "second");
   EXPECT_EQ(read("second/setup.toml"), resolved);
+}
+
+// A target's extent goes by the first pass's window where the setup leaves it out; what was rendered is written down.
+TEST_F(Case, TheResolvedSetupKeepsItsDotsWithAnotherWindow) {
+  render("first");
+  EXPECT_THAT(read("first/setup.toml"), AllOf(HasSubstr("\nextent_mm = ["), HasSubstr("\nrays_per_dot = 32\n")));
+  render("second", {"--set", "correlate.window_px=[16]"}, "first/setup.toml");
+  expect_same_case("first", "second");
+}
+
+TEST_F(Case, SummaryTellsTheSpotThatWasDrawn) {
+  // Table 1's lens: 2.44 N (1 + M) lambda = 1.595 px, the seed's print pi times as much; drawn with a quarter of it
+  render("first", {"--set", "lens.psf=seed_eq8"});
+  auto const spot = nlohmann::json::parse(read("first/summary.json"))["spot"];
+  EXPECT_NEAR(spot["first_zero_diameter_px"].get<double>(), 5.01, 5e-3);
+  EXPECT_NEAR(spot["sigma_px"].get<double>(), 5.01 / 4, 2e-3);
+  render("second", {"--set", "lens.psf=none"});
+  EXPECT_EQ(nlohmann::json::parse(read("second/summary.json"))["spot"]["first_zero_diameter_px"], 0);
 }
 
 TEST_F(Case, OneTwoAndSevenThreadsGiveTheSameBits) {

@@ -102,6 +102,20 @@ TEST(Setup, DotsBelowTwoPixelsAreWarnedOf) {
   EXPECT_THAT(read("[target]\ndot_diameter_px = 1.5\n").warnings, IsEmpty());
 }
 
+// The spot that counts is the one drawn. Table 1: 1.595 px between first zeros (airy, gaussian) or over four standard
+// deviations (gaussian_first_zero), pi times that as the seed prints it, none without one.
+TEST(Setup, DotsBelowTwoPixelsAreThoseOfTheSpotDrawn) {
+  auto const warnings = [](std::string const& psf) {
+    return read("[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n").warnings;
+  };
+  EXPECT_THAT(warnings("airy"), Contains(HasSubstr("1.88 px wide (geometric image 1.00 px, diffraction spot 1.59 px "
+                                                   "between its first zeros)")));
+  EXPECT_THAT(warnings("gaussian_first_zero"), Contains(HasSubstr("1.88 px wide (geometric image 1.00 px, diffraction "
+                                                                  "spot 1.59 px over four standard deviations)")));
+  EXPECT_THAT(warnings("seed_eq8"), IsEmpty()) << "5.01 px";
+  EXPECT_THAT(warnings("none"), Contains(HasSubstr("1.00 px wide")));
+}
+
 TEST(Setup, DotsThatCannotFindRoomAreRefused) {
   // 100 dots of 3 px in 1024 px^2 cover 69 %
   EXPECT_THAT([] { read("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
@@ -121,6 +135,29 @@ TEST(Setup, WhatIsDueLaterIsRefusedByName) {
     EXPECT_THAT([&] { read(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
   }
   EXPECT_THAT([] { read("schema = 2\n"); }, refused("1:1", "schema"));
+}
+
+// A word that decides which keys a table has, and is wrong, leaves nothing to say of the others.
+TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
+  auto const only = [](std::string const& why) {
+    return ThrowsMessage<SetupError>(
+        AllOf(HasSubstr(why), testing::Not(HasSubstr("unknown")), testing::Not(HasSubstr("no effect"))));
+  };
+  EXPECT_THAT([] { read("[medium.field]\nkind = \"sinusiod\"\namplitude_kg_m3 = 0.1\nwavelength_mm = 4\n"); },
+              only("did you mean \"sinusoid\"?"));
+  EXPECT_THAT([] { read("[target]\nkind = \"pints\"\nfile = \"a.csv\"\n"); }, only("did you mean \"points\"?"));
+  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\nfile = \"a.zmx\"\nobject_side = 1\n"); },
+              only("\"prescription\" is not available yet"));
+  EXPECT_THAT([] { read("[[camera]]\n[[camera]]\npixels = [64, 64]\n[camera.noise]\nseed = 1\n"); },
+              only("several cameras"));
+  EXPECT_THAT(
+      [] {
+        read("[[medium.field]]\n[[medium.field]]\nkind = \"gaussian_blob\"\nradius_mm = 1\namplitude_kg_m3 = 1\n");
+      },
+      only("several fields"));
+  // but a table beside it is read as ever
+  EXPECT_THAT([] { read("[medium]\nstep = 1\n[medium.field]\nkind = \"sinusiod\"\n"); },
+              refused("2:1", "unknown key \"step\""));
 }
 
 TEST(Setup, AllProblemsComeTogether) {
@@ -167,8 +204,12 @@ TEST(BuildScene, SpotsHaveTheSizesOfTable1) {
   EXPECT_NEAR(scene.spot_sigma_px(), 0.4206042622 * 0.65385475, 1e-7);
   scene.setup.lens.spot = SpotModel::gaussian_first_zero;
   EXPECT_NEAR(4 * scene.spot_sigma_px(), 1.595, 1e-3);
+  EXPECT_DOUBLE_EQ(scene.setup.spot_diameter_px(), 4 * scene.spot_sigma_px());
   scene.setup.lens.spot = SpotModel::seed_eq8;
   EXPECT_NEAR(4 * scene.spot_sigma_px(), 5.01, 5e-3);
+  EXPECT_DOUBLE_EQ(scene.setup.spot_diameter_px(), 4 * scene.spot_sigma_px());
+  scene.setup.lens.spot = SpotModel::none;
+  EXPECT_EQ(scene.setup.spot_diameter_px(), 0);
 }
 
 }  // namespace
