@@ -15,7 +15,18 @@ namespace gladstone {
 namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
-  for (auto const& assignment : overrides) document.override_key(assignment);
+  SetupTable root = document.root();
+  for (char const* other :
+       {"schema", "experiment", "camera", "lens", "geometry", "medium", "target", "render"}) {  // of a whole setup
+    if (root.has(other)) root.pass_over(other);
+  }
+  for (auto const& assignment : overrides) {
+    if (assignment.starts_with("correlate.") || assignment.starts_with("correlate=")) {
+      document.override_key(assignment);
+    } else {
+      document.add_problem("--set " + assignment, "is no key of [correlate] (nothing else is used here); remove it");
+    }
+  }
   CorrelationFile file;
   file.settings = read_correlation_settings(document.root().table("correlate"));
   document.finish();

@@ -20,7 +20,8 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Device const& device);
 
-/// Reads the [correlate] table of a setup or of a file with nothing else. @throws SetupError
+/// Reads the [correlate] table of a whole setup, whose other tables are not looked at, or of a file with nothing else.
+/// @throws SetupError
 struct CorrelationFile {
   CorrelationSettings settings;
   std::string resolved;  ///< text of the table with all defaults

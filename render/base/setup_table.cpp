@@ -391,6 +391,8 @@ void SetupTable::resolve(std::string const& key, std::vector<double> const& valu
   settle(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
 }
 
+void SetupTable::pass_over(std::string const& key) { read(*state_, path_, key); }
+
 void SetupTable::refuse(std::string const& key, std::string const& reason) {
   if (!has(key)) return;
   read(*state_, path_, key);

@@ -131,6 +131,9 @@ class SetupTable {
   /// Takes every key of the table as read: what they mean hangs on one that was refused.
   void excuse();
 
+  /// Takes the key, or the whole table of that name, as read: it is somebody else's business.
+  void pass_over(std::string const& key);
+
   /// Refuses the key if it is there: `reason` says why, e.g. "is not available yet: thin lenses only".
   void refuse(std::string const& key, std::string const& reason);
 

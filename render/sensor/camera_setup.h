@@ -24,8 +24,11 @@ struct CameraSetup {
   int rows = 512;
   double pixel_pitch = 10e-6;  ///< [m]
   int bit_depth = 16;
-  std::optional<double> exposure_e;  ///< electrons in a fully lit pixel on the axis; empty: auto
-  double offset_dn = 0;              ///< black level
+  /// Electrons in a pixel on the axis that is fully lit: that sees nothing but white paper through the whole stop,
+  /// whatever its f-number. Empty: auto, which makes up for what a small stop costs the images of dots (wider spots,
+  /// dimmer peaks); a number does not.
+  std::optional<double> exposure_e;
+  double offset_dn = 0;  ///< black level
   NoiseSetup noise;
 };
 

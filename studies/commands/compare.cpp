@@ -4,6 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 
 #include "render/base/output_file.h"
 #include "studies/commands/command.h"
@@ -11,6 +13,48 @@
 #include "studies/figures/gnuplot.h"
 
 namespace gladstone {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the results go: into the case for its own vectors, else into a folder beside them, so that other codes'
+/// results do not replace the case's own.
+fs::path results_folder(fs::path const& folder, fs::path const& vectors) {
+  std::error_code ignored;
+  for (char const* own : {case_file::vectors, case_file::vectors_text}) {
+    if (vectors.empty() || fs::equivalent(vectors, folder / own, ignored)) return folder;
+  }
+  return folder / (case_file::other_results + vectors.stem().string());
+}
+
+/// Writes errors.json and the figures: all of them or, where one cannot be made, none.
+/// @return what was written
+std::vector<fs::path> write_results(fs::path const& place, Comparison const& comparison, std::string const& json,
+                                    bool figures) {
+  OutputFolder const staging((place / ".comparison").string(), case_file::errors);
+  fs::path const made = staging.temporary_path();
+  try {
+    if (figures) draw_comparison(made.string(), comparison);
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+  } catch (OutputError const& error) {  // named by its final place
+    std::string const text = error.what(), start = made.string() + '/';
+    if (!text.starts_with(start)) throw;
+    auto const end = text.find(": ", start.size());
+    throw OutputError((place / text.substr(start.size(), end - start.size())).string(), text.substr(end + 2));
+  }
+  std::vector<fs::path> written;
+  for (auto const& entry : fs::directory_iterator(made)) written.push_back(place / entry.path().filename());
+  std::sort(written.begin(), written.end());
+  OutputFile errors((place / case_file::errors).string());
+  errors.write(json.data(), json.size());
+  for (auto const& path : written) fs::rename(made / path.filename(), path);
+  errors.commit();
+  return written;
+}
+
+}  // namespace
 
 CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -21,7 +65,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder, "Case folder")->required();
   app.add_option("--vectors", arguments->compare.vectors,
-                 "Vectors of ours, OpenPIV or PIVlab; default CASE/vectors.h5");
+                 "Vectors of ours, OpenPIV or PIVlab, whose results go to CASE/compare_NAME; default CASE/vectors.h5");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
       ->check(CLI::IsMember({"mid", "reference"}));
@@ -35,15 +79,11 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;
     Comparison const comparison = compare_case(arguments->folder, device, compare);
     std::string const json = errors_json(comparison);
-    OutputFile::write_text(in_case(arguments->folder, case_file::errors), json);
+    fs::path const place = results_folder(arguments->folder, compare.vectors);
+    auto const figures = write_results(place, comparison, json, !arguments->no_figures);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
-    if (!arguments->no_figures) {
-      try {
-        for (auto const& path : draw_comparison(arguments->folder, comparison)) spdlog::info("drew {}", path);
-      } catch (GnuplotMissing const& missing) {
-        spdlog::warn("{}", missing.what());
-      }
-    }
+    for (auto const& path : figures) spdlog::info("drew {}", path.string());
+    if (place != arguments->folder) spdlog::info("wrote {}", (place / case_file::errors).string());
     print_result(options, json, error_report(comparison));
     return ok;
   };

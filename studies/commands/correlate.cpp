@@ -24,7 +24,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       ->required()
       ->expected(1, 2);
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
-  app.add_option("--config", arguments->config, "TOML file with a table [correlate]");
+  app.add_option("--config", arguments->config,
+                 "TOML file with a table [correlate], which may be a whole setup; default: the case's own");
   app.add_option("--set", arguments->overrides, "Override a key: --set correlate.overlap=0.75")
       ->expected(1)
       ->take_all();
@@ -35,9 +36,12 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       throw OutputError(output, "has an ending that is neither .h5 nor .csv; choose one of them");
     }
     bool const configured = !arguments->config.empty() || !arguments->overrides.empty();
-    CorrelationFile const other = !arguments->config.empty()
-                                      ? read_correlation_file(arguments->config, arguments->overrides)
-                                      : default_correlation(arguments->overrides);
+    std::string config = arguments->config;
+    if (config.empty() && configured && arguments->inputs.size() == 1) {
+      config = in_case(arguments->inputs[0], case_file::setup);
+    }
+    CorrelationFile const other = !config.empty() ? read_correlation_file(config, arguments->overrides)
+                                                  : default_correlation(arguments->overrides);
     Measurement measurement;
     std::string written = output;
     if (arguments->inputs.size() == 1) {

@@ -58,11 +58,26 @@ int run_gnuplot(std::string const& folder) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+/// Why a file in the temporary folder could not be written, with what to do about it.
+std::string why_not(int error) {
+  std::string const full = error == ENOSPC || error == EDQUOT ? "; free some space there or set TMPDIR" : "";
+  return fmt::format("cannot be written ({}){}", std::strerror(error == 0 ? EIO : error), full);
+}
+
 std::string text_of(std::string const& path) {
   std::ifstream file(path);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+/// gnuplot ends well even where the disk was full and its picture is cut short: a PNG ends with a chunk IEND.
+bool is_whole_png(std::string const& path) { return text_of(path).find("IEND") != std::string::npos; }
+
+/// No byte more can be written into the folder.
+bool is_full(std::string const& folder) {
+  std::error_code error;
+  return fs::space(folder, error).available == 0 && !error;
 }
 
 }  // namespace
@@ -91,9 +106,10 @@ void GnuplotFigure::command(std::string_view line) {
 
 std::string GnuplotFigure::store(std::span<double const> values) {
   std::string const name = fmt::format("data{}.bin", files_++);
+  errno = 0;
   std::ofstream file(folder_ + "/" + name, std::ios::binary);
   file.write(reinterpret_cast<char const*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
-  if (!file.flush()) throw OutputError(folder_ + "/" + name, "cannot be written (is the disk full?)");
+  if (!file.flush()) throw OutputError(folder_ + "/" + name, why_not(errno));
   return name;
 }
 
@@ -128,19 +144,20 @@ std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& col
 void GnuplotFigure::write(std::string const& path) const {
   OutputFile output(path);
   {
+    errno = 0;
     std::ofstream script(folder_ + "/script.gp", std::ios::binary);
     script << script_ << "\nunset output\n";
-    if (!script.flush()) throw OutputError(folder_, "the figure's script cannot be written (is the disk full?)");
+    if (!script.flush()) throw OutputError(folder_ + "/script.gp", why_not(errno));
   }
   int const code = run_gnuplot(folder_);
   throw_if_interrupted();  // Ctrl-C stops gnuplot as well
   std::string const picture = folder_ + "/figure.png";
-  std::error_code error;
-  if (code != 0 || fs::file_size(picture, error) == 0 || error) {
+  if (code != 0 || !is_whole_png(picture)) {
+    if (is_full(folder_)) throw OutputError(picture, why_not(ENOSPC));
     throw OutputError(path, fmt::format("gnuplot failed (exit code {}): {}", code, text_of(folder_ + "/log.txt")));
   }
-  fs::copy_file(picture, output.temporary_path(), fs::copy_options::overwrite_existing, error);
-  if (error) throw OutputError(path, fmt::format("cannot be written ({})", error.message()));
+  std::string const bytes = text_of(picture);
+  output.write(bytes.data(), bytes.size());
   output.commit();
 }
 

@@ -114,6 +114,22 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   write("c.toml", "[correlate]\nwindow_px = [32, 16]\n");
   succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "x.csv", "--config", "c.toml"});
   EXPECT_EQ(read("x.csv"), text);
+  // a whole setup will do, resolved or not; what else it says is not looked at
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "y.csv", "--config", "case/setup.toml"});
+  EXPECT_EQ(read("y.csv"), text);
+  write("s.toml", with(small_setup, "f_number = 11.0", "f_number = 0.0"));
+  succeed({"correlate", "case", "-o", "z.csv", "--config", "s.toml"});
+  EXPECT_EQ(read("z.csv"), text);
+  write("s.toml", "[corelate]\nwindow_px = [32, 16]\n");
+  expect_refused({"correlate", "case", "--config", "s.toml"}, 2, {"s.toml:1:2: unknown table [corelate]"});
+}
+
+TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
+  render("case");
+  EXPECT_EQ(json_of({"correlate", "case"})["vectors"], 49);  // 16 px windows every 8 px: 7 x 7
+  EXPECT_EQ(json_of({"correlate", "case", "--set", "correlate.overlap=0"})["vectors"], 16);  // every 16 px
+  expect_refused({"correlate", "case", "--set", "lens.f_number=8"}, 2,
+                 {"--set lens.f_number=8", "no key of [correlate]"});
 }
 
 TEST_F(Case, SetOnTheCommandLineEqualsTheSameInTheFile) {

@@ -84,6 +84,50 @@ TEST_F(OutputErrors, FullDiskLeavesTheOldCase) {
   EXPECT_THAT(read("stderr"), testing::HasSubstr("No space left on device"));
 }
 
+TEST_F(OutputErrors, FullDiskWhileDrawingLeavesTheOldResults) {
+  // room for errors.json, a few kB, but not for the figures, some tens each: with those on the case's disk, and with
+  // gnuplot's temporary ones
+  for (bool const temporary : {false, true}) {
+    std::filesystem::remove_all(in("case"));
+    render("case");
+    succeed({"correlate", "case"});
+    write("case/errors.json", "old");
+    write("case/error_budget.png", "old");
+    pid_t const child = ::fork();
+    if (child == 0) {
+      std::string const disk = temporary ? "disk" : "case";
+      std::error_code error;
+      std::filesystem::create_directory(in("disk"), error);
+      std::filesystem::rename(in("case"), in("aside"), error);
+      std::filesystem::create_directory(in("case"), error);
+      bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                           ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                           ::mount("none", in(disk).c_str(), "tmpfs", 0, temporary ? "size=8k" : "size=400k") == 0;
+      if (mounted) std::filesystem::copy(in("aside"), in("case"), std::filesystem::copy_options::recursive, error);
+      if (mounted && !temporary) {  // leave 40 kB
+        write("case/filler", std::string(std::filesystem::space(in("case"), error).available - 40000, 'x'));
+      }
+      if (mounted && temporary) ::setenv("TMPDIR", in(disk).c_str(), 1);
+      Outcome const outcome = mounted ? run({"compare", "case"}, folder_) : Outcome{};
+      std::filesystem::remove(in("case/filler"));
+      bool as_before = mounted && names("case") == names("aside");
+      for (auto const& name : mounted ? names("case") : std::vector<std::string>{}) {
+        as_before = as_before && read("case/" + name) == read("aside/" + name);
+      }
+      write("stderr", outcome.err);
+      ::_exit(!mounted ? 77 : outcome.exit_code == 2 ? (as_before ? 0 : 1) : 2);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    std::filesystem::remove_all(in("case"));
+    std::filesystem::remove_all(in("aside"));
+    if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here";
+    EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
+    EXPECT_THAT(read("stderr"), testing::HasSubstr("No space left on device")) << temporary;
+  }
+}
+
 TEST_F(OutputErrors, FilesThatMayNotGrow) {
   render("case");
   auto const before = everything();

@@ -78,6 +78,31 @@ TEST_F(Variants, DarkDotsAreBrightOnesTakenFromWhite) {
   for (std::size_t i = 0; i < bright.size(); ++i) EXPECT_NEAR(bright.data()[i] + dark.data()[i], white, 6);
 }
 
+// A given exposure counts the electrons in a fully lit pixel on the axis, at any stop: white paper is as bright at
+// f/5.6 as at f/22. What a smaller stop costs is light in a dot's pixels, over which its wider spot spreads it; "auto"
+// makes up for that.
+TEST_F(Variants, AGivenExposureIsThatOfAFullyLitPixelAndAutoIsThatOfTheBrightest) {
+  double const white = 20000.0 / 30000.0 * 65535;
+  double peak[2] = {};
+  for (int const i : {0, 1}) {
+    std::vector<std::string> const stop{"--set", i == 0 ? "lens.f_number=5.6" : "lens.f_number=22"};
+    auto const rendered = [&](std::vector<std::string> more) {
+      more.insert(more.end(), stop.begin(), stop.end());
+      render("case", more);
+      return largest(image("case/reference.tif"));
+    };
+    EXPECT_NEAR(rendered({"--set", "camera.exposure=20000", "--set", "target.polarity=dark"}), white, 6);
+    EXPECT_EQ(nlohmann::json::parse(read("case/summary.json"))["exposure"], 20000);
+    peak[i] = rendered({"--set", "camera.exposure=20000"});
+    rendered({});
+    EXPECT_NEAR(std::max(largest(image("case/reference.tif")), largest(image("case/flow.tif"))), 0.9 * 65535, 0.51);
+  }
+  // 3 px discs under Gaussians of sigma 0.14 and 0.55 px: 1 - exp(-r^2 / 2 sigma^2) of 1 at the centre is 1 and 0.976,
+  // less what the pixel averages
+  EXPECT_NEAR(peak[0], white, 0.01 * white);
+  EXPECT_LT(peak[1], 0.99 * peak[0]);
+}
+
 TEST_F(Variants, NoiseRepeatsWithItsSeedAndDiffersBetweenFrames) {
   std::string const still =
       with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", "kind = \"none\"");
