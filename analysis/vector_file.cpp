@@ -138,8 +138,8 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   file.write("/status", std::span<std::int64_t const>(codes), {count}, "1", "0 valid, 1 replaced, 2 masked, 3 invalid",
              "vector");
   if (field.columns > 0) {
-    file.attribute("/", "grid_columns", field.columns);
-    file.attribute("/", "grid_rows", field.rows);
+    file.attribute("/", "grid_columns", std::int64_t{field.columns});
+    file.attribute("/", "grid_rows", std::int64_t{field.rows});
   }
   file.close();
 }

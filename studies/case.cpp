@@ -111,6 +111,15 @@ PreparedCase prepare_case(CaseSetup& loaded) {
         fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
+  auto const in_view = [&scene](Vec2d centre) { return scene.view().sensor.covers(scene.to_pixel(centre)); };
+  if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
+    warn(prepared.warnings,
+         fmt::format("none of {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be empty; "
+                     "check the target's file (places are in mm) or increase target.dots_per_32px_window",
+                     scene.dots.centre.size(),
+                     loaded.setup.camera.columns * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
+                     loaded.setup.camera.rows * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
+  }
   prepared.rays = plan_rays(scene);
   if (!prepared.rays.converged) {
     warn(prepared.warnings,

@@ -461,6 +461,14 @@ void Hdf5Writer::attribute(std::string const& object, std::string const& name, d
   write_attribute(opened, path_, name, H5T_NATIVE_DOUBLE, &value);
 }
 
+void Hdf5Writer::attribute(std::string const& object, std::string const& name, std::int64_t value) {
+  Lock const lock(library_lock());
+  GLADSTONE_EXPECTS(handle_ != nullptr);
+  Id const opened(H5Oopen(handle_->file, object.c_str(), H5P_DEFAULT), H5Oclose);
+  check(opened.valid(), path_, "attribute \"" + name + "\" of \"" + object + '"');
+  write_attribute(opened, path_, name, H5T_NATIVE_INT64, &value);
+}
+
 void Hdf5Writer::close() {
   Lock const lock(library_lock());
   GLADSTONE_EXPECTS(handle_ != nullptr);

@@ -61,6 +61,7 @@ class Hdf5Writer {
              std::string const& units, std::string const& description, std::string const& axes);
   void attribute(std::string const& object, std::string const& name, std::string const& value);
   void attribute(std::string const& object, std::string const& name, double value);
+  void attribute(std::string const& object, std::string const& name, std::int64_t value);
   /// Flushes, checks that everything arrived on disk, renames to the final name.
   void close();
 

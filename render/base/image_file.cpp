@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -15,7 +16,6 @@
 #include <vector>
 
 #include "render/base/error.h"
-#include "render/base/setup_node.h"
 #include "render/base/version.h"
 
 namespace gladstone {
@@ -28,7 +28,8 @@ constexpr std::string_view pitch_label = ", pixel_pitch_m = ";
 
 std::string described(ImageMetadata const& metadata) {
   return std::string(signature) + std::to_string(metadata.bit_depth) + std::string(pitch_label) +
-         toml_text(metadata.pixel_pitch_m) + '\n' + metadata.description;
+         fmt::format("{:.15g}", metadata.pixel_pitch_m) + '\n' +
+         metadata.description;  // of 10 um: 1e-05, no 9.99..e-06
 }
 
 /// The metadata from a description of ours; false for somebody else's.
@@ -123,7 +124,10 @@ Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
     double const* const sample = samples.data() + i * channels;
     image.data()[i] = channels < 3 ? sample[0] : 0.2126 * sample[0] + 0.7152 * sample[1] + 0.0722 * sample[2];
   }
-  if (metadata) *metadata = metadata_of(spec);
+  if (metadata) {
+    *metadata = metadata_of(spec);
+    metadata->channels = spec.nchannels;
+  }
   return image;
 }
 

@@ -13,6 +13,7 @@ struct ImageMetadata {
   int bit_depth = 16;          ///< significant bits; values are stored unshifted in 16
   double pixel_pitch_m = 0.0;  ///< also as X/YResolution
   std::string description;     ///< e.g. the resolved setup, as ImageDescription
+  int channels = 1;            ///< as read: of three or more read_image made grey values
 };
 
 /// Reads any picture that OpenImageIO knows (TIFF, PNG, EXR; 8, 16 bit, float) as raw values in double:

@@ -1,6 +1,7 @@
 #include "studies/correlate.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -13,6 +14,19 @@
 #include "studies/commands/command.h"
 
 namespace gladstone {
+namespace {
+
+Image<double> read_frame(std::string const& path) {
+  ImageMetadata metadata;
+  Image<double> image = read_image(path, &metadata);
+  if (metadata.channels >= 3) {
+    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
+                 path);
+  }
+  return image;
+}
+
+}  // namespace
 
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -55,11 +69,15 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     } else {
       if (output.empty()) throw OutputError("correlate", "two images need -o FILE.h5 or FILE.csv");
       std::string const &a = arguments->inputs[0], &b = arguments->inputs[1];
-      measurement = correlate_frames(a, read_image(a), b, read_image(b), other.settings, device);
+      measurement = correlate_frames(a, read_frame(a), b, read_frame(b), other.settings, device);
       write_vectors(output, measurement.field, {"gladstone vectors", 1, other.resolved, 0, device.name()});
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
+    if (counts[0] + counts[1] == 0) {
+      spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
+                   written, measurement.field.size());
+    }
     nlohmann::json const json{{"vectors", measurement.field.size()},
                               {"file", written},
                               {"valid", counts[0]},

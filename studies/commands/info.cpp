@@ -9,6 +9,7 @@
 #include "render/base/image_file.h"
 #include "render/medium/density_field.h"
 #include "studies/commands/command.h"
+#include "studies/image_statistics.h"
 
 namespace gladstone {
 namespace {
@@ -52,40 +53,36 @@ int describe_field(std::string const& path, std::string const& dataset, GlobalOp
   return ok;
 }
 
-/// Mean e^-2 diameter d of the dots from the picture's autocorrelation at a shift of one pixel: Gaussian dots of
-/// standard deviation d/4 have a Gaussian autocorrelation of variance d^2/8.
-double dot_diameter_px(Image<double> const& image, double mean) {
-  double zero = 0, one = 0;
-  for (int row = 0; row < image.rows(); ++row) {
-    for (int column = 0; column + 1 < image.columns(); ++column) {
-      double const a = image(column, row) - mean, b = image(column + 1, row) - mean;
-      zero += 0.5 * (a * a + b * b);
-      one += a * b;
-    }
-  }
-  double const ratio = zero > 0 ? one / zero : 0;
-  return ratio > 0 && ratio < 1 ? std::sqrt(-4 / std::log(ratio)) : std::nan("");
-}
-
 int describe_image(std::string const& path, GlobalOptions const& options) {
   ImageMetadata metadata;
   Image<double> const image = read_image(path, &metadata);
   auto const [least, most] = std::minmax_element(image.begin(), image.end());
-  double mean = 0;
-  for (double value : image) mean += value / static_cast<double>(image.size());
-  double const diameter = dot_diameter_px(image, mean);
-  nlohmann::json const json{
-      {"columns", image.columns()},
-      {"rows", image.rows()},
-      {"bit_depth", metadata.bit_depth},
-      {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
-      {"minimum", *least},
-      {"maximum", *most},
-      {"mean", mean},
-      {"dot_diameter_px", std::isfinite(diameter) ? nlohmann::json(diameter) : nlohmann::json(nullptr)}};
-  print_result(options, json.dump(2),
-               fmt::format("{}: {} x {} px, {} bits, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2)",
-                           path, image.columns(), image.rows(), metadata.bit_depth, *least, *most, mean, diameter));
+  ImageStatistics const seen = image_statistics(image);
+  auto const known = [](double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+  };
+  nlohmann::json const json{{"columns", image.columns()},
+                            {"rows", image.rows()},
+                            {"bit_depth", metadata.bit_depth},
+                            {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
+                            {"minimum", *least},
+                            {"maximum", *most},
+                            {"mean", seen.mean},
+                            {"dot_diameter_px", known(seen.dot_diameter_px)},
+                            {"channels", metadata.channels},
+                            {"background", known(seen.background)},
+                            {"dot_height", known(seen.dot_height)},
+                            {"noise", known(seen.noise)},
+                            {"snr", known(seen.snr())}};
+  print_result(
+      options, json.dump(2),
+      fmt::format("{}: {} x {} px, {} bits{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
+                  path, image.columns(), image.rows(), metadata.bit_depth,
+                  metadata.channels >= 3 ? ", colour turned to luminance" : "", *least, *most, seen.mean,
+                  seen.dot_diameter_px,
+                  std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})",
+                                                          seen.snr(), seen.dot_height, seen.noise)
+                                            : "SNR unknown (no noise or no dots to be seen)"));
   return ok;
 }
 
@@ -93,7 +90,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
 
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string kind, file, dataset;
+    std::string kind, file, dataset, x, m;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field or image")
@@ -101,11 +98,16 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       ->check(CLI::IsMember({"field", "image", "lens", "mie"}));
   app.add_option("file", arguments->file, "The file");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
+  app.add_option("--x", arguments->x)->group("");  // of info mie
+  app.add_option("--m", arguments->m)->group("");
   return [arguments, &options] {
     if (arguments->kind == "lens" || arguments->kind == "mie") {
       throw DataError(
           "info " + arguments->kind,
           "is not available yet (this version simulates BOS with a thin lens); use info field or info image");
+    }
+    if (!arguments->x.empty() || !arguments->m.empty()) {
+      throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); leave them out");
     }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
     return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, options)

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     std::vector<Ray<double>> const rays = read_rays(arguments->rays);
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
+    for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
     plan_step(scene);
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics

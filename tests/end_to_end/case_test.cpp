@@ -43,6 +43,13 @@ TEST_F(Case, SummaryHasItsKeysAndTheMagnificationOfTheThinLens) {
   EXPECT_EQ(summary["gladstone_dale"], 2.26e-4);
 }
 
+TEST_F(Case, FilesTellWholeNumbersAndPitchesAsWritten) {
+  render("case");
+  EXPECT_THAT(read("case/reference.tif"), HasSubstr("# gladstone image, bit_depth = 16, pixel_pitch_m = 1e-05\n"));
+  succeed({"correlate", "case"});
+  EXPECT_EQ(Hdf5Reader(in("case/vectors.h5").string()).attribute("grid_columns"), "7");
+}
+
 TEST_F(Case, MapsOfTheFieldAreOneNodeEveryTwoPixels) {
   render("case", {"--set", "camera.pixels=[64, 48]"});
   Hdf5Reader const truth(in("case/truth.h5").string());
@@ -122,6 +129,17 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   EXPECT_EQ(read("z.csv"), text);
   write("s.toml", "[corelate]\nwindow_px = [32, 16]\n");
   expect_refused({"correlate", "case", "--config", "s.toml"}, 2, {"s.toml:1:2: unknown table [corelate]"});
+}
+
+TEST_F(Case, ColourPicturesAreSaidToBeTurnedToGrey) {
+  std::string picture = "P6\n64 64\n255\n";
+  for (unsigned i = 0; i < 3 * 64 * 64; ++i) picture += static_cast<char>(i * 2654435761u >> 24);
+  write("colour.ppm", picture);
+  Outcome const outcome =
+      gladstone({"correlate", "colour.ppm", "colour.ppm", "-o", "v.csv", "--set", "correlate.window_px=[16]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("colour.ppm is a colour picture: its luminance (Rec. 709) is correlated"));
+  EXPECT_EQ(json_of({"info", "image", "colour.ppm"})["channels"], 3);
 }
 
 TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {

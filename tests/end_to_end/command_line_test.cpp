@@ -58,6 +58,8 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
 TEST_F(CommandLine, InfoThatIsDueLaterIsRefusedByName) {
   expect_refused({"info", "lens", "a.zmx"}, 2, {"info lens: is not available yet", "use info field or info image"});
   expect_refused({"info", "mie"}, 2, {"info mie: is not available yet"});
+  expect_refused({"info", "mie", "--x", "1", "--m", "1.33,0"}, 2, {"info mie: is not available yet"});
+  expect_refused({"info", "image", "a.tif", "--x", "1"}, 2, {"info image: has no --x and --m"});
   expect_refused({"info", "image"}, 2, {"info image: needs a file"});
 }
 
@@ -79,6 +81,23 @@ TEST_F(CommandLine, JsonIsOneObjectAndNothingElseForEveryCommand) {
   EXPECT_EQ(json_of({"info", "image", "case/flow.tif"})["columns"], 64);
   EXPECT_EQ(json_of({"info", "field", GLADSTONE_DATA_DIR "/fields/hbdt512_late_slice.h5"})["nodes"],
             nlohmann::json::array({512, 512, 1}));
+}
+
+// A camera's picture tells the noise that was put in: read noise of 30 e is 30 / 30000 of full scale, and the black
+// level keeps it from being cut off; shot noise of the dark is none.
+TEST_F(CommandLine, InfoImageTellsTheSignalToNoiseRatio) {
+  write("noise.toml", with(small_setup, "pixel_pitch_um = 10.0",
+                           "pixel_pitch_um = 10.0\noffset_dn = 2000\nnoise = { read_noise_e = 30.0 }"));
+  render("case", {"--set", "camera.pixels=[128, 128]"}, "noise.toml");
+  auto const json = json_of({"info", "image", "case/reference.tif"});
+  double const noise = 30.0 / 30000 * 65535;
+  EXPECT_NEAR(json["noise"].get<double>(), noise, 0.1 * noise);
+  EXPECT_NEAR(json["background"].get<double>(), 2000, 0.7 * noise);
+  EXPECT_NEAR(json["snr"].get<double>(), json["dot_height"].get<double>() / json["noise"].get<double>(), 1e-9);
+  EXPECT_GT(json["snr"].get<double>(), 400);
+  EXPECT_THAT(succeed({"info", "image", "case/reference.tif"}), HasSubstr("SNR "));
+  render("ideal");
+  EXPECT_TRUE(json_of({"info", "image", "ideal/reference.tif"})["snr"].is_null());
 }
 
 TEST_F(CommandLine, ValidateMeetsEveryOracle) {

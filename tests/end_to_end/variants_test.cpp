@@ -42,6 +42,20 @@ TEST_F(Variants, PointsOfATableStandWhereItSays) {
   EXPECT_NEAR(reference[3], 31.5 + 0.5e-3 * scale, 0.2);
 }
 
+TEST_F(Variants, DotsOutsideTheViewAreWarnedOf) {
+  write("dots.csv", "x_mm,y_mm\n500,0\n0,-400\n");
+  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  Outcome const outcome = gladstone({"render", "points.toml", "-o", "case"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("none of 2 dots lies in the view, 5.455 x 5.455 mm about the axis"));
+  EXPECT_THAT(nlohmann::json::parse(read("case/summary.json"))["warnings"].dump(),
+              testing::HasSubstr("none of 2 dots lies in the view"));
+  // nothing to be correlated
+  Outcome const correlated = gladstone({"correlate", "case"});
+  EXPECT_EQ(correlated.exit_code, 0) << correlated.err;
+  EXPECT_THAT(correlated.err, testing::HasSubstr("none of 49 vectors is valid"));
+}
+
 TEST_F(Variants, RegularDotsFormALattice) {
   for (std::string const key : {"target.arrangement=regular", "target.kind=grid"}) {
     render("case", {"--set", key});
@@ -180,6 +194,20 @@ TEST_F(FieldFiles, NrrdVolumeBendsAsTheGradientItHolds) {
   }
   write("ramp.nrrd", data);
   expect_the_ramp("case", setup("ramp.nrrd", ""));
+}
+
+TEST_F(FieldFiles, AnIndexInSinglePrecisionIsWarnedOfInTheSummary) {
+  std::string data =
+      "NRRD0004\ntype: float\ndimension: 2\nsizes: 17 17\nendian: little\nencoding: raw\nspacings: 0.5 0.5\n\n";
+  for (int i = 0; i < side * side; ++i) {
+    float const value = 1.0f + 2.26e-4f * ramp(i % side);
+    data.append(reinterpret_cast<char const*>(&value), sizeof value);
+  }
+  write("n.nrrd", data);
+  write("n.toml", setup("n.nrrd", "extrude = true\nquantity = \"refractive_index\""));
+  render("case", {}, "n.toml");
+  EXPECT_THAT(nlohmann::json::parse(read("case/summary.json"))["warnings"].dump(),
+              testing::HasSubstr("holds refractive indices in 24 bits"));
 }
 
 TEST_F(FieldFiles, Hdf5PlaneExtrudedBendsAsTheGradientItHolds) {

@@ -451,6 +451,9 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
   refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
   refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
   refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
+  refuses("dimension: 3\nsizes: 3000000000 3 2\n" + type + raw, "is larger than any field");
+  refuses("dimension: 3\nsizes: 99999999999999999999 3 2\n" + type + raw,
+          "must be whole numbers, of 18 digits at most");
   refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
   refuses(grid + type, "\"encoding\" is missing");
   refuses("no colon here\n", "is no NRRD field");

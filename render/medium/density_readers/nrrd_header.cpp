@@ -113,7 +113,7 @@ class Fields {
     std::vector<Number> values;
     for (std::string word; words >> word;) {
       auto const value = parsed<Number>(word);
-      if (!value) refuse(key, "must be numbers");
+      if (!value) refuse(key, parsed<double>(word) ? "must be whole numbers, of 18 digits at most" : "must be numbers");
       values.push_back(*value);
     }
     if (values.size() != count) refuse(key, fmt::format("must be {} numbers", count));
@@ -185,7 +185,8 @@ std::size_t read_sizes(Fields const& fields, NrrdHeader& header) {
   if (dimension != 2 && dimension != 3) fields.refuse("dimension", "must be 2 or 3 (one number at every point)");
   auto const sizes = fields.numbers<long long>("sizes", static_cast<std::size_t>(dimension));
   for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
-    if (sizes[axis] < 1 || sizes[axis] > std::numeric_limits<int>::max()) fields.refuse("sizes", "must be positive");
+    if (sizes[axis] < 1) fields.refuse("sizes", "must be positive");
+    if (sizes[axis] > std::numeric_limits<int>::max()) fields.refuse("sizes", "is larger than any field");
     header.sizes[axis] = static_cast<int>(sizes[axis]);
   }
   if (static_cast<double>(header.sizes[0]) * header.sizes[1] * header.sizes[2] > 1e15) {
