@@ -113,8 +113,10 @@ TEST(ImageFile, TwelvePackedBitsKeepTheirValues) {
 }
 
 TEST(ImageFile, ColourBecomesLuminanceAndAlphaIsIgnored) {
+  ImageMetadata metadata;
   auto const colour =
-      read_image(write_picture<std::uint8_t>("rgb.png", {100, 0, 0, 0, 100, 0, 0, 0, 100, 9, 9, 9}, 4, 3));
+      read_image(write_picture<std::uint8_t>("rgb.png", {100, 0, 0, 0, 100, 0, 0, 0, 100, 9, 9, 9}, 4, 3), &metadata);
+  EXPECT_EQ(metadata.channels, 3);
   // Rec. ITU-R BT.709, section 3.2; the weights sum to 1
   EXPECT_NEAR(colour(0, 0), 21.26, 1e-12);
   EXPECT_NEAR(colour(1, 0), 71.52, 1e-12);
