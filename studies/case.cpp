@@ -66,19 +66,6 @@ nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   return json;
 }
 
-/// What correlate and compare made in an older rendering of the case.
-std::vector<std::string> derived_files(std::filesystem::path const& folder) {
-  std::vector<std::string> names{case_file::derived.begin(), case_file::derived.end()};
-  std::error_code error;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::string const name = entry->path().filename().string();
-    if (name.starts_with(case_file::other_results) && std::filesystem::exists(entry->path() / case_file::errors)) {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
@@ -172,7 +159,7 @@ RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheor
 
 std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
   namespace fs = std::filesystem;
-  OutputFolder output(folder, case_file::setup, derived_files(folder));
+  OutputFolder output(folder, case_file::setup, {case_file::derived.begin(), case_file::derived.end()});
   PreparedCase prepared = prepare_case(loaded);
   if (single_precision(loaded.setup, renderer)) {
     warn(prepared.warnings,

@@ -61,8 +61,6 @@ inline constexpr char const* summary = "summary.json";
 inline constexpr char const* vectors = "vectors.h5";
 inline constexpr char const* vectors_text = "vectors.csv";
 inline constexpr char const* errors = "errors.json";
-/// Start of the folders that hold the results of other vectors than the case's own; the vectors' name follows.
-inline constexpr char const* other_results = "compare_";
 /// What correlate and compare make of a rendering: it goes when the case is rendered again.
 inline constexpr std::array derived{vectors,
                                     vectors_text,

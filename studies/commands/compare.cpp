@@ -18,16 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the results go: into the case for its own vectors, else into a folder beside them, so that other codes'
-/// results do not replace the case's own.
-fs::path results_folder(fs::path const& folder, fs::path const& vectors) {
-  std::error_code ignored;
-  for (char const* own : {case_file::vectors, case_file::vectors_text}) {
-    if (vectors.empty() || fs::equivalent(vectors, folder / own, ignored)) return folder;
-  }
-  return folder / (case_file::other_results + vectors.stem().string());
-}
-
 /// Writes errors.json and the figures: all of them or, where one cannot be made, none.
 /// @return what was written
 std::vector<fs::path> write_results(fs::path const& place, Comparison const& comparison, std::string const& json,
@@ -65,7 +55,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder, "Case folder")->required();
   app.add_option("--vectors", arguments->compare.vectors,
-                 "Vectors of ours, OpenPIV or PIVlab, whose results go to CASE/compare_NAME; default CASE/vectors.h5");
+                 "Vectors of ours, OpenPIV or PIVlab, default CASE/vectors.h5");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
       ->check(CLI::IsMember({"mid", "reference"}));
@@ -79,11 +69,9 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;
     Comparison const comparison = compare_case(arguments->folder, device, compare);
     std::string const json = errors_json(comparison);
-    fs::path const place = results_folder(arguments->folder, compare.vectors);
-    auto const figures = write_results(place, comparison, json, !arguments->no_figures);
+    auto const figures = write_results(arguments->folder, comparison, json, !arguments->no_figures);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
     for (auto const& path : figures) spdlog::info("drew {}", path.string());
-    if (place != arguments->folder) spdlog::info("wrote {}", (place / case_file::errors).string());
     print_result(options, json, error_report(comparison));
     return ok;
   };

@@ -61,9 +61,9 @@ TEST_F(SetupErrors, TooLittleMemoryStandsAtTheKeyThatTakesMost) {
                        {"setup.toml:" + place_of(text, "pixels") + ": camera.pixels = [1000000, 1000000]: needs"});
   // 2^24 records of 80 bytes in a list that doubles, in 4000 threads: 8 TB
   write("setup.toml", with(small_setup, "rays_per_dot = 32", "rays_per_dot = 10000000"));
-  expect_refused({"render", "setup.toml", "-o", "case", "--threads", "4000"}, 2,
-                 {"setup.toml:" + place_of(read("setup.toml"), "rays_per_dot"), "rays of a dot 1",
-                  "reduce render.rays_per_dot"});
+  expect_refused(
+      {"render", "setup.toml", "-o", "case", "--threads", "4000"}, 2,
+      {"setup.toml:" + place_of(read("setup.toml"), "rays_per_dot"), "rays of a dot 1", "reduce render.rays_per_dot"});
 }
 
 TEST_F(SetupErrors, NoLensOpensWiderThanHalfASpace) {
