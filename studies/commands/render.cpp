@@ -26,7 +26,7 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
     std::string const summary = render_to_folder(loaded, *renderer, arguments->folder);
     auto const json = nlohmann::json::parse(summary);
     print_result(options, summary,
-                 fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.1f} s on {}",
+                 fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.2f} s on {}",
                              arguments->folder, json["dots"].get<long long>(), json["rays_per_dot"].get<long long>(),
                              json["step_mm"].get<double>(), json["magnification"].get<double>(),
                              json["seconds_render"].get<double>(), json["device"].get<std::string>()));

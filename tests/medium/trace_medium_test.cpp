@@ -440,13 +440,18 @@ TEST(TraceMedium, EveryRayEndsOnAFace) {
   }
 }
 
-// The same source in single precision: a preview, good to float's 24 bits of the deviation, not of the ray.
-TEST(TraceMedium, SinglePrecisionKeepsTheDeviation) {
+UniformGradient<float> single_precision_slab() {
   UniformGradient<float> field;
   field.half_thickness = 0.005f;
   field.gladstone_dale = static_cast<float>(K);
   field.ambient_density = static_cast<float>(rho_0);
   field.gradient = {10, 0, 0};
+  return field;
+}
+
+// The same source in single precision: a preview, good to float's 24 bits of the deviation, not of the ray.
+TEST(TraceMedium, SinglePrecisionKeepsTheDeviation) {
+  UniformGradient<float> const field = single_precision_slab();
   Ray<float> const start{{0, 0, -0.25f}, {0, 0, 1}};
   TracingOptions<float> const how{1e-3f, static_cast<float>(K * rho_0), Integrator::rk4, Faces::matched};
   EXPECT_NEAR(apparent_ray(start, trace_medium(field, how, start)).position.x / -5.64843623091498e-6, 1, 5e-6);
@@ -455,11 +460,7 @@ TEST(TraceMedium, SinglePrecisionKeepsTheDeviation) {
 // In single precision a ray enters up to 2e-8 m in front of a face that lies 0.25 m from its start, more than its first
 // step may be long where the steps nearly divide the chord: it is inside all the same and crosses the whole slab.
 TEST(TraceMedium, SinglePrecisionRaysDoNotLeaveByTheFaceTheyEnter) {
-  UniformGradient<float> field;
-  field.half_thickness = 0.005f;
-  field.gladstone_dale = static_cast<float>(K);
-  field.ambient_density = static_cast<float>(rho_0);
-  field.gradient = {10, 0, 0};
+  UniformGradient<float> const field = single_precision_slab();
   TracingOptions<float> const how{2.5e-3f, static_cast<float>(K * rho_0), Integrator::rk4, Faces::matched};
   for (int i = 0; i < 2000; ++i) {
     float const slope = 0.02f * static_cast<float>(i) / 2000;
