@@ -120,23 +120,13 @@ DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t ray
   }
 }
 
-struct Pass {
-  Rendering rendering;
-  double largest_bend = 0;
-};
-
 /// One try at a scene. @param images null: truth only
 template <class T>
-Pass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
-               MirroredMedium const& medium, SpotView const* spot, RenderTheory theory) {
+TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
+                      MirroredMedium const& medium, SpotView const* spot, RenderTheory theory) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
-  Pass pass;
+  TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
-  truth.resize(dots);
-  for (std::size_t dot = 0; dot < dots; ++dot) {
-    truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
-  }
-  pass.rendering.rays = 2 * static_cast<std::int64_t>(dots * rays);
 
   OwnedLightModel const host_light(scene, sources, spot);
   MirroredLightModel const light(host_light.model);
@@ -149,6 +139,7 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources co
     }
   }());
   double const light_per_ray = scene.light_per_ray(sources);
+  TheoryModel const theory_model = scene.theory_model();
   std::optional<ImagePairOnDevice> images;
   if (spot) images.emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   DeviceImages const frames = images ? images->view(light_per_ray) : DeviceImages{};
@@ -166,7 +157,7 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources co
       trace_rays<T>(traced, medium.view<T>(), light.model().image, batch, records.data(), tally.data());
       expose_dots<T>(light.model(), view.sources, batch, records.data(), frames, sums.data() + batch.first);
       if (theory == RenderTheory::yes) {
-        integrate_dots(scene.theory_model(), view, medium.view<double>(), batch, integrals.data() + batch.first);
+        integrate_dots(theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
       }
       if (dots_a_batch < dots) check(cudaDeviceSynchronize(), "a batch of dots");
       progress.advance(batch.dots);
@@ -181,7 +172,7 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources co
       std::vector<DotTheory> along(dots);
       integrals.download(along.data(), dots);
       for (std::size_t dot = 0; dot < dots; ++dot)
-        truth.set_theory(dot, scene.theory_model(), along[dot].along, along[dot].cone);
+        truth.set_theory(dot, theory_model, along[dot].along, along[dot].cone);
     }
     TraceTally counted{};
     tally.download(&counted, 1);
@@ -230,17 +221,11 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   }
   MirroredSources on_device(sources);
   if (single) on_device.mirror_single(sources);
-  while (true) {
-    auto const trace = [&]<class T>(T) {
-      return trace_all<T>(scene, sources, on_device, uploads_->medium, images == RenderImages::yes ? &spot : nullptr,
-                          theory);
-    };
-    Pass pass = single ? trace(float{}) : trace(double{});
-    if (scene.covers_bend(pass.largest_bend)) {
-      if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
-      return std::move(pass.rendering);
-    }
-  }
+  auto const trace = [&]<class T>(T) {
+    return trace_all<T>(scene, sources, on_device, uploads_->medium, images == RenderImages::yes ? &spot : nullptr,
+                        theory);
+  };
+  return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });
 }
 
 }  // namespace gladstone::cuda

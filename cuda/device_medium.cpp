@@ -1,7 +1,5 @@
 #include "cuda/device_medium.h"
 
-#include <fmt/format.h>
-
 namespace gladstone::cuda {
 namespace {
 
@@ -14,15 +12,11 @@ std::size_t coefficient_count(Grid const& grid) {
          static_cast<std::size_t>(Grid::dimensions == 2 ? 1 : grid.nodes[2] + 2 * Grid::padding);
 }
 
-/// @throws DeviceError before anything is allocated
-void require_room(std::size_t bytes) {
+/// @throws OutOfDeviceMemory before anything is allocated
+void require_room(char const* what_for, std::size_t bytes) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-  if (bytes <= free) return;
-  throw DeviceError(fmt::format(
-      "the field's refractivity needs {:.2f} GiB of device memory, {:.2f} of {:.2f} GiB are free; use a "
-      "smaller field or --device cpu",
-      static_cast<double>(bytes) / 0x1p30, static_cast<double>(free) / 0x1p30, static_cast<double>(total) / 0x1p30));
+  if (bytes > free) throw OutOfDeviceMemory(what_for, bytes);
 }
 
 }  // namespace
@@ -35,8 +29,8 @@ MirroredMedium::MirroredMedium(Medium<double> const& medium, bool wide) : host_(
           using Stored = std::remove_cvref_t<decltype(*grid.coefficients)>;
           std::size_t const count = coefficient_count(grid);
           bool const widen = wide && std::is_same_v<Grid, SplineVolume<double>> && count <= most_wide_nodes;
-          require_room(count * (widen ? sizeof(double) : sizeof(Stored)));
           char const* const name = "the field's refractivity";
+          require_room(name, count * (widen ? sizeof(double) : sizeof(Stored)));
           if (widen) {
             std::vector<double> const widened(grid.coefficients, grid.coefficients + count);
             doubles_ = DeviceArray<double>(widened.data(), count, name);

@@ -14,11 +14,7 @@ inline constexpr bool reads_memory = requires(Medium medium) {
 };
 
 /// Blocks that are to fit on a processor: enough warps to hide the latency of loads without spilling registers.
-#ifndef TRACE_BLOCKS
-#define TRACE_BLOCKS 3
-#endif
-template <class Medium>
-inline constexpr int trace_blocks = TRACE_BLOCKS;
+inline constexpr int trace_blocks = 3;
 
 /// TracePair's Exposure on the device: keeps one ray's record and outcome in registers.
 template <class T>
@@ -103,7 +99,7 @@ struct ChunkOrder {
 };
 
 template <class T, class Medium>
-__global__ void __launch_bounds__(trace_threads, trace_blocks<Medium>)
+__global__ void __launch_bounds__(trace_threads, trace_blocks)
     trace_rays_kernel(TracePair<T, Medium> const pair, TargetImage const image, Batch const batch,
                       RayRecord<T>* const records, TraceTally* const tally) {
   __shared__ ChunkOrder<T, Medium> chunk;

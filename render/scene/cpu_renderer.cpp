@@ -28,19 +28,13 @@ void record_theory(TheoryModel const& model, SceneView<double> const& view, Medi
   truth.set_theory(dot, model, integrate_chief(model, view, medium, dot), cone);
 }
 
-struct Pass {
-  Rendering rendering;
-  double largest_bend = 0;
-};
-
 template <class Medium>
-Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
-               RenderTheory theory) {
+TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
+                      RenderTheory theory) {
   TracePair<double, Medium> const pair{scene.view(sources), medium};
   std::size_t const count = sources.centre.size();
   double const light_per_ray = scene.light_per_ray(sources);
-  Pass pass;
-  pass.rendering.truth.resize(count);
+  TracingPass pass(scene, sources);
   std::optional<LightImage> images[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; spot && frame < frame_count; ++frame) {
@@ -55,7 +49,6 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
     GroundTruth& truth = pass.rendering.truth;
     for (std::size_t dot = begin; dot < end; ++dot) {
       Vec2d const centre = sources.centre[dot];
-      truth.position_m[dot] = {centre.x, centre.y, -scene.setup.z_d};
       exposure.begin(centre, sources.radiance_of(dot), targets, light_per_ray);
       trace_dot(pair, dot, scene.rays_per_dot, exposure);
       exposure.finish(truth, dot);
@@ -72,7 +65,6 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
       }
     }
   });
-  pass.rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
   if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
   return pass;
 }
@@ -82,16 +74,30 @@ Pass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medi
 Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
-  while (true) {
-    Pass pass = std::visit(
+  return render_with_margin(scene, images, [&] {
+    return std::visit(
         [&](auto const& medium) {
           return trace_all(scene, sources, medium, images == RenderImages::yes ? &spot : nullptr, theory);
         },
         scene.medium.view);
-    if (scene.covers_bend(pass.largest_bend)) {
-      if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
-      return std::move(pass.rendering);
-    }
+  });
+}
+
+TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
+  std::size_t const count = sources.centre.size();
+  rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
+  rendering.truth.resize(count);
+  for (std::size_t dot = 0; dot < count; ++dot) {
+    rendering.truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
+  }
+}
+
+Rendering render_with_margin(Scene& scene, RenderImages images, std::function<TracingPass()> const& trace) {
+  while (true) {
+    TracingPass pass = trace();
+    if (!scene.covers_bend(pass.largest_bend)) continue;
+    if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
+    return std::move(pass.rendering);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -43,6 +44,19 @@ class CpuRenderer : public Renderer {
   std::string device() const override { return "cpu"; }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 };
+
+/// One try at tracing a scene.
+struct TracingPass {
+  Rendering rendering;
+  double largest_bend = 0;  ///< furthest that the medium moved a ray on the lens plane [m]
+
+  /// Counts the rays and places the dots; the rest is for the device to fill in.
+  TracingPass(Scene const& scene, DotPattern const& sources);
+};
+
+/// Traces a scene as often as it takes for the pupil to be wide enough for what the medium bends, and gives the images
+/// their polarity: what render() is on every device.
+Rendering render_with_margin(Scene& scene, RenderImages images, std::function<TracingPass()> const& trace);
 
 /// Turns the light that bright dots send into what the target's polarity says: dark dots are taken from a white target.
 void apply_polarity(Scene const& scene, LightPair& light);
