@@ -6,10 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "cuda/device_deflections.h"
 #include "cuda/expose_dots.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
-#include "render/scene/dot_exposure.h"
+#include "render/scene/light_model.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -56,6 +57,14 @@ class MirroredLightModel {
   explicit MirroredLightModel(LightModel const& host) : model_(host) {
     model_.source = mirrored(host.source, 0);
     for (int rule = 0; rule < pupil_rules; ++rule) model_.pupil[rule] = mirrored(host.pupil[rule], 1 + rule);
+    cone_points_ = DeviceArray<ConePoint>(host.cone.points, static_cast<std::size_t>(host.cone.count), "a cubature");
+    cone_directions_ =
+        DeviceArray<Vec2d>(host.cone.directions, static_cast<std::size_t>(host.cone.direction_count), "a cubature");
+    cone_scattered_ =
+        DeviceArray<Vec2d>(host.cone.scattered, static_cast<std::size_t>(host.cone.scattered_count), "a cubature");
+    model_.cone.points = cone_points_.data();
+    model_.cone.scattered = cone_scattered_.data();
+    model_.cone.directions = cone_directions_.data();
     if (host.spot.model == SpotModel::airy) {
       airy_ = DeviceArray<double>(host.spot.airy.shares, host.spot.airy.count(), "the Airy table");
       model_.spot.airy.shares = airy_.data();
@@ -74,6 +83,8 @@ class MirroredLightModel {
   LightModel model_;
   DeviceArray<Vec2d> points_[1 + pupil_rules];
   DeviceArray<double> weights_[1 + pupil_rules];
+  DeviceArray<ConePoint> cone_points_;
+  DeviceArray<Vec2d> cone_directions_, cone_scattered_;
   DeviceArray<double> airy_;
 };
 
@@ -128,7 +139,8 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
 
-  OwnedLightModel const host_light(scene, sources, spot);
+  DeviceDeflections const deflections(scene, sources, medium.view<double>());
+  OwnedLightModel const host_light(scene, sources, spot, deflections.table());
   MirroredLightModel const light(host_light.model);
   SceneView<double> const view = on_device.place(scene.view(sources));
   SceneView<T> const traced = on_device.place([&] {

@@ -1,19 +1,16 @@
 #include <algorithm>
 
 #include "cuda/block_sum.cuh"
+#include "cuda/cone_light.cuh"
 #include "cuda/expose_dots.h"
 #include "cuda/launch.h"
-#include "render/sensor/exposure.h"
 
 namespace gladstone::cuda {
 namespace {
 
-constexpr int threads = 128;
-constexpr int warp_size = 32;
-constexpr int warps = threads / warp_size;
+constexpr int threads = dot_threads;
 constexpr int tile_rays = threads;  // whose factors are summed together
 constexpr int sums_per_thread = (FlowFit::most_sums + threads - 1) / threads;
-constexpr unsigned int whole_warp = 0xffffffffu;
 
 template <class T>
 __device__ RayRecord<double> widened(RayRecord<T> const& ray) {
@@ -23,108 +20,6 @@ __device__ RayRecord<double> widened(RayRecord<T> const& ray) {
     auto const wide = [](Vec2<T> v) { return Vec2d{v.x, v.y}; };
     return {wide(ray.place), wide(ray.pupil),      wide(ray.arrival), wide(ray.reference),  wide(ray.flow),
             ray.weight,      ray.reference_weight, ray.flow_weight,   ray.reference_counts, ray.flow_counts};
-  }
-}
-
-__device__ void add_light(DeviceImages const& images, Frame frame, int column, int row, double light) {
-  if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
-  auto const share = static_cast<unsigned long long>(to_fixed_point(light * images.light_per_weight));
-  atomicAdd(images.light[static_cast<int>(frame)] + static_cast<std::size_t>(row) * images.columns + column, share);
-}
-
-/// A square piece of a frame in which a block gathers a dot's light, one copy a warp.
-struct Patch {
-  double* light;  ///< [warp][side][side]
-  int side;
-  int left, top;  ///< image position of its corner
-
-  __device__ double* of_warp(int warp) const { return light + static_cast<std::size_t>(warp) * side * side; }
-
-  __device__ void begin(Vec2d middle) {
-    bool const sound = fabs(middle.x) < 1e8 && fabs(middle.y) < 1e8;
-    left = sound ? static_cast<int>(floor(middle.x + 0.5)) - side / 2 : 0;
-    top = sound ? static_cast<int>(floor(middle.y + 0.5)) - side / 2 : 0;
-    for (int i = threadIdx.x; i < warps * side * side; i += threads) light[i] = 0;
-    __syncthreads();
-  }
-
-  /// Sends what all warps have gathered to the image.
-  __device__ void flush(DeviceImages const& images, Frame frame) const {
-    __syncthreads();
-    for (int i = threadIdx.x; i < side * side; i += threads) {
-      double sum = 0;
-      for (int warp = 0; warp < warps; ++warp) sum += of_warp(warp)[i];
-      if (sum != 0) add_light(images, frame, left + i % side, top + i / side, sum);
-    }
-    __syncthreads();
-  }
-};
-
-/// Room for the column and row shares of a group of deposits, one a warp.
-struct SharesOfGroup {
-  static constexpr int room = 512;
-  double of[room];
-};
-
-/// Lays down `count` deposits: source(i) gives the i-th. A warp takes a group of them, works each out on a lane, its
-/// shares of columns and rows included, and then spreads one after the other, a lane a pixel.
-template <class Source>
-__device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages const& images, Frame frame,
-                         SharesOfGroup* shares_of_warps, std::uint64_t count, Source const& source) {
-  int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
-  int const width = 2 * spot.half_width() + 1;
-  bool const gaussian = spot.model != SpotModel::none && spot.model != SpotModel::airy;
-  int const group = gaussian ? min(warp_size, SharesOfGroup::room / (2 * width)) : warp_size;
-  double* const shares = shares_of_warps[warp].of;
-  double* const gathered = patch.of_warp(warp);
-  int const first_row = lane / 8, first_column = lane % 8;
-  for (std::uint64_t base = std::uint64_t(group) * warp; base < count; base += group * warps) {
-    Deposit mine;
-    if (lane < group && base + lane < count) mine = source(base + lane);
-    if (!(fabs(mine.at.x) < 1e8 && fabs(mine.at.y) < 1e8)) mine = {};
-    unsigned int const lit = __ballot_sync(whole_warp, mine.weight != 0);
-    if (lit == 0) continue;
-    int const my_column = static_cast<int>(floor(mine.at.x + 0.5)) - width / 2;
-    int const my_row = static_cast<int>(floor(mine.at.y + 0.5)) - width / 2;
-    if (gaussian && mine.weight != 0) {
-      double* const of_columns = shares + lane * 2 * width;
-      spot.gaussian.shares(mine.at.x, my_column, width, of_columns);
-      spot.gaussian.shares(mine.at.y, my_row, width, of_columns + width);
-      for (int i = 0; i < width; ++i) of_columns[i] *= mine.weight;
-    }
-    __syncwarp();
-    for (int which = 0; which < group; ++which) {
-      if ((lit >> which & 1u) == 0) continue;
-      int const c0 = __shfl_sync(whole_warp, my_column, which), r0 = __shfl_sync(whole_warp, my_row, which);
-      double const* const of_columns = shares + which * 2 * width;
-      double const* const of_rows = of_columns + width;
-      bool const inside = c0 >= patch.left && r0 >= patch.top && c0 + width <= patch.left + patch.side &&
-                          r0 + width <= patch.top + patch.side;
-      double* const corner = gathered + (r0 - patch.top) * patch.side + c0 - patch.left;
-      if (gaussian && inside) {
-        for (int r = first_row; r < width; r += 4) {
-          for (int c = first_column; c < width; c += 8) corner[r * patch.side + c] += of_rows[r] * of_columns[c];
-        }
-      } else {
-        Deposit const light{{__shfl_sync(whole_warp, mine.at.x, which), __shfl_sync(whole_warp, mine.at.y, which)},
-                            __shfl_sync(whole_warp, mine.weight, which)};
-        for (int r = first_row; r < width; r += 4) {
-          for (int c = first_column; c < width; c += 8) {
-            double share = light.weight;
-            if (gaussian) share = of_rows[r] * of_columns[c];
-            if (spot.model == SpotModel::airy) {
-              share *= spot.airy.share(light.at.x - (c0 + width / 2), light.at.y - (r0 + width / 2), r, c);
-            }
-            if (inside) {
-              corner[r * patch.side + c] += share;
-            } else {
-              add_light(images, frame, c0 + c, r0 + r, share);
-            }
-          }
-        }
-      }
-      __syncwarp();
-    }
   }
 }
 
@@ -206,7 +101,8 @@ __device__ void fit_flow(LightModel const& model, RayRecord<T> const* rays, std:
 
 /// Dynamic shared memory: the tile of factors, then the patch, in the same place.
 std::size_t shared_bytes(int side) {
-  return std::max(sizeof(double) * tile_rays * (FlowFit::most_factors + 1), sizeof(double) * warps * side * side);
+  return std::max(std::max(sizeof(TableCheck) * threads, sizeof(double) * tile_rays * (FlowFit::most_factors + 1)),
+                  sizeof(double) * dot_warps * side * side);
 }
 
 template <class T>
@@ -217,23 +113,41 @@ __global__ void __launch_bounds__(threads, 4)
   extern __shared__ double dynamic[];
   __shared__ __align__(16) unsigned char state_storage[sizeof(BlockState)];
   BlockState& state = *reinterpret_cast<BlockState*>(state_storage);
-  __shared__ SharesOfGroup shares[warps];
-  __shared__ __align__(16) unsigned char reduction[threads * sizeof(CentroidSum<double>)];
+  __shared__ SharesOfGroup shares[dot_warps];
+  void* const reduction = dynamic;
+  __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
+  __shared__ __align__(16) unsigned char cone_state_storage[sizeof(ConeState)];
+  CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
+  ConeState& cone_state = *reinterpret_cast<ConeState*>(cone_state_storage);
   bool const with_images = images.light[0] != nullptr;
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
     std::uint64_t const index = batch.first + i;
     RayRecord<T> const* const rays = records + i * batch.rays;
     DotPlan const plan = DotPlan::make(model, sources.centre[index], sources.radiance ? sources.radiance[index] : 1.0);
     CentroidSum<double> hits[frame_count];
-    bool moved = false;
+    bool moved = false, tabled = model.tabled(sources.centre[index]);
+    TableCheck table_check;
     for (std::uint64_t j = threadIdx.x; j < batch.rays; j += threads) {
       RayRecord<double> const ray = widened(rays[j]);
       hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
       hits[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
       moved |= ray.moved();
+      if (tabled) {
+        table_check.add(model.table, sources.centre[index] + model.offset(ray.place), flow_displacement(model, ray),
+                        ray);
+      }
     }
+    moved = __syncthreads_or(moved);
     for (int frame = 0; frame < frame_count; ++frame) {
       hits[frame] = block_sum(hits[frame], reinterpret_cast<CentroidSum<double>*>(reduction));
+    }
+    tabled = tabled && moved;
+    if (tabled) {
+      table_check = block_sum(table_check, reinterpret_cast<TableCheck*>(dynamic));
+      if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], table_check);
+      __syncthreads();
+      tabled = integrate_cone(model, cone, cone_state);
+      if (tabled) sum_cone(model, plan, cone.origin(), cone_state.moments, cone_state.without_medium, hits);
     }
     if (threadIdx.x == 0) sums[i] = {plan.origin, {hits[0], hits[1]}};
     if (!with_images) continue;
@@ -242,13 +156,18 @@ __global__ void __launch_bounds__(threads, 4)
     auto const expose = [&](Frame frame, std::uint64_t count, auto const& source) {
       lay_down(model.spot, patch, images, frame, shares, count, source);
     };
-    if (model.controlled && !__syncthreads_or(moved)) {
+    if (model.controlled && !moved) {
       for (Frame const frame : {Frame::reference, Frame::flow}) {
         patch.begin(plan.origin);
         expose(frame, model.source.count,
                [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
         patch.flush(images, frame);
       }
+    } else if (tabled && expose_cone(model, plan, cone, cone_state, patch, images, shares)) {
+      patch.begin(plan.origin);
+      expose(Frame::reference, model.source.count,
+             [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
+      patch.flush(images, Frame::reference);
     } else if (model.controlled) {
       fit_flow(model, rays, batch.rays, state, reinterpret_cast<double(*)[FlowFit::most_factors + 1]>(dynamic),
                reduction);

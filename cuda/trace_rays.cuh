@@ -98,6 +98,16 @@ struct ChunkOrder {
   }
 };
 
+/// How a batch's rays are cut into chunks: some of one dot's rays, or all rays of several dots.
+struct Chunks {
+  std::uint64_t chunks_a_dot, dots_a_chunk, count;
+
+  GLADSTONE_HD explicit Chunks(Batch const& batch)
+      : chunks_a_dot((batch.rays + chunk_rays - 1) / chunk_rays),
+        dots_a_chunk(2 * batch.rays <= trace_threads ? trace_threads / batch.rays : 1),
+        count((batch.dots + dots_a_chunk - 1) / dots_a_chunk * chunks_a_dot) {}
+};
+
 template <class T, class Medium>
 __global__ void __launch_bounds__(trace_threads, trace_blocks)
     trace_rays_kernel(TracePair<T, Medium> const pair, TargetImage const image, Batch const batch,
@@ -106,15 +116,20 @@ __global__ void __launch_bounds__(trace_threads, trace_blocks)
   __shared__ unsigned int counts[2 * ray_status_count];
   if (threadIdx.x < 2 * ray_status_count) counts[threadIdx.x] = 0;
   double bend2 = 0;
-  std::uint64_t const chunks_a_dot = (batch.rays + chunk_rays - 1) / chunk_rays;
-  for (std::uint64_t c = blockIdx.x; c < batch.dots * chunks_a_dot; c += gridDim.x) {
-    std::uint64_t const dot_of_batch = c / chunks_a_dot, first = c % chunks_a_dot * chunk_rays;
-    std::uint64_t const dot = batch.first + dot_of_batch;
-    int const count = static_cast<int>(min(std::uint64_t{chunk_rays}, batch.rays - first));
+  Chunks const chunks(batch);
+  for (std::uint64_t c = blockIdx.x; c < chunks.count; c += gridDim.x) {
+    std::uint64_t const first_dot = c / chunks.chunks_a_dot * chunks.dots_a_chunk;
+    std::uint64_t const first = c % chunks.chunks_a_dot * chunk_rays;
+    std::uint64_t const dots = min(chunks.dots_a_chunk, batch.dots - first_dot);
+    int const count = static_cast<int>(min(std::uint64_t{chunk_rays}, dots * batch.rays - first));
+    bool const sorted = reads_memory<Medium> && chunks.dots_a_chunk == 1;
     __syncthreads();
-    if constexpr (reads_memory<Medium>) chunk.sort(pair, dot, first, count);
+    if (sorted) chunk.sort(pair, batch.first + first_dot, first, count);
     for (int i = threadIdx.x; i < count; i += trace_threads) {
-      std::uint64_t const ray = first + (reads_memory<Medium> ? chunk.order[i] : i);
+      int const in_chunk = sorted ? chunk.order[i] : i;
+      int const aside = chunks.dots_a_chunk == 1 ? 0 : in_chunk / static_cast<int>(batch.rays);
+      std::uint64_t const dot_of_batch = first_dot + aside, dot = batch.first + dot_of_batch;
+      std::uint64_t const ray = first + in_chunk - aside * batch.rays;
       RecordOneRay<T> exposure{image, pair.scene.sources.centre[dot]};
       pair.template together<1>({dot, ray}, exposure);
       records[dot_of_batch * batch.rays + ray] = exposure.record_of_ray;
@@ -138,9 +153,8 @@ void trace_rays(SceneView<T> const& view, DeviceMedium<T> const& medium, TargetI
       [&](auto const& held) {
         using Held = std::remove_cvref_t<decltype(held)>;
         auto* const kernel = trace_rays_kernel<T, Held>;
-        std::uint64_t const chunks = batch.dots * ((batch.rays + chunk_rays - 1) / chunk_rays);
-        kernel<<<blocks_for(kernel, trace_threads, 0, chunks), trace_threads>>>(TracePair<T, Held>{view, held}, image,
-                                                                                batch, records, tally);
+        kernel<<<blocks_for(kernel, trace_threads, 0, Chunks(batch).count), trace_threads>>>(
+            TracePair<T, Held>{view, held}, image, batch, records, tally);
         check_launch("trace_rays");
       },
       medium);

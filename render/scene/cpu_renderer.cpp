@@ -8,7 +8,9 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
+#include "render/scene/light_model.h"
 #include "render/scene/renderer.h"
 #include "render/scene/theory.h"
 #include "render/scene/trace_pair.h"
@@ -40,7 +42,8 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium cons
   for (int frame = 0; spot && frame < frame_count; ++frame) {
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  OwnedLightModel const light(scene, sources, spot);
+  DeflectionMap const deflections(scene, sources);
+  OwnedLightModel const light(scene, sources, spot, deflections.table());
   TheoryModel const theory_model = scene.theory_model();
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);

@@ -3,47 +3,48 @@
 #include <cmath>
 #include <limits>
 
-#include "render/base/gauss_legendre.h"
-#include "render/base/units.h"
-
 namespace gladstone {
+namespace {
 
-SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy) {
-  SpotView spot;
-  spot.model = scene.chief_rays_only() ? SpotModel::none : scene.setup.lens.spot;
-  if (spot.model == SpotModel::airy) spot.airy = airy.emplace(scene.spot_scale_px()).view();
-  spot.gaussian.sigma = scene.spot_sigma_px();
-  return spot;
+/// Pixels that a spot about p reaches. @pre p is within the range of int
+Footprint footprint(Vec2d p, int half) {
+  return {static_cast<int>(std::floor(p.x + 0.5)) - half, static_cast<int>(std::floor(p.y + 0.5)) - half, 2 * half + 1};
 }
+
+}  // namespace
 
 LightPatch::LightPatch(SpotView const& spot)
     : spot_(spot),
       half_(spot.half_width()),
       side_(2 * half_ + 33),
       light_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0.0),
-      column_shares_(static_cast<std::size_t>(2 * half_ + 1)),
-      row_shares_(static_cast<std::size_t>(2 * half_ + 1)) {}
+      column_shares_(static_cast<std::size_t>((DisplacementMoments::order + 1) * (2 * half_ + 1))),
+      row_shares_(column_shares_.size()) {}
 
-void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light_per_weight) {
-  double const middle_x = std::floor(p.x + 0.5), middle_y = std::floor(p.y + 0.5);
-  if (!(std::abs(middle_x) < 1e8 && std::abs(middle_y) < 1e8)) return;
-  int const width = 2 * half_ + 1;
-  int const column = static_cast<int>(middle_x) - half_, row = static_cast<int>(middle_y) - half_;
+double* LightPatch::reach(Footprint const& spot, LightImage* image, double light_per_weight) {
+  int const width = spot.width;
   bool const untouched = high_column_ == low_column_;
-  if (untouched || column < left_ || row < top_ || column + width > left_ + side_ || row + width > top_ + side_) {
+  if (untouched || spot.column < left_ || spot.row < top_ || spot.column + width > left_ + side_ ||
+      spot.row + width > top_ + side_) {
     if (!untouched) flush(image, light_per_weight);
-    left_ = column - (side_ - width) / 2;
-    top_ = row - (side_ - width) / 2;
+    left_ = spot.column - (side_ - width) / 2;
+    top_ = spot.row - (side_ - width) / 2;
     low_column_ = low_row_ = side_;
     high_column_ = high_row_ = 0;
   }
-  int const c0 = column - left_, r0 = row - top_;
+  int const c0 = spot.column - left_, r0 = spot.row - top_;
   low_column_ = std::min(low_column_, c0);
   high_column_ = std::max(high_column_, c0 + width);
   low_row_ = std::min(low_row_, r0);
   high_row_ = std::max(high_row_, r0 + width);
-  double* const corner = light_.data() + r0 * side_ + c0;
+  return light_.data() + r0 * side_ + c0;
+}
 
+void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light_per_weight) {
+  if (!(std::abs(p.x) < 1e8 && std::abs(p.y) < 1e8)) return;
+  Footprint const spot = footprint(p, half_);
+  double* const corner = reach(spot, image, light_per_weight);
+  int const width = spot.width;
   switch (spot_.model) {
     case SpotModel::none:
       *corner += weight;
@@ -51,17 +52,43 @@ void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light
     case SpotModel::airy:
       for (int j = 0; j < width; ++j) {
         for (int i = 0; i < width; ++i) {
-          corner[j * side_ + i] += weight * spot_.airy.share(p.x - middle_x, p.y - middle_y, j, i);
+          corner[j * side_ + i] +=
+              weight * spot_.airy.share(p.x - (spot.column + half_), p.y - (spot.row + half_), j, i);
         }
       }
       break;
     default: {
-      spot_.gaussian.shares(p.x, column, width, column_shares_.data());
-      spot_.gaussian.shares(p.y, row, width, row_shares_.data());
+      spot_.gaussian.shares(p.x, spot.column, width, column_shares_.data());
+      spot_.gaussian.shares(p.y, spot.row, width, row_shares_.data());
       for (int j = 0; j < width; ++j) {
         double const line = weight * row_shares_[static_cast<std::size_t>(j)];
         for (int i = 0; i < width; ++i) corner[j * side_ + i] += line * column_shares_[static_cast<std::size_t>(i)];
       }
+    }
+  }
+}
+
+void LightPatch::deposit(Vec2d p, double weight, DisplacementMoments const& moments, LightImage* image,
+                         double light_per_weight) {
+  using M = DisplacementMoments;
+  if (!(std::abs(p.x) < 1e8 && std::abs(p.y) < 1e8)) return;
+  Footprint const spot = footprint(p, half_);
+  double* const corner = reach(spot, image, light_per_weight);
+  int const width = spot.width;
+  spot_.gaussian.taylor_shares(p.x, spot.column, width, M::order, column_shares_.data());
+  spot_.gaussian.taylor_shares(p.y, spot.row, width, M::order, row_shares_.data());
+  for (int j = 0; j < width; ++j) {
+    double of_row[M::order + 1];
+    for (int a = 0; a <= M::order; ++a) {
+      of_row[a] = 0;
+      for (int b = 0; a + b <= M::order; ++b) {
+        of_row[a] += weight * moments.of[M::at(a, b)] * row_shares_[static_cast<std::size_t>(b * width + j)];
+      }
+    }
+    for (int i = 0; i < width; ++i) {
+      double sum = 0;
+      for (int a = 0; a <= M::order; ++a) sum += of_row[a] * column_shares_[static_cast<std::size_t>(a * width + i)];
+      corner[j * side_ + i] += sum;
     }
   }
 }
@@ -77,91 +104,6 @@ void LightPatch::flush(LightImage* image, double light_per_weight) {
   low_column_ = high_column_ = low_row_ = high_row_ = 0;
 }
 
-SourceCubature SourceCubature::disc(int radial, int innermost, int outermost) {
-  SourceCubature cubature;
-  GaussLegendre const nodes(radial);
-  for (int i = 0; i < radial; ++i) {
-    double const r = std::sqrt(0.5 * (1 + nodes.node[static_cast<std::size_t>(i)]));
-    int const angular = static_cast<int>(std::ceil(innermost + (outermost - innermost) * r));
-    for (int k = 0; k < angular; ++k) {
-      double const angle = 2 * pi * (k + 0.5 * (i % 2)) / angular;
-      cubature.points.push_back({r * std::cos(angle), r * std::sin(angle)});
-      cubature.weights.push_back(0.5 * nodes.weight[static_cast<std::size_t>(i)] / angular);
-    }
-  }
-  return cubature;
-}
-
-SourceCubature SourceCubature::radon() {
-  SourceCubature cubature{{{0, 0}}, {0.25}};
-  for (int k = 0; k < 6; ++k) {
-    double const angle = pi * k / 3;
-    cubature.points.push_back({std::sqrt(2.0 / 3.0) * std::cos(angle), std::sqrt(2.0 / 3.0) * std::sin(angle)});
-    cubature.weights.push_back(0.125);
-  }
-  return cubature;
-}
-
-SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, double spot_px) {
-  if (half_size_px == 0) return {{{0, 0}}, {1.0}};
-  // the finest thing that the source's outline is blurred by is the spot
-  double const fineness = half_size_px / std::clamp(spot_px, 0.05, 2.0);
-  if (shape == SourceShape::disc) {
-    return disc(std::clamp(static_cast<int>(std::ceil(fineness)) + 2, 3, 64), 6,
-                std::clamp(static_cast<int>(std::ceil(4 * fineness)) + 6, 9, 256));
-  }
-  int const radial = std::clamp(static_cast<int>(std::ceil(1.5 * fineness)) + 3, 4, 64);
-  SourceCubature cubature;
-  GaussLegendre const nodes(2 * radial);
-  for (std::size_t i = 0; i < nodes.node.size(); ++i) {
-    for (std::size_t k = 0; k < nodes.node.size(); ++k) {
-      cubature.points.push_back({nodes.node[i], nodes.node[k]});
-      cubature.weights.push_back(0.25 * nodes.weight[i] * nodes.weight[k]);
-    }
-  }
-  return cubature;
-}
-
-namespace {
-
-CubatureView view_of(SourceCubature const& rule) {
-  return {rule.points.data(), rule.weights.data(), static_cast<int>(rule.points.size())};
-}
-
-}  // namespace
-
-OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot)
-    : pupil{{{{0, 0}}, {1.0}},
-            SourceCubature::disc(1, 3, 3),
-            SourceCubature::radon(),
-            SourceCubature::disc(3, 9, 9),
-            SourceCubature::disc(5, 15, 15)} {
-  CameraSetup const& camera = scene.setup.camera;
-  bool const has_stop = !scene.chief_rays_only();
-  double const stop_radius = scene.imaging.entrance_pupil / 2;
-  TargetImage& image = model.image;
-  image.axis_px = scene.to_pixel({});
-  image.px_per_metre = scene.imaging.magnification / camera.pixel_pitch;
-  image.source_half = sources.half_size;
-  image.has_stop = has_stop;
-  if (has_stop) {
-    image.stop = scene.aperture_stop();
-    image.stop_radius = stop_radius;
-  }
-  double const share = has_stop ? stop_radius / scene.pupil_radius() : 1.0;
-  model.expected_weight = static_cast<double>(scene.rays_per_dot) * share * share;
-  model.mean_pupil2 = 0.5 * stop_radius * stop_radius;
-  model.distance = scene.setup.z_a + scene.setup.z_d;
-  if (!spot) return;
-  model.spot = *spot;
-  model.controlled = spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
-  double const spot_px =
-      spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
-  source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
-  model.source = view_of(source);
-  for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
-}
-
 DotExposure::DotExposure(LightModel const& model, bool with_images) : model_(model), with_images_(with_images) {
   if (with_images) patches_.assign(frame_count, LightPatch(model.spot));
 }
@@ -175,7 +117,9 @@ void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&image
     images_[frame] = images[frame];
     sums_[frame] = {};
   }
-  moved_ = false;
+  moved_ = light_is_done_ = false;
+  tabled_ = model_.tabled(centre);
+  check_ = {};
   rays_.clear();
 }
 
@@ -197,6 +141,7 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
   sums_[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
   sums_[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
   moved_ |= ray.moved();
+  if (tabled_) check_.add(model_.table, centre_ + model_.offset(ray.place), flow_displacement(model_, ray), ray);
   if (!with_images_) return;
   if (model_.controlled) {
     rays_.push_back(ray);
@@ -256,9 +201,95 @@ void DotExposure::deposit_controlled() {
   }
 }
 
+bool DotExposure::integrate_cone() {
+  CorrectedCone const cone = model_.corrected(centre_, check_);
+  PlaceRule const& rule = model_.places;
+  ConeRule const& cross_section = model_.cone;
+  int const directions = cross_section.direction_count;
+  std::vector<double> rims(static_cast<std::size_t>(rule.count * directions));
+  bool simple = true;
+  for (int i = 0; simple && i < rule.count; ++i) {
+    for (int k = 0; simple && k < directions; ++k) {
+      double const rim = cone.rim(model_.offset(rule.places[i]), cross_section.directions[k]);
+      rims[static_cast<std::size_t>(i * directions + k)] = rim;
+      simple = !std::isnan(rim);
+    }
+  }
+
+  int const points = simple ? cross_section.count : cross_section.scattered_count;
+  cone_points_.clear();
+  DisplacementMoments whole[PlaceRule::most_places];
+  double without_medium[PlaceRule::most_places] = {};
+  BoxRange boxes;
+  bool narrow = true;
+  for (int i = 0; i < rule.count; ++i) {
+    Vec2d const offset = model_.offset(rule.places[i]);
+    for (int k = 0; k < points; ++k) {
+      ConeLight const light = simple ? cone_light(cone, cross_section, k, offset, rims.data() + i * directions)
+                                     : smoothed_light(cone, cross_section, k, offset);
+      without_medium[i] += light.without_medium;
+      whole[i].add(light.weight, light.displacement);
+      boxes.include(light.displacement, model_.box_side());
+      cone_points_.push_back(light);
+    }
+    cone.finish(whole[i], without_medium[i]);
+    if (!std::isfinite(whole[i].square())) return false;
+    narrow = narrow && model_.narrow(whole[i]);
+  }
+  sum_cone(model_, plan_, cone.origin(), whole, without_medium, sums_);
+  if (!with_images_ || !model_.by_moments() || !(narrow || boxes.few())) return true;
+
+  for (int i = 0; i < model_.source.count; ++i) deposit(Frame::reference, reference_light(model_, plan_, i));
+  light_is_done_ = true;
+  if (narrow) {
+    deposit_part(cone.origin(), whole);
+    return true;
+  }
+  parts_.assign(static_cast<std::size_t>(boxes.columns() * boxes.rows() * rule.count), {});
+  auto const middle_of = [&](Vec2<int> box) {
+    return model_.box_side() * Vec2d{static_cast<double>(box.x), static_cast<double>(box.y)};
+  };
+  auto const part_of = [&](Vec2<int> box) {
+    return parts_.data() + ((box.y - boxes.low.y) * boxes.columns() + box.x - boxes.low.x) * rule.count;
+  };
+  ConeLight const* light = cone_points_.data();
+  for (int i = 0; i < rule.count; ++i) {
+    for (int k = 0; k < points; ++k, ++light) {
+      Vec2<int> const box = box_of(light->displacement, model_.box_side());
+      part_of(box)[i].add(light->weight, light->displacement - middle_of(box));
+    }
+  }
+  for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
+    for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
+      DisplacementMoments* const part = part_of({column, row});
+      bool empty = true;
+      for (int i = 0; i < rule.count; ++i) {
+        empty = empty && part[i].of[0] == 0;
+        cone.finish(part[i], without_medium[i]);
+      }
+      if (!empty) deposit_part(cone.origin() + middle_of({column, row}), part);
+    }
+  }
+  return true;
+}
+
+void DotExposure::deposit_part(Vec2d moved, DisplacementMoments const* moments) {
+  MomentField const field = MomentField::fit(model_.places, moments);
+  for (int i = 0; i < model_.source.count; ++i) {
+    Deposit const light = reference_light(model_, plan_, i);
+    patches_[1].deposit(light.at + moved, light.weight, field.at(model_.source.points[i]), images_[1],
+                        light_per_weight_);
+  }
+}
+
+void DotExposure::finish_light() {
+  if (moved_ && tabled_) integrate_cone();
+  if (with_images_ && model_.controlled && !light_is_done_) deposit_controlled();
+}
+
 void DotExposure::finish(GroundTruth& truth, std::size_t dot) {
+  finish_light();
   if (with_images_) {
-    finish_light();
     for (int frame = 0; frame < frame_count; ++frame) {
       patches_[static_cast<std::size_t>(frame)].flush(images_[frame], light_per_weight_);
     }

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "render/base/image.h"
@@ -16,9 +15,6 @@
 #include "render/sensor/exposure.h"
 
 namespace gladstone {
-
-/// The spot of a scene's lens; an Airy table is built into `airy`, which must outlive the view.
-SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy);
 
 /// An image in the making: 64-bit fixed point, added to from many threads in any order.
 class LightImage {
@@ -52,6 +48,8 @@ class LightPatch {
 
   /// Adds one ray's spot of weight `weight` at p [px]; a spot beyond the patch first sends the patch to the image.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);
+  /// Adds Gaussian spots whose displacements from p have these moments, as a Taylor series.
+  void deposit(Vec2d p, double weight, DisplacementMoments const& moments, LightImage* image, double light_per_weight);
   /// Adds what has been gathered to the image (if any) and clears the patch.
   void flush(LightImage* image, double light_per_weight);
 
@@ -72,36 +70,10 @@ class LightPatch {
   int left_ = 0, top_ = 0;                                             // image position of the patch's corner
   int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // touched part
   std::vector<double> light_;
-  std::vector<double> column_shares_, row_shares_;
-};
+  std::vector<double> column_shares_, row_shares_;  ///< for taylor_shares()
 
-/// Points of a unit disc (or square) with weights that integrate what a spot makes of a source to far below a grey
-/// level.
-struct SourceCubature {
-  std::vector<Vec2d> points;    ///< offsets in units of the source's half size
-  std::vector<double> weights;  ///< sum 1
-
-  /// Uniform over the unit disc: Gauss-Legendre in r^2 times equal angles, turned by half a step from ring to ring.
-  /// @param innermost,outermost points on a ring of radius zero and one; between them in proportion
-  static SourceCubature disc(int radial, int innermost, int outermost);
-  /// Seven points, exact up to degree 5 over the unit disc (Radon 1948; Stroud 1971, S2: 5-1).
-  static SourceCubature radon();
-  /// Disc as above; a spot that is wider than a twentieth of the disc is integrated to 1e-5 of the peak, a Table 1 dot
-  /// to 4e-7. Square: Gauss-Legendre in both directions. A point: itself.
-  /// @param half_size_px of the source's image; the finer the spot beside it, the more points
-  static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
-};
-
-/// A scene's light model with the rules that it integrates by; the spot's Airy table is the caller's.
-struct OwnedLightModel {
-  LightModel model;
-  SourceCubature source;
-  SourceCubature pupil[pupil_rules];
-
-  /// @param spot null: no images
-  OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot);
-  OwnedLightModel(OwnedLightModel const&) = delete;  // the model points into the rules
-  OwnedLightModel& operator=(OwnedLightModel const&) = delete;
+  /// Makes room for a spot and marks it as touched. @return the place of its first pixel
+  double* reach(Footprint const& spot, LightImage* image, double light_per_weight);
 };
 
 /// Gathers everything that one dot's rays leave behind; TracePair's Exposure on the CPU. One object a thread, one dot
@@ -119,10 +91,8 @@ class DotExposure {
 
   /// Ends the dot: its light joins the images, its truth is written.
   void finish(GroundTruth& truth, std::size_t dot);
-  /// Completes the patches without sending them anywhere.
-  void finish_light() {
-    if (with_images_ && model_.controlled) deposit_controlled();
-  }
+  /// Completes sums and patches without sending them anywhere.
+  void finish_light();
 
   LightPatch const& patch(Frame frame) const { return patches_[static_cast<std::size_t>(frame)]; }
   CentroidSum<double> const& sum(Frame frame) const { return sums_[static_cast<std::size_t>(frame)]; }
@@ -132,6 +102,11 @@ class DotExposure {
 
  private:
   void deposit(Frame frame, Deposit const& light);
+  /// Truth, and light where it can be, from the cone of a dot that the table covers. @return false: the cone has no
+  /// simple edge, and the rays have to do
+  bool integrate_cone();
+  /// Lays down the light of a part of the cone. @param moved where its moments count from [px]
+  void deposit_part(Vec2d moved, DisplacementMoments const* moments);
   FlowFit fit_flow() const;
   void deposit_controlled();
 
@@ -144,6 +119,11 @@ class DotExposure {
   LightImage* images_[frame_count] = {};
   std::vector<LightPatch> patches_;
   CentroidSum<double> sums_[frame_count];
+  bool tabled_ = false;  ///< whether the deflection table covers the dot's rays
+  TableCheck check_;
+  std::vector<ConeLight> cone_points_;      ///< of all places
+  std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
+  bool light_is_done_ = false;
   bool moved_ = false;  ///< whether the flow did anything to any of its rays
   StatusCounts statuses_{};
   double largest_bend2_ = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/optics/lens_setup.h"
+#include "render/scene/cone_moments.h"
 #include "render/scene/flow_fit.h"
 #include "render/sensor/diffraction_spot.h"
 
@@ -42,6 +43,9 @@ GLADSTONE_HD inline int pupil_rule(double spread_px) {
 /// discs integrated by cubature, plus for every ray the spot where it lands minus the spot where the fit puts it.
 /// Whatever the fit, the sum converges to the image that the rays alone would give; the better the fit, the less it
 /// scatters. Elsewhere every ray's spot is laid down where it lands.
+///
+/// With a deflection table and a Gaussian spot, light and truth come from integrals over the cone instead
+/// (CorrectedCone): the rays correct the table, and no spot is laid down for them.
 struct LightModel {
   TargetImage image;
   SpotView spot;
@@ -51,6 +55,35 @@ struct LightModel {
   double distance = 0;         ///< target to lens plane [m]
   CubatureView source;
   CubatureView pupil[pupil_rules];
+  DeflectionTable table;  ///< where it exists
+  ConeRule cone;
+  PlaceRule places;
+  double sent_radius = 0;  ///< of the disc in the lens plane that rays are sent to [m]
+
+  /// Whether light is laid down by moments where a dot's cone allows it.
+  GLADSTONE_HD bool by_moments() const {
+    return controlled && spot.model != SpotModel::airy && spot.model != SpotModel::none && spot.half_width() <= 22;
+  }
+  /// Side of the squares into which wide distributions of displacements are sorted [px]: within one, four orders of
+  /// moments give a spot to 1e-3 of its peak for displacements to the corners and to some 1e-5 on average.
+  GLADSTONE_HD double box_side() const {
+    using std::sqrt;
+    return 0.8 * sqrt(spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12);
+  }
+  /// Whether four orders of moments about the mean give a spot to 1e-4 of its peak for all of a distribution.
+  GLADSTONE_HD bool narrow(DisplacementMoments const& moments) const {
+    double const allowed = 0.4 * box_side();
+    return moments.square() <= allowed * allowed * moments.of[0];
+  }
+  /// Whether the table knows all rays of a dot.
+  GLADSTONE_HD bool tabled(Vec2d centre) const {
+    return image.has_stop && table.covers(centre, 1.5 * image.source_half, sent_radius);
+  }
+  GLADSTONE_HD CorrectedCone corrected(Vec2d centre, TableCheck const& check) const {
+    return {table, image.stop_radius, sent_radius, distance, centre, check};
+  }
+  /// From the centre of the source to a place on it [m].
+  GLADSTONE_HD Vec2d offset(Vec2d place) const { return {image.source_half * place.x, -image.source_half * place.y}; }
 };
 
 /// Some light to be laid down around a point.
@@ -69,6 +102,25 @@ struct DotPlan {
     return {model.image.to_pixel(centre), model.expected_weight * radiance / (spread * spread)};
   }
 };
+
+/// A dot's truth from its cone: sums over the places of the source, in place of those over its rays.
+/// @param moments,without_medium of the whole cone at every place @param hits both frames'; keep their counts of rays
+GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, Vec2d origin,
+                                  DisplacementMoments const* moments, double const* without_medium,
+                                  CentroidSum<double>* hits) {
+  PlaceRule const& rule = model.places;
+  double all = 0;
+  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * without_medium[i];
+  for (int frame = 0; frame < frame_count; ++frame) {
+    std::int64_t const count = hits[frame].count;
+    hits[frame] = {};
+    hits[frame].count = count;
+  }
+  for (int i = 0; i < rule.count; ++i) {
+    double const weight = plan.expected_weight * rule.weights[i] * without_medium[i] / all;
+    add_place(hits[0], hits[1], model.image.half_size_px() * rule.places[i], weight, moments[i], origin);
+  }
+}
 
 /// Displacement of a ray of a controlled dot: from hit to hit, so that what the medium leaves alone is exactly zero;
 /// from the geometric image of its place where it passes in the flow alone [px].

@@ -12,7 +12,9 @@
 #include "render/base/progress.h"
 #include "render/base/random.h"
 #include "render/base/units.h"
+#include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
+#include "render/scene/light_model.h"
 #include "render/scene/trace_pair.h"
 
 namespace gladstone {
@@ -144,13 +146,13 @@ struct MeanDot {
 /// @param density dots a pixel, placed at random
 /// @param level light of one grey level where known, else 0: then 90 % of full scale is at the brightest pixel
 Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots, double density, SpotView const& spot,
-                        double level, double levels_at_peak) {
+                        DeflectionTable const& table, double level, double levels_at_peak) {
   struct PerDot {
     double displacement_variance = 0;
     std::vector<double> mean, variance;
   };
   std::vector<PerDot> measured(dots.size());
-  OwnedLightModel const light(scene, scene.dots, &spot);
+  OwnedLightModel const light(scene, scene.dots, &spot, table);
   int const side = 2 * spot.half_width() + 49 + static_cast<int>(std::min(image_width_px(scene), widest_image_px));
   std::visit(
       [&](auto const& medium) {
@@ -241,7 +243,8 @@ std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& in_view) 
 /// Measures a scene's errors at its present number of rays; what does not depend on that number is made once.
 class RayErrors {
  public:
-  explicit RayErrors(Scene const& scene) : scene_(scene), spot_(make_spot(scene, airy_)) {
+  explicit RayErrors(Scene const& scene)
+      : scene_(scene), spot_(make_spot(scene, airy_)), deflections_(scene, scene.dots) {
     CameraSetup const& camera = scene.setup.camera;
     std::vector<std::size_t> const in_view = dots_in_view(scene);
     sample_ = choose_sample(in_view);
@@ -258,7 +261,7 @@ class RayErrors {
     plan.rays = scene_.rays_per_dot;
     plan.bits = bits_;
     if (sample_.empty()) return plan;
-    Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, level_, at_peak_);
+    Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, deflections_.table(), level_, at_peak_);
     double const light_per_level = level_ > 0 ? level_ : scatter.brightest / at_peak_;
     plan.truth_error_px = std::sqrt(scatter.truth_variance);
     plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
@@ -269,6 +272,7 @@ class RayErrors {
   Scene const& scene_;
   std::optional<AiryTable> airy_;
   SpotView spot_;
+  DeflectionMap deflections_;
   std::vector<std::size_t> sample_;
   double density_, level_, at_peak_;  // dots a pixel, light of a grey level or 0, levels of the brightest pixel
   int bits_;

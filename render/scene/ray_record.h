@@ -33,6 +33,7 @@ struct RayRecord {
   T flow_weight{};
   bool reference_counts = false;  ///< past the stop and on the sensor's plane
   bool flow_counts = false;
+  bool leaves_medium = false;  ///< in the flow, to reach the lens plane
 
   GLADSTONE_HD Vec2<T> bend() const { return arrival - pupil; }
   /// Whether the flow did anything to it.
@@ -59,6 +60,7 @@ GLADSTONE_HD RayRecord<T> make_record(TargetImage const& image, Vec2<T> centre, 
   record.flow_weight = flow.weight;
   record.reference_counts = reaches_sensor_plane(reference.status);
   record.flow_counts = reaches_sensor_plane(flow.status);
+  record.leaves_medium = flow.status <= RayStatus::vignetted;
   return record;
 }
 

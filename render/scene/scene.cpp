@@ -98,7 +98,7 @@ SceneView<double> Scene::view(DotPattern const& sources) const {
   return seen;
 }
 
-double Scene::stop_edge() const { return 1.2 / std::pow(static_cast<double>(rays_per_dot), 0.25); }
+double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
 
 ApertureStop<double> Scene::aperture_stop() const { return {setup.z_a, imaging.entrance_pupil / 2, stop_edge()}; }
 

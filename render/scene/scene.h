@@ -27,7 +27,8 @@ struct Scene {
   SceneView<double> view(DotPattern const& sources) const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
   /// Width of the smoothed zone about the stop's edge, as a share of its area; falls with the number of rays [1].
-  double stop_edge() const;
+  static double stop_edge(double rays);
+  double stop_edge() const { return stop_edge(static_cast<double>(rays_per_dot)); }
   /// The stop in the lens plane. @pre not chief_rays_only()
   ApertureStop<double> aperture_stop() const;
   /// What Eq. 9 takes.

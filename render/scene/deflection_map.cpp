@@ -1,0 +1,113 @@
+#include "render/scene/deflection_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/interrupt.h"
+#include "render/base/parallel.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double rays_a_source = 256;  // of the table: more are not paid for by the rays that they save
+constexpr double cheap_rays_a_source = 32;
+constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
+
+/// A lattice from low to high, with four nodes at least.
+void place(DeflectionLattice& lattice, double spacing, Vec2d low, Vec2d high) {
+  double const width = high.x - low.x, height = high.y - low.y;
+  lattice.spacing = std::min({spacing, width / 3, height / 3});
+  lattice.columns = static_cast<int>(std::ceil(width / lattice.spacing)) + 1;
+  lattice.rows = static_cast<int>(std::ceil(height / lattice.spacing)) + 1;
+  // the last node may lie beyond: as far before the first
+  lattice.first = {low.x - 0.5 * ((lattice.columns - 1) * lattice.spacing - width),
+                   low.y - 0.5 * ((lattice.rows - 1) * lattice.spacing - height)};
+}
+
+}  // namespace
+
+DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
+  Setup const& setup = scene.setup;
+  if (std::holds_alternative<NoMedium<double>>(scene.medium.view) || scene.chief_rays_only() ||
+      setup.lens.focus != Focus::target || setup.render.sampling != PupilSampling::sobol || sources.centre.empty() ||
+      !(scene.medium.finest > 0)) {
+    return;
+  }
+  SceneView<double> const view = scene.view(sources);
+  Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+  double const depth = view.bundle.lens_z - view.sources.plane_z;
+  double const middle_z = 0.5 * (box.low.z + box.high.z);
+  table.way = (middle_z - view.sources.plane_z) / depth;
+  table.pupil_step = slope_reach * scene.imaging.entrance_pupil / 2;
+
+  // what the sources' cones cover of the mid-plane, as far as rays to all of the pupil cross the medium's whole depth
+  Vec2d low = sources.centre.front(), high = low;
+  for (Vec2d const c : sources.centre) {
+    low = {std::min(low.x, c.x), std::min(low.y, c.y)};
+    high = {std::max(high.x, c.x), std::max(high.y, c.y)};
+  }
+  double const reach = (1 - table.way) * 1.5 * sources.half_size + table.way * scene.pupil_radius() + 1e-9;
+  low = (1 - table.way) * low - Vec2d{reach, reach};
+  high = (1 - table.way) * high + Vec2d{reach, reach};
+  double const to_lens = view.bundle.lens_z - middle_z;
+  auto const lean = [&](double q) {
+    return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + scene.pupil_radius()) / to_lens;
+  };
+  // a grid's table has a node a cell, a wave's twelve a wavelength; its slopes, which are corrections, half as many
+  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 3, coarseness = 2;
+  auto const rays = [&](double node_spacing, double slopes_coarseness) {
+    double const nodes = (high.x - low.x) * (high.y - low.y) / (node_spacing * node_spacing);
+    return nodes * (1 + 4 / (slopes_coarseness * slopes_coarseness));
+  };
+  auto const count = static_cast<double>(sources.centre.size());
+  if (rays(spacing / 2, 1) <= cheap_rays_a_source * count) {
+    spacing /= 2;
+    coarseness = 1;
+  }
+  double const edge = 0.5 * coarseness * spacing;
+  low = {std::max(low.x, box.low.x + lean(low.x) + edge), std::max(low.y, box.low.y + lean(low.y) + edge)};
+  high = {std::min(high.x, box.high.x - lean(high.x) - edge), std::min(high.y, box.high.y - lean(high.y) - edge)};
+  if (!(low.x < high.x && low.y < high.y)) return;
+  if (!(rays(spacing, coarseness) <= std::min(rays_a_source * count, 1e8))) return;
+  place(table.straight, spacing, low, high);
+  for (DeflectionLattice& slope : table.by_pupil) place(slope, coarseness * spacing, low, high);
+  wanted = true;
+}
+
+SceneView<double> open_view(Scene const& scene) {
+  SceneView<double> open = scene.view();
+  open.train = {};
+  open.train.append(ThinLens<double>{scene.setup.z_a, scene.setup.lens.focal_length});
+  return open;
+}
+
+DeflectionMap::DeflectionMap(Scene const& scene, DotPattern const& sources) {
+  DeflectionPlan const plan(scene, sources);
+  if (!plan.wanted) return;
+  SceneView<double> const open = open_view(scene);
+  table_ = plan.table;
+  std::visit(
+      [&](auto const& medium) {
+        for (int axis = -1; axis < 2; ++axis) {
+          DeflectionLattice& lattice = table_.lattice(axis);
+          std::vector<Vec2d>&displacements = displacements_[axis + 1], &bends = bends_[axis + 1];
+          displacements.resize(static_cast<std::size_t>(lattice.size()));
+          bends.resize(displacements.size());
+          parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
+            throw_if_interrupted();
+            std::size_t at = row * static_cast<std::size_t>(lattice.columns);
+            for (int column = 0; column < lattice.columns; ++column, ++at) {
+              Vec2d const q = lattice.node(column, static_cast<int>(row));
+              Deflection const here = node_deflection(open, medium, plan.table, q, axis);
+              displacements[at] = here.displacement;
+              bends[at] = here.bend;
+            }
+          });
+          lattice.displacements = displacements.data();
+          lattice.bends = bends.data();
+        }
+      },
+      scene.medium.view);
+}
+
+}  // namespace gladstone

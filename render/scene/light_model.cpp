@@ -1,0 +1,176 @@
+#include "render/scene/light_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/gauss_legendre.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+
+SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy) {
+  SpotView spot;
+  spot.model = scene.chief_rays_only() ? SpotModel::none : scene.setup.lens.spot;
+  if (spot.model == SpotModel::airy) spot.airy = airy.emplace(scene.spot_scale_px()).view();
+  spot.gaussian.sigma = scene.spot_sigma_px();
+  return spot;
+}
+
+SourceCubature SourceCubature::disc(int radial, int innermost, int outermost) {
+  SourceCubature cubature;
+  GaussLegendre const nodes(radial);
+  for (int i = 0; i < radial; ++i) {
+    double const r = std::sqrt(0.5 * (1 + nodes.node[static_cast<std::size_t>(i)]));
+    int const angular = static_cast<int>(std::ceil(innermost + (outermost - innermost) * r));
+    for (int k = 0; k < angular; ++k) {
+      double const angle = 2 * pi * (k + 0.5 * (i % 2)) / angular;
+      cubature.points.push_back({r * std::cos(angle), r * std::sin(angle)});
+      cubature.weights.push_back(0.5 * nodes.weight[static_cast<std::size_t>(i)] / angular);
+    }
+  }
+  return cubature;
+}
+
+SourceCubature SourceCubature::radon() {
+  SourceCubature cubature{{{0, 0}}, {0.25}};
+  for (int k = 0; k < 6; ++k) {
+    double const angle = pi * k / 3;
+    cubature.points.push_back({std::sqrt(2.0 / 3.0) * std::cos(angle), std::sqrt(2.0 / 3.0) * std::sin(angle)});
+    cubature.weights.push_back(0.125);
+  }
+  return cubature;
+}
+
+SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, double spot_px) {
+  if (half_size_px == 0) return {{{0, 0}}, {1.0}};
+  // the finest thing that the source's outline is blurred by is the spot
+  double const fineness = half_size_px / std::clamp(spot_px, 0.05, 2.0);
+  if (shape == SourceShape::disc) {
+    return disc(std::clamp(static_cast<int>(std::ceil(fineness)) + 2, 3, 64), 6,
+                std::clamp(static_cast<int>(std::ceil(4 * fineness)) + 6, 9, 256));
+  }
+  return square(2 * std::clamp(static_cast<int>(std::ceil(1.5 * fineness)) + 3, 4, 64));
+}
+
+SourceCubature SourceCubature::square(int side) {
+  SourceCubature cubature;
+  GaussLegendre const nodes(side);
+  for (std::size_t i = 0; i < nodes.node.size(); ++i) {
+    for (std::size_t k = 0; k < nodes.node.size(); ++k) {
+      cubature.points.push_back({nodes.node[i], nodes.node[k]});
+      cubature.weights.push_back(0.25 * nodes.weight[i] * nodes.weight[k]);
+    }
+  }
+  return cubature;
+}
+
+namespace {
+
+/// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
+/// finest lengths.
+/// @param radius of the cone, in those lengths
+void make_cone_rule(double radius, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
+  int const rings = std::min(40, static_cast<int>(std::ceil(0.4 * radius)) + 4);
+  int const count = std::min(ConeRule::most_directions, 4 * static_cast<int>(std::ceil(0.5 * radius + 3)));
+  for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
+  GaussLegendre const nodes(rings);
+  for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
+    double const r = 0.5 * (1 + nodes.node[ring]);
+    int const stride = r > 0.5 ? 1 : (r > 0.25 ? 2 : 4);
+    for (int k = 0; k < count; k += stride) points.push_back({r, nodes.weight[ring] * r * stride / count, k});
+  }
+}
+
+/// Points that fill the unit disc evenly, no two at one radius or angle: turned by the golden angle from each to the
+/// next (Vogel 1979).
+std::vector<Vec2d> sunflower(int count) {
+  double const golden_angle = pi * (3 - std::sqrt(5.0));
+  std::vector<Vec2d> points;
+  for (int k = 0; k < count; ++k) {
+    double const radius = std::sqrt((k + 0.5) / count);
+    points.push_back({radius * std::cos(k * golden_angle), radius * std::sin(k * golden_angle)});
+  }
+  return points;
+}
+
+/// The places: exact for polynomials of degree 5, so that the least-squares quadratic is that of the whole source.
+PlaceRule make_place_rule(bool extended, SourceShape shape) {
+  PlaceRule rule{};
+  SourceCubature const places = !extended                    ? SourceCubature{{{0, 0}}, {1.0}}
+                                : shape == SourceShape::disc ? SourceCubature::radon()
+                                                             : SourceCubature::square(3);
+  rule.count = static_cast<int>(places.points.size());
+  int const terms = extended ? PlaceRule::terms : 1;
+  Eigen::MatrixXd basis(rule.count, terms);
+  Eigen::VectorXd weight(rule.count);
+  for (int i = 0; i < rule.count; ++i) {
+    rule.places[i] = places.points[static_cast<std::size_t>(i)];
+    weight(i) = rule.weights[i] = places.weights[static_cast<std::size_t>(i)];
+    double value[PlaceRule::terms];
+    PlaceRule::basis(rule.places[i], value);
+    for (int term = 0; term < terms; ++term) basis(i, term) = value[term];
+  }
+  Eigen::MatrixXd const weighted = basis.transpose() * weight.asDiagonal();
+  Eigen::MatrixXd const fit = (weighted * basis).ldlt().solve(weighted);
+  for (int term = 0; term < terms; ++term) {
+    for (int i = 0; i < rule.count; ++i) rule.fit[term][i] = fit(term, i);
+  }
+  return rule;
+}
+
+CubatureView view_of(SourceCubature const& rule) {
+  return {rule.points.data(), rule.weights.data(), static_cast<int>(rule.points.size())};
+}
+
+}  // namespace
+
+OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot,
+                                 DeflectionTable const& table)
+    : pupil{{{{0, 0}}, {1.0}},
+            SourceCubature::disc(1, 3, 3),
+            SourceCubature::radon(),
+            SourceCubature::disc(3, 9, 9),
+            SourceCubature::disc(5, 15, 15)} {
+  CameraSetup const& camera = scene.setup.camera;
+  bool const has_stop = !scene.chief_rays_only();
+  double const stop_radius = scene.imaging.entrance_pupil / 2;
+  TargetImage& image = model.image;
+  image.axis_px = scene.to_pixel({});
+  image.px_per_metre = scene.imaging.magnification / camera.pixel_pitch;
+  image.source_half = sources.half_size;
+  image.has_stop = has_stop;
+  if (has_stop) {
+    image.stop = scene.aperture_stop();
+    image.stop_radius = stop_radius;
+  }
+  double const share = has_stop ? stop_radius / scene.pupil_radius() : 1.0;
+  model.expected_weight = static_cast<double>(scene.rays_per_dot) * share * share;
+  model.mean_pupil2 = 0.5 * stop_radius * stop_radius;
+  model.distance = scene.setup.z_a + scene.setup.z_d;
+  model.sent_radius = scene.pupil_radius();
+  model.table = table;
+  if (table.way > 0) {
+    make_cone_rule(table.way * stop_radius / scene.medium.finest, cone_points, cone_directions);
+    int const scattered = std::max(1024, 2 * static_cast<int>(cone_points.size()));
+    cone_scattered = sunflower(scattered);
+    model.cone = {cone_points.data(),
+                  cone_directions.data(),
+                  static_cast<int>(cone_points.size()),
+                  static_cast<int>(cone_directions.size()),
+                  cone_scattered.data(),
+                  scattered,
+                  Scene::stop_edge(scattered)};
+    model.places = make_place_rule(sources.half_size > 0, sources.shape);
+  }
+  if (!spot) return;
+  model.spot = *spot;
+  model.controlled = spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
+  double const spot_px =
+      spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
+  source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
+  model.source = view_of(source);
+  for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
+}
+
+}  // namespace gladstone
