@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
+#include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
@@ -87,12 +84,7 @@ std::vector<ManifestCase> read_manifest(std::string const& run) {
                                      "STUDY.toml -o {}",
                                      run_file::manifest, run));
   }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::string const text{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open() || file.bad()) {
-    throw DataError(path, fmt::format("cannot be read ({})", std::strerror(errno ? errno : EIO)));
-  }
+  std::string const text = read_text_file(path);
   std::vector<ManifestCase> cases;
   for (std::size_t begin = 0; begin < text.size();) {
     std::string const place = fmt::format("{}:{}", path, cases.size() + 1);
