@@ -87,6 +87,18 @@ std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
   return points;
 }
 
+std::string where(StudyFile const& study, SetupPlace const& place) {
+  return fmt::format("{}:{}:{}", study.path, place.line, place.column);
+}
+
+/// A key that nobody knows is the axis's mistake, not its values'.
+void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
+  if (!problem.message.starts_with("unknown ")) return;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (problem.where == where(study, values[k].node.place)) problem.where = where(study, study.axes[k].place);
+  }
+}
+
 void try_all(StudyFile const& study) {
   std::vector<SetupProblem> problems;
   for (std::vector<AxisValue> const& point : points_to_try(study)) {
@@ -94,7 +106,8 @@ void try_all(StudyFile const& study) {
     try {
       load_case_setup(compose(study, point, study.seed), FieldMemory::taken);
     } catch (SetupError const& error) {
-      for (SetupProblem const& problem : error.problems()) {
+      for (SetupProblem problem : error.problems()) {
+        blame_the_axis(study, point, problem);
         auto const same = [&](SetupProblem const& known) {
           return known.where == problem.where && known.message == problem.message;
         };
