@@ -12,7 +12,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "studies/commands/command.h"
+#include "studies/commands/sweep_slurm.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/state_report.h"
 #include "studies/sweep/workers.h"
@@ -26,6 +26,7 @@ struct Arguments {
   int jobs = 0;      ///< 0: one, or one a GPU
   int worker = -1;   ///< where a worker tells of finished cases; -1: this is none
   double first = 0;  ///< part of the selection that a worker leaves to others at first
+  SlurmArguments slurm;
 };
 
 /// "I/N"
@@ -80,7 +81,7 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
                                  "--jobs",      "1",
                                  "--threads",   std::to_string(std::max(1, thread_count() / jobs)),
                                  "--first",     fmt::format("{}", static_cast<double>(k) / jobs)};
-    if (auto const only = arguments.selection.only) one.insert(one.end(), {"--case", std::to_string(*only)});
+    if (!arguments.selection.only.empty()) one.insert(one.end(), {"--case", arguments.selection.only});
     if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
     if (arguments.selection.retry_failed) one.emplace_back("--retry-failed");
@@ -111,11 +112,43 @@ void run_here(Arguments const& arguments, std::vector<ManifestCase> const& cases
   });
 }
 
+/// Prints how the selected cases stand, with more of JSON and text after it. @return ok, or incomplete
+int print_state(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+                std::vector<std::size_t> const& selected, nlohmann::ordered_json const& more_json,
+                std::string const& more_text) {
+  RunState const state = state_of(arguments.run, cases, selected);
+  nlohmann::ordered_json json = state_json(arguments.run, cases, state);
+  json.update(more_json);
+  print_result(options, json.dump(2), state_text(arguments.run, cases, state) + more_text);
+  return state.complete() ? ok : incomplete;
+}
+
+/// --slurm: the cases are computed by a cluster.
+int submit_study(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+                 std::vector<std::size_t> const& selected, std::string const& device) {
+  SlurmArguments slurm = arguments.slurm;
+  SlurmOptions& given = slurm.options;
+  bool const asks_for_gpu = !given.gres.empty() || std::any_of(given.sbatch.begin(), given.sbatch.end(), [](auto& one) {
+    return one.find("gpu") != std::string::npos;
+  });
+  if (device == "cuda" && !asks_for_gpu)
+    spdlog::warn(
+        "the study was planned for cuda, and no GPU is asked for: --gres gpu:1, unless every node has its own");
+  if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
+  if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");
+  if (arguments.selection.retry_failed) given.run.emplace_back("--retry-failed");
+  auto const job = run_on_cluster(arguments.run, cases, selected, arguments.selection, slurm, options);
+  if (job && job->job.empty()) return ok;
+  nlohmann::ordered_json const json{{"job", job ? nlohmann::ordered_json(job->job) : nullptr}};
+  return print_state(arguments, options, cases, selected, json, job ? job->text : "");
+}
+
 int run_study(Arguments const& arguments, GlobalOptions const& options) {
   auto const start = std::chrono::steady_clock::now();
   std::vector<ManifestCase> const cases = read_manifest(arguments.run);
   std::string const device = device_of(cases, options.device);
   std::vector<std::size_t> const selected = selected_cases(cases, arguments.selection);
+  if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
   bool const worker = arguments.worker >= 0;
   RunState state;
   if (!worker) state = state_of(arguments.run, cases, selected);
@@ -141,14 +174,10 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
   }
   if (worker) return ok;
   if (code != ok) return code;
-  state = state_of(arguments.run, cases, selected);
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  nlohmann::ordered_json json = state_json(arguments.run, cases, state);
-  json["device"] = device;
-  json["computed"] = computed;
-  json["seconds"] = seconds;
-  print_result(options, json.dump(2), state_text(arguments.run, cases, state) + fmt::format("{:.1f} s\n", seconds));
-  return state.complete() ? ok : incomplete;
+  return print_state(arguments, options, cases, selected,
+                     {{"device", device}, {"computed", computed}, {"seconds", seconds}},
+                     fmt::format("{:.1f} s\n", seconds));
 }
 
 }  // namespace
@@ -158,11 +187,12 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
       ->check(CLI::Range(1, 4096));
-  app.add_option("--case", arguments->selection.only, "This case alone, by its index");
+  app.add_option("--case", arguments->selection.only, "These cases alone, by their indices: 17, or 0-3,7");
   app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal pieces of the study");
   app.add_flag("--keep-images", arguments->selection.keep_images,
                "Leave each case's images and files in RUN/cases/INDEX");
   app.add_flag("--retry-failed", arguments->selection.retry_failed, "Compute failed cases again");
+  add_slurm_options(app, arguments->slurm);
   app.add_option("--worker", arguments->worker)->group("");
   app.add_option("--first", arguments->first)->group("");
   return [arguments, &options]() -> int {
@@ -170,6 +200,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
       read_shard(*arguments);
       return run_study(*arguments, options);
     } catch (Interrupted const&) {
+      if (arguments->slurm.submit) throw;  // it says what becomes of the job
       if (arguments->worker < 0) {
         fmt::print(stderr,
                    "gladstone: interrupted; finished cases are kept, and the same command goes on from there\n");

@@ -67,7 +67,6 @@ JobArray make_job_array(std::string const& program, std::string const& run, std:
   array.cases_per_task = size;
   array.tasks = slices(cases, size);
   array.script_path = job_script_path(run);
-  array.log_path = std::filesystem::path(array.script_path).replace_filename("%A_%a.log").string();
   std::string run_options;
   for (std::string const& option : options.run) run_options += ' ' + shell_word(option);
   array.script = fmt::format(script_text, fmt::arg("cases", cases.size()), fmt::arg("tasks", array.tasks.size()),

@@ -23,8 +23,7 @@ struct JobArray {
   std::size_t cases_per_task = 0;    ///< the last task may have fewer
   std::vector<std::string> tasks;    ///< the cases of each task, as case_list() writes them
   std::string script;                ///< text of the job script
-  std::string script_path;           ///< RUN/slurm/job.sh
-  std::string log_path;              ///< of a task, with %A for the job's number and %a for the task's
+  std::string script_path;           ///< RUN/slurm/job.sh; the logs of tasks stand beside it, JOB_TASK.log
   std::vector<std::string> command;  ///< that submits it: sbatch and its arguments
 };
 

@@ -9,6 +9,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
+#include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
 
 namespace gladstone {
@@ -34,11 +35,7 @@ class Claim {
 }  // namespace
 
 std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection) {
-  if (selection.only && *selection.only >= cases.size()) {
-    throw DataError("--case",
-                    fmt::format("{} is not in the study, which has cases 0 to {}", *selection.only, cases.size() - 1));
-  }
-  if (selection.only) return {*selection.only};
+  if (!selection.only.empty()) return parse_case_list(selection.only, cases.size());
   // contiguous pieces: neighbours share most
   std::vector<std::size_t> selected;
   std::size_t const begin = cases.size() * selection.shard / selection.shards;

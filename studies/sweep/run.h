@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Which cases of a study a runner is to see to, and how.
 struct RunSelection {
-  std::optional<std::size_t> only;    ///< this case alone
+  std::string only;                   ///< these cases alone, as parse_case_list reads them; empty: all
   std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of the manifest
   bool retry_failed = false;          ///< failed cases count as missing
   bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/

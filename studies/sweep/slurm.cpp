@@ -207,8 +207,8 @@ JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining) {
   Started sbatch(array.command);
   std::string const job = submitted_job(sbatch);
   OutputFile::write_text(job_file(array.script_path), job + '\n');
-  spdlog::info("job {}: {} cases in {} tasks; what they say goes to {}", job, array.cases, array.tasks.size(),
-               array.log_path);
+  spdlog::info("job {}: missing cases: {}, tasks: {}, their logs: {}/{}_*.log", job, array.cases, array.tasks.size(),
+               std::filesystem::path(array.script_path).parent_path().string(), job);
   return watch(job, remaining, [&]() -> std::optional<JobEnd> {
     auto const exit_code = sbatch.exit_code();
     return exit_code ? std::optional(JobEnd{job, exit_code}) : std::nullopt;
@@ -226,13 +226,13 @@ JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining) {
 }
 
 std::string last_words(JobArray const& array, std::string const& job, std::size_t task) {
-  std::string path = array.log_path.substr(0, array.log_path.rfind("%A_%a"));
-  std::ifstream log(fmt::format("{}{}_{}.log", path, job, task));
-  std::string last;
+  std::ifstream log(std::filesystem::path(array.script_path).replace_filename(fmt::format("{}_{}.log", job, task)));
+  std::string last, slurms_own;
   for (std::string line; std::getline(log, line);) {
+    if (line.starts_with("slurmstepd")) slurms_own = line;
     if (!line.empty()) last = line;
   }
-  return last;
+  return slurms_own.empty() ? last : slurms_own;
 }
 
 }  // namespace gladstone

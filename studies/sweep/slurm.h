@@ -42,7 +42,9 @@ JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining);
 /// Waits for a job_going_on(). @throws Interrupted, as run_job_array()
 JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining);
 
-/// The last line that a task of a job has written; empty where there is none.
+/// The last line in the log of a task, Slurm's own ("slurmstepd: error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME
+/// LIMIT
+/// ***") where there is one; empty where there is none.
 std::string last_words(JobArray const& array, std::string const& job, std::size_t task);
 
 }  // namespace gladstone
