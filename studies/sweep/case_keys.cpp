@@ -26,7 +26,7 @@ SetupNode& table_of(SetupNode& root, std::string const& key) {
 CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs) {
   SetupNode setup = parse_toml(loaded.document.resolved(), "resolved setup");  // every default is written out
   std::string files;
-  for (auto const& [name, hash] : inputs) files += '\n' + name + ' ' + hash;
+  for (auto const& [name, hash] : inputs) files += fmt::format("\n{} {}", name, hash);
 
   CaseKeys keys;
   SetupNode medium = table_of(setup, "medium");

@@ -66,7 +66,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void flatten(nlohmann::ordered_json const& json, std::string const& path,
              std::vector<std::pair<std::string, double>>& measures) {
   if (json.is_object()) {
-    for (auto const& [key, value] : json.items()) flatten(value, path.empty() ? key : path + '.' + key, measures);
+    std::string const start = path.empty() ? "" : path + '.';
+    for (auto const& [key, value] : json.items()) flatten(value, start + key, measures);
   } else if (json.is_number() || json.is_null()) {
     measures.emplace_back(path, json.is_null() ? nan : json.get<double>());
   }

@@ -26,7 +26,8 @@ class CaseRunner {
   ~CaseRunner();
 
   /// Computes a case. What is wrong with the case itself is its result (`failed`).
-  /// @param keep folder to write the whole CASE to, as render, correlate and compare would; empty: nothing is written
+  /// @param keep folder to write the whole CASE to, as render, correlate and compare would, without figures; empty:
+  /// nothing is written
   /// @throws DataError where an input is not what it was when the study was planned; Interrupted, OutputError,
   ///         DeviceError (but a device without enough memory fails the case alone)
   CaseResult run(ManifestCase const& one, std::string const& keep = "");

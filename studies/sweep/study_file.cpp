@@ -183,7 +183,8 @@ class StudyReader {
       problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
       return;
     }
-    auto const& [form, values] = table.members.front();
+    std::string const& form = table.members.front().key;
+    SetupNode const& values = table.members.front().value;
     auto const refuse = [&](std::string const& message) {
       problem(values.place, fmt::format("\"{}\": {} {}", axis.key, form, message));
     };
