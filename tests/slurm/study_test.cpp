@@ -20,7 +20,7 @@ std::string output_of(std::string const& command) {
   return text;
 }
 
-bool comes_true(std::function<bool()> const& condition, std::chrono::seconds limit = 20s) {
+bool comes_true(std::function<bool()> const& condition, std::chrono::seconds limit = 60s) {
   for (auto const end = std::chrono::steady_clock::now() + limit; !condition(); std::this_thread::sleep_for(20ms)) {
     if (std::chrono::steady_clock::now() > end) return false;
   }
@@ -108,7 +108,7 @@ TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
       ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(in("cluster/cases/" + first + ".json")); }));
     ::kill(process_of("0-1"), SIGKILL);
     output_of("scancel " + id + "_1");
-    Outcome const outcome = program.finish(40s);
+    Outcome const outcome = program.finish(90s);
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
     EXPECT_THAT(outcome.out, HasSubstr("2 missing"));
     EXPECT_THAT(outcome.out, HasSubstr("task " + id + "_0 (cases 0-1) left cases undone"));
@@ -133,7 +133,7 @@ TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
   output_of("scontrol requeue " + id + "_2");
   ASSERT_TRUE(comes_true([this] { return process_of("4-5") == 0; }));
   claims.release(5);
-  Outcome const outcome = program.finish(40s);
+  Outcome const outcome = program.finish(90s);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   expect_same_study();
 }
@@ -147,17 +147,17 @@ TEST_F(StudyOnACluster, OutlivesTheOneWhoWaits) {
     Program program(submit(), folder_);
     id = job();
     program.send(SIGINT);
-    Outcome const outcome = program.finish(10s);
+    Outcome const outcome = program.finish(30s);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("scancel " + id));
   }
   EXPECT_NE(output_of("squeue --noheader --jobs=" + id), "");
   Program program(submit(), folder_);
-  std::this_thread::sleep_for(500ms);
+  std::string const waits = "job " + id + " of this study goes on";
+  EXPECT_TRUE(comes_true([&] { return program.err().find(waits) != std::string::npos; })) << program.err();
   claims.release(0);
-  Outcome const outcome = program.finish(30s);
+  Outcome const outcome = program.finish(90s);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("job " + id + " of this study goes on"));
   expect_same_study();
 }
 

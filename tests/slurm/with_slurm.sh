@@ -99,7 +99,7 @@ start() {
   controller=$!
   on_cluster slurmd -D -N node >"$log/slurmd.err" 2>&1 </dev/null &
   node=$!
-  for _ in $(seq 100); do  # at most 10 s
+  for _ in $(seq 300); do  # at most 30 s
     kill -0 $controller 2>/dev/null && kill -0 $node 2>/dev/null || return 1  # a port was taken after all, perhaps
     [ "$(on_cluster timeout 5 sinfo -h -o %T 2>/dev/null)" != idle ] || return 0
     sleep 0.1
