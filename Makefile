@@ -15,6 +15,8 @@ PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
 	zlib1g-dev gnuplot-nox fonts-dejavu-core libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format clang-tidy
+# programs that only tests call; without them those are skipped
+TEST_PACKAGES := munge slurmctld slurmd slurm-client
 
 ROOMS := render analysis cuda studies
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')
@@ -29,6 +31,7 @@ TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/com
 build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone
 
+test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
 test: configure  ## build and run every test; only some: ctest --test-dir build -R medium/
 	cmake --build $(BUILD) --parallel $(JOBS)
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
@@ -58,6 +61,7 @@ clean:  ## remove what was built
 
 packages:
 	@cmake/install_packages.sh $(PACKAGES)
+	$(if $(OPTIONAL_PACKAGES),@cmake/install_packages.sh --optional $(OPTIONAL_PACKAGES))
 
 configure: packages
 	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)

@@ -42,6 +42,13 @@ DeviceState device_state() {
   return {true, fmt::format("{}, {:.0f} GiB", device.name, static_cast<double>(device.totalGlobalMem) / 0x1p30)};
 }
 
+int device_count() {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
+  cudaGetLastError();
+  return 0;
+}
+
 std::unique_ptr<Renderer> make_renderer() {
   require_device();
   return std::make_unique<CudaRenderer>();

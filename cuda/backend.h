@@ -24,6 +24,9 @@ struct DeviceState {
 /// Looks at the first visible device; never throws.
 DeviceState device_state();
 
+/// Number of devices that this process may use; 0 where there is none or no CUDA.
+int device_count();
+
 /// The renderer on the GPU. @throws DeviceError where device_state() is not usable
 std::unique_ptr<Renderer> make_renderer();
 

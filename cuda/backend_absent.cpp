@@ -11,6 +11,8 @@ std::string description() { return "not compiled in (no CUDA toolkit was found w
 
 DeviceState device_state() { return {false, "this gladstone was built without CUDA"}; }
 
+int device_count() { return 0; }
+
 std::unique_ptr<Renderer> make_renderer() { throw DeviceError(device_state().text); }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw DeviceError(device_state().text); }

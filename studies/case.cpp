@@ -34,9 +34,9 @@ void cross_check_windows(CaseSetup& loaded) {
 
 /// Places check_memory's refusal, "table.key: message", in the setup. A field file that cannot be read is left to those
 /// who read it.
-void cross_check_memory(CaseSetup& loaded) {
+void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup);
+    check_memory(loaded.setup, field);
   } catch (DataError const& error) {
     std::string const text = error.what();
     SetupTable root = loaded.document.root();
@@ -69,8 +69,13 @@ nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
 }  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
-  CaseSetup loaded{SetupDocument::from_file(path), {}, {}, {}};
-  for (auto const& assignment : overrides) loaded.document.override_key(assignment);
+  SetupDocument document = SetupDocument::from_file(path);
+  for (auto const& assignment : overrides) document.override_key(assignment);
+  return load_case_setup(std::move(document));
+}
+
+CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
+  CaseSetup loaded{std::move(document), {}, {}, {}};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
   loaded.correlate = read_correlation_settings(root.table("correlate"));
@@ -79,19 +84,24 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
     loaded.warnings = cross_check(loaded.setup, root);
     cross_check_windows(loaded);
   }
-  if (!loaded.document.has_problems()) cross_check_memory(loaded);
+  if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   loaded.document.finish();
   return loaded;
 }
 
-PreparedCase prepare_case(CaseSetup& loaded) {
+PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   PreparedCase prepared;
   prepared.correlate = loaded.correlate;
   for (auto const& text : loaded.warnings) warn(prepared.warnings, text);
-  prepared.scene = build_scene(loaded.setup);
+  prepared.scene = build_scene(loaded.setup, known.medium);
   Scene& scene = prepared.scene;
   for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
-  prepared.step = plan_step(scene);
+  if (known.step) {
+    prepared.step = *known.step;
+    use_step(scene, prepared.step);
+  } else {
+    prepared.step = plan_step(scene);
+  }
   if (prepared.step.change_px >= 1e-4) {
     warn(
         prepared.warnings,
@@ -107,7 +117,8 @@ PreparedCase prepare_case(CaseSetup& loaded) {
                      loaded.setup.camera.columns * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
                      loaded.setup.camera.rows * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
   }
-  prepared.rays = plan_rays(scene);
+  prepared.rays = known.rays ? *known.rays : plan_rays(scene);
+  scene.rays_per_dot = prepared.rays.rays;
   if (!prepared.rays.converged) {
     warn(prepared.warnings,
          fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
@@ -116,7 +127,7 @@ PreparedCase prepare_case(CaseSetup& loaded) {
                      prepared.rays.truth_error_px));
   }
   if (loaded.setup.medium.field.kind != FieldKind::none) {
-    prepared.strain = map_strain(scene);
+    prepared.strain = known.strain ? *known.strain : map_strain(scene);
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,
            fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach "
@@ -144,58 +155,84 @@ bool single_precision(Setup const& setup, Renderer const& renderer) {
 
 }  // namespace
 
-RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheory theory) {
-  auto const start = std::chrono::steady_clock::now();
-  RenderedCase rendered;
-  Scene& scene = prepared.scene;
-  rendered.rendering = renderer.render(scene, scene.dots, RenderImages::yes, theory);
-  LightPair const& light = rendered.rendering.light;
+double exposure_of(CameraSetup const& camera, LightPair const& light) {
+  if (camera.exposure_e) return *camera.exposure_e;
   double const brightest = std::max(*std::max_element(light.reference.begin(), light.reference.end()),
                                     *std::max_element(light.flow.begin(), light.flow.end()));
-  rendered.exposure_e = scene.setup.camera.exposure_e.value_or(Detector::auto_exposure(scene.setup.camera, brightest));
+  return Detector::auto_exposure(camera, brightest);
+}
+
+RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
+  auto const start = std::chrono::steady_clock::now();
+  RenderedCase rendered;
+  Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
+  rendered.rendering = std::make_shared<Rendering const>(renderer.render(scene, scene.dots, RenderImages::yes, theory));
+  rendered.pupil_margin = scene.pupil_margin;
+  rendered.exposure_e = exposure_of(scene.setup.camera, rendered.rendering->light);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
 
-std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
-  namespace fs = std::filesystem;
+RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered) {
+  Detector const detector(prepared.scene.setup.camera, rendered.exposure_e);
+  return {detector.record(rendered.rendering->light.reference, RandomStream::noise_reference),
+          detector.record(rendered.rendering->light.flow, RandomStream::noise_flow)};
+}
+
+Image<double> grey_levels(Recording const& recording) {
+  Image<double> levels(recording.image.columns(), recording.image.rows());
+  std::copy(recording.image.begin(), recording.image.end(), levels.begin());
+  return levels;
+}
+
+FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
   OutputFolder output(folder, case_file::setup, {case_file::derived.begin(), case_file::derived.end()});
-  PreparedCase prepared = prepare_case(loaded);
+  FinishedCase finished;
+  finished.prepared = prepare_case(loaded);
+  finished.rendered = render_case(finished.prepared, renderer, RenderTheory::yes);
+  finished.frames = record_frames(finished.prepared, finished.rendered);
+  finished.summary =
+      write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, output.temporary_path());
+  output.commit();
+  return finished;
+}
+
+std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                       RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> warnings = prepared.warnings;
   if (single_precision(loaded.setup, renderer)) {
-    warn(prepared.warnings,
+    warn(warnings,
          "render.precision = \"single\" is a preview: displacements carry some 1e-5 px of rounding; use \"double\" for "
          "truth");
   } else if (loaded.setup.render.precision == Precision::single) {
-    warn(prepared.warnings, "render.precision = \"single\" is the GPU's preview: the CPU has rendered in double");
+    warn(warnings, "render.precision = \"single\" is the GPU's preview: the CPU has rendered in double");
   }
-  RenderedCase rendered = render_case(prepared, renderer, RenderTheory::yes);
-  Scene const& scene = prepared.scene;
+  Scene scene = prepared.scene;
+  scene.pupil_margin = rendered.pupil_margin;
+  Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = scene.setup.camera;
+  auto const& [reference, flow] = frames;
   loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   std::string const resolved = loaded.document.resolved();
 
-  Detector const detector(camera, rendered.exposure_e);
-  Recording const reference = detector.record(rendered.rendering.light.reference, RandomStream::noise_reference);
-  Recording const flow = detector.record(rendered.rendering.light.flow, RandomStream::noise_flow);
   if (reference.saturated + flow.saturated > 0) {
-    warn(prepared.warnings,
-         fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
-                     reference.saturated, flow.saturated));
+    warn(warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
+                               reference.saturated, flow.saturated));
   }
-  auto const place = [&](char const* name) { return (fs::path(output.temporary_path()) / name).string(); };
+  auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
   write_tiff(place(case_file::reference), reference.image, metadata);
   write_tiff(place(case_file::flow), flow.image, metadata);
   FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
-  write_truth(place(case_file::truth), scene, rendered.rendering.truth, rendered.rendering.statuses,
-              map_field(scene, map_spacing_px), origin);
+  write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, map_field(scene, map_spacing_px),
+              origin);
   OutputFile::write_text(place(case_file::setup), resolved);
 
-  auto const unseen =
-      std::count_if(rendered.rendering.truth.displacement_px.begin(), rendered.rendering.truth.displacement_px.end(),
-                    [](Vec2d d) { return std::isnan(d.x); });
+  auto const unseen = std::count_if(rendering.truth.displacement_px.begin(), rendering.truth.displacement_px.end(),
+                                    [](Vec2d d) { return std::isnan(d.x); });
   if (unseen > 0) {
-    warn(prepared.warnings,
+    warn(warnings,
          fmt::format("{} of {} dots are not seen in one of the frames: the flow bends their rays past the lens "
                      "(their truth is nan); reduce the gradients or Z_D",
                      unseen, scene.dots.centre.size()));
@@ -216,14 +253,14 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
       {"device", renderer.device()},
       {"precision", single_precision(scene.setup, renderer) ? "single (preview)" : "double"},
       {"rays",
-       {{"traced", rendered.rendering.rays},
-        {"reference", status_counts(rendered.rendering.statuses, 0)},
-        {"flow", status_counts(rendered.rendering.statuses, 1)}}},
+       {{"traced", rendering.rays},
+        {"reference", status_counts(rendering.statuses, 0)},
+        {"flow", status_counts(rendering.statuses, 1)}}},
       {"pupil_margin_mm", scene.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", reference.saturated}, {"flow", flow.saturated}}},
       {"photons_fully_lit", rendered.exposure_e / camera.noise.quantum_efficiency},
-      {"warnings", prepared.warnings},
+      {"warnings", warnings},
       {"seconds_render", rendered.seconds},
   };
   if (!scene.setup.render.rays_per_dot) {
@@ -234,7 +271,6 @@ std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string 
   }
   std::string const text = summary.dump(2) + "\n";
   OutputFile::write_text(place(case_file::summary), text);
-  output.commit();
   return text;
 }
 

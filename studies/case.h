@@ -11,6 +11,7 @@
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
 #include "render/scene/setup.h"
+#include "render/sensor/detector.h"
 
 namespace gladstone {
 
@@ -24,6 +25,8 @@ struct CaseSetup {
 
 /// Reads and checks a setup. @throws SetupError with all problems together
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
+/// @param field whether the medium is still to be built, for the check of this machine's memory
+CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
 /// A case ready to render: scene built, step and rays planned, the resolved setup as text.
 struct PreparedCase {
@@ -35,21 +38,53 @@ struct PreparedCase {
   std::vector<std::string> warnings;
 };
 
+/// What is known of a case already, from another that agrees with it there; null: to be computed.
+struct KnownParts {
+  BuiltMedium const* medium = nullptr;
+  StepPlan const* step = nullptr;
+  RaysPlan const* rays = nullptr;
+  StrainMap const* strain = nullptr;
+};
+
 /// Builds and plans; every "auto" but the exposure becomes a number here.
-PreparedCase prepare_case(CaseSetup& loaded);
+PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known = {});
 
 /// A rendered case in memory.
 struct RenderedCase {
-  Rendering rendering;
-  double exposure_e = 0;  ///< electrons in a fully lit pixel on the axis
+  std::shared_ptr<Rendering const> rendering;
+  double pupil_margin = 0;  ///< that the rendering took [m]
+  double exposure_e = 0;    ///< electrons in a fully lit pixel on the axis
   double seconds = 0;
 };
 
-RenderedCase render_case(PreparedCase& prepared, Renderer& renderer, RenderTheory theory);
+RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
+
+/// The exposure that a camera takes of this light: its own, or by its brightest pixel [e].
+double exposure_of(CameraSetup const& camera, LightPair const& light);
+
+/// What the camera records of a rendering.
+struct RecordedFrames {
+  Recording reference, flow;
+};
+RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
+
+/// Grey levels as a correlator takes them, the very numbers that the picture's file holds.
+Image<double> grey_levels(Recording const& recording);
+
+/// A case from its setup to its frames, and the text of its summary.json.
+struct FinishedCase {
+  PreparedCase prepared;
+  RenderedCase rendered;
+  RecordedFrames frames;
+  std::string summary;
+};
 
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json.
-/// @return the text of summary.json
-std::string render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
+FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
+
+/// Writes these files for a case that is rendered already. @return the text of summary.json
+std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                       RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 
 /// The name of every file in a CASE.
 namespace case_file {

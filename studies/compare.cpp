@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "analysis/correlator.h"
 #include "analysis/scattered_grid.h"
@@ -92,18 +93,11 @@ class TruthMap {
   DisplacementMaps maps_;
 };
 
-struct Loaded {
-  DisplacementField field;
-  CorrelationSettings settings;  ///< that gave them, if ours; else the case's own
-  bool foreign;
-  std::string report;
-};
-
-Loaded load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
-                    CompareOptions const& options) {
+MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
+                             CompareOptions const& options) {
   VectorFile file = read_vectors(path);
   int const rows = loaded.setup.camera.rows;
-  Loaded vectors{{}, loaded.correlate, file.foreign, {}};
+  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path};
   if (options.conventions) {
     file.conventions = parse_conventions(*options.conventions, file.conventions);
     vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
@@ -179,36 +173,48 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
   return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 
+PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
+                            TruthAt at) {
+  Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
+  PointTruth truth;
+  truth.point = truth_at_points(scene, renderer, position_px, at, RenderTheory::yes);
+  truth.thin_lens = ideal_lens_truth(scene, renderer, truth.point);
+  return truth;
+}
+
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options) {
-  Renderer& renderer = *device.renderer;
   std::string const setup = in_case(folder, case_file::setup);
   std::string const truth = made_file(folder, case_file::truth, "gladstone render " + setup + " -o " + folder);
   std::string const path = vectors_path(folder, options.vectors);
   CaseSetup loaded = load_case_setup(setup, {});
   GroundTruth const dots = read_truth(truth);
-  Loaded vectors = load_vectors(path, loaded, dots, options);
+  MeasuredVectors vectors = load_vectors(path, loaded, dots, options);
+  PreparedCase const prepared = prepare_case(loaded);
+  std::optional<RenderedCase> rendered;
+  if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
+  PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
+  return compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors), std::move(point), device,
+                         options.truth_at);
+}
 
+Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
+                           MeasuredVectors vectors, PointTruth truth, Device const& device, TruthAt at) {
   Comparison comparison;
   comparison.measured = std::move(vectors.field);
   comparison.report = vectors.report;
   comparison.foreign = vectors.foreign;
+  comparison.point = std::move(truth.point);
+  comparison.thin_lens = std::move(truth.thin_lens);
   DisplacementField const& measured = comparison.measured;
-
-  PreparedCase prepared = prepare_case(loaded);
-  Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
-  comparison.point = truth_at_points(scene, renderer, measured.position_px, options.truth_at, RenderTheory::yes);
-  comparison.thin_lens = ideal_lens_truth(scene, renderer, comparison.point);
-  comparison.strain = strain_at(scene, measured.position_px, vectors.settings.window_px.back());
 
   CorrelationSettings const& settings = vectors.settings;
   WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
                             window_support_px(settings)};
-  comparison.window = window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots),
-                                   measured.position_px, weight, options.truth_at);
-  if (!vectors.foreign) {
-    RenderedCase const rendered = render_case(prepared, renderer, RenderTheory::no);
-    Detector const detector(scene.setup.camera, rendered.exposure_e);
-    LightPair const& light = rendered.rendering.light;
+  comparison.window =
+      window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
+  if (rendered) {
+    Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
+    LightPair const& light = rendered->rendering->light;
     DisplacementField again =
         device.correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
@@ -221,7 +227,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
     throw DataError(
-        path,
+        vectors.name,
         "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
         "the vectors and --conventions");
   }
@@ -268,10 +274,11 @@ std::string errors_json(Comparison const& comparison) {
   return json.dump(2) + "\n";
 }
 
-VectorMask gentle_mask(Comparison const& comparison, double limit) {
+VectorMask gentle_mask(Comparison const& comparison, Scene const& scene, int window_px, double limit) {
   VectorMask mask = comparison.mask;
+  std::vector<double> const strain = strain_at(scene, comparison.measured.position_px, window_px);
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (!(comparison.strain[i] <= limit)) mask[i] = 0;
+    if (!(strain[i] <= limit)) mask[i] = 0;
   }
   return mask;
 }

@@ -29,7 +29,6 @@ struct Comparison {
   std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them
   WindowTruth window;
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
-  std::vector<double> strain;     ///< largest of Eq. 9 on each vector's window [px/px]
   VectorMask mask;
   ErrorBudget budget;
   std::string report;  ///< what was detected about a foreign file; empty for ours
@@ -46,14 +45,40 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
 /// What the actual lens adds, defocus included, is the budget's aberration.
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
 
+/// Vectors to be compared, and how they came about.
+struct MeasuredVectors {
+  DisplacementField field;
+  CorrelationSettings settings;  ///< that gave them, if ours; else the case's own
+  bool foreign = false;          ///< not to be measured again on noise-free images
+  std::string report;            ///< what was detected about a foreign file
+  std::string name;              ///< of the file or the case, for messages
+};
+
+/// Truth and theory at the places of vectors: all of a comparison that does not depend on what was measured there.
+struct PointTruth {
+  GroundTruth point;
+  std::vector<Vec2d> thin_lens;
+};
+PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
+                            TruthAt at);
+
+/// Compares vectors with the truth and theory of a case in memory; nothing is read, rendered or written.
+/// @param dots     truth of the case's own dots
+/// @param rendered what the vectors were measured on; null for foreign vectors
+/// @param truth    at the vectors
+/// @throws DataError where no vector can be compared
+Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
+                           MeasuredVectors vectors, PointTruth truth, Device const& device,
+                           TruthAt at = TruthAt::mid_position);
+
 /// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
 
 /// errors.json: for each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
 std::string errors_json(Comparison const& comparison);
 
-/// Mask of the vectors whose local strain is at most `limit`.
-VectorMask gentle_mask(Comparison const& comparison, double limit);
+/// Mask of the vectors on whose window Eq. 9 strains by at most `limit` [px/px]: one front in the window spoils it.
+VectorMask gentle_mask(Comparison const& comparison, Scene const& scene, int window_px, double limit);
 
 /// Draws displacement maps, histograms, error against gradient and the budget into the CASE. @return their paths
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison);

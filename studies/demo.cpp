@@ -118,18 +118,21 @@ std::string run_demo(std::string const& folder, Device const& device) {
     CaseSetup loaded = load_case_setup(shared + "/studies/cases/table1.toml",
                                        {fmt::format("medium.field.file=\"{}/data/fields/{}\"", shared, instant.file),
                                         fmt::format("render.rays_per_dot={}", instant.rays)});
-    render_to_folder(loaded, *device.renderer, place);
+    FinishedCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
     Measurement const measured = correlate_case(place, "", nullptr, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),
                  measured.seconds);
-    Comparison const comparison = compare_case(place, device, {});
+    GroundTruth const& dots = made.rendered.rendering->truth;
+    Comparison const comparison = compare_vectors(
+        made.prepared, dots, &made.rendered, {measured.field, loaded.correlate, false, "", place},
+        truth_of_vectors(made.prepared, *device.renderer, measured.field.position_px, TruthAt::mid_position), device);
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     rows += table_row(fmt::format("{}, all vectors", instant.name), comparison, comparison.mask);
-    rows += table_row(fmt::format("{}, strain <= {}", instant.name, gentle_strain), comparison,
-                      gentle_mask(comparison, gentle_strain));
+    VectorMask const gentle =
+        gentle_mask(comparison, made.prepared.scene, loaded.correlate.window_px.back(), gentle_strain);
+    rows += table_row(fmt::format("{}, strain <= {}", instant.name, gentle_strain), comparison, gentle);
     VectorMask steep = comparison.mask;
-    VectorMask const gentle = gentle_mask(comparison, gentle_strain);
     for (std::size_t i = 0; i < steep.size(); ++i) steep[i] = steep[i] && !gentle[i];
     rows += table_row(fmt::format("{}, strain > {}", instant.name, gentle_strain), comparison, steep);
     reports += fmt::format("## {}: {}\n\n{}```\n{}```\n\n", instant.name, instant.heading,
@@ -142,7 +145,7 @@ std::string run_demo(std::string const& folder, Device const& device) {
     std::string const truth_path = in_case(place, case_file::truth);
     FieldMap const field = read_field_map(truth_path);
     axes = axes_of(field);
-    panels.push_back(figure_instant(instant.heading, field, read_truth(truth_path)));
+    panels.push_back(figure_instant(instant.heading, field, dots));
   }
   try {
     write_seed_figure4((fs::path(folder) / "figure4.png").string(), axes, panels);

@@ -28,6 +28,8 @@ Device open_device(std::string const& wanted) {
   return {std::make_unique<CpuRenderer>(), make_correlator};
 }
 
+int gpu_count() { return cuda::device_count(); }
+
 std::string version_text() {
   return fmt::format("gladstone {} ({})\nbackends: {}\nCUDA: {}", version, git_sha1,
                      cuda::compiled_in() ? "cpu, cuda" : "cpu", cuda::description());

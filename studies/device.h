@@ -21,4 +21,7 @@ struct Device {
 /// @throws DeviceError where "cuda" cannot be had, with the reason
 Device open_device(std::string const& wanted);
 
+/// Number of GPUs that can be used here; 0: none.
+int gpu_count();
+
 }  // namespace gladstone

@@ -33,6 +33,9 @@ constexpr std::array commands{
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
     Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
+    Command{"sweep", "Parameter studies: plan, run, status, collect",
+            "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
+            attach_sweep},
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
 };
 
@@ -41,6 +44,11 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   std::vector<std::string> known;
   for (Command const& one : commands) known.emplace_back(one.name);
   std::string const name = unknown.empty() ? "" : unknown.front();
+  std::string path = command ? command->get_name() + ' ' : "";
+  while (command && !command->get_subcommands().empty()) {  // of a command's own commands
+    command = command->get_subcommands().front();
+    path += command->get_name() + ' ';
+  }
   bool const is_option = name.starts_with("-");
   std::string message = "no command is named";
   if (!unknown.empty())
@@ -56,8 +64,7 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   } else if (!command && !is_option) {
     message += "; commands are " + quoted_list(known);
   }
-  fmt::print(stderr, "gladstone: {} See gladstone {}{}--help\n", message.ends_with('?') ? message : message + '.',
-             command ? command->get_name() : "", command ? " " : "");
+  fmt::print(stderr, "gladstone: {} See gladstone {}--help\n", message.ends_with('?') ? message : message + '.', path);
   return bad_input;
 }
 
@@ -72,8 +79,9 @@ int run(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(CLI::Range(0, 4096));
   app.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.footer(
-      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 5 device error, 130 "
-      "interrupted.");
+      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 3 incomplete study, 5 "
+      "device "
+      "error, 130 interrupted.");
   std::array<CommandBody, commands.size()> bodies;
   std::array<CLI::App*, commands.size()> parsed{};
   for (std::size_t i = 0; i < commands.size(); ++i) {

@@ -43,7 +43,8 @@ class DeviceError : public std::runtime_error {
 /// The user pressed Ctrl-C. Exit code 130.
 class Interrupted : public std::runtime_error {
  public:
-  Interrupted() : std::runtime_error("interrupted; nothing was left behind") {}
+  explicit Interrupted(std::string const& message = "interrupted; nothing was left behind")
+      : std::runtime_error(message) {}
 };
 
 }  // namespace gladstone

@@ -1,14 +1,11 @@
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <tuple>
 
 #include "render/base/nearest_name.h"
 #include "render/base/setup_state.h"
+#include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
@@ -135,7 +132,8 @@ SetupRecord& SetupDocument::State::record_of(std::vector<std::string> const& pat
 
 std::string SetupDocument::State::where(SetupPlace const& place) const {
   if (!place.assignment.empty()) return "--set " + place.assignment;
-  return name + ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
+  std::string const& file = place.source ? place.source->name : name;
+  return file + ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
 }
 
 std::string SetupDocument::State::where(std::vector<std::string> const& path) const {
@@ -160,16 +158,12 @@ SetupDocument& SetupDocument::operator=(SetupDocument&&) noexcept = default;
 SetupDocument::~SetupDocument() = default;
 
 SetupDocument SetupDocument::from_file(std::string const& path) {
-  auto const unreadable = [&](std::string const& why) {
-    return SetupError({{path, "cannot be read (" + why + "); give the name of a setup file"}});
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw unreadable("it is a folder");
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw unreadable(std::strerror(errno ? errno : EIO));
-  std::string const text{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw unreadable(std::strerror(errno ? errno : EIO));
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (DataError const& error) {
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2) + "; give the name of a setup file"}});
+  }
   auto const folder = std::filesystem::absolute(path).parent_path();
   return from_text(text, path, folder.string());
 }
@@ -233,6 +227,41 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
 }
 
+void SetupDocument::set(std::vector<std::string> const& path, SetupNode const& value) {
+  SetupNode* table = &state_->root;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    SetupNode* next = table->find(path[i]);
+    if (!next) {
+      next = &table->members.emplace_back(SetupMember{path[i], SetupNode{}}).value;
+      next->place = value.place;
+    }
+    // an array of one table is that table
+    if (next->kind == SetupNode::Kind::array && next->elements.size() == 1) next = &next->elements.front();
+    if (next->kind != SetupNode::Kind::table) {
+      std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      add_problem(state_->where(value.place),
+                  dotted_path(path) + ": " + dotted_path(here) + " is " + kind_name(*next) + ", not a table");
+      return;
+    }
+    table = next;
+  }
+  if (SetupNode* const old = table->find(path.back())) {
+    *old = value;
+  } else {
+    table->members.push_back({path.back(), value});
+  }
+}
+
+SetupNode const* SetupDocument::find(std::vector<std::string> const& path) const {
+  SetupNode const* node = &state_->root;
+  for (auto const& step : path) {
+    if (node->kind == SetupNode::Kind::array && node->elements.size() == 1) node = &node->elements.front();
+    node = node->find(step);
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
 SetupTable SetupDocument::root() { return SetupTable(state_.get(), {}); }
 
 void SetupDocument::add_problem(std::string where, std::string message) {
@@ -259,6 +288,19 @@ void SetupDocument::finish() {
 }
 
 std::string SetupDocument::resolved() const { return resolved_toml(state_->record); }
+
+std::string SetupDocument::written() const {
+  State absolute;
+  absolute.root = state_->root;
+  for (auto const& [path, name] : state_->files) absolute.find(path)->text = name;
+  return toml_document(absolute.root);
+}
+
+std::vector<std::string> SetupDocument::file_names() const {
+  std::vector<std::string> names;
+  for (auto const& file : state_->files) names.push_back(file.absolute);
+  return names;
+}
 
 std::string const& SetupDocument::folder() const { return state_->folder; }
 

@@ -172,6 +172,34 @@ std::string toml_text(SetupNode const& node) {
   return '{' + text + (text.empty() ? "}" : " }");
 }
 
+namespace {
+
+void write_table(SetupNode const& table, std::string const& path, std::string& text) {
+  for (auto const& [key, value] : table.members) {
+    if (value.kind != SetupNode::Kind::table) text += toml_key(key) + " = " + toml_text(value) + '\n';
+  }
+  for (auto const& [key, value] : table.members) {
+    if (value.kind != SetupNode::Kind::table) continue;
+    std::string const name = path + (path.empty() ? "" : ".") + toml_key(key);
+    text += (text.empty() ? "[" : "\n[") + name + "]\n";
+    write_table(value, name, text);
+  }
+}
+
+}  // namespace
+
+std::string toml_document(SetupNode const& node) {
+  std::string text;
+  write_table(node, "", text);
+  return text;
+}
+
+void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source) {
+  node.place.source = source;
+  for (auto& element : node.elements) set_source(element, source);
+  for (auto& member : node.members) set_source(member.value, source);
+}
+
 std::string toml_key(std::string const& key) { return is_bare_key(key) ? key : toml_text(std::string_view(key)); }
 
 std::string kind_name(SetupNode const& node) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,11 +9,18 @@
 
 namespace gladstone {
 
+/// A file that a value of a setup came from, where that is not the setup's own.
+struct SetupSource {
+  std::string name;    ///< for messages
+  std::string folder;  ///< that relative file names in it refer to
+};
+
 /// Where a value of a setup stands: a line and column of the file, or a --set assignment.
 struct SetupPlace {
   int line = 0;  ///< from 1; 0: nowhere
   int column = 0;
-  std::string assignment;  ///< "key.path=value" of --set, or empty
+  std::string assignment;                               ///< "key.path=value" of --set, or empty
+  std::shared_ptr<SetupSource const> source = nullptr;  ///< null: the setup's own file
 
   bool known() const { return line > 0 || !assignment.empty(); }
 };
@@ -44,6 +52,9 @@ struct SetupMember {
   SetupNode value;
 };
 
+/// Says of a value and of all below it that they came from another file.
+void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source);
+
 /// Parses TOML 1.0. @throws SetupError with the parser's own description at name:line:column
 SetupNode parse_toml(std::string_view text, std::string const& name);
 
@@ -55,6 +66,8 @@ std::string toml_text(SetupNode const& node);
 std::string toml_text(std::string_view text);  ///< quoted and escaped
 /// Shortest form that reads back to the same double, always with a point, an exponent, or as inf or nan.
 std::string toml_text(double value);
+/// A table as a TOML document, its own values before its tables. @pre node is a table
+std::string toml_document(SetupNode const& node);
 /// A key, quoted where it must be.
 std::string toml_key(std::string const& key);
 

@@ -9,6 +9,12 @@
 
 namespace gladstone {
 
+/// A key whose value is the name of a file.
+struct SetupFileName {
+  std::vector<std::string> path;
+  std::string absolute;
+};
+
 /// What a SetupDocument and its SetupTables share. Paths: keys from the root; "[2]" for an element of an array of
 /// tables.
 struct SetupDocument::State {
@@ -17,9 +23,13 @@ struct SetupDocument::State {
   SetupNode root;
   SetupRecord record;
   std::vector<SetupProblem> problems;
+  std::vector<SetupFileName> files;  ///< that readers asked for
 
   /// The value at a path; null where there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
+  SetupNode* find(std::vector<std::string> const& path) {
+    return const_cast<SetupNode*>(std::as_const(*this).find(path));
+  }
   /// The record of the table at a path, made where it is new.
   SetupRecord& record_of(std::vector<std::string> const& path);
   std::string where(SetupPlace const& place) const;

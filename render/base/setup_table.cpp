@@ -327,7 +327,10 @@ std::string SetupTable::required_path(std::string const& key) {
     return {};
   }
   namespace fs = std::filesystem;
-  std::string const path = fs::absolute(fs::path(state_->folder) / written).lexically_normal().string();
+  auto const& source = state_->find(below(path_, key))->place.source;
+  fs::path const folder = source ? source->folder : state_->folder;
+  std::string const path = fs::absolute(folder / written).lexically_normal().string();
+  state_->files.push_back({below(path_, key), path});
   use(*state_, path_, key, toml_text(std::string_view(path)));
   return path;
 }

@@ -14,6 +14,7 @@
 namespace gladstone {
 
 class SetupTable;
+struct SetupNode;
 
 /// A setup file (TOML) being read: it collects every problem, remembers which keys were read and what each
 /// key, given or default, came to. Rooms read their own tables through SetupTable.
@@ -31,6 +32,12 @@ class SetupDocument {
   /// (`--set lens.focus=medium`). Problems with the key are reported at "--set key.path=value".
   void override_key(std::string const& assignment);
 
+  /// Puts a value at a path of keys in place of what is there; tables on the way are made. In messages it stands where
+  /// its own place says, and file names in it are relative to the folder of its own source.
+  void set(std::vector<std::string> const& path, SetupNode const& value);
+  /// The value at a path of keys; null where there is none.
+  SetupNode const* find(std::vector<std::string> const& path) const;
+
   /// The root table. Tables are views: the document must outlive them.
   SetupTable root();
 
@@ -44,6 +51,12 @@ class SetupDocument {
   /// The setup as understood: every key that was read, with the value used, defaults written out, "auto" replaced by
   /// what SetupTable::resolve gave, file names absolute. Reads back to the same setup.
   std::string resolved() const;
+
+  /// The setup as it is written, as one TOML document without defaults; file names that were read are absolute.
+  std::string written() const;
+
+  /// Absolute names of the files that were asked for by required_path.
+  std::vector<std::string> file_names() const;
 
   /// The folder that relative file names refer to.
   std::string const& folder() const;

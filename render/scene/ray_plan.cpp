@@ -298,9 +298,13 @@ StepPlan plan_step(Scene& scene) {
       coarse = std::move(fine);
     }
   }
+  use_step(scene, plan);
+  return plan;
+}
+
+void use_step(Scene& scene, StepPlan const& plan) {
   scene.step = plan.step_mm * unit::millimetre;
   scene.pupil_margin = 1.25 * plan.largest_bend;
-  return plan;
 }
 
 RaysPlan measure_rays(Scene const& scene) { return RayErrors(scene).measure(); }

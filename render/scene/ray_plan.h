@@ -30,6 +30,9 @@ struct RaysPlan {
 /// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
 StepPlan plan_step(Scene& scene);
 
+/// Sets what plan_step sets, from its result.
+void use_step(Scene& scene, StepPlan const& plan);
+
 /// Errors at the scene's present number of rays: how far independent scramblings of it scatter on a sample of up to 96
 /// dots spread over the target, each traced four times. Images as they are where dots overlap: pixels that several dots
 /// light have the sum of their variances, and "auto" exposes for the brightest pixel that dots at random make.

@@ -160,14 +160,15 @@ Vec2d Scene::to_target(Vec2d pixel) const {
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
 }
 
-void check_memory(Setup const& setup) {
+void check_memory(Setup const& setup, FieldMemory field_memory) {
   struct Need {
     char const* key;  ///< that it can be reduced by
     double bytes;
   };
   double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
   Need const images{"camera.pixels", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))};
-  Need const field{"medium.field.file", static_cast<double>(medium_bytes_needed(setup.medium))};
+  Need const field{"medium.field.file",
+                   field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0};
   Need const dots{"target.dots_per_32px_window", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0};
   Need const rays{"render.rays_per_dot", ray_record_bytes(setup)};
   double const needed = field.bytes + images.bytes + dots.bytes + rays.bytes;
@@ -183,8 +184,14 @@ void check_memory(Setup const& setup) {
                   gigabytes(rays.bytes), gigabytes(available), most.key));
 }
 
-Scene build_scene(Setup const& setup) {
-  check_memory(setup);
+BuiltMedium build_checked_medium(MediumSetup const& setup) {
+  BuiltMedium medium = build_medium(setup);
+  refuse_negative_density(setup, medium);
+  return medium;
+}
+
+Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
+  check_memory(setup, medium ? FieldMemory::taken : FieldMemory::needed);
   Scene scene;
   scene.setup = setup;
   scene.imaging = setup.imaging();
@@ -208,10 +215,9 @@ Scene build_scene(Setup const& setup) {
   }
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
 
-  scene.medium = build_medium(setup.medium);
-  refuse_negative_density(setup.medium, scene.medium);
+  scene.medium = medium ? *medium : build_checked_medium(setup.medium);
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
-    Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+    Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
     if (-setup.z_d > box.low.z || setup.z_a < box.high.z) {
       throw DataError(
           setup.medium.field.where,

@@ -49,11 +49,18 @@ struct Scene {
   Vec2d to_target(Vec2d pixel) const;
 };
 
+/// Whether a setup's medium is still to be built, or in memory already.
+enum class FieldMemory { needed, taken };
+
 /// Refuses what this machine's memory cannot hold, before any of it is allocated.
 /// @throws SetupError-like DataError naming the sizes
-void check_memory(Setup const& setup);
+void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed);
 
 /// Builds dots and medium. Step, margin and rays are 0 until planned (ray_plan.h).
-Scene build_scene(Setup const& setup);
+/// @param medium of this very setup, if it is built already
+Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);
+
+/// The setup's medium, checked for densities that no gas has. @throws DataError
+BuiltMedium build_checked_medium(MediumSetup const& setup);
 
 }  // namespace gladstone

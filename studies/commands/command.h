@@ -50,7 +50,11 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_trace(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
+
+/// Of `gladstone sweep`: its own commands.
+CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options);
 
 /// Prints the result of a command: the JSON text with --json, the readable text otherwise.
 void print_result(GlobalOptions const& options, std::string const& json, std::string const& text);

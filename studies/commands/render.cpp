@@ -23,7 +23,7 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
   return [arguments, &options] {
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
     auto const renderer = options.open_device().renderer;
-    std::string const summary = render_to_folder(loaded, *renderer, arguments->folder);
+    std::string const summary = render_to_folder(loaded, *renderer, arguments->folder).summary;
     auto const json = nlohmann::json::parse(summary);
     print_result(options, summary,
                  fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.2f} s on {}",

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "render/base/setup_node.h"
+
 namespace gladstone {
 namespace {
 
@@ -374,6 +376,36 @@ std::string read_everything(SetupDocument& setup) {
   root.table("unwritten");
   setup.finish();
   return setup.resolved();
+}
+
+/// A value of another file, as parsed there.
+SetupNode value_of_study(std::string const& text) {
+  SetupNode root = parse_toml("value = " + text, "study.toml");
+  SetupNode value = *root.find("value");
+  set_source(value, std::make_shared<SetupSource const>(SetupSource{"study.toml", "/data/studies"}));
+  return value;
+}
+
+TEST(SetupDocument, ValuesOfAnotherFileKeepTheirPlaceAndTheirFolder) {
+  auto setup = document("[target]\nfile = \"a.csv\"\nsize = 1\n[[camera]]\nbits = 8\n");
+  setup.set({"target", "file"}, value_of_study("\"b.csv\""));
+  setup.set({"target", "size"}, value_of_study("-1"));
+  setup.set({"camera", "bits"}, value_of_study("12"));
+  setup.set({"camera", "bits", "deep"}, value_of_study("12"));
+  auto target = setup.root().table("target");
+  EXPECT_EQ(target.required_path("file"), "/data/studies/b.csv");
+  target.number("size", 1, Range::positive());
+  EXPECT_EQ(setup.root().tables("camera").at(0).integer("bits", 8, 1, 16), 12);
+  EXPECT_EQ(setup.file_names(), std::vector<std::string>{"/data/studies/b.csv"});
+  EXPECT_THAT(problems(setup), ElementsAre(HasSubstr("study.toml:1:1: camera.bits.deep: camera.bits is a whole number"),
+                                           HasSubstr("study.toml:1:1: target.size = -1: must be greater than 0")));
+}
+
+TEST(SetupDocument, WrittenIsTheTextWithFileNamesMadeAbsolute) {
+  auto setup = document("schema = 1\n[target]\nfile = \"a.csv\"\n[medium.field]\nkind = \"none\"\n");
+  setup.root().table("target").required_path("file");
+  EXPECT_EQ(setup.written(),
+            "schema = 1\n\n[medium]\n\n[medium.field]\nkind = \"none\"\n\n[target]\nfile = \"/data/cases/a.csv\"\n");
 }
 
 TEST(ResolvedSetup, ReadsBackToTheSame) {

@@ -63,6 +63,9 @@ class Program {
 
   void send(int signal) const { ::kill(child_, signal); }
 
+  /// What it has written to stderr so far.
+  std::string err() const { return content(streams_ / "err"); }
+
   /// Waits for the end; what outlives the limit is killed.
   Outcome finish(std::chrono::milliseconds limit) {
     auto const end = std::chrono::steady_clock::now() + limit;

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "studies/commands/command.h"
+#include "studies/sweep/collect.h"
+#include "studies/sweep/plan.h"
+#include "studies/sweep/state_report.h"
+
+namespace gladstone {
+namespace {
+
+char const* to_string(Planned planned) {
+  switch (planned) {
+    case Planned::fresh:
+      return "fresh";
+    case Planned::unchanged:
+      return "unchanged";
+    case Planned::replaced:
+      break;
+  }
+  return "replaced";
+}
+
+CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string study, run;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("study", arguments->study, "Study file (TOML): base setup and axes")->required();
+  app.add_option("-o,--output", arguments->run, "RUN folder to make")->required();
+  return [arguments, &options] {
+    StudyFile const study = read_study(arguments->study);
+    std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
+    std::vector<ManifestCase> cases = plan_study(study, device);
+    Planned const planned = write_plan(arguments->run, study, cases);
+    nlohmann::ordered_json json{{"run", arguments->run},
+                                {"cases", cases.size()},
+                                {"repeats", study.repeats},
+                                {"device", device},
+                                {"planned", to_string(planned)}};
+    json["axes"] = nlohmann::ordered_json::array();
+    std::string axes;
+    for (AxisPlan const& axis : study.axes) {
+      std::size_t const values = study.mode == StudyMode::sobol && axis.range ? study.samples : axis.size();
+      json["axes"].push_back({{"key", axis.key}, {"values", values}});
+      axes += fmt::format("  {}: {} values\n", axis.key, values);
+    }
+    print_result(options, json.dump(2),
+                 fmt::format("{}: {} cases for {}{}\n{}", arguments->run, cases.size(), device,
+                             planned == Planned::unchanged ? ", planned already" : "", axes));
+    return ok;
+  };
+}
+
+std::vector<std::size_t> all_of(std::vector<ManifestCase> const& cases) {
+  std::vector<std::size_t> all(cases.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
+  auto run = std::make_shared<std::string>();
+  app.add_option("run", *run, "RUN folder")->required();
+  return [run, &options] {
+    std::vector<ManifestCase> const cases = read_manifest(*run);
+    RunState const state = state_of(*run, cases, all_of(cases));
+    print_result(options, state_json(*run, cases, state).dump(2), state_text(*run, cases, state));
+    return ok;
+  };
+}
+
+CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
+  auto run = std::make_shared<std::string>();
+  app.add_option("run", *run, "RUN folder")->required();
+  return [run, &options] {
+    StudyTable const table = collect_study(*run);
+    std::vector<ManifestCase> const cases = read_manifest(*run);
+    RunState const state = state_of(*run, cases, all_of(cases));
+    nlohmann::ordered_json json = state_json(*run, cases, state);
+    json["axes"] = table.axes.size();
+    json["measures"] = table.measures.size();
+    json["files"] = {*run + '/' + run_file::table_text, *run + '/' + run_file::table};
+    print_result(options, json.dump(2),
+                 state_text(*run, cases, state) +
+                     fmt::format("wrote {0}/{1} and {0}/{2}\n", *run, run_file::table_text, run_file::table));
+    return table.unfinished().empty() ? ok : incomplete;
+  };
+}
+
+}  // namespace
+
+CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
+  struct Action {
+    char const* name;
+    char const* summary;
+    char const* example;
+    CommandBody (*attach)(CLI::App& app, GlobalOptions const& options);
+  };
+  static constexpr std::array actions{
+      Action{"plan", "Write every case of a study into RUN/manifest.jsonl",
+             "gladstone sweep plan study.toml -o out/run", attach_plan},
+      Action{"run", "Compute the cases that are missing; can be stopped and run again at any time",
+             "gladstone sweep run out/run --jobs 2", attach_sweep_run},
+      Action{"status", "Say what is done, failed, missing and running; reads files only",
+             "gladstone sweep status out/run --json", attach_status},
+      Action{"collect", "Write RUN/study.csv and RUN/study.h5, a row a case", "gladstone sweep collect out/run",
+             attach_collect},
+  };
+  app.require_subcommand(0, 1);
+  auto parsed = std::make_shared<std::vector<std::pair<CLI::App*, CommandBody>>>();
+  for (Action const& action : actions) {
+    CLI::App* const sub = app.add_subcommand(action.name, action.summary);
+    sub->footer(
+        fmt::format("Example:\n  {}\n\nGlobal options (--json --quiet --threads N --device D) may stand "
+                    "anywhere.",
+                    action.example));
+    parsed->emplace_back(sub, action.attach(*sub, options));
+  }
+  return [parsed]() -> int {
+    for (auto const& [sub, body] : *parsed) {
+      if (sub->parsed()) return body();
+    }
+    fmt::print(stderr, "gladstone: sweep needs one of plan, run, status, collect. See gladstone sweep --help\n");
+    return bad_input;
+  };
+}
+
+}  // namespace gladstone

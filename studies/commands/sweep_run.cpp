@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "render/base/error.h"
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+#include "studies/commands/sweep_slurm.h"
+#include "studies/sweep/run.h"
+#include "studies/sweep/state_report.h"
+#include "studies/sweep/workers.h"
+
+namespace gladstone {
+namespace {
+
+struct Arguments {
+  std::string run, shard;
+  RunSelection selection;
+  int jobs = 0;      ///< 0: one, or one a GPU
+  int worker = -1;   ///< where a worker tells of finished cases; -1: this is none
+  double first = 0;  ///< part of the selection that a worker leaves to others at first
+  SlurmArguments slurm;
+};
+
+/// "I/N"
+void read_shard(Arguments& arguments) {
+  if (arguments.shard.empty()) return;
+  std::istringstream text(arguments.shard);
+  char slash = 0;
+  long long shard = -1, shards = 0;
+  if (!(text >> shard >> slash >> shards) || slash != '/' || !text.eof() || shards < 1 || shard < 0 ||
+      shard >= shards) {
+    throw DataError("--shard", fmt::format("{} is not I/N with I from 0 to N - 1; write 0/3 for the first of three",
+                                           arguments.shard));
+  }
+  arguments.selection.shard = static_cast<std::size_t>(shard);
+  arguments.selection.shards = static_cast<std::size_t>(shards);
+}
+
+/// The device that the manifest asks for. @throws DeviceError where the command line asks for another
+std::string device_of(std::vector<ManifestCase> const& cases, std::string const& wanted) {
+  std::string const& planned = cases.front().device;
+  if (wanted != "auto" && wanted != planned) {
+    throw DeviceError(
+        fmt::format("--device {}: the study was planned for {} (results are equal bit by bit on one kind "
+                    "of device only); leave --device out, or plan the study anew",
+                    wanted, planned));
+  }
+  return planned;
+}
+
+/// A GPU for each worker in turn, as an environment variable; empty on the CPU.
+std::string visible_device(std::string const& device, std::size_t worker) {
+  if (device != "cuda") return "";
+  std::vector<std::string> names;
+  if (char const* const given = std::getenv("CUDA_VISIBLE_DEVICES")) {
+    std::istringstream list(given);
+    for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  } else {
+    for (int gpu = 0; gpu < gpu_count(); ++gpu) names.push_back(std::to_string(gpu));
+  }
+  return names.empty() ? "" : "CUDA_VISIBLE_DEVICES=" + names[worker % names.size()];
+}
+
+/// Runs the cases in processes of their own. @return ok, or what went wrong in one that others cannot make up for
+int run_in_workers(Arguments const& arguments, std::string const& device, int jobs,
+                   std::function<void()> const& finished) {
+  std::vector<std::vector<std::string>> words;
+  std::vector<std::string> environment;
+  for (int k = 0; k < jobs; ++k) {
+    std::vector<std::string> one{"sweep",       "run",
+                                 arguments.run, "--quiet",
+                                 "--device",    device,
+                                 "--jobs",      "1",
+                                 "--threads",   std::to_string(std::max(1, thread_count() / jobs)),
+                                 "--first",     fmt::format("{}", static_cast<double>(k) / jobs)};
+    if (!arguments.selection.only.empty()) one.insert(one.end(), {"--case", arguments.selection.only});
+    if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
+    if (arguments.selection.keep_images) one.emplace_back("--keep-images");
+    if (arguments.selection.retry_failed) one.emplace_back("--retry-failed");
+    words.push_back(std::move(one));
+    environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
+  }
+  spdlog::info("{} workers on {}, {} threads each", jobs, device, std::max(1, thread_count() / jobs));
+  int code = ok;
+  for (WorkerEnd const& end : run_workers(words, environment, finished)) {
+    if (end.signal != 0)
+      spdlog::warn("a worker was ended by signal {}; the others have taken over its case", end.signal);
+    if (end.exit_code == device_error || (end.exit_code == bad_input && code == ok)) code = end.exit_code;
+    if (end.exit_code == interrupted_by_user) throw Interrupted();
+  }
+  return code;
+}
+
+void run_here(Arguments const& arguments, std::vector<ManifestCase> const& cases,
+              std::vector<std::size_t> const& selected, std::string const& device,
+              std::function<void()> const& finished) {
+  CaseRunner runner(open_device(device));
+  auto const first = static_cast<std::size_t>(arguments.first * static_cast<double>(selected.size()));
+  run_cases(arguments.run, cases, selected, arguments.selection, runner, first, [&](std::size_t index) {
+    std::string const line = std::to_string(index) + '\n';
+    // a parent that does not listen any more is no reason to stop
+    if (arguments.worker >= 0 && ::write(arguments.worker, line.data(), line.size()) < 0) spdlog::debug("not heard");
+    finished();
+  });
+}
+
+/// Prints how the selected cases stand, with more of JSON and text after it. @return ok, or incomplete
+int print_state(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+                std::vector<std::size_t> const& selected, nlohmann::ordered_json const& more_json,
+                std::string const& more_text) {
+  RunState const state = state_of(arguments.run, cases, selected);
+  nlohmann::ordered_json json = state_json(arguments.run, cases, state);
+  json.update(more_json);
+  print_result(options, json.dump(2), state_text(arguments.run, cases, state) + more_text);
+  return state.complete() ? ok : incomplete;
+}
+
+/// --slurm: the cases are computed by a cluster.
+int submit_study(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+                 std::vector<std::size_t> const& selected, std::string const& device) {
+  SlurmArguments slurm = arguments.slurm;
+  SlurmOptions& given = slurm.options;
+  bool const asks_for_gpu = !given.gres.empty() || std::any_of(given.sbatch.begin(), given.sbatch.end(), [](auto& one) {
+    return one.find("gpu") != std::string::npos;
+  });
+  if (device == "cuda" && !asks_for_gpu)
+    spdlog::warn(
+        "the study was planned for cuda, and no GPU is asked for: --gres gpu:1, unless every node has its own");
+  if (arguments.jobs > 0) given.run.insert(given.run.end(), {"--jobs", std::to_string(arguments.jobs)});
+  if (arguments.selection.keep_images) given.run.emplace_back("--keep-images");
+  if (arguments.selection.retry_failed) given.run.emplace_back("--retry-failed");
+  auto const job = run_on_cluster(arguments.run, cases, selected, arguments.selection, slurm, options);
+  if (job && job->job.empty()) return ok;
+  nlohmann::ordered_json const json{{"job", job ? nlohmann::ordered_json(job->job) : nullptr}};
+  return print_state(arguments, options, cases, selected, json, job ? job->text : "");
+}
+
+int run_study(Arguments const& arguments, GlobalOptions const& options) {
+  auto const start = std::chrono::steady_clock::now();
+  std::vector<ManifestCase> const cases = read_manifest(arguments.run);
+  std::string const device = device_of(cases, options.device);
+  std::vector<std::size_t> const selected = selected_cases(cases, arguments.selection);
+  if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
+  bool const worker = arguments.worker >= 0;
+  RunState state;
+  if (!worker) state = state_of(arguments.run, cases, selected);
+  std::size_t const due =
+      worker ? selected.size()
+             : state.missing.size() + (arguments.selection.retry_failed ? state.failed.size() : std::size_t{0});
+  int code = ok;
+  std::size_t computed = 0;
+  if (due > 0) {
+    Progress progress("cases", due);
+    Progress::enable(false);  // those of single cases
+    auto const finished = [&] {
+      ++computed;
+      progress.advance();
+    };
+    int jobs = arguments.jobs > 0 ? arguments.jobs : device == "cuda" ? std::max(1, gpu_count()) : 1;
+    jobs = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(jobs), due));
+    if (jobs > 1) {
+      code = run_in_workers(arguments, device, jobs, finished);
+    } else {
+      run_here(arguments, cases, selected, device, finished);
+    }
+  }
+  if (worker) return ok;
+  if (code != ok) return code;
+  double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return print_state(arguments, options, cases, selected,
+                     {{"device", device}, {"computed", computed}, {"seconds", seconds}},
+                     fmt::format("{:.1f} s\n", seconds));
+}
+
+}  // namespace
+
+CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("run", arguments->run, "RUN folder")->required();
+  app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--case", arguments->selection.only, "These cases alone, by their indices: 17, or 0-3,7");
+  app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal pieces of the study");
+  app.add_flag("--keep-images", arguments->selection.keep_images,
+               "Leave each case's images and files in RUN/cases/INDEX");
+  app.add_flag("--retry-failed", arguments->selection.retry_failed, "Compute failed cases again");
+  add_slurm_options(app, arguments->slurm);
+  app.add_option("--worker", arguments->worker)->group("");
+  app.add_option("--first", arguments->first)->group("");
+  return [arguments, &options]() -> int {
+    try {
+      read_shard(*arguments);
+      return run_study(*arguments, options);
+    } catch (Interrupted const&) {
+      if (arguments->slurm.submit) throw;  // it says what becomes of the job
+      if (arguments->worker < 0) {
+        fmt::print(stderr,
+                   "gladstone: interrupted; finished cases are kept, and the same command goes on from there\n");
+      }
+      return interrupted_by_user;
+    }
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,51 @@
+#include "studies/sweep/case_keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/base/setup_node.h"
+
+namespace gladstone {
+namespace {
+
+void remove(SetupNode& table, std::string const& key) {
+  std::erase_if(table.members, [&key](SetupMember const& member) { return member.key == key; });
+}
+
+/// The only table of a name, written as a table or as an array of one; an empty one where there is none.
+SetupNode& table_of(SetupNode& root, std::string const& key) {
+  static thread_local SetupNode empty;
+  SetupNode* node = root.find(key);
+  if (node && node->kind == SetupNode::Kind::array && !node->elements.empty()) node = &node->elements.front();
+  return node ? *node : empty = {};
+}
+
+}  // namespace
+
+CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs) {
+  SetupNode setup = parse_toml(loaded.document.resolved(), "resolved setup");  // every default is written out
+  std::string files;
+  for (auto const& [name, hash] : inputs) files += fmt::format("\n{} {}", name, hash);
+
+  CaseKeys keys;
+  SetupNode medium = table_of(setup, "medium");
+  for (char const* key : {"step_mm", "integrator", "faces"}) remove(medium, key);
+  keys.medium = toml_text(medium) + files;
+
+  // The camera's electronics come after the light; the first window counts by the extent of the target only.
+  SetupNode& camera = table_of(setup, "camera");
+  std::string const electronics =
+      fmt::format("bits {}, exposure {}, full well {}", loaded.setup.camera.bit_depth,
+                  loaded.setup.camera.exposure_e.value_or(0), loaded.setup.camera.noise.full_well_e);
+  for (char const* key : {"noise", "bit_depth", "exposure", "offset_dn"}) remove(camera, key);
+  std::optional<std::uint64_t> const rays = loaded.setup.render.rays_per_dot;
+  remove(table_of(setup, "render"), "rays_per_dot");
+  remove(setup, "correlate");
+  Vec2d const extent = loaded.setup.target_extent();
+  keys.scene = fmt::format("{}\nextent {} {}{}", toml_text(setup), extent.x, extent.y, files);
+  keys.rays = keys.scene + (rays ? fmt::format("\n{} rays", *rays) : "\nrays for " + electronics);
+  return keys;
+}
+
+}  // namespace gladstone

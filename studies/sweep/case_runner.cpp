@@ -1,0 +1,250 @@
+#include "studies/sweep/case_runner.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "analysis/vector_file.h"
+#include "render/base/content_hash.h"
+#include "render/base/output_file.h"
+#include "render/base/setup_node.h"
+#include "studies/correlate.h"
+#include "studies/sweep/case_keys.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The last few values by the text that they depend on.
+template <class Value>
+class Recent {
+ public:
+  explicit Recent(std::size_t most) : most_(most) {}
+  Value* find(std::string const& key) {
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+      if (entry->first != key) continue;
+      entries_.splice(entries_.begin(), entries_, entry);
+      return &entries_.front().second;
+    }
+    return nullptr;
+  }
+  Value& keep(std::string const& key, Value value) {
+    entries_.emplace_front(key, std::move(value));
+    if (entries_.size() > most_) entries_.pop_back();
+    return entries_.front().second;
+  }
+  void clear() { entries_.clear(); }
+
+ private:
+  std::size_t most_;
+  std::list<std::pair<std::string, Value>> entries_;
+};
+
+/// Media that together take more than this are not kept beside a new one [bytes].
+constexpr std::size_t kept_media_bytes = std::size_t{1} << 30;
+
+/// What a file was when it was hashed last: as long as it stays so, it is not read again.
+struct HashedFile {
+  fs::file_time_type time;
+  std::uintmax_t size = 0;
+  std::string hash;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void flatten(nlohmann::ordered_json const& json, std::string const& path,
+             std::vector<std::pair<std::string, double>>& measures) {
+  if (json.is_object()) {
+    std::string const start = path.empty() ? "" : path + '.';
+    for (auto const& [key, value] : json.items()) flatten(value, start + key, measures);
+  } else if (json.is_number() || json.is_null()) {
+    measures.emplace_back(path, json.is_null() ? nan : json.get<double>());
+  }
+}
+
+/// Says nothing on the log below errors while it lives: a study's warnings stand in its results.
+class QuietLog {
+ public:
+  QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+  ~QuietLog() { spdlog::set_level(level_); }
+  QuietLog(QuietLog const&) = delete;
+  QuietLog& operator=(QuietLog const&) = delete;
+
+ private:
+  spdlog::level::level_enum level_;
+};
+
+}  // namespace
+
+struct CaseRunner::Shared {
+  struct Plan {
+    StepPlan step;
+    StrainMap strain;
+  };
+  std::map<std::string, HashedFile> files;
+  Recent<BuiltMedium> media{8};
+  std::size_t media_bytes = 0;
+  Recent<Plan> plans{64};
+  Recent<RaysPlan> rays{64};
+  Recent<RenderedCase> renderings{2};
+  Recent<PointTruth> truths{4};
+};
+
+std::vector<std::pair<std::string, double>> flat_measures(std::string const& errors_json) {
+  std::vector<std::pair<std::string, double>> measures;
+  flatten(nlohmann::ordered_json::parse(errors_json), "", measures);
+  return measures;
+}
+
+CaseRunner::CaseRunner(Device device, Sharing sharing)
+    : device_(std::move(device)), sharing_(sharing), shared_(std::make_unique<Shared>()) {}
+CaseRunner::~CaseRunner() = default;
+
+void CaseRunner::check_inputs(ManifestCase const& one) {
+  for (auto const& [path, hash] : one.inputs) {
+    HashedFile& known = shared_->files[path];
+    std::error_code error;
+    auto const time = fs::last_write_time(path, error);
+    auto const size = error ? 0 : fs::file_size(path, error);
+    if (error || known.hash.empty() || known.time != time || known.size != size) {
+      known = {time, size, file_hash(path)};
+    }
+    if (known.hash == hash) continue;
+    throw DataError(path, fmt::format("has changed since the study was planned ({}); bring the old file back, or plan "
+                                      "the study again into another folder",
+                                      one.title()));
+  }
+}
+
+CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
+  check_inputs(one);
+  if (sharing_ == Sharing::no) {
+    auto files = std::move(shared_->files);
+    shared_ = std::make_unique<Shared>();
+    shared_->files = std::move(files);
+  }
+  CaseResult result;
+  result.index = one.index;
+  result.line_hash = one.line_hash;
+  result.device = device_.name();
+  auto const fail = [&](std::string error) {
+    result = {one.index, one.line_hash, CaseStatus::failed, std::move(error), {}, {}, nan, nan, nan, device_.name()};
+  };
+  QuietLog const quiet;
+  try {
+    compute(one, keep, result);
+  } catch (SetupError const& error) {
+    fail(error.what());
+  } catch (DataError const& error) {
+    fail(error.what());
+  } catch (std::bad_alloc const&) {
+    shared_ = std::make_unique<Shared>();
+    fail("out of memory; reduce the image, the field or the number of dots");
+  } catch (DeviceError const& error) {
+    if (!std::string_view(error.what()).starts_with("out of device memory")) throw;
+    fail(error.what());
+  }
+  return result;
+}
+
+void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseResult& result) {
+  auto start = std::chrono::steady_clock::now();
+  Shared& shared = *shared_;
+  CaseSetup loaded =
+      load_case_setup(SetupDocument::from_text(one.setup, fmt::format("case {}", one.index)), FieldMemory::taken);
+  CaseKeys const keys = case_keys(loaded, one.inputs);
+
+  KnownParts known;
+  BuiltMedium* medium = shared.media.find(keys.medium);
+  if (!medium) {
+    std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
+    if (shared.media_bytes + bytes > kept_media_bytes) {
+      shared.media.clear();
+      shared.media_bytes = 0;
+    }
+    check_memory(loaded.setup);
+    medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium));
+    shared.media_bytes += bytes;
+  }
+  known.medium = medium;
+  Shared::Plan const* const plan = shared.plans.find(keys.scene);
+  if (plan) {
+    known.step = &plan->step;
+    known.strain = &plan->strain;
+  }
+  known.rays = shared.rays.find(keys.rays);
+  PreparedCase prepared = prepare_case(loaded, known);
+  if (!plan) shared.plans.keep(keys.scene, {prepared.step, prepared.strain});
+  if (!known.rays) shared.rays.keep(keys.rays, prepared.rays);
+
+  RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // of the dots: for truth.h5
+  std::string const frames_key =
+      fmt::format("{}\nrays {}{}", keys.scene, prepared.rays.rays, keep.empty() ? "" : ", theory");
+  RenderedCase* const made = shared.renderings.find(frames_key);
+  RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
+  if (!made) shared.renderings.keep(frames_key, rendered);
+  rendered.exposure_e = exposure_of(loaded.setup.camera, rendered.rendering->light);
+  RecordedFrames const frames = record_frames(prepared, rendered);
+  result.seconds_render = seconds_since(start);
+
+  std::optional<OutputFolder> folder;
+  if (!keep.empty()) {
+    folder.emplace(keep, case_file::setup,
+                   std::vector<std::string>(case_file::derived.begin(), case_file::derived.end()));
+    rendered.seconds = result.seconds_render;
+    write_case(loaded, prepared, rendered, frames, *device_.renderer, folder->temporary_path());
+  }
+
+  std::string const name = fmt::format("case {}", one.index);
+  Measurement const measured =
+      correlate_frames(name, grey_levels(frames.reference), name, grey_levels(frames.flow), loaded.correlate, device_);
+  result.seconds_correlate = measured.seconds;
+
+  start = std::chrono::steady_clock::now();
+  std::vector<Vec2d> const& places = measured.field.position_px;
+  std::string const truth_key =
+      frames_key + "\nvectors " +
+      content_hash({reinterpret_cast<char const*>(places.data()), places.size() * sizeof(Vec2d)});
+  PointTruth* truth = shared.truths.find(truth_key);
+  if (!truth) {
+    truth =
+        &shared.truths.keep(truth_key, truth_of_vectors(prepared, *device_.renderer, places, TruthAt::mid_position));
+  }
+  Comparison const comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
+                                                {measured.field, loaded.correlate, false, "", name}, *truth, device_);
+  std::string const errors = errors_json(comparison);
+  result.measures = flat_measures(errors);
+  std::vector<Vec2d> const still(places.size());
+  result.measures.emplace_back("signal_px",
+                               summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+  result.measures.emplace_back("magnification", prepared.scene.imaging.magnification);
+  result.measures.emplace_back("step_mm", prepared.step.step_mm);
+  result.measures.emplace_back("rays_per_dot", static_cast<double>(prepared.rays.rays));
+  result.measures.emplace_back("exposure", rendered.exposure_e);
+  result.measures.emplace_back("dots", static_cast<double>(prepared.scene.dots.centre.size()));
+  result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
+  result.measures.emplace_back("saturated", static_cast<double>(frames.reference.saturated + frames.flow.saturated));
+  result.measures.emplace_back("warnings", static_cast<double>(prepared.warnings.size()));
+  result.warnings = prepared.warnings;
+  result.seconds_compare = seconds_since(start);
+
+  if (!folder) return;
+  fs::path const place = folder->temporary_path();
+  FileOrigin const origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, device_.name()};
+  write_vectors((place / case_file::vectors).string(), measured.field, origin);
+  OutputFile::write_text((place / case_file::errors).string(), errors);
+  folder->commit();
+}
+
+}  // namespace gladstone

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/compare.h"
+#include "studies/sweep/results.h"
+
+namespace gladstone {
+
+/// Whether a runner takes over from the cases before what this one agrees with them on.
+enum class Sharing { yes, no };
+
+/// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends on its manifest
+/// line alone: what is shared between cases (fields and their splines, planned steps and rays, renderings, truth at
+/// vectors) is what the case itself would have computed, to the last bit. A reference frame is traced with the rays of
+/// its flow frame, whose pupil is as wide as the medium bends; so frames are shared where the medium agrees too.
+class CaseRunner {
+ public:
+  explicit CaseRunner(Device device, Sharing sharing = Sharing::yes);
+  ~CaseRunner();
+
+  /// Computes a case. What is wrong with the case itself is its result (`failed`).
+  /// @param keep folder to write the whole CASE to, as render, correlate and compare would, without figures; empty:
+  /// nothing is written
+  /// @throws DataError where an input is not what it was when the study was planned; Interrupted, OutputError,
+  ///         DeviceError (but a device without enough memory fails the case alone)
+  CaseResult run(ManifestCase const& one, std::string const& keep = "");
+
+ private:
+  struct Shared;
+
+  void check_inputs(ManifestCase const& one);
+  void compute(ManifestCase const& one, std::string const& keep, CaseResult& result);
+
+  Device device_;
+  Sharing sharing_;
+  std::unique_ptr<Shared> shared_;
+};
+
+/// The numbers of an errors.json by their path ("budget.terms.cone.rms_px"), in its order; arrays and texts are left
+/// out, null is NaN.
+std::vector<std::pair<std::string, double>> flat_measures(std::string const& errors_json);
+
+}  // namespace gladstone

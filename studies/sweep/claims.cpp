@@ -1,0 +1,69 @@
+#include "studies/sweep/claims.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "studies/sweep/manifest.h"
+
+namespace gladstone {
+namespace {
+
+/// @param count 0: to the end
+struct flock range_of(std::size_t first, std::size_t count, short type) {
+  struct flock range {};
+  range.l_type = type;
+  range.l_whence = SEEK_SET;
+  range.l_start = static_cast<off_t>(first);
+  range.l_len = static_cast<off_t>(count);
+  return range;
+}
+
+[[noreturn]] void no_locks(std::string const& path, int error) {
+  throw OutputError(path, fmt::format("cannot be locked ({}); put the run on a file system with locks, such as a local "
+                                      "disk or NFS with lockd",
+                                      std::strerror(error)));
+}
+
+}  // namespace
+
+Claims::Claims(std::string const& run) : path_((std::filesystem::path(run) / run_file::claims).string()) {
+  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0 && (errno == EACCES || errno == EROFS)) file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);  // to look
+  if (file_ < 0) throw OutputError(path_, fmt::format("cannot be opened ({})", std::strerror(errno)));
+}
+
+Claims::~Claims() { ::close(file_); }
+
+bool Claims::take(std::size_t index) {
+  struct flock range = range_of(index, 1, F_WRLCK);
+  while (::fcntl(file_, F_OFD_SETLK, &range) != 0) {
+    if (errno == EAGAIN || errno == EACCES) return false;
+    if (errno != EINTR) no_locks(path_, errno);
+  }
+  return true;
+}
+
+void Claims::release(std::size_t index) {
+  struct flock range = range_of(index, 1, F_UNLCK);
+  while (::fcntl(file_, F_OFD_SETLK, &range) != 0 && errno == EINTR) {
+  }
+}
+
+bool Claims::held(std::size_t index) const { return held_from(index, 1); }
+bool Claims::any_held() const { return held_from(0, 0); }
+
+bool Claims::held_from(std::size_t first, std::size_t count) const {
+  struct flock range = range_of(first, count, F_WRLCK);
+  while (::fcntl(file_, F_OFD_GETLK, &range) != 0) {
+    if (errno != EINTR) no_locks(path_, errno);
+  }
+  return range.l_type != F_UNLCK;
+}
+
+}  // namespace gladstone

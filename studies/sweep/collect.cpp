@@ -1,0 +1,184 @@
+#include "studies/sweep/collect.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "render/base/hdf5_file.h"
+#include "render/base/output_file.h"
+#include "render/base/text_file.h"
+
+namespace gladstone {
+namespace {
+
+/// One column of numbers, and what its whole numbers stand for.
+struct Column {
+  std::string name;
+  std::function<double(StudyRow const&)> number;
+  std::vector<std::string> labels;  ///< the number is a place in this list; empty: it is itself
+  std::string description;
+  bool whole = false;
+};
+
+/// RFC 4180: quotes where a comma, a quote or a line end stands inside.
+std::string cell(std::string const& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char const c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string unit_of(std::string const& name) {
+  constexpr std::array<std::pair<char const*, char const*>, 10> endings{{{"_px2", "px^2"},
+                                                                         {"_px", "px"},
+                                                                         {"_mm", "mm"},
+                                                                         {"_um", "um"},
+                                                                         {"_nm", "nm"},
+                                                                         {"_deg", "deg"},
+                                                                         {"_rad", "rad"},
+                                                                         {"_kg_m3", "kg/m^3"},
+                                                                         {"_kg_m4", "kg/m^4"},
+                                                                         {"_e", "e"}}};
+  if (name.starts_with("seconds_")) return "s";
+  for (auto const& [ending, unit] : endings) {
+    if (name.ends_with(ending)) return unit;
+  }
+  return name == "exposure" ? "e" : "1";
+}
+
+std::string description_of(std::string const& measure) {
+  static std::map<std::string, std::string> const known{
+      {"signal_px", "rms of the ray truth at the vectors that count, per component"},
+      {"magnification", "M = z_i / Z_B"},
+      {"step_mm", "step that rays were traced with"},
+      {"rays_per_dot", "rays of a dot"},
+      {"exposure", "electrons in a fully lit pixel on the axis"},
+      {"dots", "dots on the target"},
+      {"caustic_fraction", "share of the view where the cone-averaged strain is 1 or more"},
+      {"saturated", "saturated pixels of both frames"},
+      {"warnings", "warnings that the case gave; they stand in its result"}};
+  auto const found = known.find(measure);
+  return found != known.end() ? found->second : "as in errors.json";
+}
+
+std::vector<Column> columns_of(StudyTable const& table) {
+  std::vector<Column> columns;
+  for (std::size_t k = 0; k < table.axes.size(); ++k) {
+    StudyAxis const& axis = table.axes[k];
+    columns.push_back({axis.key,
+                       [&axis, k](StudyRow const& row) {
+                         return axis.numeric ? axis.numbers[row.value[k]] : static_cast<double>(row.value[k]);
+                       },
+                       axis.numeric ? std::vector<std::string>{} : axis.labels, "axis: a key of the setup",
+                       !axis.numeric});
+  }
+  columns.push_back({"case",
+                     [](StudyRow const& row) { return static_cast<double>(row.index); },
+                     {},
+                     "line of the manifest, from 0",
+                     true});
+  columns.push_back({"seed",
+                     [](StudyRow const& row) { return static_cast<double>(row.seed); },
+                     {},
+                     "of target, rays and noise",
+                     true});
+  columns.push_back({"status",
+                     [](StudyRow const& row) { return static_cast<double>(row.status); },
+                     {"ok", "failed", "missing"},
+                     "what became of the case",
+                     true});
+  columns.push_back(
+      {"repeat", [](StudyRow const& row) { return static_cast<double>(row.repeat); }, {}, "from 0", true});
+  for (std::size_t m = 0; m < table.measures.size(); ++m) {
+    columns.push_back({table.measures[m],
+                       [m](StudyRow const& row) { return row.measures[m]; },
+                       {},
+                       description_of(table.measures[m])});
+  }
+  columns.push_back({"seconds_compare",
+                     [](StudyRow const& row) { return row.seconds_compare; },
+                     {},
+                     "time of the comparison with truth and theory"});
+  columns.push_back({"seconds_render",
+                     [](StudyRow const& row) { return row.seconds_render; },
+                     {},
+                     "time of building, planning and rendering; little where another case had done it"});
+  columns.push_back(
+      {"seconds_correlate", [](StudyRow const& row) { return row.seconds_correlate; }, {}, "time of the correlation"});
+  columns.push_back({"device",
+                     [](StudyRow const& row) { return row.device == "cuda" ? 1.0 : 0.0; },
+                     {"cpu", "cuda"},
+                     "what computes the case",
+                     true});
+  return columns;
+}
+
+}  // namespace
+
+std::string study_csv(StudyTable const& table) {
+  std::vector<Column> const columns = columns_of(table);
+  std::string text;
+  for (Column const& column : columns) {
+    if (!text.empty()) text += ',';
+    text += cell(column.name);
+  }
+  for (StudyRow const& row : table.rows) {
+    char separator = '\n';
+    for (Column const& column : columns) {
+      text += separator;
+      separator = ',';
+      double const number = column.number(row);
+      if (column.name == "seed") {
+        text += std::to_string(row.seed);  // has more digits than a double
+      } else if (!column.labels.empty()) {
+        text += cell(column.labels[static_cast<std::size_t>(number)]);
+      } else {
+        text += std::isnan(number) ? "nan" : fmt::format("{}", number);
+      }
+    }
+  }
+  return text + '\n';
+}
+
+void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup) {
+  FileOrigin const origin{"gladstone study", 1, setup, table.rows.front().seed, table.rows.front().device};
+  Hdf5Writer file(path, origin);
+  std::vector<std::size_t> const shape{table.rows.size()};
+  for (Column const& column : columns_of(table)) {
+    std::string const name = '/' + column.name;
+    if (column.whole) {
+      std::vector<std::int64_t> numbers;
+      for (StudyRow const& row : table.rows) {
+        numbers.push_back(column.name == "seed" ? static_cast<std::int64_t>(row.seed)
+                                                : static_cast<std::int64_t>(column.number(row)));
+      }
+      file.write(name, numbers, shape, "1", column.description, "case");
+    } else {
+      std::vector<double> numbers;
+      for (StudyRow const& row : table.rows) numbers.push_back(column.number(row));
+      file.write(name, numbers, shape, unit_of(column.name), column.description, "case");
+    }
+    if (!column.labels.empty()) file.attribute(name, "labels", nlohmann::json(column.labels).dump());
+  }
+  nlohmann::json keys = nlohmann::json::array();
+  for (StudyAxis const& axis : table.axes) keys.push_back(axis.key);
+  file.attribute("/", "study_axes", keys.dump());
+  file.close();
+}
+
+StudyTable collect_study(std::string const& run) {
+  namespace fs = std::filesystem;
+  StudyTable table = read_study_table(run);
+  std::error_code error;
+  std::string const study = (fs::path(run) / run_file::study).string();
+  write_study_h5((fs::path(run) / run_file::table).string(), table,
+                 fs::exists(study, error) ? read_text_file(study) : "");
+  OutputFile::write_text((fs::path(run) / run_file::table_text).string(), study_csv(table));
+  return table;
+}
+
+}  // namespace gladstone

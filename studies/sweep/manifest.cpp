@@ -1,0 +1,120 @@
+#include "studies/sweep/manifest.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/content_hash.h"
+#include "render/base/error.h"
+#include "render/base/text_file.h"
+
+namespace gladstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON knows no infinity: it is a text there, and a number again when it is read.
+Json value_json(ParameterValue const& value) {
+  if (value.number && std::isfinite(*value.number)) return *value.number;
+  return value.label;
+}
+
+ParameterValue value_of(Json const& json) {
+  if (json.is_string()) {
+    auto const label = json.get<std::string>();
+    if (label == "inf" || label == "-inf") return {label, label == "inf" ? HUGE_VAL : -HUGE_VAL};
+    return {label, std::nullopt};
+  }
+  double const number = json.get<double>();
+  return {fmt::format("{}", number), number};
+}
+
+ManifestCase case_of(Json const& json, std::string const& line) {
+  ManifestCase one;
+  one.index = json.at("index").get<std::size_t>();
+  one.repeat = json.at("repeat").get<std::size_t>();
+  one.seed = json.at("seed").get<std::uint64_t>();
+  one.device = json.at("device").get<std::string>();
+  for (auto const& [key, value] : json.at("parameters").items()) one.parameters.emplace_back(key, value_of(value));
+  one.setup = json.at("setup").get<std::string>();
+  one.inputs = json.at("inputs").get<std::map<std::string, std::string>>();
+  one.line_hash = content_hash(line);
+  return one;
+}
+
+}  // namespace
+
+std::string ManifestCase::title() const {
+  std::string text;
+  for (auto const& [key, value] : parameters) text += (text.empty() ? "" : ", ") + key + " = " + value.label;
+  if (repeat > 0) text += fmt::format("{}repeat {}", text.empty() ? "" : ", ", repeat);
+  return fmt::format("case {}{}", index, text.empty() ? "" : " (" + text + ')');
+}
+
+std::string manifest_line(ManifestCase const& one) {
+  Json json;
+  json["manifest"] = manifest_version;
+  json["index"] = one.index;
+  json["repeat"] = one.repeat;
+  json["seed"] = one.seed;
+  json["device"] = one.device;
+  json["parameters"] = Json::object();
+  for (auto const& [key, value] : one.parameters) json["parameters"][key] = value_json(value);
+  json["setup"] = one.setup;
+  json["inputs"] = one.inputs;
+  return json.dump();
+}
+
+std::string manifest_text(std::vector<ManifestCase>& cases) {
+  std::string text;
+  for (ManifestCase& one : cases) {
+    std::string const line = manifest_line(one);
+    one.line_hash = content_hash(line);
+    text += line + '\n';
+  }
+  return text;
+}
+
+std::vector<ManifestCase> read_manifest(std::string const& run) {
+  std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
+  if (!std::filesystem::exists(path)) {
+    throw DataError(run, fmt::format("is no planned study (it holds no {}); make one with: gladstone sweep plan "
+                                     "STUDY.toml -o {}",
+                                     run_file::manifest, run));
+  }
+  std::string const text = read_text_file(path);
+  std::vector<ManifestCase> cases;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::string const place = fmt::format("{}:{}", path, cases.size() + 1);
+    std::size_t const end = text.find('\n', begin);
+    std::string const line = text.substr(begin, end - begin);
+    Json const json = Json::parse(line, nullptr, false);
+    if (end == std::string::npos || !json.is_object()) {
+      throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
+    }
+    int const version =
+        json.contains("manifest") && json["manifest"].is_number_integer() ? json["manifest"].get<int>() : 0;
+    if (version != manifest_version) {
+      throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
+                                         "again or use the gladstone that planned it",
+                                         version, manifest_version));
+    }
+    try {
+      cases.push_back(case_of(json, line));
+    } catch (nlohmann::json::exception const& error) {
+      throw DataError(place, fmt::format("is damaged ({}); plan the study again", error.what()));
+    }
+    if (cases.back().index + 1 != cases.size()) {
+      throw DataError(place, fmt::format("holds case {} (case {} belongs there: lines are missing or out of order); "
+                                         "plan the study again",
+                                         cases.back().index, cases.size() - 1));
+    }
+    begin = end + 1;
+  }
+  if (cases.empty()) throw DataError(path, "is empty; plan the study again");
+  return cases;
+}
+
+}  // namespace gladstone

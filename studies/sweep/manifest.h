@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace gladstone {
+
+/// What an axis of a study is set to in a case.
+struct ParameterValue {
+  std::string label;             ///< as shown: a number, a text, or the label of a table
+  std::optional<double> number;  ///< where the value is a number, in the key's own unit
+};
+
+/// One case of a study: one line of RUN/manifest.jsonl, on which alone its result depends.
+struct ManifestCase {
+  std::size_t index = 0;                                           ///< from 0, the line less one
+  std::size_t repeat = 0;                                          ///< from 0; repeats have other dots, rays and noise
+  std::uint64_t seed = 0;                                          ///< of the repeat; equal for all points of the study
+  std::string device;                                              ///< "cpu" or "cuda": who may compute it
+  std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< by axis key path, in the study's order
+  std::string setup;                          ///< full setup (TOML), file names absolute, every "auto" still one
+  std::map<std::string, std::string> inputs;  ///< absolute name of every file that the setup names, and its file_hash()
+  std::string line_hash;                      ///< content_hash() of the line
+
+  /// "case 17 (lens.f_number = 8, geometry.z_d_mm = 250)"
+  std::string title() const;
+};
+
+/// The names of what stands in a RUN folder.
+namespace run_file {
+inline constexpr char const* manifest = "manifest.jsonl";
+inline constexpr char const* study = "study.toml";  ///< copy of the study file
+inline constexpr char const* claims = "claims";     ///< locked byte by byte by who computes which case
+inline constexpr char const* cases = "cases";       ///< folder of results, INDEX.json
+inline constexpr char const* table = "study.h5";
+inline constexpr char const* table_text = "study.csv";
+}  // namespace run_file
+
+inline constexpr int manifest_version = 1;
+
+/// The text of a case's line, without line end. Equal cases give equal text.
+std::string manifest_line(ManifestCase const& one);
+
+/// Reads RUN/manifest.jsonl.
+/// @throws DataError at manifest.jsonl:LINE for a missing or damaged file, a line cut short or of another version
+std::vector<ManifestCase> read_manifest(std::string const& run);
+
+/// Cases as a manifest's text; fills in their line_hash.
+std::string manifest_text(std::vector<ManifestCase>& cases);
+
+}  // namespace gladstone

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/sweep/manifest.h"
+#include "studies/sweep/study_file.h"
+
+namespace gladstone {
+
+/// Every case of a study: repeats outermost, of a grid the last axis fastest, so that neighbours share most. Every
+/// value of every axis is tried by loading its setup whole, with the other axes at their first value (zip: every pair);
+/// what goes wrong in other combinations only is left to the run. Seeds of target, pupil and noise derive from the
+/// study's seed and the repeat alone; an axis that names a seed wins.
+/// @param device "cpu" or "cuda"
+/// @throws SetupError at the study's and the base's own lines; DataError for inputs that cannot be read
+std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& device);
+
+/// What planning found in RUN.
+enum class Planned { fresh, unchanged, replaced };
+
+/// Writes RUN/manifest.jsonl, with a copy of the study beside it. A RUN that is planned already stays as it is where
+/// the manifest is the same, and is planned anew where no result would be lost: each that is there belongs to the same
+/// line of the new manifest (more repeats come at the end).
+/// @throws OutputError where results would be lost, cases are being computed, or RUN holds something else
+Planned write_plan(std::string const& run, StudyFile const& study, std::vector<ManifestCase>& cases);
+
+}  // namespace gladstone

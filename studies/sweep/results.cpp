@@ -1,0 +1,137 @@
+#include "studies/sweep/results.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "render/base/content_hash.h"
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr int result_version = 1;
+constexpr std::size_t hash_digits = 16;
+constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double number_of(Json const& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+CaseResult result_of(Json const& json) {
+  CaseResult result;
+  result.index = json.at("index").get<std::size_t>();
+  result.line_hash = json.at("line").get<std::string>();
+  result.status = json.at("status").get<std::string>() == "ok" ? CaseStatus::ok : CaseStatus::failed;
+  result.error = json.at("error").get<std::string>();
+  for (auto const& [name, value] : json.at("measures").items()) result.measures.emplace_back(name, number_of(value));
+  result.warnings = json.at("warnings").get<std::vector<std::string>>();
+  result.seconds_render = number_of(json.at("seconds_render"));
+  result.seconds_correlate = number_of(json.at("seconds_correlate"));
+  result.seconds_compare = number_of(json.at("seconds_compare"));
+  result.device = json.at("device").get<std::string>();
+  return result;
+}
+
+[[noreturn]] void cannot_be_written(std::string const& path, int error) {
+  throw OutputError(path, fmt::format("cannot be written ({}); finished cases are kept, run the study again when there "
+                                      "is room and the right to write",
+                                      std::strerror(error)));
+}
+
+}  // namespace
+
+char const* to_string(CaseStatus status) {
+  switch (status) {
+    case CaseStatus::ok:
+      return "ok";
+    case CaseStatus::failed:
+      return "failed";
+    case CaseStatus::missing:
+      break;
+  }
+  return "missing";
+}
+
+std::string result_path(std::string const& run, std::size_t index) {
+  return (std::filesystem::path(run) / run_file::cases / (std::to_string(index) + ".json")).string();
+}
+
+std::string result_text(CaseResult const& result) {
+  Json json;
+  json["result"] = result_version;
+  json["index"] = result.index;
+  json["line"] = result.line_hash;
+  json["status"] = to_string(result.status);
+  json["error"] = result.error;
+  json["device"] = result.device;
+  json["seconds_render"] = number(result.seconds_render);
+  json["seconds_correlate"] = number(result.seconds_correlate);
+  json["seconds_compare"] = number(result.seconds_compare);
+  json["warnings"] = result.warnings;
+  json["measures"] = Json::object();
+  Json::object_t& measures = json["measures"].get_ref<Json::object_t&>();
+  for (auto const& [name, value] : result.measures) measures.emplace_back(name, number(value));
+  // texts of errors may hold bytes that are no UTF-8 (file names): they are replaced
+  std::string const rest = json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(1) + '\n';
+  return std::string(head) + content_hash(rest) + "\"," + rest;
+}
+
+std::optional<CaseResult> parse_result(std::string const& text) {
+  std::size_t const start = head.size() + hash_digits + 2;
+  if (text.size() <= start || !text.starts_with(head)) return std::nullopt;
+  if (text.substr(head.size(), hash_digits) != content_hash(std::string_view(text).substr(start))) return std::nullopt;
+  Json const json = Json::parse(text, nullptr, false);
+  try {
+    if (json.at("result").get<int>() != result_version) return std::nullopt;
+    return result_of(json);
+  } catch (nlohmann::json::exception const&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one) {
+  std::ifstream file(result_path(run, one.index), std::ios::binary);
+  if (!file) return std::nullopt;
+  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}});
+  if (!result || result->index != one.index || result->line_hash != one.line_hash) return std::nullopt;
+  return result;
+}
+
+void write_result(std::string const& run, CaseResult const& result) {
+  // The claim makes this process the only writer, so that one name serves for what is not whole yet: a killed run's is
+  // written over. There is no fsync: a result that a power cut spoils is found by its hash and computed again.
+  std::string const path = result_path(run, result.index);
+  std::string const partial =
+      (std::filesystem::path(path).parent_path() / ('.' + std::to_string(result.index) + ".json.partial")).string();
+  std::string const text = result_text(result);
+  int const file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) cannot_be_written(path, errno);
+  int error = 0;
+  for (std::size_t done = 0; error == 0 && done < text.size();) {
+    ssize_t const written = ::write(file, text.data() + done, text.size() - done);
+    if (written > 0) done += static_cast<std::size_t>(written);
+    if (written < 0 && errno != EINTR) error = errno;
+    if (written == 0) error = EIO;
+  }
+  if (::close(file) != 0 && error == 0) error = errno;
+  if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(partial.c_str());
+  cannot_be_written(path, error);
+}
+
+}  // namespace gladstone

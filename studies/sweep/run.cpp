@@ -1,0 +1,104 @@
+#include "studies/sweep/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "studies/sweep/case_list.h"
+#include "studies/sweep/claims.h"
+
+namespace gladstone {
+namespace {
+
+/// Holds a claim while it lives.
+class Claim {
+ public:
+  Claim(Claims& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}
+  ~Claim() {
+    if (taken_) claims_.release(index_);
+  }
+  Claim(Claim const&) = delete;
+  Claim& operator=(Claim const&) = delete;
+  bool taken() const { return taken_; }
+
+ private:
+  Claims& claims_;
+  std::size_t index_;
+  bool taken_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection) {
+  if (!selection.only.empty()) return parse_case_list(selection.only, cases.size());
+  // contiguous pieces: neighbours share most
+  std::vector<std::size_t> selected;
+  std::size_t const begin = cases.size() * selection.shard / selection.shards;
+  std::size_t const end = cases.size() * (selection.shard + 1) / selection.shards;
+  for (std::size_t i = begin; i < end; ++i) selected.push_back(i);
+  return selected;
+}
+
+RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
+                  std::vector<std::size_t> const& selected) {
+  RunState state;
+  Claims const claims(run);
+  for (std::size_t const index : selected) {
+    std::optional<CaseResult> result = read_result(run, cases[index]);
+    if (!result) {
+      state.missing.push_back(index);
+      if (claims.held(index)) state.running.push_back(index);
+    } else if (result->status == CaseStatus::ok) {
+      ++state.ok;
+    } else {
+      state.failed.push_back(std::move(*result));
+    }
+  }
+  return state;
+}
+
+void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
+               RunSelection const& selection, CaseRunner& runner, std::size_t first,
+               std::function<void(std::size_t index)> const& finished) {
+  Claims claims(run);
+  auto const is_done = [&](std::size_t index) {
+    std::optional<CaseResult> const result = read_result(run, cases[index]);
+    return result && (result->status == CaseStatus::ok || !selection.retry_failed);
+  };
+  std::vector<std::size_t> waiting = selected;
+  if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
+  auto pause = std::chrono::milliseconds(10);
+  for (bool first_round = true; !waiting.empty(); first_round = false) {
+    std::vector<std::size_t> with_others;
+    for (std::size_t const index : waiting) {
+      throw_if_interrupted();
+      // a failed case that another runner has tried meanwhile is not tried again
+      bool const done = first_round ? is_done(index) : read_result(run, cases[index]).has_value();
+      if (!done) {
+        Claim const claim(claims, index);
+        if (!claim.taken()) {
+          with_others.push_back(index);
+          continue;
+        }
+        // between the look and the claim another runner may have finished it
+        if (!is_done(index)) {
+          std::string const folder = (std::filesystem::path(run) / run_file::cases / std::to_string(index)).string();
+          write_result(run, runner.run(cases[index], selection.keep_images ? folder : ""));
+          finished(index);
+        }
+      }
+    }
+    if (with_others.size() == waiting.size()) {
+      std::this_thread::sleep_for(pause);
+      pause = std::min(2 * pause, std::chrono::milliseconds(500));
+    }
+    waiting = std::move(with_others);
+  }
+}
+
+}  // namespace gladstone

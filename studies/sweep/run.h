@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "studies/sweep/case_runner.h"
+
+namespace gladstone {
+
+/// Which cases of a study a runner is to see to, and how.
+struct RunSelection {
+  std::string only;                   ///< these cases alone, as parse_case_list reads them; empty: all
+  std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of the manifest
+  bool retry_failed = false;          ///< failed cases count as missing
+  bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/
+};
+
+/// The cases of a selection, in the manifest's order. @throws DataError where it selects what is not there
+std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection);
+
+/// How a selection stands.
+struct RunState {
+  std::size_t ok = 0;
+  std::vector<CaseResult> failed;    ///< without their measures
+  std::vector<std::size_t> missing;  ///< without a whole result
+  std::vector<std::size_t> running;  ///< those of them that a runner has claimed
+  bool complete() const { return failed.empty() && missing.empty(); }
+};
+
+/// Reads results and claims; computes nothing. @throws OutputError where the claims cannot be looked at
+RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
+                  std::vector<std::size_t> const& selected);
+
+/// Computes what is missing of a selection, one case after the other. Each case is claimed while it is computed, and
+/// its result looked for again once it is; what another runner has claimed is waited for, and computed here should that
+/// runner die.
+/// @param first    position in `selected` to begin at, so that runners side by side meet late
+/// @param finished called after every case that was computed here
+/// @throws as CaseRunner::run; what is finished stays
+void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
+               RunSelection const& selection, CaseRunner& runner, std::size_t first,
+               std::function<void(std::size_t index)> const& finished);
+
+}  // namespace gladstone

@@ -1,0 +1,289 @@
+#include "studies/sweep/study_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "render/base/error.h"
+#include "render/base/nearest_name.h"
+#include "render/base/setup_table.h"
+#include "render/base/sobol.h"
+#include "render/base/text_file.h"
+
+namespace gladstone {
+namespace {
+
+using Kind = SetupNode::Kind;
+
+/// Twelve digits: a tenth is a tenth, not 0.30000000000000004 - 0.2.
+double rounded(double value) {
+  std::string const text = fmt::format("{:.12g}", value);
+  double result = value;
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
+AxisValue number_value(double number, bool whole, SetupPlace const& place) {
+  AxisValue value;
+  value.node.place = place;
+  bool const integer = whole && number == std::floor(number) && std::abs(number) < 0x1p53;
+  value.node.kind = integer ? Kind::integer : Kind::number;
+  value.node.integer = integer ? static_cast<long long>(number) : 0;
+  value.node.number = number;
+  value.parameter = {fmt::format("{}", number), number};
+  return value;
+}
+
+double along(AxisPlan::Range const& range, double t) {
+  if (!range.logarithmic) return rounded(range.first + t * (range.last - range.first));
+  return rounded(range.first * std::pow(range.last / range.first, t));
+}
+
+/// Collects the problems of a study file at their places.
+class StudyReader {
+ public:
+  StudyReader(std::string const& path, std::string text)
+      : document_(SetupDocument::from_text(text, path, folder_of(path))), tree_(parse_toml(text, path)) {
+    study_.path = path;
+    study_.text = std::move(text);
+    set_source(tree_, std::make_shared<SetupSource const>(SetupSource{path, folder_of(path)}));
+  }
+
+  StudyFile read() {
+    SetupTable root = document_.root();
+    study_.base_path = root.required_path("base");
+    if (!study_.base_path.empty()) {
+      try {
+        study_.base_text = read_text_file(study_.base_path);
+      } catch (DataError const& error) {
+        root.problem("base", fmt::format("{} (the setup that every case starts from; relative names start at the "
+                                         "study's folder)",
+                                         error.what()));
+      }
+    }
+    read_axes(root);
+    read_settings(root.table("study"));
+    check_sizes();
+    document_.finish();
+    return std::move(study_);
+  }
+
+ private:
+  static std::string folder_of(std::string const& path) {
+    return std::filesystem::absolute(path).parent_path().string();
+  }
+  void problem(SetupPlace const& place, std::string message) {
+    document_.add_problem(fmt::format("{}:{}:{}", study_.path, std::max(place.line, 1), std::max(place.column, 1)),
+                          std::move(message));
+  }
+
+  void read_axes(SetupTable& root) {
+    if (!root.has("axes")) root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]");
+    root.pass_over("axes");
+    SetupNode const* const axes = tree_.find("axes");
+    if (!axes) return;
+    study_.place = axes->place;
+    if (axes->kind != Kind::table) {
+      problem(axes->place, "axes must be a table; write [axes] and below it \"key.path\" = [values]");
+      return;
+    }
+    if (axes->members.empty()) problem(axes->place, "[axes] is empty; name at least one key of the setup");
+    for (auto const& [key, node] : axes->members) study_.axes.push_back(read_axis(key, node));
+    std::stable_sort(study_.axes.begin(), study_.axes.end(), [](AxisPlan const& a, AxisPlan const& b) {
+      return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+    });
+  }
+
+  AxisPlan read_axis(std::string const& key, SetupNode const& node) {
+    AxisPlan axis;
+    axis.key = key;
+    axis.place = node.place;
+    axis.path.emplace_back();
+    for (char const c : key) {
+      if (c == '.') {
+        axis.path.emplace_back();
+      } else {
+        axis.path.back().push_back(c);
+      }
+    }
+    if (std::find(axis.path.begin(), axis.path.end(), "") != axis.path.end()) {
+      problem(node.place, fmt::format("\"{}\" is no key path; write it as \"table.key\"", key));
+    }
+    if (node.kind == Kind::array) {
+      read_list(node, axis);
+    } else if (node.kind == Kind::table) {
+      read_range(node, axis);
+    } else {
+      problem(node.place, fmt::format("\"{0}\" must be a list of values (it is {1}); write [{2}]", key, kind_name(node),
+                                      toml_text(node)));
+    }
+    return axis;
+  }
+
+  void read_list(SetupNode const& array, AxisPlan& axis) {
+    if (array.elements.empty()) {
+      problem(array.place, fmt::format("\"{}\" is empty (a study of no case); give at least one value", axis.key));
+    }
+    std::set<std::string> labels;
+    for (SetupNode const& element : array.elements) {
+      AxisValue value = read_value(element, axis.key);
+      if (!labels.insert(value.parameter.label).second) {
+        problem(element.place, fmt::format("\"{}\" has the value {} twice; remove one, or give it another label",
+                                           axis.key, value.parameter.label));
+      }
+      axis.list.push_back(std::move(value));
+    }
+  }
+
+  AxisValue read_value(SetupNode const& element, std::string const& key) {
+    AxisValue value;
+    value.node = element;
+    if (element.is_number()) {
+      value.parameter = {fmt::format("{}", element.as_double()), element.as_double()};
+    } else if (element.kind == Kind::text) {
+      value.parameter.label = element.text;
+    } else if (element.kind != Kind::table) {
+      value.parameter.label = toml_text(element);
+    } else {
+      auto& members = value.node.members;
+      SetupNode const* const label = element.find("label");
+      if (!label || label->kind != Kind::text || label->text.empty()) {
+        problem(label ? label->place : element.place,
+                fmt::format("a table as a value of \"{}\" needs a label for tables and figures; write {{ label = "
+                            "\"name\", ... }}",
+                            key));
+      } else {
+        value.parameter.label = label->text;
+      }
+      std::erase_if(members, [](SetupMember const& member) { return member.key == "label"; });
+      if (members.size() == 1 && members.front().key == "value") {  // a label for something that is no table
+        SetupNode const inner = members.front().value;
+        value.node = inner;
+        if (inner.is_number()) value.parameter.number = inner.as_double();
+      }
+    }
+    return value;
+  }
+
+  void read_range(SetupNode const& table, AxisPlan& axis) {
+    std::string const forms = "must be a list, { linear = [first, last, count] } or { log = [first, last, count] }";
+    if (table.members.size() != 1 || (table.members[0].key != "linear" && table.members[0].key != "log")) {
+      std::string const found = table.members.empty() ? "nothing" : '"' + table.members[0].key + '"';
+      std::string hint;
+      if (!table.members.empty()) {
+        auto const nearest = nearest_name(table.members[0].key, {"linear", "log"});
+        hint = nearest ? fmt::format("; did you mean \"{}\"?", *nearest)
+                       : fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, table.members[0].key);
+      }
+      problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
+      return;
+    }
+    std::string const& form = table.members.front().key;
+    SetupNode const& values = table.members.front().value;
+    auto const refuse = [&](std::string const& message) {
+      problem(values.place, fmt::format("\"{}\": {} {}", axis.key, form, message));
+    };
+    auto const& e = values.elements;
+    bool const numbers = values.kind == Kind::array && e.size() == 3 &&
+                         std::all_of(e.begin(), e.end(), [](SetupNode const& one) { return one.is_number(); });
+    if (!numbers) return refuse("must be [first, last, count], three numbers");
+    AxisPlan::Range range;
+    range.first = e[0].as_double();
+    range.last = e[1].as_double();
+    range.logarithmic = form == "log";
+    range.whole = e[0].kind == Kind::integer && e[1].kind == Kind::integer;
+    if (!std::isfinite(range.first) || !std::isfinite(range.last)) return refuse("needs finite ends");
+    if (range.logarithmic && !(range.first > 0 && range.last > 0)) return refuse("needs ends greater than zero");
+    if (e[2].kind != Kind::integer || e[2].integer < 1) return refuse("needs a whole count of at least 1 as third");
+    range.count = static_cast<std::size_t>(e[2].integer);
+    if (range.count > 1 && range.first == range.last) return refuse("has equal ends; give them once, in a list");
+    axis.range = range;
+  }
+
+  void read_settings(SetupTable table) {
+    std::string const mode = table.word("mode", "grid", {"grid", "zip", "sobol"});
+    if (mode == "zip") study_.mode = StudyMode::zip;
+    if (mode == "sobol") study_.mode = StudyMode::sobol;
+    if (study_.mode == StudyMode::sobol) {
+      study_.samples = static_cast<std::size_t>(table.required_integer("samples", 1, most));
+    } else {
+      table.refuse("samples", "belongs to mode = \"sobol\" (a grid and a zip have as many cases as their axes give)");
+    }
+    study_.repeats = static_cast<std::size_t>(table.integer("repeats", 1, 1, most));
+    study_.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, most));
+  }
+
+  void check_sizes() {
+    if (document_.has_problems() || study_.axes.empty()) return;
+    SetupTable table = document_.root().table("study");
+    if (study_.mode == StudyMode::sobol && study_.axes.size() > sobol_dimensions) {
+      table.problem("mode", fmt::format("\"sobol\" takes up to {} axes (the study has {}); use fewer, or a grid",
+                                        sobol_dimensions, study_.axes.size()));
+    }
+    if (study_.mode == StudyMode::zip) {
+      AxisPlan const& first = study_.axes.front();
+      for (AxisPlan const& axis : study_.axes) {
+        if (axis.size() == first.size()) continue;
+        problem(axis.place,
+                fmt::format("\"{}\" has {} values but \"{}\" has {} (a zip takes the values of all axes side by side); "
+                            "give as many, or use mode = \"grid\"",
+                            axis.key, axis.size(), first.key, first.size()));
+      }
+    }
+    double cases = static_cast<double>(study_.repeats);
+    if (study_.mode == StudyMode::sobol) cases *= static_cast<double>(study_.samples);
+    if (study_.mode == StudyMode::zip) cases *= static_cast<double>(study_.axes.front().size());
+    if (study_.mode == StudyMode::grid) {
+      for (AxisPlan const& axis : study_.axes) cases *= static_cast<double>(axis.size());
+    }
+    if (cases <= static_cast<double>(most_cases)) return;
+    problem(study_.place,
+            fmt::format("the study has {} cases ({} at most); take fewer values or repeats, or mode = "
+                        "\"sobol\" with samples",
+                        cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
+  }
+
+  static constexpr long long most = std::numeric_limits<long long>::max();
+  SetupDocument document_;
+  SetupNode tree_;
+  StudyFile study_;
+};
+
+}  // namespace
+
+AxisValue AxisPlan::value(std::size_t i) const {
+  if (!range) return list[i];
+  double number = range->first;
+  if (i > 0) number = i + 1 == range->count ? range->last : along(*range, static_cast<double>(i) / (range->count - 1));
+  return number_value(number, range->whole, place);
+}
+
+AxisValue AxisPlan::value_at(double u) const {
+  if (range) return number_value(along(*range, u), false, place);
+  return list[std::min(list.size() - 1, static_cast<std::size_t>(u * static_cast<double>(list.size())))];
+}
+
+std::size_t StudyFile::points() const {
+  if (mode == StudyMode::sobol) return samples;
+  if (mode == StudyMode::zip) return axes.front().size();
+  std::size_t count = 1;
+  for (AxisPlan const& axis : axes) count *= axis.size();
+  return count;
+}
+
+StudyFile read_study(std::string const& path) {
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (DataError const& error) {
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2) + "; give the name of a study file"}});
+  }
+  return StudyReader(path, std::move(text)).read();
+}
+
+}  // namespace gladstone

@@ -1,0 +1,349 @@
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+/// Twelve cases of a few milliseconds each.
+constexpr char const* small_study = R"(base = "setup.toml"
+[axes]
+"lens.f_number" = [8, 16, 32]
+"correlate.window_px" = [[32, 16], [16]]
+[study]
+repeats = 2
+seed = 3
+)";
+
+/// Six cases long enough to be stopped in.
+constexpr char const* slow_study = R"(base = "setup.toml"
+[axes]
+"lens.f_number" = [8, 16]
+"render.rays_per_dot" = [1000, 1200, 1400]
+)";
+
+class Sweeps : public Workplace {
+ protected:
+  void SetUp() override {
+    Workplace::SetUp();
+    write("study.toml", small_study);
+  }
+  void plan(std::string const& run, std::string const& study = "study.toml") const {
+    succeed({"sweep", "plan", study, "-o", run, "--quiet", "--device", "cpu"});
+  }
+  /// Plans, runs and collects without disturbance.
+  void finish(std::string const& run, std::string const& study = "study.toml") const {
+    plan(run, study);
+    succeed({"sweep", "run", run, "--quiet"});
+    succeed({"sweep", "collect", run, "--quiet"});
+  }
+  nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
+
+  /// study.h5 of both hold the same data to the last bit, times excepted.
+  void expect_same_study(std::string const& a, std::string const& b) const {
+    Hdf5Reader const one(in(a + "/study.h5").string()), other(in(b + "/study.h5").string());
+    auto const names = one.dataset_names();
+    ASSERT_EQ(names, other.dataset_names());
+    ASSERT_GT(names.size(), 90u);
+    for (auto const& name : names) {
+      if (name.starts_with("seconds_")) continue;
+      auto const x = one.read(name), y = other.read(name);
+      ASSERT_EQ(x.size(), y.size());
+      EXPECT_EQ(std::memcmp(x.data(), y.data(), x.size() * sizeof(double)), 0) << name;
+    }
+  }
+  /// Files that tell when each case was finished.
+  std::map<std::string, std::filesystem::file_time_type> results(std::string const& run) const {
+    std::map<std::string, std::filesystem::file_time_type> found;
+    for (auto const& entry : std::filesystem::directory_iterator(in(run + "/cases"))) {
+      if (entry.path().extension() == ".json") found[entry.path().filename().string()] = entry.last_write_time();
+    }
+    return found;
+  }
+};
+
+TEST_F(Sweeps, FromStudyToTable) {
+  auto const planned = json_of({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  EXPECT_EQ(planned["cases"], 12);
+  EXPECT_EQ(planned["planned"], "fresh");
+  EXPECT_EQ(status("run")["missing"], 12);
+  auto const ran = json_of({"sweep", "run", "run"});
+  EXPECT_EQ(ran["computed"], 12);
+  EXPECT_EQ(ran["done"], 12);
+  EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
+  EXPECT_EQ(status("run")["done"], 12);
+  succeed({"sweep", "collect", "run"});
+
+  std::istringstream table(read("run/study.csv"));
+  std::string header, first;
+  std::getline(table, header);
+  std::getline(table, first);
+  EXPECT_TRUE(header.starts_with("lens.f_number,correlate.window_px,case,seed,status,")) << header;
+  EXPECT_TRUE(header.ends_with(",seconds_render,seconds_correlate,device")) << header;
+  for (std::string const name :
+       {"ray_truth.rms_px", "eq9.bias_u_px", "eq9_cone.p95_px", "window_truth.gross_fraction",
+        "budget.terms.noise.rms_px", "budget.total.rms_px", "budget.peak_locking_px", "magnification", "rays_per_dot",
+        "step_mm", "exposure", "caustic_fraction", "warnings"})
+    EXPECT_THAT(header, HasSubstr(',' + name + ','));
+  EXPECT_TRUE(first.starts_with("8,\"[32, 16]\",0,3,ok,")) << first;
+  std::string const all = read("run/study.csv");
+  EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 13);
+
+  Hdf5Reader const file(in("run/study.h5").string());
+  EXPECT_EQ(file.read("lens.f_number")[11], 32);
+  EXPECT_EQ(file.attribute("filetype"), "gladstone study");
+  EXPECT_EQ(file.attribute("setup"), small_study);
+  EXPECT_EQ(file.attribute("seed"), "3");
+}
+
+// A sweep's case is the case that render, correlate and compare make.
+TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
+  plan("run");
+  succeed({"sweep", "run", "run", "--quiet", "--case", "7", "--keep-images"});
+  EXPECT_EQ(status("run")["done"], 1);
+  std::istringstream lines(read("run/manifest.jsonl"));
+  std::string line;
+  for (int i = 0; i <= 7; ++i) std::getline(lines, line);
+  write("case7.toml", nlohmann::json::parse(line)["setup"].get<std::string>());
+  render("by_hand", {}, "case7.toml");
+  succeed({"correlate", "by_hand"});
+  succeed({"compare", "by_hand", "--no-figures"});
+  expect_same_case("by_hand", "run/cases/7");
+  expect_same_datasets("by_hand/vectors.h5", "run/cases/7/vectors.h5");
+  EXPECT_EQ(read("by_hand/errors.json"), read("run/cases/7/errors.json"));
+  EXPECT_EQ(nlohmann::json::parse(read("run/cases/7.json"))["measures"]["ray_truth.rms_px"],
+            nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
+}
+
+TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
+  finish("whole");
+  plan("jobs");
+  auto const ran = json_of({"sweep", "run", "jobs", "--jobs", "3"});
+  EXPECT_EQ(ran["computed"], 12);  // each once
+  succeed({"sweep", "collect", "jobs"});
+  expect_same_study("whole", "jobs");
+
+  plan("shards");
+  for (std::string const shard : {"2/3", "0/3", "1/3"}) {
+    EXPECT_EQ(json_of({"sweep", "run", "shards", "--shard", shard})["computed"], 4);
+  }
+  succeed({"sweep", "collect", "shards"});
+  expect_same_study("whole", "shards");
+
+  // on machines that share nothing: their results are put together by copying
+  plan("apart");
+  for (std::string const i : {"0", "1", "2"}) {
+    plan("machine" + i);
+    succeed({"sweep", "run", "machine" + i, "--shard", i + "/3", "--quiet"});
+    for (auto const& [name, time] : results("machine" + i)) {
+      std::filesystem::copy(in("machine" + i + "/cases/" + name), in("apart/cases/" + name));
+    }
+  }
+  succeed({"sweep", "collect", "apart"});
+  expect_same_study("whole", "apart");
+}
+
+TEST_F(Sweeps, KilledAtAnyMomentTheNextRunFinishesTheSameStudy) {
+  write("slow.toml", slow_study);
+  finish("whole", "slow.toml");
+  plan("run", "slow.toml");
+  std::mt19937 random(4);
+  std::size_t interrupted = 0;
+  for (int kill = 0; kill < 10; ++kill) {
+    // now one process, now two
+    Program program({"sweep", "run", "run", "--quiet", "--jobs", kill % 2 == 0 ? "1" : "2"}, folder_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 300));
+    program.send(SIGKILL);
+    program.finish(10s);
+    auto const left = status("run");
+    EXPECT_EQ(left["running"], 0);  // no claim outlives its process
+    interrupted += left["done"] < 6;
+  }
+  EXPECT_GT(interrupted, 0u);
+  succeed({"sweep", "run", "run", "--quiet"});
+  succeed({"sweep", "collect", "run", "--quiet"});
+  expect_same_study("whole", "run");
+}
+
+TEST_F(Sweeps, OnlyWhatIsNotWholeIsComputedAgain) {
+  finish("run");
+  finish("whole");
+  auto const before = results("run");
+  std::string const text = read("run/cases/4.json");
+  write("run/cases/4.json", text.substr(0, text.size() / 2));
+  write("run/cases/5.json", with(read("run/cases/5.json"), "\"status\":\"ok\"", "\"status\":\"OK\""));
+  write("run/cases/6.json", "");
+  std::filesystem::remove(in("run/cases/7.json"));
+  EXPECT_EQ(status("run")["missing_cases"], nlohmann::json({4, 5, 6, 7}));
+  EXPECT_EQ(gladstone({"sweep", "collect", "run"}).exit_code, 3);
+  EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 4);
+  auto const after = results("run");
+  for (auto const& [name, time] : before) {
+    bool const again = name == "4.json" || name == "5.json" || name == "6.json" || name == "7.json";
+    EXPECT_EQ(after.at(name) == time, !again) << name;
+  }
+  succeed({"sweep", "collect", "run"});
+  expect_same_study("whole", "run");
+}
+
+TEST_F(Sweeps, TwoRunnersShareTheWorkAndBothEndWithAllOfIt) {
+  write("slow.toml", slow_study);
+  plan("run", "slow.toml");
+  Program one({"sweep", "run", "run", "--json", "--threads", "1"}, folder_);
+  Program other({"sweep", "run", "run", "--json", "--threads", "1"}, folder_);
+  Outcome const a = one.finish(60s), b = other.finish(60s);
+  ASSERT_EQ(a.exit_code, 0) << a.err;
+  ASSERT_EQ(b.exit_code, 0) << b.err;
+  int const first = nlohmann::json::parse(a.out)["computed"], second = nlohmann::json::parse(b.out)["computed"];
+  EXPECT_EQ(first + second, 6);
+  EXPECT_GT(first, 0);
+  EXPECT_GT(second, 0);
+  succeed({"sweep", "collect", "run"});
+}
+
+// A window of 64 px fits one of two images.
+TEST_F(Sweeps, AFailingCaseIsRecordedAndDoesNotStopTheOthers) {
+  write("study.toml", R"(base = "setup.toml"
+[axes]
+"camera.pixels" = [[64, 64], [48, 48]]
+"correlate.window_px" = [[32, 16], [64, 16]]
+)");
+  plan("run");
+  Outcome const ran = gladstone({"sweep", "run", "run"});
+  EXPECT_EQ(ran.exit_code, 3);
+  EXPECT_THAT(ran.out, testing::AllOf(HasSubstr("3 done, 1 failed"), HasSubstr("case 3 (camera.pixels = [48, 48]"),
+                                      HasSubstr("a window of 64 px is larger than the image of 48 x 48 px")));
+  EXPECT_EQ(status("run")["failures"][0]["case"], 3);
+  Outcome const collected = gladstone({"sweep", "collect", "run"});
+  EXPECT_EQ(collected.exit_code, 3);
+  EXPECT_THAT(collected.out, HasSubstr("failed: case 3"));
+  EXPECT_THAT(read("run/study.csv"), HasSubstr("\n\"[48, 48]\",\"[64, 16]\",3,1,failed,0,nan,"));
+
+  auto const before = results("run");
+  EXPECT_EQ(gladstone({"sweep", "run", "run"}).exit_code, 3);
+  EXPECT_EQ(results("run"), before);  // not tried again
+  Outcome const retried = gladstone({"sweep", "run", "run", "--retry-failed", "--json"});
+  EXPECT_EQ(retried.exit_code, 3);
+  EXPECT_EQ(nlohmann::json::parse(retried.out)["computed"], 1);
+}
+
+TEST_F(Sweeps, AnInputThatHasChangedStopsTheRun) {
+  std::string dots = "x_mm,y_mm\n";
+  for (int i = 0; i < 100; ++i)
+    dots += std::to_string(i % 10 * 0.5 - 2.3) + ',' + std::to_string(i / 10 * 0.5 - 2.2) + '\n';
+  write("dots.csv", dots);
+  write("setup.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  plan("run");
+  succeed({"sweep", "run", "run", "--case", "0", "--quiet"});
+  write("dots.csv", dots + "3,3\n");
+  Outcome const outcome = gladstone({"sweep", "run", "run"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err,
+              testing::AllOf(HasSubstr("dots.csv: has changed since the study was planned"), HasSubstr("case 1")));
+  write("dots.csv", dots);
+  succeed({"sweep", "run", "run", "--quiet"});
+}
+
+TEST_F(Sweeps, ControlCKeepsWhatIsFinished) {
+  write("slow.toml", with(slow_study, "1000, 1200, 1400", "100, 100000, 200000"));
+  for (std::string const jobs : {"1", "2"}) {
+    plan("run" + jobs, "slow.toml");
+    Program program({"sweep", "run", "run" + jobs, "--jobs", jobs}, folder_);
+    for (int wait = 0; wait < 1000 && status("run" + jobs)["done"] == 0; ++wait) std::this_thread::sleep_for(10ms);
+    program.send(SIGINT);
+    Outcome const outcome = program.finish(5s);
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr("finished cases are kept"));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_GE(status("run" + jobs)["done"], 1);
+    EXPECT_EQ(status("run" + jobs)["running"], 0);
+  }
+}
+
+TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
+  finish("whole");
+  plan("run");
+  // a result takes some 5 kB, a limit on the size of files is met like a full disk
+  auto const limited = [] {
+    rlimit const limit{2048, 2048};
+    return ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
+  };
+  Outcome const refused = run({"sweep", "run", "run", "--quiet"}, folder_, limited);
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("run/cases/0.json: cannot be written"));
+  EXPECT_TRUE(names("run/cases").empty());
+
+  // a disk with room for some results, in a mount namespace of its own
+  pid_t const child = ::fork();
+  if (child == 0) {
+    bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                         ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                         ::mount("none", in("run/cases").c_str(), "tmpfs", 0, "size=40k") == 0;
+    if (!mounted) ::_exit(77);
+    Outcome const full = run({"sweep", "run", "run", "--quiet"}, folder_);
+    bool const some = results("run").size() > 0 && results("run").size() < 12;
+    std::error_code error;
+    std::filesystem::create_directory(in("kept"), error);
+    for (auto const& [name, time] : results("run")) {
+      std::filesystem::copy(in("run/cases/" + name), in("kept/" + name), error);
+    }
+    write("stderr", full.err);
+    ::_exit(full.exit_code == 2 && some && !error ? 0 : 1);
+  }
+  int ended = 0;
+  ::waitpid(child, &ended, 0);
+  ASSERT_TRUE(WIFEXITED(ended));
+  if (WEXITSTATUS(ended) != 77) {
+    EXPECT_EQ(WEXITSTATUS(ended), 0) << read("stderr");
+    EXPECT_THAT(read("stderr"), HasSubstr("No space left on device"));
+    for (auto const& name : names("kept")) std::filesystem::copy(in("kept/" + name), in("run/cases/" + name));
+    EXPECT_GT(status("run")["done"], 0);
+  }
+  succeed({"sweep", "run", "run", "--quiet"});
+  succeed({"sweep", "collect", "run", "--quiet"});
+  expect_same_study("whole", "run");
+}
+
+TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
+  plan("run");
+  expect_refused({"sweep", "run", "run", "--device", "cuda"}, 5, {"the study was planned for cpu"});
+  std::string manifest = read("run/manifest.jsonl");
+  for (std::size_t at; (at = manifest.find("\"device\":\"cpu\"")) != std::string::npos;) {
+    manifest.replace(at, 14, "\"device\":\"cuda\"");
+  }
+  write("run/manifest.jsonl", manifest);
+  auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
+  for (std::string const jobs : {"1", "2"}) {
+    Outcome const outcome = run({"sweep", "run", "run", "--jobs", jobs}, folder_, without_gpu);
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("device error"));
+  }
+}
+
+TEST_F(Sweeps, BadCommandLinesAreRefused) {
+  plan("run");
+  expect_refused({"sweep"}, 2, {"sweep needs one of plan, run, status, collect"});
+  expect_refused({"sweep", "run", "run", "--shard", "3/3"}, 2, {"--shard: 3/3 is not I/N"});
+  expect_refused({"sweep", "run", "run", "--case", "12"}, 2,
+                 {"--case: 12 is not in the study, which has cases 0 to 11"});
+  expect_refused({"sweep", "run", "run", "--retry-faild"}, 2, {"--retry-failed"});
+  expect_refused({"sweep", "status", "."}, 2, {"is no planned study", "gladstone sweep plan"});
+  expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: cannot be read"});
+  write("other.toml", with(small_study, "[8, 16, 32]", "[8, 16, 64]"));
+  succeed({"sweep", "run", "run", "--quiet"});
+  expect_refused({"sweep", "plan", "other.toml", "-o", "run", "--device", "cpu"}, 2,
+                 {"run: was planned from another study", "results would be lost"});
+  EXPECT_EQ(json_of({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"})["planned"], "unchanged");
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

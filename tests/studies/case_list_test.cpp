@@ -1,0 +1,47 @@
+#include "studies/sweep/case_list.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(CaseList, JoinsNeighbours) {
+  EXPECT_EQ(case_list({5}), "5");
+  EXPECT_EQ(case_list({0, 1, 2, 3}), "0-3");
+  EXPECT_EQ(case_list({0, 2, 3, 7, 9, 10, 11}), "0,2-3,7,9-11");
+}
+
+TEST(CaseList, ReadsWhatItWrites) {
+  for (std::vector<std::size_t> const& cases :
+       {std::vector<std::size_t>{7}, {0, 1, 2, 3}, {0, 2, 3, 7, 9, 10, 11}, {98, 99}}) {
+    EXPECT_EQ(parse_case_list(case_list(cases), 100), cases);
+  }
+}
+
+TEST(CaseList, OrderAndRepetitionDoNotMatter) {
+  EXPECT_THAT(parse_case_list("7,0-2,1-3", 8), ElementsAre(0, 1, 2, 3, 7));
+}
+
+TEST(CaseList, WhatIsNoListIsRefused) {
+  for (char const* text : {"", "a", "1,", ",1", "3-1", "-1", "1-", "1 2", "1.5", "99999999999999999999"}) {
+    EXPECT_THROW(parse_case_list(text, 100), DataError) << text;
+  }
+}
+
+TEST(CaseList, CasesBeyondTheStudyAreRefusedWithItsSize) {
+  try {
+    parse_case_list("2-10", 10);
+    FAIL() << "case 10 of 10";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), HasSubstr("10 is not in the study, which has cases 0 to 9"));
+  }
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,132 @@
+#include "studies/sweep/case_runner.h"
+
+#include <bit>
+#include <chrono>
+#include <thread>
+
+#include "studies/sweep/claims.h"
+#include "studies/sweep/run.h"
+#include "tests/studies/support/study_folder.h"
+
+namespace gladstone {
+namespace {
+
+class CaseRunners : public StudyFolder {
+ protected:
+  static CaseRunner runner(Sharing sharing) { return CaseRunner(open_device("cpu"), sharing); }
+  /// Equal to the last bit, NaN included.
+  static void expect_same(CaseResult const& one, CaseResult const& other) {
+    EXPECT_EQ(one.status, other.status);
+    EXPECT_EQ(one.error, other.error);
+    EXPECT_EQ(one.warnings, other.warnings);
+    ASSERT_EQ(one.measures.size(), other.measures.size());
+    for (std::size_t i = 0; i < one.measures.size(); ++i) {
+      EXPECT_EQ(one.measures[i].first, other.measures[i].first);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(one.measures[i].second),
+                std::bit_cast<std::uint64_t>(other.measures[i].second))
+          << one.measures[i].first << " of case " << one.index;
+    }
+  }
+};
+
+// Every axis touches another part of what is shared: field, geometry, rays, camera electronics and correlation alone.
+TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
+  write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 5.0\n");
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"medium.field" = [
+  { label = "gradient", kind = "uniform_gradient", gradient_kg_m4 = [30.0, 0.0, 0.0] },
+  { label = "wave", kind = "sinusoid", amplitude_kg_m3 = 0.02, wavelength_mm = 5.0 },
+]
+"render.rays_per_dot" = [16, 32]
+"camera.bit_depth" = [8, 12]
+"camera.exposure" = ["auto", 20000.0]
+"camera.noise.read_noise_e" = [0.0, 10.0]
+"correlate.window_px" = [[32, 16], [16]]
+)");
+  ASSERT_EQ(cases.size(), 64u);
+  CaseRunner sharing = runner(Sharing::yes), backwards = runner(Sharing::yes), alone = runner(Sharing::no);
+  std::vector<CaseResult> shared, reversed(cases.size());
+  for (ManifestCase const& one : cases) shared.push_back(sharing.run(one));
+  for (std::size_t i = cases.size(); i-- > 0;) reversed[i] = backwards.run(cases[i]);
+  for (std::size_t i = 0; i < cases.size(); i += 3) expect_same(shared[i], alone.run(cases[i]));
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    expect_same(shared[i], reversed[i]);
+    EXPECT_EQ(shared[i].status, CaseStatus::ok) << shared[i].error;
+  }
+  // the axes do something: neighbours along each differ
+  for (std::size_t step : {1, 2, 4, 8, 16, 32}) EXPECT_NE(shared[0].measures, shared[step].measures) << step;
+}
+
+// What "auto" comes to depends on the camera's grey levels, and the frames on what it comes to.
+TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"render.rays_per_dot" = ["auto"]
+"camera.bit_depth" = [2, 8]
+"correlate.overlap" = [0.5, 0.75]
+)");
+  CaseRunner sharing = runner(Sharing::yes), alone = runner(Sharing::no);
+  for (ManifestCase const& one : cases) expect_same(sharing.run(one), alone.run(one));
+}
+
+TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n0.1,0.1\n");
+  CaseRunner one = runner(Sharing::yes);
+  write("base.toml", std::string(small_base)
+                         .replace(std::string(small_base).find("dots_per_32px_window = 10.0"), 27,
+                                  "kind = \"points\"\nfile = \"dots.csv\""));
+  auto const with_file = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  CaseResult const blank = one.run(with_file[0]);  // two dots in all: no window has three
+  EXPECT_EQ(blank.status, CaseStatus::failed);
+  EXPECT_THAT(blank.error, testing::HasSubstr("no vector that can be compared"));
+  write("dots.csv", "x_mm,y_mm\n0,0\n0.2,0.2\n1,1\n");
+  EXPECT_THROW(one.run(with_file[0]), DataError);
+}
+
+TEST_F(CaseRunners, FlatMeasuresAreTheNumbersByTheirPath) {
+  auto const measures = flat_measures(R"({"a": {"b": 1.5, "c": null, "d": [1, 2], "e": "text"}, "f": 3})");
+  ASSERT_EQ(measures.size(), 3u);
+  EXPECT_EQ(measures[0].first, "a.b");
+  EXPECT_TRUE(measures[1].second != measures[1].second);
+  EXPECT_EQ(measures[2], (std::pair<std::string, double>{"f", 3}));
+}
+
+TEST_F(CaseRunners, ShardsArePiecesOfTheWhole) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 17, 10] }\n");
+  std::vector<std::size_t> together;
+  for (std::size_t shard = 0; shard < 3; ++shard) {
+    auto const piece = selected_cases(cases, {{}, shard, 3, false, false});
+    EXPECT_GE(piece.size(), 3u);
+    together.insert(together.end(), piece.begin(), piece.end());
+  }
+  EXPECT_EQ(together, selected_cases(cases, {}));
+}
+
+// Claim, look again, write: what the engine does for a case beside its physics, 5 ms at most. Measured 0.1 ms.
+TEST_F(CaseRunners, BookkeepingTakesFarLessThanFiveMillisecondsACase) {
+  StudyFile const file = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 16, 200] }\n");
+  auto const start = std::chrono::steady_clock::now();
+  std::vector<ManifestCase> cases = plan_study(file, "cpu");
+  write_plan(in("run"), file, cases);
+  Claims claims(in("run"));
+  CaseResult result;
+  for (int i = 0; i < 98; ++i)
+    result.measures.emplace_back("budget.terms.refraction.rms_px" + std::to_string(i), 1e-3 / 7);
+  for (ManifestCase const& one : read_manifest(in("run"))) {
+    ASSERT_FALSE(read_result(in("run"), one).has_value());
+    ASSERT_TRUE(claims.take(one.index));
+    ASSERT_FALSE(read_result(in("run"), one).has_value());
+    result.index = one.index;
+    result.line_hash = one.line_hash;
+    write_result(in("run"), result);
+    claims.release(one.index);
+  }
+  EXPECT_TRUE(state_of(in("run"), cases, selected_cases(cases, {})).complete());
+  double const ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 200;
+  RecordProperty("milliseconds_a_case", std::to_string(ms));
+  EXPECT_LT(ms, 5);
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,199 @@
+#include "studies/sweep/manifest.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "studies/sweep/claims.h"
+#include "studies/sweep/results.h"
+#include "studies/sweep/study_table.h"
+#include "tests/studies/support/study_folder.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* two_axes = R"(base = "base.toml"
+[axes]
+"lens.f_number" = [8, inf]
+"lens.psf" = ["airy", "none"]
+)";
+
+class Runs : public StudyFolder {
+ protected:
+  std::string content(std::string const& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Plans into "run".
+  std::vector<ManifestCase> planned(std::string const& text = two_axes) const {
+    StudyFile const file = study(text);
+    std::vector<ManifestCase> cases = plan_study(file, "cpu");
+    write_plan(in("run"), file, cases);
+    return cases;
+  }
+  CaseResult result_of(ManifestCase const& one, double rms) const {
+    CaseResult result;
+    result.index = one.index;
+    result.line_hash = one.line_hash;
+    result.measures = {{"ray_truth.rms_px", rms}, {"eq9.rms_px", std::nan("")}};
+    result.device = "cpu";
+    return result;
+  }
+  std::string reading_fails() const {
+    try {
+      read_manifest(in("run"));
+    } catch (DataError const& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+};
+
+TEST_F(Runs, AManifestReadsBackAsItWasWritten) {
+  auto const written = planned(), read = read_manifest(in("run"));
+  ASSERT_EQ(read.size(), 4u);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(manifest_line(read[i]), manifest_line(written[i]));
+    EXPECT_EQ(read[i].line_hash, written[i].line_hash);
+    EXPECT_EQ(read[i].index, i);
+  }
+  EXPECT_TRUE(std::isinf(read[2].parameters[0].second.number.value()));
+  EXPECT_FALSE(read[2].parameters[1].second.number.has_value());
+}
+
+TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("is no planned study"));
+  planned();
+  std::string const whole = content("run/manifest.jsonl");
+  write("run/manifest.jsonl", whole.substr(0, whole.size() - 40));
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:4: is damaged or cut short"));
+  std::size_t const second = whole.find('\n') + 1;
+  write("run/manifest.jsonl", whole.substr(second));
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: holds case 1 (case 0 belongs there"));
+  write("run/manifest.jsonl", "{\"manifest\":2}\n");
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("is of manifest version 2 (this gladstone reads version 1)"));
+  write("run/manifest.jsonl", "{\"manifest\":1,\"index\":\"one\"}\n");
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is damaged"));
+  write("run/manifest.jsonl", "");
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
+}
+
+TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
+  auto cases = planned();
+  write_result(in("run"), result_of(cases[1], 0.5));
+  StudyFile const same = study(two_axes);
+  EXPECT_EQ(write_plan(in("run"), same, cases), Planned::unchanged);
+
+  // more repeats come behind what is there
+  StudyFile const longer = study(std::string(two_axes) + "[study]\nrepeats = 2\n");
+  auto more = plan_study(longer, "cpu");
+  EXPECT_EQ(write_plan(in("run"), longer, more), Planned::replaced);
+  EXPECT_EQ(read_manifest(in("run")).size(), 8u);
+  EXPECT_TRUE(read_result(in("run"), more[1]).has_value());
+
+  // another study would lose the result
+  StudyFile const other = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
+  auto others = plan_study(other, "cpu");
+  EXPECT_THROW(write_plan(in("run"), other, others), OutputError);
+  EXPECT_EQ(read_manifest(in("run")).size(), 8u);
+  std::filesystem::remove(result_path(in("run"), 1));
+  EXPECT_EQ(write_plan(in("run"), other, others), Planned::replaced);
+}
+
+TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
+  std::filesystem::create_directory(in("thesis"));
+  write("thesis/chapter1.tex", "precious");
+  StudyFile const file = study(two_axes);
+  auto cases = plan_study(file, "cpu");
+  EXPECT_THROW(write_plan(in("thesis"), file, cases), OutputError);
+  EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
+}
+
+TEST_F(Runs, AResultIsWholeOrNone) {
+  auto const cases = planned();
+  CaseResult written = result_of(cases[2], 0.1 + 0.2);
+  written.warnings = {"a \"quoted\" warning"};
+  write_result(in("run"), written);
+  auto const read = read_result(in("run"), cases[2]);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->measures[0].second, 0.1 + 0.2);
+  EXPECT_TRUE(std::isnan(read->measures[1].second));
+  EXPECT_EQ(read->warnings, written.warnings);
+
+  std::string const text = result_text(written);
+  ASSERT_TRUE(parse_result(text).has_value());
+  for (std::size_t size = 0; size < text.size(); ++size) EXPECT_FALSE(parse_result(text.substr(0, size)).has_value());
+  for (std::size_t at = 0; at < text.size(); ++at) {  // any single damaged byte
+    std::string damaged = text;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    EXPECT_FALSE(parse_result(damaged).has_value()) << at;
+  }
+  ManifestCase other = cases[2];
+  other.line_hash = cases[1].line_hash;
+  EXPECT_FALSE(read_result(in("run"), other).has_value());
+}
+
+TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
+  auto const cases = planned();
+  write_result(in("run"), result_of(cases[0], 0.25));
+  CaseResult failed = result_of(cases[3], 0);
+  failed.status = CaseStatus::failed;
+  failed.error = "no such thing";
+  failed.measures.clear();
+  write_result(in("run"), failed);
+  StudyTable const table = read_study_table(in("run"));
+  ASSERT_EQ(table.rows.size(), 4u);
+  EXPECT_EQ(table.name, "run");
+  EXPECT_EQ(table.axes[1].labels, (std::vector<std::string>{"airy", "none"}));
+  EXPECT_TRUE(table.axes[0].numeric);
+  EXPECT_FALSE(table.axes[1].numeric);
+  EXPECT_EQ(table.rows[2].value, (std::vector<std::size_t>{1, 0}));
+  EXPECT_EQ(table.rows[0].measures.at(table.find_measure("ray_truth.rms_px").value()), 0.25);
+  EXPECT_TRUE(std::isnan(table.rows[1].measures.at(0)));
+  EXPECT_EQ(table.rows[1].status, CaseStatus::missing);
+  EXPECT_EQ(table.rows[3].error, "no such thing");
+  EXPECT_EQ(table.unfinished(), (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
+  planned();
+  Claims mine(in("run"));
+  ASSERT_TRUE(mine.take(7));
+  EXPECT_FALSE(mine.held(7));  // by another
+  {
+    Claims other(in("run"));
+    EXPECT_TRUE(other.held(7));
+    EXPECT_FALSE(other.take(7));
+    EXPECT_TRUE(other.take(8));
+    EXPECT_TRUE(mine.held(8));
+  }
+  EXPECT_FALSE(mine.held(8));
+  mine.release(7);
+
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  pid_t const child = ::fork();
+  if (child == 0) {
+    Claims theirs(in("run"));
+    bool const taken = theirs.take(3);
+    if (::write(ready[1], &taken, 1) != 1) ::_exit(1);
+    ::pause();
+  }
+  bool taken = false;
+  ASSERT_EQ(::read(ready[0], &taken, 1), 1);
+  EXPECT_TRUE(taken);
+  EXPECT_TRUE(mine.held(3));
+  EXPECT_TRUE(mine.any_held());
+  EXPECT_FALSE(mine.take(3));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_FALSE(mine.any_held());
+  EXPECT_TRUE(mine.take(3));
+  ::close(ready[0]);
+  ::close(ready[1]);
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,249 @@
+#include "studies/sweep/study_file.h"
+
+#include <cmath>
+#include <set>
+
+#include "tests/studies/support/study_folder.h"
+
+namespace gladstone {
+namespace {
+
+using testing::ElementsAre;
+
+class Studies : public StudyFolder {
+ protected:
+  /// Values of an axis in the order of the cases.
+  static std::vector<std::string> labels(std::vector<ManifestCase> const& cases, std::size_t axis) {
+    std::vector<std::string> found;
+    for (ManifestCase const& one : cases) found.push_back(one.parameters.at(axis).second.label);
+    return found;
+  }
+  static std::vector<double> numbers(AxisPlan const& axis) {
+    std::vector<double> found;
+    for (std::size_t i = 0; i < axis.size(); ++i) found.push_back(axis.value(i).parameter.number.value());
+    return found;
+  }
+};
+
+TEST_F(Studies, RangesHaveTheirEndsAndTheStepsThatAreWritten) {
+  StudyFile const study = this->study(R"(base = "base.toml"
+[axes]
+"lens.f_number" = { log = [4, 32, 7] }
+"geometry.z_d_mm" = { linear = [100, 1000, 10] }
+"lens.focal_length_mm" = { linear = [0.1, 0.3, 3] }
+"geometry.z_a_mm" = { log = [1, 1000, 4] }
+)");
+  // 4 2^(i/2), to twelve digits
+  EXPECT_THAT(numbers(study.axes.at(0)), ElementsAre(4, 5.65685424949, 8, 11.313708499, 16, 22.627416998, 32));
+  EXPECT_THAT(numbers(study.axes.at(1)), ElementsAre(100, 200, 300, 400, 500, 600, 700, 800, 900, 1000));
+  EXPECT_THAT(numbers(study.axes.at(2)), ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(numbers(study.axes.at(3)), ElementsAre(1, 10, 100, 1000));
+}
+
+TEST_F(Studies, AGridTakesEveryCombinationWithTheLastAxisFastest) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"lens.f_number" = [8, 11]
+"camera.bit_depth" = [8, 12, 16]
+)");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("8", "8", "8", "11", "11", "11"));
+  EXPECT_THAT(labels(cases, 1), ElementsAre("8", "12", "16", "8", "12", "16"));
+  EXPECT_EQ(cases[4].parameters[0].first, "lens.f_number");
+  EXPECT_EQ(cases[4].title(), "case 4 (lens.f_number = 11, camera.bit_depth = 12)");
+}
+
+TEST_F(Studies, AZipTakesValuesSideBySide) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"lens.f_number" = [8, 11]
+"camera.bit_depth" = { linear = [8, 12, 2] }
+[study]
+mode = "zip"
+repeats = 2
+)");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("8", "11", "8", "11"));
+  EXPECT_THAT(labels(cases, 1), ElementsAre("8", "12", "8", "12"));
+}
+
+// Of 16 points of a scrambled Sobol sequence each sixteenth of each axis holds exactly one (a (0, 4, s)-net), and each
+// of two list values half of them.
+TEST_F(Studies, SobolSamplesFillRangesEvenly) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"lens.f_number" = { log = [4, 64, 2] }
+"geometry.z_d_mm" = { linear = [100, 900, 2] }
+"lens.psf" = ["airy", "gaussian"]
+[study]
+mode = "sobol"
+samples = 16
+)");
+  ASSERT_EQ(cases.size(), 16u);
+  std::set<int> along_log, along_linear;
+  int airy = 0;
+  for (ManifestCase const& one : cases) {
+    along_log.insert(static_cast<int>(16 * std::log2(*one.parameters[0].second.number / 4) / 4));
+    along_linear.insert(static_cast<int>((*one.parameters[1].second.number - 100) / 50));
+    airy += one.parameters[2].second.label == "airy";
+  }
+  EXPECT_EQ(along_log.size(), 16u);
+  EXPECT_EQ(*along_log.rbegin(), 15);
+  EXPECT_EQ(along_linear.size(), 16u);
+  EXPECT_EQ(*along_linear.rbegin(), 15);
+  EXPECT_EQ(airy, 8);
+}
+
+TEST_F(Studies, ValuesMayBeTablesAndTextsAndLists) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"medium.field" = [
+  { label = "plume", kind = "gaussian_plume", amplitude_kg_m3 = -0.1, radius_mm = 2.0 },
+  { label = "nothing", kind = "none" },
+]
+"correlate.window_px" = [[32, 16], { label = "one pass", value = [16] }]
+"lens.f_number" = [inf]
+)");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("plume", "plume", "nothing", "nothing"));
+  EXPECT_THAT(labels(cases, 1), ElementsAre("[32, 16]", "one pass", "[32, 16]", "one pass"));
+  EXPECT_THAT(cases[3].setup, testing::HasSubstr("window_px = [16]"));
+  EXPECT_THAT(cases[1].setup, testing::HasSubstr("radius_mm = 2.0"));
+  EXPECT_THAT(cases[1].setup, testing::Not(testing::HasSubstr("label")));
+  EXPECT_TRUE(std::isinf(*cases[0].parameters[2].second.number));
+}
+
+TEST_F(Studies, FilesAreFoundFromTheFileThatNamesThem) {
+  std::filesystem::create_directories(in("here"));
+  std::filesystem::create_directories(in("there"));
+  write("there/base.toml", std::string(small_base) + "[target.nothing]\n");
+  write("there/dots.csv", "x_mm,y_mm\n0,0\n");
+  write("here/dots.csv", "x_mm,y_mm\n1,1\n");
+  std::string base = small_base;
+  base.replace(base.find("dots_per_32px_window = 10.0"), 27, "kind = \"points\"\nfile = \"dots.csv\"");
+  write("there/base.toml", base);
+  write("here/study.toml", R"(base = "../there/base.toml"
+[axes]
+"lens.f_number" = [11]
+)");
+  auto const from_base = plan_study(read_study(in("here/study.toml")), "cpu");
+  ASSERT_EQ(from_base.at(0).inputs.size(), 1u);
+  EXPECT_EQ(from_base[0].inputs.begin()->first, in("there/dots.csv"));
+  EXPECT_THAT(from_base[0].setup, testing::HasSubstr(in("there/dots.csv")));
+  write("here/study.toml", R"(base = "../there/base.toml"
+[axes]
+"target.file" = ["dots.csv"]
+)");
+  auto const from_study = plan_study(read_study(in("here/study.toml")), "cpu");
+  EXPECT_EQ(from_study.at(0).inputs.begin()->first, in("here/dots.csv"));
+  EXPECT_EQ(from_study[0].parameters[0].second.label, "dots.csv");
+  EXPECT_NE(from_study[0].inputs.begin()->second, from_base[0].inputs.begin()->second);
+}
+
+TEST_F(Studies, SeedsDependOnTheStudyAndTheRepeatAlone) {
+  write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 5.0\n");
+  std::string const text = R"(base = "base.toml"
+[axes]
+"lens.f_number" = [8, 11]
+[study]
+repeats = 3
+seed = 5
+)";
+  auto const cases = plan(text);
+  ASSERT_EQ(cases.size(), 6u);
+  std::set<std::uint64_t> seeds;
+  for (ManifestCase const& one : cases) seeds.insert(one.seed);
+  EXPECT_EQ(seeds.size(), 3u);
+  EXPECT_EQ(cases[0].seed, 5u);
+  for (std::size_t repeat = 0; repeat < 3; ++repeat) {
+    EXPECT_EQ(cases[2 * repeat].seed, cases[2 * repeat + 1].seed);
+    std::string const line = "seed = " + std::to_string(cases[2 * repeat].seed);
+    std::string const& setup = cases[2 * repeat].setup;
+    std::size_t count = 0;  // of dots, rays and noise
+    for (std::size_t at = setup.find(line); at != std::string::npos; at = setup.find(line, at + 1)) ++count;
+    EXPECT_EQ(count, 3u) << setup;
+  }
+  EXPECT_EQ(plan(text)[5].line_hash, plan(text)[5].line_hash);
+}
+
+TEST_F(Studies, WithoutNoiseASeedDoesNotSwitchItOn) {
+  EXPECT_THAT(plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n")[0].setup,
+              testing::Not(testing::HasSubstr("noise")));
+}
+
+TEST_F(Studies, AnAxisMayBeASeed) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"target.seed\" = [3, 4]\n");
+  EXPECT_THAT(cases[1].setup, testing::HasSubstr("seed = 4"));
+}
+
+class BadStudies : public StudyFolder {};
+
+TEST_F(BadStudies, UnknownAxisNamesTheNearestKey) {
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_numer\" = [8, 11]\n", "3:1",
+                 {"unknown key \"f_numer\" in [lens]", "did you mean \"f_number\"?"});
+}
+
+TEST_F(BadStudies, EveryBadValueOfAnAxisIsToldAtItsOwnPlace) {
+  std::string const what = complaint(R"(base = "base.toml"
+[axes]
+"lens.f_number" = [8, -1, 11]
+"camera.bit_depth" = [8,
+  12.5]
+)");
+  EXPECT_THAT(what, testing::HasSubstr(in("study.toml") + ":3:23: lens.f_number = -1: must be greater than 0"));
+  EXPECT_THAT(what, testing::HasSubstr(in("study.toml") + ":5:3: camera.bit_depth = 12.5: must be a whole number"));
+}
+
+TEST_F(BadStudies, AnAxisOfTheWrongType) {
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [\"wide\"]\n", "3:20",
+                 {"must be a number (it is a text)"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = 8\n", "3:1",
+                 {"\"lens.f_number\" must be a list of values (it is a whole number); write [8]"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { lin = [1, 2, 3] }\n", "3:1",
+                 {"{ linear = [first, last, count] }", "it is a table with \"lin\""});
+  expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
+                 {"a key path stands in quotes: \"lens.f_number\""});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
+                 {"log needs ends greater than zero"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 8] }\n", "3:21",
+                 {"linear must be [first, last, count]"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ kind = \"none\" }]\n", "3:19", {"needs a label"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"camera.pixels.x\" = [1]\n", "3:22", {"camera.pixels", "not a table"});
+}
+
+TEST_F(BadStudies, EmptyAxes) {
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = []\n", "3:1", {"\"lens.f_number\" is empty"});
+  expect_refused("base = \"base.toml\"\n[axes]\n", "2:2", {"[axes] is empty"});
+  expect_refused("base = \"base.toml\"\n", "1:1", {"axes: is missing"});
+}
+
+TEST_F(BadStudies, AThousandMillionCasesAreRefusedByTheirCountAtOnce) {
+  expect_refused(R"(base = "base.toml"
+[axes]
+"lens.f_number" = { linear = [4, 32, 1000] }
+"geometry.z_d_mm" = { linear = [100, 1000, 1000] }
+"geometry.z_a_mm" = { linear = [500, 1000, 1000] }
+)",
+                 "2:2", {"the study has 1000000000 cases (1000000 at most)"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [4, 32, 1000000000] }\n", "2:2",
+                 {"1000000000 cases"});
+}
+
+TEST_F(BadStudies, SettingsThatDoNotFit) {
+  std::string const axes = "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 11]\n";
+  expect_refused(axes + "[study]\nmode = \"sobl\"\n", "5:1", {"did you mean \"sobol\"?"});
+  expect_refused(axes + "[study]\nsamples = 4\n", "5:1", {"belongs to mode = \"sobol\""});
+  expect_refused(axes + "[study]\nmode = \"sobol\"\n", "4:2", {"samples", "is missing"});
+  expect_refused(axes + "[study]\nrepeats = 0\n", "5:1", {"must be at least 1"});
+  expect_refused(axes + "[study]\nrepeat = 2\n", "5:1", {"did you mean \"repeats\"?"});
+  expect_refused(axes + "\"lens.focal_length_mm\" = [50]\n[study]\nmode = \"zip\"\n", "4:1",
+                 {"has 1 values but \"lens.f_number\" has 2"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23", {"has the value 8 twice"});
+  expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
+}
+
+TEST_F(BadStudies, MistakesOfTheBaseAreToldAtItsOwnLines) {
+  write("base.toml", "schema = 1\n[lens]\nf_numer = 8\n");
+  EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"geometry.z_d_mm\" = [100, 200]\n"),
+              testing::StartsWith(in("base.toml") + ":3:1: unknown key \"f_numer\""));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "render/base/error.h"
+#include "studies/sweep/plan.h"
+
+namespace gladstone {
+
+/// A setup that renders in some milliseconds.
+inline constexpr char const* small_base = R"(schema = 1
+[camera]
+pixels = [64, 64]
+[lens]
+f_number = 11.0
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [20.0, 10.0, 0.0]
+[target]
+dots_per_32px_window = 10.0
+[render]
+rays_per_dot = 32
+[correlate]
+window_px = [32, 16]
+)";
+
+/// A fresh folder for each test, with a base setup in it.
+class StudyFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("gladstone_") + info->test_suite_name() + '_' + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    write("base.toml", small_base);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string in(std::string const& name) const { return (folder_ / name).string(); }
+  void write(std::string const& name, std::string const& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  StudyFile study(std::string const& text) const {
+    write("study.toml", text);
+    return read_study(in("study.toml"));
+  }
+  std::vector<ManifestCase> plan(std::string const& text) const { return plan_study(study(text), "cpu"); }
+
+  /// What planning the study complains of.
+  std::string complaint(std::string const& text) const {
+    try {
+      plan(text);
+    } catch (SetupError const& error) {
+      return error.what();
+    }
+    return "nothing";
+  }
+  /// Planning complains of exactly this place, "line:column" of the study, and says all of these.
+  void expect_refused(std::string const& text, std::string const& place, std::vector<std::string> const& pieces) const {
+    std::string const what = complaint(text);
+    EXPECT_TRUE(what.starts_with(in("study.toml") + ':' + place + ": ")) << what;
+    for (std::string const& piece : pieces) EXPECT_THAT(what, testing::HasSubstr(piece));
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace gladstone
