@@ -147,7 +147,7 @@ __global__ void __launch_bounds__(threads, 4)
       if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], table_check);
       __syncthreads();
       tabled = integrate_cone(model, cone, cone_state);
-      if (tabled) sum_cone(model, plan, cone.origin(), cone_state.moments, cone_state.without_medium, hits);
+      if (tabled) sum_cone(model, plan, cone, cone_state.moments, hits);
     }
     if (threadIdx.x == 0) sums[i] = {plan.origin, {hits[0], hits[1]}};
     if (!with_images) continue;

@@ -14,9 +14,10 @@ constexpr double cheap_rays_a_source = 32;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
 /// A lattice from low to high, with four nodes at least.
-void place(DeflectionLattice& lattice, double spacing, Vec2d low, Vec2d high) {
+void place(SquareLattice& lattice, double spacing, Vec2d low, Vec2d high) {
   double const width = high.x - low.x, height = high.y - low.y;
   lattice.spacing = std::min({spacing, width / 3, height / 3});
+  lattice.per_metre = 1 / lattice.spacing;
   lattice.columns = static_cast<int>(std::ceil(width / lattice.spacing)) + 1;
   lattice.rows = static_cast<int>(std::ceil(height / lattice.spacing)) + 1;
   // the last node may lie beyond: as far before the first
@@ -70,7 +71,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   if (!(low.x < high.x && low.y < high.y)) return;
   if (!(rays(spacing, coarseness) <= std::min(rays_a_source * count, 1e8))) return;
   place(table.straight, spacing, low, high);
-  for (DeflectionLattice& slope : table.by_pupil) place(slope, coarseness * spacing, low, high);
+  place(table.sloping, coarseness * spacing, low, high);
   wanted = true;
 }
 
@@ -86,28 +87,39 @@ DeflectionMap::DeflectionMap(Scene const& scene, DotPattern const& sources) {
   if (!plan.wanted) return;
   SceneView<double> const open = open_view(scene);
   table_ = plan.table;
+  auto const for_each_node = [](SquareLattice const& lattice, auto const& visit) {
+    parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
+      throw_if_interrupted();
+      std::size_t at = row * static_cast<std::size_t>(lattice.columns);
+      for (int column = 0; column < lattice.columns; ++column) {
+        visit(lattice.node(column, static_cast<int>(row)), at++);
+      }
+    });
+  };
+  auto const nodes = static_cast<std::size_t>(table_.straight.size());
+  auto const slopes = static_cast<std::size_t>(table_.sloping.size());
+  displacements_.resize(nodes);
+  bends_.resize(nodes);
+  displacement_slopes_.resize(slopes);
+  bend_slopes_.resize(slopes);
   std::visit(
       [&](auto const& medium) {
-        for (int axis = -1; axis < 2; ++axis) {
-          DeflectionLattice& lattice = table_.lattice(axis);
-          std::vector<Vec2d>&displacements = displacements_[axis + 1], &bends = bends_[axis + 1];
-          displacements.resize(static_cast<std::size_t>(lattice.size()));
-          bends.resize(displacements.size());
-          parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
-            throw_if_interrupted();
-            std::size_t at = row * static_cast<std::size_t>(lattice.columns);
-            for (int column = 0; column < lattice.columns; ++column, ++at) {
-              Vec2d const q = lattice.node(column, static_cast<int>(row));
-              Deflection const here = node_deflection(open, medium, plan.table, q, axis);
-              displacements[at] = here.displacement;
-              bends[at] = here.bend;
-            }
-          });
-          lattice.displacements = displacements.data();
-          lattice.bends = bends.data();
-        }
+        for_each_node(table_.straight, [&](Vec2d q, std::size_t at) {
+          Deflection const node = straight_node(open, medium, plan.table, q);
+          displacements_[at] = node.displacement;
+          bends_[at] = node.bend;
+        });
+        for_each_node(table_.sloping, [&](Vec2d q, std::size_t at) {
+          DeflectionSlopes const node = sloping_node(open, medium, plan.table, q);
+          displacement_slopes_[at] = node.displacement;
+          bend_slopes_[at] = node.bend;
+        });
       },
       scene.medium.view);
+  table_.displacements = displacements_.data();
+  table_.bends = bends_.data();
+  table_.displacement_slopes = displacement_slopes_.data();
+  table_.bend_slopes = bend_slopes_.data();
 }
 
 }  // namespace gladstone

@@ -33,7 +33,8 @@ class DeflectionMap {
 
  private:
   DeflectionTable table_;
-  std::vector<Vec2d> displacements_[3], bends_[3];
+  std::vector<Vec2d> displacements_, bends_;
+  std::vector<PupilSlopes> displacement_slopes_, bend_slopes_;
 };
 
 }  // namespace gladstone
