@@ -129,11 +129,12 @@ __device__ inline void fit_moments(LightModel const& model, ConeState& state) {
   __syncthreads();
 }
 
-/// Lays down the source's disc with the spots that state.field makes of it. A warp takes some points of the source at a
+/// Lays down the source's disc with the spots that the moments make of it. A warp takes some points of the source at a
 /// time: first its lanes work out all their pixels' edges, then the spots' factors, then a lane a pixel.
 /// @param scratch of the warps @param moved where the moments count from [px]
-__device__ inline void lay_down_part(LightModel const& model, DotPlan const& plan, ConeState const& state, Vec2d moved,
-                                     Patch const& patch, DeviceImages const& images, SharesOfGroup* scratch) {
+__device__ inline void lay_down_part(LightModel const& model, DotPlan const& plan, MomentField const& field,
+                                     Vec2d moved, Patch const& patch, DeviceImages const& images,
+                                     SharesOfGroup* scratch) {
   using M = DisplacementMoments;
   using Spot = GaussianSpot<double>;
   constexpr int orders = M::order + 1, most_group = 4;
@@ -170,7 +171,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
     for (int which = lane / 16; which < here; which += warp_size / 16) {
       int const moment = lane % 16;
       if (moment >= M::count) continue;
-      factors(which)[2 * orders * edges + moment] = state.field.value(moment, model.source.points[first + which]);
+      factors(which)[2 * orders * edges + moment] = field.value(moment, model.source.points[first + which]);
     }
     __syncwarp();
     // from edges to pixels
@@ -228,27 +229,21 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
   }
 }
 
-/// Lays down all light of a cone that integrate_cone() found sound. @return false: it is too wide, and nothing was done
-__device__ inline bool expose_cone(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
+/// Lays down the light of a cone that integrate_cone() found sound, square by square. @return false: there are too
+/// many, and nothing was done
+__device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
                                    ConeState& state, Patch& patch, DeviceImages const& images, SharesOfGroup* scratch) {
-  if (!model.by_moments()) return false;
-  if (!state.narrow) {
-    find_boxes(model, cone, state);
-    if (!state.boxes.few()) return false;
-  }
+  find_boxes(model, cone, state);
+  BoxRange const boxes = state.boxes;
+  if (!boxes.few()) return false;
   patch.begin(plan.origin + cone.origin());
-  if (state.narrow) {
-    fit_moments(model, state);
-    lay_down_part(model, plan, state, cone.origin(), patch, images, scratch);
-  } else {
-    for (int row = state.boxes.low.y; row <= state.boxes.high.y; ++row) {
-      for (int column = state.boxes.low.x; column <= state.boxes.high.x; ++column) {
-        Vec2d const middle{column * model.box_side(), row * model.box_side()};
-        __syncthreads();
-        if (!integrate_box(model, cone, state, {column, row}, middle)) continue;
-        fit_moments(model, state);
-        lay_down_part(model, plan, state, cone.origin() + middle, patch, images, scratch);
-      }
+  for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
+    for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
+      Vec2d const middle{column * model.box_side(), row * model.box_side()};
+      __syncthreads();
+      if (!integrate_box(model, cone, state, {column, row}, middle)) continue;
+      fit_moments(model, state);
+      lay_down_part(model, plan, state.field, cone.origin() + middle, patch, images, scratch);
     }
   }
   patch.flush(images, Frame::flow);

@@ -162,12 +162,18 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
     DeviceArray<DotTheory> integrals(theory == RenderTheory::yes ? dots : 0, "the dots' theory");
     std::uint64_t dots_a_batch = 0;
     DeviceArray<RayRecord<T>> records = allocate_records<T>(dots, rays, dots_a_batch);
+    DeviceArray<DotCone> cones(images ? dots_a_batch : 0, "the cones of a batch of dots");
     Progress progress(spot ? "tracing rays" : "tracing truth", dots);
     for (Batch batch{0, 0, rays}; batch.first < dots; batch.first += batch.dots) {
       throw_if_interrupted();
       batch.dots = std::min(dots_a_batch, dots - batch.first);
       trace_rays<T>(traced, medium.view<T>(), light.model().image, batch, records.data(), tally.data());
-      expose_dots<T>(light.model(), view.sources, batch, records.data(), frames, sums.data() + batch.first);
+      sum_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data());
+      if (images) {
+        if (host_light.model.controlled) expose_cones(light.model(), view.sources, batch, cones.data(), frames);
+        expose_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data(),
+                       frames);
+      }
       if (theory == RenderTheory::yes) {
         integrate_dots(theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
       }

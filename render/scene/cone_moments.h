@@ -186,16 +186,16 @@ class CorrectedCone {
   /// @param offset of the place from the dot's centre [m]
   GLADSTONE_HD double rim(Vec2d offset, Vec2d direction) const {
     using std::abs;
-    using std::sqrt;
-    double radius = stop_radius_;
-    for (int iteration = 0; iteration < 4; ++iteration) {  // where bends hardly change within their own length
-      Vec2d const moved = bend(offset, radius * direction);
-      double const along = dot(moved, direction), before = radius;
-      radius = sqrt(stop_radius_ * stop_radius_ - dot(moved, moved) + along * along) - along;
-      if (!(radius <= sent_radius_)) return undefined();
-      if (abs(radius - before) < settled * stop_radius_) return radius;
+    // where bends change little within their own length two looks do, as if their change went on (Aitken)
+    double const first = arriving(offset, direction, stop_radius_);
+    if (!(first <= sent_radius_)) return undefined();
+    double const second = arriving(offset, direction, first);
+    double const change = first - stop_radius_, last = second - first;
+    if (!(abs(last) <= 0.1 * abs(change)) || !(abs(last) <= 1e-3 * stop_radius_)) {
+      return change == 0 ? first : searched_rim(offset, direction);
     }
-    return searched_rim(offset, direction);
+    double const radius = second + last * last / (change - last);
+    return radius <= sent_radius_ ? radius : undefined();
   }
 
   /// Displacement of a ray, counted from origin() [px].
@@ -238,6 +238,13 @@ class CorrectedCone {
   Vec2d centre_, bend_, bend_by_x_, bend_by_y_, origin_, miss_;
   double widening_[3];
 
+  /// Radius at which a ray would have to be sent to arrive at the stop's edge, bent as one at `radius` is.
+  GLADSTONE_HD double arriving(Vec2d offset, Vec2d direction, double radius) const {
+    using std::sqrt;
+    Vec2d const moved = bend(offset, radius * direction);
+    double const along = dot(moved, direction);
+    return sqrt(stop_radius_ * stop_radius_ - dot(moved, moved) + along * along) - along;
+  }
   /// By how much a ray to a pupil point arrives outside the stop's edge [m].
   GLADSTONE_HD double outside(Vec2d offset, Vec2d pupil) const {
     return length(pupil + bend(offset, pupil)) - stop_radius_;
