@@ -33,14 +33,24 @@ __device__ inline bool find_rims(CorrectedCone const& cone, ConeRule const& rule
   return sound;
 }
 
-/// Calls visit(light) for the warp's points of a cone's cross-section.
-/// @param rims null: the stop's edge is smoothed
+/// Calls visit(light) for the warp's points of a cone's cross-section as seen from a place.
+/// @param kept where the points of all places are kept, once they are worked out; null: they are not
 template <class Visit>
-__device__ void visit_cone(CorrectedCone const& cone, ConeRule const& rule, Vec2d offset, double const* rims,
-                           Visit const& visit) {
+__device__ void visit_cone(LightModel const& model, CorrectedCone const& cone, ConeState const& state, int place,
+                           ConeLight* kept, bool work_out, Visit const& visit) {
+  ConeRule const& rule = model.cone;
+  Vec2d const offset = model.offset(model.places.places[place]);
+  double const* const rims = state.simple ? state.rims[place] : nullptr;
   int const count = rims ? rule.count : rule.scattered_count;
+  if (kept) kept += static_cast<std::size_t>(place) * count;
   for (int k = threadIdx.x % warp_size; k < count; k += warp_size) {
-    visit(rims ? cone_light(cone, rule, k, offset, rims) : smoothed_light(cone, rule, k, offset));
+    if (!work_out) {
+      visit(kept[k]);
+      continue;
+    }
+    ConeLight const light = rims ? cone_light(cone, rule, k, offset, rims) : smoothed_light(cone, rule, k, offset);
+    if (kept) kept[k] = light;
+    visit(light);
   }
   __syncwarp();
 }
@@ -54,7 +64,8 @@ __device__ inline void keep_moments(ConeState& state, int place, DisplacementMom
 }
 
 /// Moments of the whole cone at every place, and what they say of its light. @return state.sound
-__device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state) {
+__device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state,
+                                      ConeLight* kept = nullptr) {
   int const warp = threadIdx.x / warp_size;
   if (threadIdx.x == 0) {
     state.simple = state.sound = state.narrow = true;
@@ -66,7 +77,7 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
   __syncthreads();
   for (int place = warp; place < model.places.count; place += dot_warps) {
     DisplacementMoments moments;
-    visit_cone(cone, model.cone, model.offset(model.places.places[place]), state.simple ? state.rims[place] : nullptr,
+    visit_cone(model, cone, state, place, kept, true,
                [&](ConeLight const& light) { moments.add(light.weight, light.displacement); });
     keep_moments(state, place, moments);
     if (threadIdx.x % warp_size == 0) {
@@ -80,11 +91,12 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
 }
 
 /// Finds the squares that the cone's displacements span.
-__device__ inline void find_boxes(LightModel const& model, CorrectedCone const& cone, ConeState& state) {
+__device__ inline void find_boxes(LightModel const& model, CorrectedCone const& cone, ConeState& state,
+                                  ConeLight* kept) {
   double const per_side = 1 / model.box_side();
   BoxRange boxes;
   for (int place = threadIdx.x / warp_size; place < model.places.count; place += dot_warps) {
-    visit_cone(cone, model.cone, model.offset(model.places.places[place]), state.simple ? state.rims[place] : nullptr,
+    visit_cone(model, cone, state, place, kept, false,
                [&](ConeLight const& light) { boxes.include(light.displacement, per_side); });
   }
   if (threadIdx.x == 0) state.boxes = {};
@@ -99,19 +111,18 @@ __device__ inline void find_boxes(LightModel const& model, CorrectedCone const& 
 /// Moments of the part of the cone whose displacements lie in one square, about its middle. @return whether there is
 /// any
 __device__ inline bool integrate_box(LightModel const& model, CorrectedCone const& cone, ConeState& state,
-                                     Vec2<int> which, Vec2d middle) {
+                                     ConeLight* kept, Vec2<int> which, Vec2d middle) {
   int const warp = threadIdx.x / warp_size;
   double const per_side = 1 / model.box_side();
   bool any = false;
   for (int place = warp; place < model.places.count; place += dot_warps) {
     DisplacementMoments moments;
-    visit_cone(cone, model.cone, model.offset(model.places.places[place]), state.simple ? state.rims[place] : nullptr,
-               [&](ConeLight const& light) {
-                 Vec2<int> const box = box_of(light.displacement, per_side);
-                 if (box.x != which.x || box.y != which.y) return;
-                 moments.add(light.weight, light.displacement - middle);
-                 any = true;
-               });
+    visit_cone(model, cone, state, place, kept, false, [&](ConeLight const& light) {
+      Vec2<int> const box = box_of(light.displacement, per_side);
+      if (box.x != which.x || box.y != which.y) return;
+      moments.add(light.weight, light.displacement - middle);
+      any = true;
+    });
     keep_moments(state, place, moments);
     if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], model.offset(model.places.places[place]));
   }
@@ -229,11 +240,12 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
   }
 }
 
-/// Lays down the light of a cone that integrate_cone() found sound, square by square. @return false: there are too
-/// many, and nothing was done
+/// Lays down the light of a cone that integrate_cone() found sound and kept, square by square. @return false: there are
+/// too many, and nothing was done
 __device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
-                                   ConeState& state, Patch& patch, DeviceImages const& images, SharesOfGroup* scratch) {
-  find_boxes(model, cone, state);
+                                   ConeState& state, ConeLight* kept, Patch& patch, DeviceImages const& images,
+                                   SharesOfGroup* scratch) {
+  find_boxes(model, cone, state, kept);
   BoxRange const boxes = state.boxes;
   if (!boxes.few()) return false;
   patch.begin(plan.origin + cone.origin());
@@ -241,7 +253,7 @@ __device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan,
     for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
       Vec2d const middle{column * model.box_side(), row * model.box_side()};
       __syncthreads();
-      if (!integrate_box(model, cone, state, {column, row}, middle)) continue;
+      if (!integrate_box(model, cone, state, kept, {column, row}, middle)) continue;
       fit_moments(model, state);
       lay_down_part(model, plan, state.field, cone.origin() + middle, patch, images, scratch);
     }

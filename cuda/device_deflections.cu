@@ -1,35 +1,47 @@
 #include "cuda/device_deflections.h"
-#include "cuda/launch.h"
 
 namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 128;
 
-/// One node a thread: neighbours in a warp are neighbours in the medium. First the straight lattice's, then the
-/// slopes'.
+/// One ray a thread: first those of the straight lattice, neighbours in a warp neighbours in the medium; then four for
+/// every node of the slopes'.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
-    deflect_kernel(SceneView<double> const open, Medium const medium, DeflectionTable const plan,
-                   Vec2d* const displacements, Vec2d* const bends, PupilSlopes* const displacement_slopes,
-                   PupilSlopes* const bend_slopes) {
-  long long const nodes = plan.straight.size(), all = nodes + plan.sloping.size();
-  long long const stride = static_cast<long long>(gridDim.x) * threads;
-  for (long long i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x; i < all; i += stride) {
-    if (i < nodes) {
-      int const columns = plan.straight.columns;
-      Vec2d const q = plan.straight.node(static_cast<int>(i % columns), static_cast<int>(i / columns));
-      Deflection const node = straight_node(open, medium, plan, q);
-      displacements[i] = node.displacement;
-      bends[i] = node.bend;
-    } else {
-      long long const j = i - nodes;
-      int const columns = plan.sloping.columns;
-      Vec2d const q = plan.sloping.node(static_cast<int>(j % columns), static_cast<int>(j / columns));
-      DeflectionSlopes const node = sloping_node(open, medium, plan, q);
-      displacement_slopes[j] = node.displacement;
-      bend_slopes[j] = node.bend;
+    deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
+                   DeflectionTable const __grid_constant__ plan, Vec2d* const displacements, Vec2d* const bends,
+                   PupilSlopes* const displacement_slopes, PupilSlopes* const bend_slopes) {
+  long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
+  long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
+  bool const straight = i < nodes;
+  long long const node = straight ? i : (i - nodes) / 4;
+  SquareLattice const& lattice = straight ? plan.straight : plan.sloping;
+  Deflection here{};
+  int const side = static_cast<int>(i % 4);  // of a node's four, which lie side by side in a warp
+  if (node < lattice.size()) {
+    Vec2d const q = lattice.node(static_cast<int>(node % lattice.columns), static_cast<int>(node / lattice.columns));
+    here = deflect(open, medium, plan.way, q, straight ? Vec2d{} : slope_pupil(plan, side));
+  }
+  if (straight) {
+    if (node < lattice.size()) {
+      displacements[node] = here.displacement;
+      bends[node] = here.bend;
     }
+    return;
+  }
+  int const lane = static_cast<int>(threadIdx.x % 32);
+  unsigned int const four = 0xfu << (lane - side);
+  Deflection sides[4];
+  for (int other = 0; other < 4; ++other) {
+    int const from = lane - side + other;
+    sides[other] = {{__shfl_sync(four, here.displacement.x, from), __shfl_sync(four, here.displacement.y, from)},
+                    {__shfl_sync(four, here.bend.x, from), __shfl_sync(four, here.bend.y, from)}};
+  }
+  if (side == 0 && i < all) {
+    DeflectionSlopes const slopes = slopes_of(plan, sides);
+    displacement_slopes[node] = slopes.displacement;
+    bend_slopes[node] = slopes.bend;
   }
 }
 
@@ -49,10 +61,9 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DotPattern const& sourc
   std::visit(
       [&](auto const& held) {
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
-        std::uint64_t const blocks = (nodes + slopes + threads - 1) / threads;
-        kernel<<<blocks_for(kernel, threads, 0, blocks), threads>>>(open, held, plan.table, displacements_.data(),
-                                                                    bends_.data(), displacement_slopes_.data(),
-                                                                    bend_slopes_.data());
+        auto const blocks = static_cast<unsigned>((nodes + 4 + 4 * slopes + threads - 1) / threads);
+        kernel<<<blocks, threads>>>(open, held, plan.table, displacements_.data(), bends_.data(),
+                                    displacement_slopes_.data(), bend_slopes_.data());
         check_launch("deflect");
       },
       medium);

@@ -9,7 +9,8 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = dot_threads;
-constexpr int tile_rays = threads;  // whose factors are summed together
+constexpr std::uint64_t most_blocks = 1024;  // each of which keeps the points of a cone
+constexpr int tile_rays = threads;           // whose factors are summed together
 constexpr int sums_per_thread = (FlowFit::most_sums + threads - 1) / threads;
 
 /// What the block's threads have in common.
@@ -97,7 +98,8 @@ template <class T>
 __global__ void __launch_bounds__(threads, 4)
     expose_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
                        RayRecord<T> const* const records, DotSums const* const sums, DotCone const* const cones,
-                       DeviceImages const images, int const side) {
+                       DeviceImages const images, int const side, ConeLight* const points,
+                       std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
   __shared__ __align__(16) unsigned char state_storage[std::max(sizeof(BlockState), sizeof(ConeState))];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
@@ -120,8 +122,9 @@ __global__ void __launch_bounds__(threads, 4)
     if (kind == DotKind::wide) {
       if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], cones[i].check);
       __syncthreads();
-      integrate_cone(model, cone, cone_state);
-      if (expose_wide(model, plan, cone, cone_state, patch, images, shares)) continue;
+      ConeLight* const kept = points + blockIdx.x * points_a_block;
+      integrate_cone(model, cone, cone_state, kept);
+      if (expose_wide(model, plan, cone, cone_state, kept, patch, images, shares)) continue;
       __syncthreads();
     }
     if (model.controlled) {
@@ -169,8 +172,13 @@ void expose_dots(LightModel const& model, SourcesView<double> const& sources, Ba
   std::size_t const shared = shared_bytes(side);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
         "cudaFuncSetAttribute");
-  kernel<<<blocks_for(kernel, threads, shared, batch.dots), threads, shared>>>(model, sources, batch, records, sums,
-                                                                               cones, images, side);
+  int const blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
+  auto const points_a_block =
+      static_cast<std::size_t>(model.places.count) *
+      static_cast<std::size_t>(model.by_moments() ? std::max(model.cone.count, model.cone.scattered_count) : 0);
+  DeviceArray<ConeLight> points(static_cast<std::size_t>(blocks) * points_a_block, "the points of wide cones");
+  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, points.data(),
+                                      points_a_block);
   check_launch("expose_dots");
 }
 

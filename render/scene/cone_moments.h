@@ -191,8 +191,9 @@ class CorrectedCone {
     if (!(first <= sent_radius_)) return undefined();
     double const second = arriving(offset, direction, first);
     double const change = first - stop_radius_, last = second - first;
+    if (abs(change) <= settled * stop_radius_) return second;
     if (!(abs(last) <= 0.1 * abs(change)) || !(abs(last) <= 1e-3 * stop_radius_)) {
-      return change == 0 ? first : searched_rim(offset, direction);
+      return searched_rim(offset, direction);
     }
     double const radius = second + last * last / (change - last);
     return radius <= sent_radius_ ? radius : undefined();

@@ -54,8 +54,8 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   auto const lean = [&](double q) {
     return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + scene.pupil_radius()) / to_lens;
   };
-  // a grid's table has a node a cell, a wave's twelve a wavelength; its slopes, which are corrections, half as many
-  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 3, coarseness = 2;
+  // a grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as many
+  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 6, coarseness = 2;
   auto const rays = [&](double node_spacing, double slopes_coarseness) {
     double const nodes = (high.x - low.x) * (high.y - low.y) / (node_spacing * node_spacing);
     return nodes * (1 + 4 / (slopes_coarseness * slopes_coarseness));
@@ -105,12 +105,16 @@ DeflectionMap::DeflectionMap(Scene const& scene, DotPattern const& sources) {
   std::visit(
       [&](auto const& medium) {
         for_each_node(table_.straight, [&](Vec2d q, std::size_t at) {
-          Deflection const node = straight_node(open, medium, plan.table, q);
+          Deflection const node = deflect(open, medium, plan.table.way, q, {});
           displacements_[at] = node.displacement;
           bends_[at] = node.bend;
         });
         for_each_node(table_.sloping, [&](Vec2d q, std::size_t at) {
-          DeflectionSlopes const node = sloping_node(open, medium, plan.table, q);
+          Deflection sides[4];
+          for (int side = 0; side < 4; ++side) {
+            sides[side] = deflect(open, medium, plan.table.way, q, slope_pupil(plan.table, side));
+          }
+          DeflectionSlopes const node = slopes_of(plan.table, sides);
           displacement_slopes_[at] = node.displacement;
           bend_slopes_[at] = node.bend;
         });

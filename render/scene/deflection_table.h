@@ -129,29 +129,20 @@ GLADSTONE_HD Deflection deflect(SceneView<double> const& open, Medium const& med
   return {flow.pixel - reference.pixel, flow.at_lens - reference.at_lens};
 }
 
-/// What nodes of the table hold.
-template <class Medium>
-GLADSTONE_HD Deflection straight_node(SceneView<double> const& open, Medium const& medium, DeflectionTable const& table,
-                                      Vec2d q) {
-  return deflect(open, medium, table.way, q, {});
-}
-
-/// Slopes of displacement and bend, by central differences.
+/// Slopes of displacement and bend, by central differences of four rays.
 struct DeflectionSlopes {
   PupilSlopes displacement, bend;
 };
-template <class Medium>
-GLADSTONE_HD DeflectionSlopes sloping_node(SceneView<double> const& open, Medium const& medium,
-                                           DeflectionTable const& table, Vec2d q) {
-  DeflectionSlopes slopes{};
-  for (int side = 0; side < 4; ++side) {  // one place that traces, for a device's sake
-    double const aside = side % 2 == 0 ? table.pupil_step : -table.pupil_step, scale = 0.5 / aside;
-    bool const along_x = side < 2;
-    Deflection const there = deflect(open, medium, table.way, q, along_x ? Vec2d{aside, 0} : Vec2d{0, aside});
-    (along_x ? slopes.displacement.by_x : slopes.displacement.by_y) += scale * there.displacement;
-    (along_x ? slopes.bend.by_x : slopes.bend.by_y) += scale * there.bend;
-  }
-  return slopes;
+/// The pupil point of the first ray, along +x, or the others, along -x, +y and -y [m].
+GLADSTONE_HD inline Vec2d slope_pupil(DeflectionTable const& table, int side) {
+  double const aside = side % 2 == 0 ? table.pupil_step : -table.pupil_step;
+  return side < 2 ? Vec2d{aside, 0} : Vec2d{0, aside};
+}
+GLADSTONE_HD inline DeflectionSlopes slopes_of(DeflectionTable const& table, Deflection const (&sides)[4]) {
+  double const scale = 0.5 / table.pupil_step;
+  return {{scale * (sides[0].displacement - sides[1].displacement),
+           scale * (sides[2].displacement - sides[3].displacement)},
+          {scale * (sides[0].bend - sides[1].bend), scale * (sides[2].bend - sides[3].bend)}};
 }
 
 }  // namespace gladstone
