@@ -1,5 +1,9 @@
 #include "cuda/cuda_renderer.h"
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +13,7 @@
 #include "cuda/device_deflections.h"
 #include "cuda/expose_dots.h"
 #include "render/base/interrupt.h"
+#include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/scene/light_model.h"
 
@@ -100,13 +105,19 @@ class ImagePairOnDevice {
   DeviceImages view(double light_per_weight) {
     return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
   }
-  LightPair to_host() const {
-    DeviceArray<double> light(pixels(), "the images");
-    LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
-    for (int frame = 0; frame < frame_count; ++frame) {
-      to_light(light_[frame].data(), light.data(), pixels());
-      light.download((frame == 0 ? pair.reference : pair.flow).data(), pixels());
+  /// @param staging that the device copies to; all cores copy on from there
+  LightPair to_host(PinnedBuffer& staging) const {
+    DeviceArray<double> light(frame_count * pixels(), "the images");
+    auto* const staged = static_cast<double*>(staging.reserve(frame_count * pixels() * sizeof(double)));
+    for (std::size_t frame = 0; frame < frame_count; ++frame) {
+      to_light(light_[frame].data(), light.data() + frame * pixels(), pixels());
     }
+    light.download(staged, frame_count * pixels());
+    LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
+    parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      std::copy(staged + begin, staged + end, pair.reference.data() + begin);
+      std::copy(staged + pixels() + begin, staged + pixels() + end, pair.flow.data() + begin);
+    });
     return pair;
   }
 
@@ -134,7 +145,7 @@ DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t ray
 /// One try at a scene. @param images null: truth only
 template <class T>
 TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
-                      MirroredMedium const& medium, SpotView const* spot, RenderTheory theory) {
+                      MirroredMedium const& medium, SpotView const* spot, RenderTheory theory, PinnedBuffer& staging) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
@@ -201,12 +212,17 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
       }
     }
   }
-  if (images) pass.rendering.light = images->to_host();
+  if (images) pass.rendering.light = images->to_host(staging);
   return pass;
 }
 
-/// Freed memory stays with the process, so that the next rendering does not wait for the driver.
+/// Freed memory stays with the process, so that the next rendering does not wait for the driver, nor for the pages of
+/// its images.
 void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+#endif
   int device = 0;
   check(cudaGetDevice(&device), "cudaGetDevice");
   cudaMemPool_t pool = nullptr;
@@ -221,6 +237,7 @@ struct CudaRenderer::Uploads {
   std::shared_ptr<void const> owner;  ///< of the medium that is on the device
   MirroredMedium medium;
   bool wide = false;
+  PinnedBuffer staging;
 };
 
 CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_memory(); }
@@ -241,7 +258,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   if (single) on_device.mirror_single(sources);
   auto const trace = [&]<class T>(T) {
     return trace_all<T>(scene, sources, on_device, uploads_->medium, images == RenderImages::yes ? &spot : nullptr,
-                        theory);
+                        theory, uploads_->staging);
   };
   return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });
 }

@@ -64,4 +64,29 @@ class DeviceArray {
   std::size_t size_ = 0;
 };
 
+/// Page-locked memory of the host, which a device copies to at full speed; grows, never shrinks.
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  PinnedBuffer(PinnedBuffer const&) = delete;
+  PinnedBuffer& operator=(PinnedBuffer const&) = delete;
+  ~PinnedBuffer() {
+    if (data_) cudaFreeHost(data_);
+  }
+  /// @return room for so many bytes; what was in it is lost
+  void* reserve(std::size_t bytes) {
+    if (bytes > bytes_) {
+      if (data_) check(cudaFreeHost(std::exchange(data_, nullptr)), "cudaFreeHost");
+      bytes_ = 0;
+      check(cudaMallocHost(&data_, bytes), "cudaMallocHost");
+      bytes_ = bytes;
+    }
+    return data_;
+  }
+
+ private:
+  void* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
 }  // namespace gladstone::cuda

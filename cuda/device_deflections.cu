@@ -11,7 +11,7 @@ template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
                    DeflectionTable const __grid_constant__ plan, Vec2d* const displacements, Vec2d* const bends,
-                   PupilSlopes* const displacement_slopes, PupilSlopes* const bend_slopes) {
+                   KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
   long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
   long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
   bool const straight = i < nodes;
@@ -56,8 +56,8 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DotPattern const& sourc
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
   displacements_ = DeviceArray<Vec2d>(nodes, "the deflection table");
   bends_ = DeviceArray<Vec2d>(nodes, "the deflection table");
-  displacement_slopes_ = DeviceArray<PupilSlopes>(slopes, "the deflection table");
-  bend_slopes_ = DeviceArray<PupilSlopes>(slopes, "the deflection table");
+  displacement_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
+  bend_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
   std::visit(
       [&](auto const& held) {
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;

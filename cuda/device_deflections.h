@@ -17,7 +17,7 @@ class DeviceDeflections {
  private:
   DeflectionTable table_;
   DeviceArray<Vec2d> displacements_, bends_;
-  DeviceArray<PupilSlopes> displacement_slopes_, bend_slopes_;
+  DeviceArray<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 
 }  // namespace gladstone::cuda

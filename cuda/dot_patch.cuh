@@ -21,8 +21,9 @@ __device__ RayRecord<double> widened(RayRecord<T> const& ray) {
     return ray;
   } else {
     auto const wide = [](Vec2<T> v) { return Vec2d{v.x, v.y}; };
-    return {wide(ray.place), wide(ray.pupil),      wide(ray.arrival), wide(ray.reference),  wide(ray.flow),
-            ray.weight,      ray.reference_weight, ray.flow_weight,   ray.reference_counts, ray.flow_counts};
+    return {wide(ray.place),      wide(ray.pupil), wide(ray.arrival),    wide(ray.reference),
+            wide(ray.flow),       ray.weight,      ray.reference_weight, ray.flow_weight,
+            ray.reference_counts, ray.flow_counts, ray.leaves_medium};
   }
 }
 

@@ -34,7 +34,7 @@ class DeflectionMap {
  private:
   DeflectionTable table_;
   std::vector<Vec2d> displacements_, bends_;
-  std::vector<PupilSlopes> displacement_slopes_, bend_slopes_;
+  std::vector<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 
 }  // namespace gladstone

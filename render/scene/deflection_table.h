@@ -59,12 +59,12 @@ struct SquareLattice {
   }
 };
 
-/// Value interpolated from a lattice's nodes.
-template <class Value>
-GLADSTONE_HD Value interpolate(SquareLattice::Stencil const& stencil, Value const* nodes) {
-  Value sum{};
+/// Value interpolated from a lattice's nodes. @tparam Sum of weights times nodes
+template <class Sum, class Node>
+GLADSTONE_HD Sum interpolate(SquareLattice::Stencil const& stencil, Node const* nodes) {
+  Sum sum{};
   for (int j = 0; j < 4; ++j) {
-    Value const* const line = nodes + stencil.corner + static_cast<long long>(j) * stencil.columns;
+    Node const* const line = nodes + stencil.corner + static_cast<long long>(j) * stencil.columns;
     sum += stencil.y[j] *
            (stencil.x[0] * line[0] + stencil.x[1] * line[1] + stencil.x[2] * line[2] + stencil.x[3] * line[3]);
   }
@@ -85,6 +85,19 @@ struct PupilSlopes {
   GLADSTONE_HD PupilSlopes& operator+=(PupilSlopes const& o) { return *this = *this + o; }
 };
 
+/// The same as a table keeps it: what is a correction does with single precision, and half the memory to read.
+struct KeptSlopes {
+  Vec2<float> by_x, by_y;
+
+  GLADSTONE_HD static KeptSlopes of(PupilSlopes const& s) {
+    return {{static_cast<float>(s.by_x.x), static_cast<float>(s.by_x.y)},
+            {static_cast<float>(s.by_y.x), static_cast<float>(s.by_y.y)}};
+  }
+  GLADSTONE_HD friend PupilSlopes operator*(double scale, KeptSlopes const& s) {
+    return {{scale * s.by_x.x, scale * s.by_x.y}, {scale * s.by_y.x, scale * s.by_y.y}};
+  }
+};
+
 /// The deflections of rays through the mid-plane of the medium, to first order in the point of the pupil that they run
 /// to: what a ray does hangs on where it crosses the mid-plane, and little on its direction. A view.
 struct DeflectionTable {
@@ -96,8 +109,8 @@ struct DeflectionTable {
   /// [rows][columns] of the lattices, as in Deflection; NaN where a ray does not reach the lens; null: no table
   Vec2d const* displacements = nullptr;
   Vec2d const* bends = nullptr;
-  PupilSlopes const* displacement_slopes = nullptr;
-  PupilSlopes const* bend_slopes = nullptr;
+  KeptSlopes const* displacement_slopes = nullptr;
+  KeptSlopes const* bend_slopes = nullptr;
 
   GLADSTONE_HD bool exists() const { return displacements != nullptr; }
   /// Whether it holds all rays from within `half` of a point of the target to within `pupil` of the axis.
@@ -109,10 +122,12 @@ struct DeflectionTable {
   /// Where the straight ray from a point of the target to one of the pupil crosses the mid-plane [m].
   GLADSTONE_HD Vec2d crossing(Vec2d on_target, Vec2d pupil) const { return (1 - way) * on_target + way * pupil; }
   GLADSTONE_HD Vec2d displacement(Vec2d q, Vec2d pupil) const {
-    return interpolate(straight.about(q), displacements) + interpolate(sloping.about(q), displacement_slopes).at(pupil);
+    return interpolate<Vec2d>(straight.about(q), displacements) +
+           interpolate<PupilSlopes>(sloping.about(q), displacement_slopes).at(pupil);
   }
   GLADSTONE_HD Vec2d bend(Vec2d q, Vec2d pupil) const {
-    return interpolate(straight.about(q), bends) + interpolate(sloping.about(q), bend_slopes).at(pupil);
+    return interpolate<Vec2d>(straight.about(q), bends) +
+           interpolate<PupilSlopes>(sloping.about(q), bend_slopes).at(pupil);
   }
 };
 
@@ -131,7 +146,7 @@ GLADSTONE_HD Deflection deflect(SceneView<double> const& open, Medium const& med
 
 /// Slopes of displacement and bend, by central differences of four rays.
 struct DeflectionSlopes {
-  PupilSlopes displacement, bend;
+  KeptSlopes displacement, bend;
 };
 /// The pupil point of the first ray, along +x, or the others, along -x, +y and -y [m].
 GLADSTONE_HD inline Vec2d slope_pupil(DeflectionTable const& table, int side) {
@@ -140,9 +155,10 @@ GLADSTONE_HD inline Vec2d slope_pupil(DeflectionTable const& table, int side) {
 }
 GLADSTONE_HD inline DeflectionSlopes slopes_of(DeflectionTable const& table, Deflection const (&sides)[4]) {
   double const scale = 0.5 / table.pupil_step;
-  return {{scale * (sides[0].displacement - sides[1].displacement),
-           scale * (sides[2].displacement - sides[3].displacement)},
-          {scale * (sides[0].bend - sides[1].bend), scale * (sides[2].bend - sides[3].bend)}};
+  auto const slopes = [&](Vec2d Deflection::*what) {
+    return KeptSlopes::of({scale * (sides[0].*what - sides[1].*what), scale * (sides[2].*what - sides[3].*what)});
+  };
+  return {slopes(&Deflection::displacement), slopes(&Deflection::bend)};
 }
 
 }  // namespace gladstone

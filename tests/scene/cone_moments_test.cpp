@@ -22,7 +22,7 @@ constexpr double stop = 4.77e-3, sent = 6.5e-3, distance = 1.0, way = 0.25;  // 
 struct LensTable {
   DeflectionTable table;
   std::vector<Vec2d> displacements, bends;
-  std::vector<PupilSlopes> none;
+  std::vector<KeptSlopes> none;
 
   LensTable(double d, double b) {
     SquareLattice lattice;
@@ -68,7 +68,7 @@ TEST(SquareLattice, ReproducesCubicsUpToItsEdges) {
   }
   for (Vec2d const q : {Vec2d{-1, 2}, Vec2d{2, 4}, Vec2d{-0.99, 3.97}, Vec2d{0.3, 2.9}, Vec2d{1.9, 2.1}}) {
     ASSERT_TRUE(lattice.covers(q, 0));
-    Vec2d const off = interpolate(lattice.about(q), nodes.data()) - cubic(q);
+    Vec2d const off = interpolate<Vec2d>(lattice.about(q), nodes.data()) - cubic(q);
     EXPECT_LT(length(off), 1e-12) << q.x << " " << q.y;
   }
   EXPECT_FALSE(lattice.covers({2.01, 3}, 0));
