@@ -145,13 +145,13 @@ DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t ray
 /// One try at a scene. @param images null: truth only
 template <class T>
 TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
-                      MirroredMedium const& medium, SpotView const* spot, RenderTheory theory, PinnedBuffer& staging) {
+                      MirroredMedium const& medium, DeflectionTable const& deflections, SpotView const* spot,
+                      RenderTheory theory, PinnedBuffer& staging) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
 
-  DeviceDeflections const deflections(scene, sources, medium.view<double>());
-  OwnedLightModel const host_light(scene, sources, spot, deflections.table());
+  OwnedLightModel const host_light(scene, sources, spot, deflections);
   MirroredLightModel const light(host_light.model);
   SceneView<double> const view = on_device.place(scene.view(sources));
   SceneView<T> const traced = on_device.place([&] {
@@ -237,6 +237,7 @@ struct CudaRenderer::Uploads {
   std::shared_ptr<void const> owner;  ///< of the medium that is on the device
   MirroredMedium medium;
   bool wide = false;
+  KeptDeflections<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
 
@@ -249,6 +250,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   SpotView const spot = make_spot(scene, airy);
   // an upload of the same grid serves again; views without a grid cost nothing to mirror
   if (!scene.medium.owner || uploads_->owner != scene.medium.owner || uploads_->wide == single) {
+    uploads_->deflections.forget();
     uploads_->medium = MirroredMedium();
     uploads_->medium = MirroredMedium(scene.medium.view, !single);
     uploads_->owner = scene.medium.owner;
@@ -257,7 +259,9 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   MirroredSources on_device(sources);
   if (single) on_device.mirror_single(sources);
   auto const trace = [&]<class T>(T) {
-    return trace_all<T>(scene, sources, on_device, uploads_->medium, images == RenderImages::yes ? &spot : nullptr,
+    MirroredMedium const& medium = uploads_->medium;
+    DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
+    return trace_all<T>(scene, sources, on_device, medium, deflections, images == RenderImages::yes ? &spot : nullptr,
                         theory, uploads_->staging);
   };
   return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });

@@ -47,9 +47,8 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-DeviceDeflections::DeviceDeflections(Scene const& scene, DotPattern const& sources,
+DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& plan,
                                      DeviceMedium<double> const& medium) {
-  DeflectionPlan const plan(scene, sources);
   if (!plan.wanted) return;
   SceneView<double> const open = open_view(scene);
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());

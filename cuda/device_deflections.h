@@ -9,7 +9,7 @@ namespace gladstone::cuda {
 /// A scene's deflection table in the device's memory, as DeflectionMap is in the host's.
 class DeviceDeflections {
  public:
-  DeviceDeflections(Scene const& scene, DotPattern const& sources, DeviceMedium<double> const& medium);
+  DeviceDeflections(Scene const& scene, DeflectionPlan const& plan, DeviceMedium<double> const& medium);
 
   /// exists() only where it was wanted.
   DeflectionTable const& table() const { return table_; }

@@ -141,7 +141,6 @@ std::string vectors_path(std::string const& folder, std::string const& given) {
 GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory) {
   DotPattern virtual_dots;
-  virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
   std::uint64_t const all_rays = scene.rays_per_dot;
@@ -153,8 +152,10 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
       virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(miss) - scene.to_target({0, 0}));
     }
   };
+  // a point is where its dot is, but for a little that the second round takes off
   scene.rays_per_dot = std::min<std::uint64_t>(all_rays, 128);
-  for (int round = 0; round < 2; ++round) {
+  for (double const half_size : {0.0, scene.dots.half_size}) {
+    virtual_dots.half_size = half_size;
     correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
   scene.rays_per_dot = all_rays;

@@ -166,6 +166,7 @@ BuiltMedium build_analytic(MediumSetup const& setup) {
     built.steepest = setup.gladstone_dale * std::abs(field.amplitude) * 0.85776388496 / field.radius;
   }
   built.coarsest_step = std::min(built.finest, setup.thickness / 4);
+  built.owner = std::make_shared<FieldSetup const>(field);
   return built;
 }
 

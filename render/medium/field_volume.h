@@ -12,7 +12,7 @@ namespace gladstone {
 /// The medium of a setup: owner of the grid behind the view, if there is one.
 struct BuiltMedium {
   Medium<double> view = NoMedium<double>{};
-  std::shared_ptr<void const> owner;  ///< keeps the grid's memory alive
+  std::shared_ptr<void const> owner;  ///< keeps the grid's memory alive; media with one owner are one medium
   double finest = 0;                  ///< smallest length on which the field changes: cell, wavelength, radius ... [m]
   double coarsest_step = 0;           ///< largest step that is ever sensible: see plan_step [m]
   double steepest = 0;                ///< upper bound of |grad n|, where known [1/m]

@@ -31,8 +31,8 @@ void record_theory(TheoryModel const& model, SceneView<double> const& view, Medi
 }
 
 template <class Medium>
-TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
-                      RenderTheory theory) {
+TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium,
+                      DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory) {
   TracePair<double, Medium> const pair{scene.view(sources), medium};
   std::size_t const count = sources.centre.size();
   double const light_per_ray = scene.light_per_ray(sources);
@@ -42,8 +42,7 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium cons
   for (int frame = 0; spot && frame < frame_count; ++frame) {
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  DeflectionMap const deflections(scene, sources);
-  OwnedLightModel const light(scene, sources, spot, deflections.table());
+  OwnedLightModel const light(scene, sources, spot, deflections);
   TheoryModel const theory_model = scene.theory_model();
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
@@ -78,9 +77,10 @@ Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderIma
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   return render_with_margin(scene, images, [&] {
+    DeflectionTable const deflections = deflections_.table(scene, sources);
     return std::visit(
         [&](auto const& medium) {
-          return trace_all(scene, sources, medium, images == RenderImages::yes ? &spot : nullptr, theory);
+          return trace_all(scene, sources, medium, deflections, images == RenderImages::yes ? &spot : nullptr, theory);
         },
         scene.medium.view);
   });

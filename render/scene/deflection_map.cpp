@@ -43,24 +43,25 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
 
   // what the sources' cones cover of the mid-plane, as far as rays to all of the pupil cross the medium's whole depth
   Vec2d low = sources.centre.front(), high = low;
-  for (Vec2d const c : sources.centre) {
-    low = {std::min(low.x, c.x), std::min(low.y, c.y)};
-    high = {std::max(high.x, c.x), std::max(high.y, c.y)};
+  for (DotPattern const* const pattern : {&sources, &scene.dots}) {
+    for (Vec2d const c : pattern->centre) {
+      low = {std::min(low.x, c.x), std::min(low.y, c.y)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y)};
+    }
   }
-  double const reach = (1 - table.way) * 1.5 * sources.half_size + table.way * scene.pupil_radius() + 1e-9;
+  double const half_size = std::max(sources.half_size, scene.dots.half_size), pupil = scene.pupil_radius(1);
+  double const reach = (1 - table.way) * 1.5 * half_size + table.way * pupil + 1e-9;
   low = (1 - table.way) * low - Vec2d{reach, reach};
   high = (1 - table.way) * high + Vec2d{reach, reach};
   double const to_lens = view.bundle.lens_z - middle_z;
-  auto const lean = [&](double q) {
-    return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + scene.pupil_radius()) / to_lens;
-  };
+  auto const lean = [&](double q) { return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + pupil) / to_lens; };
   // a grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as many
   double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 6, coarseness = 2;
   auto const rays = [&](double node_spacing, double slopes_coarseness) {
     double const nodes = (high.x - low.x) * (high.y - low.y) / (node_spacing * node_spacing);
     return nodes * (1 + 4 / (slopes_coarseness * slopes_coarseness));
   };
-  auto const count = static_cast<double>(sources.centre.size());
+  auto const count = static_cast<double>(std::max(sources.centre.size(), scene.dots.centre.size()));
   if (rays(spacing / 2, 1) <= cheap_rays_a_source * count) {
     spacing /= 2;
     coarseness = 1;
@@ -73,6 +74,30 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   place(table.straight, spacing, low, high);
   place(table.sloping, coarseness * spacing, low, high);
   wanted = true;
+
+  SceneView<double> const open = open_view(scene);
+  numbers_ = {open.sources.plane_z,
+              open.bundle.lens_z,
+              setup.lens.focal_length,
+              open.sensor.z,
+              open.sensor.pitch,
+              static_cast<double>(open.sensor.columns),
+              static_cast<double>(open.sensor.rows),
+              open.tracing.step,
+              open.tracing.ambient_refractivity,
+              static_cast<double>(open.tracing.integrator),
+              static_cast<double>(open.tracing.faces),
+              table.way,
+              table.pupil_step};
+  for (SquareLattice const& lattice : {table.straight, table.sloping}) {
+    numbers_.insert(numbers_.end(), {lattice.first.x, lattice.first.y, lattice.spacing,
+                                     static_cast<double>(lattice.columns), static_cast<double>(lattice.rows)});
+  }
+  medium_ = scene.medium.owner;
+}
+
+bool DeflectionPlan::same_table(DeflectionPlan const& other) const {
+  return wanted && other.wanted && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
 }
 
 SceneView<double> open_view(Scene const& scene) {
@@ -82,8 +107,7 @@ SceneView<double> open_view(Scene const& scene) {
   return open;
 }
 
-DeflectionMap::DeflectionMap(Scene const& scene, DotPattern const& sources) {
-  DeflectionPlan const plan(scene, sources);
+DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
   if (!plan.wanted) return;
   SceneView<double> const open = open_view(scene);
   table_ = plan.table;

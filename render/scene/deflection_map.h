@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "render/scene/deflection_table.h"
@@ -9,12 +10,21 @@ namespace gladstone {
 
 /// Where a scene's deflection table has its nodes. None where rays are not traced through a medium and a focused lens
 /// with a stop, where the field is too fine for the number of sources to pay for a table, or where somebody wants
-/// random rays as they are.
+/// random rays as they are. It covers the scene's own dots and the sources, for any number of rays: virtual dots among
+/// the scene's own have the table of these.
 struct DeflectionPlan {
   DeflectionTable table;  ///< without its values
   bool wanted = false;
 
+  DeflectionPlan() = default;
   DeflectionPlan(Scene const& scene, DotPattern const& sources);
+  /// Whether the other plan's table is the same to the last bit: its nodes, its rays' way, and the medium, by its
+  /// owner.
+  bool same_table(DeflectionPlan const& other) const;
+
+ private:
+  std::vector<double> numbers_;  ///< all that the table's values depend on, beside the medium
+  std::shared_ptr<void const> medium_;
 };
 
 /// The scene as rays of the table see it: without a stop.
@@ -24,7 +34,7 @@ SceneView<double> open_view(Scene const& scene);
 class DeflectionMap {
  public:
   /// Traces the table's rays on all cores. @throws Interrupted
-  DeflectionMap(Scene const& scene, DotPattern const& sources);
+  DeflectionMap(Scene const& scene, DeflectionPlan const& plan);
   DeflectionMap(DeflectionMap const&) = delete;  // the table points into the arrays
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
@@ -35,6 +45,31 @@ class DeflectionMap {
   DeflectionTable table_;
   std::vector<Vec2d> displacements_, bends_;
   std::vector<KeptSlopes> displacement_slopes_, bend_slopes_;
+};
+
+/// A renderer's last table, for those who render one scene several times: its dots, and truth at vectors round by
+/// round.
+/// @tparam Map DeflectionMap, or a device's
+template <class Map>
+class KeptDeflections {
+ public:
+  /// The table of a scene; valid until the next call. @param more what a Map takes beside scene and plan
+  template <class... More>
+  DeflectionTable table(Scene const& scene, DotPattern const& sources, More const&... more) {
+    DeflectionPlan plan(scene, sources);
+    if (!plan.wanted) return {};
+    if (!map_ || !plan.same_table(plan_)) {
+      map_.reset();  // first gives its memory back
+      map_ = std::make_unique<Map>(scene, plan, more...);
+      plan_ = std::move(plan);
+    }
+    return map_->table();
+  }
+  void forget() { map_.reset(); }
+
+ private:
+  DeflectionPlan plan_;
+  std::unique_ptr<Map> map_;
 };
 
 }  // namespace gladstone

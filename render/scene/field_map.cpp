@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "render/base/parallel.h"
 #include "render/scene/theory.h"
@@ -65,44 +66,90 @@ StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
   return map;
 }
 
+namespace {
+
+/// A node of a lattice within a disc about node (0, 0), with its share of the disc.
+struct DiscNode {
+  int column, row;
+  double share;
+};
+
+/// @param radius in spacings of the lattice; at the rim nodes count in part. Sum of the shares 1
+std::vector<DiscNode> disc_nodes(double radius) {
+  std::vector<DiscNode> nodes;
+  int const reach = static_cast<int>(std::ceil(radius));
+  double sum = 0;
+  for (int row = -reach; row <= reach; ++row) {
+    for (int column = -reach; column <= reach; ++column) {
+      double const share = std::clamp(radius + 0.5 - std::hypot(column, row), 0.0, 1.0);
+      if (share == 0) continue;
+      nodes.push_back({column, row, share});
+      sum += share;
+    }
+  }
+  for (DiscNode& node : nodes) node.share /= sum;
+  return nodes;
+}
+
+}  // namespace
+
 StrainMap map_strain(Scene const& scene) {
   CameraSetup const& camera = scene.setup.camera;
-  // the cone smooths what lies between the points of a coarse lattice; chief rays see everything, but need one ray a
-  // point
+  // the cone smooths what lies between the points of a coarse lattice; chief rays see everything
   bool const chief = scene.chief_rays_only();
   int const larger = std::max(camera.columns, camera.rows);
   int const spacing_px = chief ? std::max(1, larger / 512) : std::max(4, larger / 128);
   int const columns = std::max(3, camera.columns / spacing_px), rows = std::max(3, camera.rows / spacing_px);
-  Image<Vec2d> displacement(columns, rows);
-  std::uint64_t const rays = chief ? 1 : 64;
-  DotPattern points;
-  points.centre.resize(displacement.size());
-  for (std::size_t i = 0; i < points.centre.size(); ++i) {
-    int const column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    points.centre[i] = scene.to_target({spacing_px * (column + 0.5), spacing_px * (row + 0.5)});
-  }
-  SceneView<double> view = scene.view(points);
-  view.bundle.pupil_radius = scene.imaging.entrance_pupil / 2;
-  double const step = std::min(scene.step, scene.medium.coarsest_step);
+
+  // the disc of the target whose chief rays cross the medium's mid-plane where a point's cone does
+  SceneView<double> const view = scene.view();
+  Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+  double const middle = 0.5 * (box.low.z + box.high.z);
+  double const lever = (middle - view.sources.plane_z) / (view.bundle.lens_z - middle);
+  double const px = scene.imaging.magnification / camera.pixel_pitch;
+  double const radius_px = chief ? 0 : lever * scene.imaging.entrance_pupil / 2 * px;
+  double const finest_px = (1 + lever) * scene.medium.finest * px;
+
+  // a lattice so many times finer that it resolves disc or field
+  double const resolved_px = std::max(radius_px / 3, finest_px);
+  int const finer =
+      chief || !(resolved_px > 0) ? 1 : std::clamp(static_cast<int>(std::ceil(spacing_px / resolved_px)), 1, 8);
+  std::vector<DiscNode> const disc = disc_nodes(radius_px * finer / spacing_px);
+  int const reach = -disc.front().row, margin = (reach + finer - 1) / finer;
+  auto const residue = [finer](int i) { return ((i % finer) + finer) % finer; };
+  std::vector<char> needed(static_cast<std::size_t>(finer * finer), 0);
+  for (DiscNode const& node : disc)
+    needed[static_cast<std::size_t>(residue(node.row) * finer + residue(node.column))] = 1;
+
+  Image<Vec2d> along_chief((columns + 2 * margin) * finer, (rows + 2 * margin) * finer);
+  double const fine_px = static_cast<double>(spacing_px) / finer;
   std::visit(
       [&](auto const& medium) {
-        parallel_chunks(points.centre.size(), 32, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            Vec2d sum{};
-            // every point takes the pupil points of the first, so that differences between points carry no scatter
-            SourcesView<double> point = view.sources;
-            point.centre += i;
-            for (std::uint64_t ray = 0; ray < rays; ++ray) {
-              EmittedRay<double> const emitted = emit(point, view.bundle, 0, ray);
-              sum += integrate_gradient(medium, emitted.ray, step).levered / static_cast<double>(rays);
-            }
-            displacement.data()[i] = theory_displacement(sum, 1.0, scene.imaging.magnification,
-                                                         scene.setup.ambient_index(), camera.pixel_pitch);
+        parallel_for(static_cast<std::size_t>(along_chief.rows()), [&](std::size_t line) {
+          int const row = static_cast<int>(line);
+          for (int column = 0; column < along_chief.columns(); ++column) {
+            if (!needed[static_cast<std::size_t>(residue(row) * finer + residue(column))]) continue;
+            Vec2d const at = scene.to_target({fine_px * (column - margin * finer) + 0.5 * spacing_px,
+                                              fine_px * (row - margin * finer) + 0.5 * spacing_px});
+            Vec3d const start{at.x, at.y, view.sources.plane_z};
+            Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, view.bundle.lens_z - start.z})};
+            along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).levered;
           }
         });
       },
       scene.medium.view);
 
+  Image<Vec2d> displacement(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      Vec2d sum{};
+      for (DiscNode const& node : disc) {
+        sum += node.share * along_chief((column + margin) * finer + node.column, (row + margin) * finer + node.row);
+      }
+      displacement(column, row) =
+          theory_displacement(sum, 1.0, scene.imaging.magnification, scene.setup.ambient_index(), camera.pixel_pitch);
+    }
+  }
   return strain_of(displacement, spacing_px);
 }
 

@@ -32,7 +32,8 @@ struct StrainMap {
 /// Strain of displacements on a lattice [px], by central differences, one-sided at the edges. @pre at least 2 x 2 nodes
 StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px);
 
-/// Cone-averaged Eq. 9 on a lattice of virtual points, and its finite differences.
+/// Cone-averaged Eq. 9 on a lattice of virtual points, and its finite differences. The rays of a point's cone are taken
+/// for the chief rays of its neighbours that cross the medium's mid-plane at the same places, so that cones share them.
 StrainMap map_strain(Scene const& scene);
 
 }  // namespace gladstone

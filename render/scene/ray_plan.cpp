@@ -27,29 +27,35 @@ constexpr int scramblings = 4;
 constexpr std::size_t sample_dots = 96;
 constexpr double widest_image_px = 100;  // of a dot that is measured whole
 
-/// Displacements of all dots by five shared rays each, and how far the lens plane sees them bent.
+constexpr std::size_t probed_dots = 256;  // by all rays, of a target with more
+
+/// Displacements of dots by shared rays, and how far the lens plane sees them bent.
 struct Probe {
   std::vector<Vec2d> displacement_px;
   double largest_bend = 0;
 };
 
+/// Rays that a dot is probed by.
+enum class ProbeRays { chief = 1, cone = 5 };
+
 template <class Medium>
-Probe probe_dots(Scene const& scene, Medium const& medium, double step) {
+Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size_t> const& dots, ProbeRays which,
+                 double step) {
   SceneView<double> view = scene.view();
   view.tracing.step = step;
   view.train = {};  // bending matters here, not clipping
   view.train.append(ThinLens<double>{scene.setup.z_a, scene.setup.lens.focal_length});
   double const rim = scene.imaging.entrance_pupil / 2;
   Vec2d const pupil[5] = {{0, 0}, {rim, 0}, {0, rim}, {-rim, 0}, {0, -rim}};
-  int const rays = scene.chief_rays_only() ? 1 : 5;
+  int const rays = scene.chief_rays_only() ? 1 : static_cast<int>(which);
   Probe probe;
-  probe.displacement_px.resize(scene.dots.centre.size());
+  probe.displacement_px.resize(dots.size());
   std::mutex merge;
-  parallel_chunks(scene.dots.centre.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(dots.size(), 64, [&](std::size_t begin, std::size_t end) {
     double bend = 0;
-    for (std::size_t dot = begin; dot < end; ++dot) {
+    for (std::size_t i = begin; i < end; ++i) {
       throw_if_interrupted();
-      Vec2d const centre = scene.dots.centre[dot];
+      Vec2d const centre = scene.dots.centre[dots[i]];
       Vec2d sum{};
       int seen = 0;
       for (int ray = 0; ray < rays; ++ray) {
@@ -63,7 +69,7 @@ Probe probe_dots(Scene const& scene, Medium const& medium, double step) {
         bend = std::max(bend, length(flow.at_lens - pupil[ray]));
         ++seen;
       }
-      probe.displacement_px[dot] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
+      probe.displacement_px[i] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
     }
     std::lock_guard const lock(merge);
     probe.largest_bend = std::max(probe.largest_bend, bend);
@@ -71,21 +77,53 @@ Probe probe_dots(Scene const& scene, Medium const& medium, double step) {
   return probe;
 }
 
-Probe probe_at(Scene const& scene, double step) {
-  return std::visit([&](auto const& medium) { return probe_dots(scene, medium, step); }, scene.medium.view);
+/// How far each dot moves from one probe to the other [px].
+std::vector<double> changes(Probe const& coarse, Probe const& fine) {
+  std::vector<double> change(coarse.displacement_px.size());
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    change[i] = length(coarse.displacement_px[i] - fine.displacement_px[i]);
+  }
+  return change;
 }
 
-/// Largest change between two probes, and where.
-void measure_change(Probe const& coarse, Probe const& fine, StepPlan& plan) {
-  plan.change_px = 0;
-  for (std::size_t dot = 0; dot < coarse.displacement_px.size(); ++dot) {
-    double const change = length(coarse.displacement_px[dot] - fine.displacement_px[dot]);
-    if (change > plan.change_px) {
-      plan.change_px = change;
-      plan.limiting_dot = dot;
-    }
+/// Probes the dots of a scene at one step after the other.
+class StepProbe {
+ public:
+  /// Chooses the dots to be probed: those whose chief rays change most when this step is halved.
+  StepProbe(Scene const& scene, double step) : scene_(scene), dots_(scene.dots.centre.size()) {
+    std::iota(dots_.begin(), dots_.end(), std::size_t{0});
+    if (dots_.size() <= probed_dots) return;
+    Probe const coarse = probe(ProbeRays::chief, step), fine = probe(ProbeRays::chief, step / 2);
+    largest_bend_ = std::max(coarse.largest_bend, fine.largest_bend);
+    std::vector<double> const change = changes(coarse, fine);
+    auto const more = [&change](std::size_t a, std::size_t b) {
+      return change[a] > change[b] || (change[a] == change[b] && a < b);
+    };
+    std::partial_sort(dots_.begin(), dots_.begin() + probed_dots, dots_.end(), more);
+    dots_.resize(probed_dots);
   }
-}
+
+  Probe at(double step) const { return probe(ProbeRays::cone, step); }
+  /// Largest change between two probes, and where; and the largest bend of all rays so far.
+  void compare(Probe const& coarse, Probe const& fine, StepPlan& plan) const {
+    plan.largest_bend = std::max({largest_bend_, coarse.largest_bend, fine.largest_bend});
+    std::vector<double> const change = changes(coarse, fine);
+    if (change.empty()) return;
+    auto const most = std::max_element(change.begin(), change.end());
+    plan.change_px = *most;
+    plan.limiting_dot = dots_[static_cast<std::size_t>(most - change.begin())];
+  }
+
+ private:
+  Probe probe(ProbeRays which, double step) const {
+    return std::visit([&](auto const& medium) { return probe_dots(scene_, medium, dots_, which, step); },
+                      scene_.medium.view);
+  }
+
+  Scene const& scene_;
+  std::vector<std::size_t> dots_;
+  double largest_bend_ = 0;
+};
 
 /// What one scrambling of one dot gives: its displacement, and its light in both frames over a window.
 struct Sampled {
@@ -244,7 +282,7 @@ std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& in_view) 
 class RayErrors {
  public:
   explicit RayErrors(Scene const& scene)
-      : scene_(scene), spot_(make_spot(scene, airy_)), deflections_(scene, scene.dots) {
+      : scene_(scene), spot_(make_spot(scene, airy_)), deflections_(scene, DeflectionPlan(scene, scene.dots)) {
     CameraSetup const& camera = scene.setup.camera;
     std::vector<std::size_t> const in_view = dots_in_view(scene);
     sample_ = choose_sample(in_view);
@@ -288,11 +326,11 @@ StepPlan plan_step(Scene& scene) {
   double const coarsest = empty ? scene.setup.medium.thickness : scene.medium.coarsest_step;
   plan.step_mm = given.value_or(coarsest / unit::millimetre);
   if (!empty) {
-    Probe coarse = probe_at(scene, plan.step_mm * unit::millimetre);
+    StepProbe const probe(scene, plan.step_mm * unit::millimetre);
+    Probe coarse = probe.at(plan.step_mm * unit::millimetre);
     for (int halvings = 0;; ++halvings) {
-      Probe fine = probe_at(scene, plan.step_mm / 2 * unit::millimetre);
-      plan.largest_bend = std::max(coarse.largest_bend, fine.largest_bend);
-      measure_change(coarse, fine, plan);
+      Probe fine = probe.at(plan.step_mm / 2 * unit::millimetre);
+      probe.compare(coarse, fine, plan);
       if (given || plan.change_px < step_tolerance_px || halvings == 12) break;
       plan.step_mm /= 2;
       coarse = std::move(fine);

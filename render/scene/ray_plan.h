@@ -25,8 +25,9 @@ struct RaysPlan {
   bool converged = true;      ///< false: the largest number, 65536, is not enough
 };
 
-/// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, every dot being probed by five rays
-/// shared by all steps (pupil centre and four points of its rim); starts from medium.coarsest_step, never above it.
+/// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, dots being probed by five rays
+/// shared by all steps (pupil centre and four points of its rim); starts from medium.coarsest_step, never above it. Of
+/// a target with more than 256 dots those 256 are probed whose chief rays change most when the first step is halved.
 /// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
 StepPlan plan_step(Scene& scene);
 

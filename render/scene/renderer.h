@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/base/image.h"
+#include "render/scene/deflection_map.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/scene.h"
 
@@ -43,6 +44,9 @@ class CpuRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+
+ private:
+  KeptDeflections<DeflectionMap> deflections_;
 };
 
 /// One try at tracing a scene.

@@ -117,9 +117,9 @@ bool Scene::covers_bend(double largest_bend) {
   return false;
 }
 
-double Scene::pupil_radius() const {
+double Scene::pupil_radius(double rays) const {
   double const stop = imaging.entrance_pupil / 2;
-  return stop * std::sqrt(1 + stop_edge() / 2) + pupil_margin;
+  return stop * std::sqrt(1 + stop_edge(rays) / 2) + pupil_margin;
 }
 
 double Scene::light_per_ray(DotPattern const& sources) const {

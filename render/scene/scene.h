@@ -36,8 +36,9 @@ struct Scene {
   /// Whether the pupil is wide enough for rays that the medium moves this far on the lens plane [m]; if not, it is
   /// widened, and the scene is to be traced again.
   bool covers_bend(double largest_bend);
-  /// Radius of the disc in the lens plane that rays are sent to [m].
-  double pupil_radius() const;
+  /// Radius of the disc in the lens plane that rays are sent to, so many of a dot [m]; falls with their number.
+  double pupil_radius(double rays) const;
+  double pupil_radius() const { return pupil_radius(static_cast<double>(rays_per_dot)); }
   /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.
   double light_per_ray(DotPattern const& sources) const;
   /// Radius of a Gaussian spot [px]; 0: none.
