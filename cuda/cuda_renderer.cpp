@@ -128,25 +128,12 @@ class ImagePairOnDevice {
   DeviceArray<unsigned long long> light_[frame_count];
 };
 
-/// Records for as many dots as fit: fewer, where the device is short of memory, but at least one.
+/// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only, no images
 template <class T>
-DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t rays, std::uint64_t& dots_a_batch) {
-  dots_a_batch = std::clamp<std::uint64_t>(most_record_bytes / (rays * sizeof(RayRecord<T>)), 1, dots);
-  while (true) {
-    try {
-      return DeviceArray<RayRecord<T>>(dots_a_batch * rays, "the rays of a batch of dots");
-    } catch (OutOfDeviceMemory const&) {
-      if (dots_a_batch == 1) throw;
-      dots_a_batch /= 2;
-    }
-  }
-}
-
-/// One try at a scene. @param images null: truth only
-template <class T>
-TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
-                      MirroredMedium const& medium, DeflectionTable const& deflections, SpotView const* spot,
-                      RenderTheory theory, PinnedBuffer& staging) {
+TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern const& sources,
+                      MirroredSources const& on_device, MirroredMedium const& medium,
+                      DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory,
+                      PinnedBuffer& staging) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
@@ -171,8 +158,7 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
     tally.zero();
     DeviceArray<DotSums> sums(dots, "the dots' truth");
     DeviceArray<DotTheory> integrals(theory == RenderTheory::yes ? dots : 0, "the dots' theory");
-    std::uint64_t dots_a_batch = 0;
-    DeviceArray<RayRecord<T>> records = allocate_records<T>(dots, rays, dots_a_batch);
+    DeviceArray<RayRecord<T>> records(dots_a_batch * rays, "the rays of a batch of dots");
     DeviceArray<DotCone> cones(images ? dots_a_batch : 0, "the cones of a batch of dots");
     Progress progress(spot ? "tracing rays" : "tracing truth", dots);
     for (Batch batch{0, 0, rays}; batch.first < dots; batch.first += batch.dots) {
@@ -251,6 +237,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   // an upload of the same grid serves again; views without a grid cost nothing to mirror
   if (!scene.medium.owner || uploads_->owner != scene.medium.owner || uploads_->wide == single) {
     uploads_->deflections.forget();
+    uploads_->owner.reset();
     uploads_->medium = MirroredMedium();
     uploads_->medium = MirroredMedium(scene.medium.view, !single);
     uploads_->owner = scene.medium.owner;
@@ -261,8 +248,15 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   auto const trace = [&]<class T>(T) {
     MirroredMedium const& medium = uploads_->medium;
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
-    return trace_all<T>(scene, sources, on_device, medium, deflections, images == RenderImages::yes ? &spot : nullptr,
-                        theory, uploads_->staging);
+    std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
+    std::uint64_t const most = most_record_bytes / (scene.rays_per_dot * sizeof(RayRecord<T>));
+    // where the device is short of memory, once more with smaller batches, which give the same bits
+    for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
+        return trace_all<T>(batch, scene, sources, on_device, medium, deflections,
+                            images == RenderImages::yes ? &spot : nullptr, theory, uploads_->staging);
+      } catch (OutOfDeviceMemory const&) {
+        if (batch == 1) throw;
+      }
   };
   return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });
 }

@@ -12,9 +12,7 @@ std::size_t coefficient_count(Grid const& grid) {
 
 /// @throws OutOfDeviceMemory before anything is allocated
 void require_room(char const* what_for, std::size_t bytes) {
-  std::size_t free = 0, total = 0;
-  check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-  if (bytes > free) throw OutOfDeviceMemory(what_for, bytes);
+  if (bytes > device_room().free) throw OutOfDeviceMemory(what_for, bytes);
 }
 
 /// A volume's polynomials, or nothing: they may take a quarter of what is free.
@@ -22,9 +20,7 @@ template <class T, class Grid>
 DeviceArray<T> make_polynomials(Grid const& grid) {
   using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
   std::size_t const count = Cells(grid, nullptr).cell_count() * Cells::size;
-  std::size_t free = 0, total = 0;
-  check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-  if (count * sizeof(T) > free / 4) return {};
+  if (count * sizeof(T) > device_room().free / 4) return {};
   DeviceArray<T> cells(count, "the field's polynomials");
   fill_cells(grid, cells.data());
   return cells;
