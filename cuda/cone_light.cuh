@@ -9,6 +9,7 @@ namespace gladstone::cuda {
 /// What the block's threads have in common while they work on a cone.
 struct ConeState {
   DisplacementMoments moments[PlaceRule::most_places];
+  double without_medium[PlaceRule::most_places];
   MomentField field;
   BoxRange boxes;
   double rims[PlaceRule::most_places][ConeRule::most_directions];
@@ -77,11 +78,16 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
   __syncthreads();
   for (int place = warp; place < model.places.count; place += dot_warps) {
     DisplacementMoments moments;
-    visit_cone(model, cone, state, place, kept, true,
-               [&](ConeLight const& light) { moments.add(light.weight, light.displacement); });
+    double without_medium = 0;
+    visit_cone(model, cone, state, place, kept, true, [&](ConeLight const& light) {
+      moments.add(light.weight, light.displacement);
+      without_medium += light.without_medium;
+    });
+    without_medium = warp_sum(without_medium);
     keep_moments(state, place, moments);
     if (threadIdx.x % warp_size == 0) {
-      cone.finish(state.moments[place], model.offset(model.places.places[place]));
+      state.without_medium[place] = without_medium;
+      cone.finish(state.moments[place], without_medium);
       if (!isfinite(state.moments[place].square())) state.sound = false;
       if (!model.narrow(state.moments[place])) state.narrow = false;
     }
@@ -96,8 +102,7 @@ __device__ inline void find_boxes(LightModel const& model, CorrectedCone const& 
   double const per_side = 1 / model.box_side();
   BoxRange boxes;
   for (int place = threadIdx.x / warp_size; place < model.places.count; place += dot_warps) {
-    visit_cone(model, cone, state, place, kept, false,
-               [&](ConeLight const& light) { boxes.include(light.displacement, per_side); });
+    visit_cone(model, cone, state, place, kept, false, [&](ConeLight const& light) { boxes.include(light, per_side); });
   }
   if (threadIdx.x == 0) state.boxes = {};
   __syncthreads();
@@ -124,7 +129,7 @@ __device__ inline bool integrate_box(LightModel const& model, CorrectedCone cons
       any = true;
     });
     keep_moments(state, place, moments);
-    if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], model.offset(model.places.places[place]));
+    if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], state.without_medium[place]);
   }
   return __syncthreads_or(any);
 }

@@ -1,9 +1,5 @@
 #include "cuda/cuda_renderer.h"
 
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -205,10 +201,6 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
 /// Freed memory stays with the process, so that the next rendering does not wait for the driver, nor for the pages of
 /// its images.
 void keep_freed_memory() {
-#if defined(__GLIBC__)
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 512 << 20);
-#endif
   int device = 0;
   check(cudaGetDevice(&device), "cudaGetDevice");
   cudaMemPool_t pool = nullptr;

@@ -74,7 +74,8 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
                          SharesOfGroup* shares_of_warps, std::uint64_t count, Source const& source) {
   int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
   int const width = 2 * spot.half_width() + 1;
-  bool const gaussian = spot.model != SpotModel::none && spot.model != SpotModel::airy;
+  bool const is_gaussian = spot.model != SpotModel::none && spot.model != SpotModel::airy;
+  bool const gaussian = is_gaussian && 2 * width <= SharesOfGroup::room;  // whose shares there is room for
   int const group = gaussian ? min(warp_size, SharesOfGroup::room / (2 * width)) : warp_size;
   double* const shares = shares_of_warps[warp].of;
   double* const gathered = patch.of_warp(warp);
@@ -112,7 +113,14 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
         for (int r = first_row; r < width; r += 4) {
           for (int c = first_column; c < width; c += 8) {
             double share = light.weight;
-            if (gaussian) share = of_rows[r] * of_columns[c];
+            if (gaussian) {
+              share = of_rows[r] * of_columns[c];
+            } else if (is_gaussian) {
+              double of_row, of_column;
+              spot.gaussian.shares(light.at.y, r0 + r, 1, &of_row);
+              spot.gaussian.shares(light.at.x, c0 + c, 1, &of_column);
+              share *= of_row * of_column;
+            }
             if (spot.model == SpotModel::airy) {
               share *= spot.airy.share(light.at.x - (c0 + width / 2), light.at.y - (r0 + width / 2), r, c);
             }

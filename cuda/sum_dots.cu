@@ -40,12 +40,12 @@ __global__ void __launch_bounds__(dot_threads, 5)
     }
     moved = __syncthreads_or(moved);
     sum = block_sum(sum, reinterpret_cast<RaySums*>(storage));
-    tabled = tabled && moved;
+    tabled = tabled && moved && model.correctable(sum.check, plan.expected_weight);
     if (tabled) {
       if (threadIdx.x == 0) cone = model.corrected(centre, sum.check);
       __syncthreads();
-      tabled = integrate_cone(model, cone, state);
-      if (tabled) sum_cone(model, plan, cone, state.moments, sum.hits);
+      tabled = integrate_cone(model, cone, state) && !model.rays_are_better(sum.check, state.simple);
+      if (tabled) sum_cone(model, plan, cone.origin(), state.moments, state.without_medium, sum.hits);
     }
     if (threadIdx.x == 0) sums[i] = {plan.origin, {sum.hits[0], sum.hits[1]}};
     if (cones) {

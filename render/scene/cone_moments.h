@@ -184,6 +184,7 @@ class CorrectedCone {
   GLADSTONE_HD Vec2d origin() const { return origin_; }
   /// A radius of the pupil in units of the stop's.
   GLADSTONE_HD double of_stop(double radius) const { return radius * per_stop_radius_; }
+  GLADSTONE_HD double stop_radius() const { return stop_radius_; }
   /// Of the disc that rays are sent to [m].
   GLADSTONE_HD double sent_radius() const { return sent_radius_; }
 
@@ -224,16 +225,10 @@ class CorrectedCone {
     double const spread = 1 + dot(across, across) * per_distance2_;
     return 1 / (spread * spread);
   }
-  /// Its mean over the stop, to second order of the aperture.
-  GLADSTONE_HD double mean_lambert(Vec2d offset) const {
-    Vec2d const across = centre_ + offset;
-    double const spread = 1 + (dot(across, across) + 0.5 * stop_radius_ * stop_radius_) * per_distance2_;
-    return 1 / (spread * spread);
-  }
   /// Makes sums over the cone from a place shares of what the reference frame shows of it, with the width that the rays
   /// have.
-  GLADSTONE_HD void finish(DisplacementMoments& moments, Vec2d offset) const {
-    double const scale = 1 / mean_lambert(offset);
+  GLADSTONE_HD void finish(DisplacementMoments& moments, double without_medium) const {
+    double const scale = 1 / without_medium;
     for (double& m : moments.of) m *= scale;
     for (int i = 0; i < 3; ++i) moments.of[DisplacementMoments::at(2, 0) + i] += moments.of[0] * widening_[i];
   }
@@ -289,8 +284,9 @@ class CorrectedCone {
 
 /// What one point of the rule stands for.
 struct ConeLight {
-  Vec2d displacement;  ///< counted from the cone's origin [px]
-  double weight;       ///< of the light that arrives
+  Vec2d displacement;     ///< counted from the cone's origin [px]
+  double weight;          ///< of the light that arrives in the flow
+  double without_medium;  ///< and in the reference frame
 };
 
 /// @param rims of the rule's directions, from a place of the source: the points fill what they enclose
@@ -300,7 +296,8 @@ GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule con
   Vec2d const direction = rule.directions[at.direction];
   double const rim = rims[at.direction], widened = cone.of_stop(rim);
   Vec2d const pupil = (at.radius * rim) * direction;
-  return {cone.displacement(offset, pupil), at.weight * widened * widened * cone.lambert(offset, pupil)};
+  return {cone.displacement(offset, pupil), at.weight * widened * widened * cone.lambert(offset, pupil),
+          at.weight * cone.lambert(offset, (at.radius * cone.stop_radius()) * direction)};
 }
 
 /// The same where the stop's edge has no single rim as seen from the source, near a caustic: the points fill all of the
@@ -310,7 +307,8 @@ GLADSTONE_HD inline ConeLight smoothed_light(CorrectedCone const& cone, ConeRule
   Vec2d const pupil = cone.sent_radius() * rule.scattered[point];
   double const weight = widened * widened / rule.scattered_count * cone.lambert(offset, pupil);
   return {cone.displacement(offset, pupil),
-          weight * cone.transmission(pupil + cone.bend(offset, pupil), rule.smoothing)};
+          weight * cone.transmission(pupil + cone.bend(offset, pupil), rule.smoothing),
+          weight * cone.transmission(pupil, rule.smoothing)};
 }
 
 /// The square of displacements that one belongs to, by its column and row; the middle of square (0, 0) is the origin.
@@ -328,8 +326,9 @@ GLADSTONE_HD inline Vec2<int> box_of(Vec2d displacement, double per_side) {
 struct BoxRange {
   Vec2<int> low{0, 0}, high{0, 0};
 
-  GLADSTONE_HD void include(Vec2d displacement, double per_side) {
-    Vec2<int> const box = box_of(displacement, per_side);
+  GLADSTONE_HD void include(ConeLight const& light, double per_side) {
+    if (!(light.weight != 0)) return;
+    Vec2<int> const box = box_of(light.displacement, per_side);
     low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
     high = {box.x > high.x ? box.x : high.x, box.y > high.y ? box.y : high.y};
   }

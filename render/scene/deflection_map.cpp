@@ -13,10 +13,10 @@ constexpr double rays_a_source = 256;  // of the table: more are not paid for by
 constexpr double cheap_rays_a_source = 32;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
-/// A lattice from low to high, with four nodes at least.
+/// A lattice from low to high. @pre three spacings or more in both directions
 void place(SquareLattice& lattice, double spacing, Vec2d low, Vec2d high) {
   double const width = high.x - low.x, height = high.y - low.y;
-  lattice.spacing = std::min({spacing, width / 3, height / 3});
+  lattice.spacing = spacing;
   lattice.per_metre = 1 / lattice.spacing;
   lattice.columns = static_cast<int>(std::ceil(width / lattice.spacing)) + 1;
   lattice.rows = static_cast<int>(std::ceil(height / lattice.spacing)) + 1;
@@ -30,16 +30,14 @@ void place(SquareLattice& lattice, double spacing, Vec2d low, Vec2d high) {
 DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   Setup const& setup = scene.setup;
   if (std::holds_alternative<NoMedium<double>>(scene.medium.view) || scene.chief_rays_only() ||
-      setup.lens.focus != Focus::target || setup.render.sampling != PupilSampling::sobol || sources.centre.empty() ||
-      !(scene.medium.finest > 0)) {
+      setup.render.sampling != PupilSampling::sobol || sources.centre.empty() || !(scene.medium.finest > 0)) {
     return;
   }
   SceneView<double> const view = scene.view(sources);
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const depth = view.bundle.lens_z - view.sources.plane_z;
   double const middle_z = 0.5 * (box.low.z + box.high.z);
-  table.way = (middle_z - view.sources.plane_z) / depth;
-  table.pupil_step = slope_reach * scene.imaging.entrance_pupil / 2;
+  double const way = (middle_z - view.sources.plane_z) / depth;
 
   // what the sources' cones cover of the mid-plane, as far as rays to all of the pupil cross the medium's whole depth
   Vec2d low = sources.centre.front(), high = low;
@@ -50,9 +48,9 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
     }
   }
   double const half_size = std::max(sources.half_size, scene.dots.half_size), pupil = scene.pupil_radius(1);
-  double const reach = (1 - table.way) * 1.5 * half_size + table.way * pupil + 1e-9;
-  low = (1 - table.way) * low - Vec2d{reach, reach};
-  high = (1 - table.way) * high + Vec2d{reach, reach};
+  double const reach = (1 - way) * 1.5 * half_size + way * pupil + 1e-9;
+  low = (1 - way) * low - Vec2d{reach, reach};
+  high = (1 - way) * high + Vec2d{reach, reach};
   double const to_lens = view.bundle.lens_z - middle_z;
   auto const lean = [&](double q) { return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + pupil) / to_lens; };
   // a grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as many
@@ -69,11 +67,17 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   double const edge = 0.5 * coarseness * spacing;
   low = {std::max(low.x, box.low.x + lean(low.x) + edge), std::max(low.y, box.low.y + lean(low.y) + edge)};
   high = {std::min(high.x, box.high.x - lean(high.x) - edge), std::min(high.y, box.high.y - lean(high.y) - edge)};
-  if (!(low.x < high.x && low.y < high.y)) return;
+  double const least = 3 * coarseness * spacing;
+  if (!(high.x - low.x >= least && high.y - low.y >= least)) return;
   if (!(rays(spacing, coarseness) <= std::min(rays_a_source * count, 1e8))) return;
+  // a source's cone is integrated from a few places of it: it must not change much between them
+  double const stop = scene.imaging.entrance_pupil / 2;
+  if ((1 - way) * half_size > 0.5 * std::max(scene.medium.finest, way * stop)) return;
+  table.way = way;
+  table.pupil_step = slope_reach * stop;
   place(table.straight, spacing, low, high);
   place(table.sloping, coarseness * spacing, low, high);
-  wanted = true;
+  wanted = std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b();
 
   SceneView<double> const open = open_view(scene);
   numbers_ = {open.sources.plane_z,
@@ -87,7 +91,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
               open.tracing.ambient_refractivity,
               static_cast<double>(open.tracing.integrator),
               static_cast<double>(open.tracing.faces),
-              table.way,
+              way,
               table.pupil_step};
   for (SquareLattice const& lattice : {table.straight, table.sloping}) {
     numbers_.insert(numbers_.end(), {lattice.first.x, lattice.first.y, lattice.spacing,

@@ -13,7 +13,7 @@ namespace gladstone {
 /// random rays as they are. It covers the scene's own dots and the sources, for any number of rays: virtual dots among
 /// the scene's own have the table of these.
 struct DeflectionPlan {
-  DeflectionTable table;  ///< without its values
+  DeflectionTable table;  ///< without its values; its way is 0 where cones are not integrated by a rule at all
   bool wanted = false;
 
   DeflectionPlan() = default;
@@ -57,7 +57,7 @@ class KeptDeflections {
   template <class... More>
   DeflectionTable table(Scene const& scene, DotPattern const& sources, More const&... more) {
     DeflectionPlan plan(scene, sources);
-    if (!plan.wanted) return {};
+    if (!plan.wanted) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {
       map_.reset();  // first gives its memory back
       map_ = std::make_unique<Map>(scene, plan, more...);

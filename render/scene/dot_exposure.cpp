@@ -202,6 +202,7 @@ void DotExposure::deposit_controlled() {
 }
 
 bool DotExposure::integrate_cone() {
+  if (!model_.correctable(check_, plan_.expected_weight)) return false;
   CorrectedCone const cone = model_.corrected(centre_, check_);
   PlaceRule const& rule = model_.places;
   ConeRule const& cross_section = model_.cone;
@@ -216,9 +217,11 @@ bool DotExposure::integrate_cone() {
     }
   }
 
+  if (model_.rays_are_better(check_, simple)) return false;
   int const points = simple ? cross_section.count : cross_section.scattered_count;
   cone_points_.clear();
   DisplacementMoments whole[PlaceRule::most_places];
+  double without_medium[PlaceRule::most_places] = {};
   BoxRange boxes;
   bool narrow = true;
   for (int i = 0; i < rule.count; ++i) {
@@ -226,15 +229,16 @@ bool DotExposure::integrate_cone() {
     for (int k = 0; k < points; ++k) {
       ConeLight const light = simple ? cone_light(cone, cross_section, k, offset, rims.data() + i * directions)
                                      : smoothed_light(cone, cross_section, k, offset);
+      without_medium[i] += light.without_medium;
       whole[i].add(light.weight, light.displacement);
-      boxes.include(light.displacement, 1 / model_.box_side());
       cone_points_.push_back(light);
     }
-    cone.finish(whole[i], offset);
+    cone.finish(whole[i], without_medium[i]);
     if (!std::isfinite(whole[i].square())) return false;
     narrow = narrow && model_.narrow(whole[i]);
   }
-  sum_cone(model_, plan_, cone, whole, sums_);
+  sum_cone(model_, plan_, cone.origin(), whole, without_medium, sums_);
+  for (ConeLight const& light : cone_points_) boxes.include(light, 1 / model_.box_side());
   if (!with_images_ || !model_.by_moments() || !(narrow || boxes.few())) return true;
 
   for (int i = 0; i < model_.source.count; ++i) deposit(Frame::reference, reference_light(model_, plan_, i));
@@ -263,7 +267,7 @@ bool DotExposure::integrate_cone() {
       bool empty = true;
       for (int i = 0; i < rule.count; ++i) {
         empty = empty && part[i].of[0] == 0;
-        cone.finish(part[i], model_.offset(rule.places[i]));
+        cone.finish(part[i], without_medium[i]);
       }
       if (!empty) deposit_part(cone.origin() + middle_of({column, row}), part);
     }

@@ -80,6 +80,14 @@ struct LightModel {
   GLADSTONE_HD bool tabled(Vec2d centre) const {
     return image.has_stop && table.covers(centre, 1.5 * image.source_half, sent_radius);
   }
+  /// Whether a dot's rays say enough to correct the table: a fifth of them pass the stop in the flow; and whether they
+  /// are not better by themselves, where the stop's edge has to be smoothed.
+  GLADSTONE_HD bool correctable(TableCheck const& check, double expected_weight_of_dot) const {
+    return check.weight > 0.2 * expected_weight_of_dot;
+  }
+  GLADSTONE_HD bool rays_are_better(TableCheck const& check, bool simple_edge) const {
+    return !simple_edge && check.rays >= cone.scattered_count;
+  }
   GLADSTONE_HD CorrectedCone corrected(Vec2d centre, TableCheck const& check) const {
     return {table, image.stop_radius, sent_radius, distance, centre, check};
   }
@@ -105,21 +113,22 @@ struct DotPlan {
 };
 
 /// A dot's truth from its cone: sums over the places of the source, in place of those over its rays.
-/// @param moments of the whole cone at every place @param hits both frames'; keep their counts of rays
-GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
-                                  DisplacementMoments const* moments, CentroidSum<double>* hits) {
+/// @param moments,without_medium of the whole cone at every place @param hits both frames'; keep their counts of rays
+GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, Vec2d origin,
+                                  DisplacementMoments const* moments, double const* without_medium,
+                                  CentroidSum<double>* hits) {
   PlaceRule const& rule = model.places;
   double all = 0;
-  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * cone.mean_lambert(model.offset(rule.places[i]));
+  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * without_medium[i];
   for (int frame = 0; frame < frame_count; ++frame) {
     std::int64_t const count = hits[frame].count;
     hits[frame] = {};
     hits[frame].count = count;
   }
   for (int i = 0; i < rule.count; ++i) {
-    double const share = rule.weights[i] * cone.mean_lambert(model.offset(rule.places[i])) / all;
+    double const share = rule.weights[i] * without_medium[i] / all;
     add_place(hits[0], hits[1], model.image.half_size_px() * rule.places[i], plan.expected_weight * share, moments[i],
-              cone.origin());
+              origin);
   }
 }
 

@@ -8,16 +8,16 @@
 namespace gladstone {
 namespace {
 
-// The numbers that the comment in table1.toml gives for its 1024 rays, rounded as there. 96 dots in four scramblings
-// give a root mean square to about 10 %, fronts being rare.
+// The bounds that the comment in table1.toml gives for its 1024 rays. 96 dots in four scramblings give a root mean
+// square to about 10 %, fronts being rare.
 TEST(Table1, HasTheMonteCarloErrorThatItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene scene = build_scene(loaded.setup);
   plan_step(scene);
   ASSERT_EQ(plan_rays(scene).rays, 1024u);
   RaysPlan const error = measure_rays(scene);
-  EXPECT_NEAR(error.truth_error_px, 0.0007, 1e-4);
-  EXPECT_NEAR(error.image_error_levels / (std::pow(2.0, error.bits) - 1), 0.003, 5e-4);
+  EXPECT_LT(error.truth_error_px, 1e-4);
+  EXPECT_LT(error.image_error_levels, 0.5);
 }
 
 }  // namespace
