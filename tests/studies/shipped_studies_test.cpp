@@ -1,0 +1,60 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <regex>
+
+#include "render/base/text_file.h"
+#include "studies/demo.h"
+#include "studies/sweep/plan.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Study files by the name that `make studies` has for them.
+std::map<std::string, std::string> shipped_studies() {
+  std::map<std::string, std::string> found;
+  std::string const start = "study_";
+  for (auto const& entry : fs::directory_iterator(shared_folder() + "/studies/cases")) {
+    std::string const name = entry.path().stem().string();
+    if (name.starts_with(start)) found[name.substr(start.size())] = entry.path().string();
+  }
+  return found;
+}
+
+// Small enough for two cores: fewer than 100 cases each. Planning loads the setup of every value of every axis.
+TEST(ShippedStudies, CanBePlannedAndAreSmall) {
+  auto const studies = shipped_studies();
+  EXPECT_GE(studies.size(), 10u);
+  for (auto const& [name, path] : studies) {
+    std::vector<ManifestCase> const cases = plan_study(read_study(path), "cpu");
+    EXPECT_GT(cases.size(), 1u) << name;
+    EXPECT_LT(cases.size(), 100u) << name;
+  }
+}
+
+TEST(ShippedStudies, AreInTheIndexAndTheirPagesShowFiguresThatThereAre) {
+  std::string const docs = shared_folder() + "/docs/";
+  std::string const index = read_text_file(docs + "studies.md");
+  int figures = 0;
+  for (auto const& [name, path] : shipped_studies()) {
+    EXPECT_THAT(index, testing::HasSubstr("| [" + name + "]"));
+    std::string const page_path = docs + "studies/" + name + ".md";
+    bool const linked = index.find("(studies/" + name + ".md)") != std::string::npos;
+    EXPECT_EQ(fs::exists(page_path), linked) << name;
+    if (!linked) continue;
+    std::string const page = read_text_file(page_path);
+    EXPECT_THAT(page, testing::HasSubstr("make studies STUDIES=" + name));
+    std::regex const link("\\]\\((" + name + "/[^)]*\\.png)\\)");
+    for (std::sregex_iterator found(page.begin(), page.end(), link), end; found != end; ++found, ++figures) {
+      EXPECT_TRUE(fs::exists(docs + "studies/" + found->str(1))) << found->str(1);
+    }
+  }
+  EXPECT_GE(figures, 15);
+}
+
+}  // namespace
+}  // namespace gladstone
