@@ -47,7 +47,8 @@ studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number
 	@for study in $(STUDIES); do run=out/studies/$$study; \
 		$(BUILD)/bin/gladstone sweep plan studies/cases/study_$$study.toml -o $$run --device $(DEVICE) && \
 		$(BUILD)/bin/gladstone sweep run $$run --quiet && $(BUILD)/bin/gladstone sweep collect $$run --quiet || exit; \
-		[ -z "$(DOCS)" ] || for figure in docs/studies/$$study/*.png; do cp $$run/figures/$${figure##*/} $$figure || exit; done; \
+		[ -z "$(DOCS)" ] || for figure in $$(grep -o "$$study/[a-z0-9_]*[.]png" docs/studies/$$study.md); do \
+			mkdir -p docs/studies/$$study && cp $$run/figures/$${figure##*/} docs/studies/$$figure || exit; done; \
 	done
 
 bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--benchmark_filter=...'

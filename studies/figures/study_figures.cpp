@@ -61,7 +61,7 @@ int room_below(FigureAxis const& axis, double width_px) {
 }
 
 void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px) {
-  plot.command("unset logscale x; set xtics norotate autofreq font 'DejaVu Sans,10' offset 0,0");
+  plot.command("unset logscale x; set xtics nomirror out scale 0.5 norotate autofreq font 'DejaVu Sans,10' offset 0,0");
   plot.command(fmt::format("set xlabel {}", GnuplotFigure::quoted(axis.title)));
   double const first = axis.position.front(), last = axis.position.back();
   if (axis.numeric && axis.logarithmic) {
