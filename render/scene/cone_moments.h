@@ -335,7 +335,7 @@ struct BoxRange {
   GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
   GLADSTONE_HD int rows() const { return high.y - low.y + 1; }
   /// Whether it pays to go through them one by one.
-  GLADSTONE_HD bool few() const { return columns() <= 24 && rows() <= 24 && columns() * rows() <= 144; }
+  GLADSTONE_HD bool few() const { return columns() <= 24 && rows() <= 24; }
 };
 
 /// Adds what one place of a source shows to the sums of truth.

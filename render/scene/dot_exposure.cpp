@@ -257,6 +257,7 @@ bool DotExposure::integrate_cone() {
   ConeLight const* light = cone_points_.data();
   for (int i = 0; i < rule.count; ++i) {
     for (int k = 0; k < points; ++k, ++light) {
+      if (light->weight == 0) continue;
       Vec2<int> const box = box_of(light->displacement, 1 / model_.box_side());
       part_of(box)[i].add(light->weight, light->displacement - middle_of(box));
     }

