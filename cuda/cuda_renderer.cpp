@@ -8,6 +8,7 @@
 
 #include "cuda/device_deflections.h"
 #include "cuda/expose_dots.h"
+#include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -198,9 +199,8 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
   return pass;
 }
 
-/// Freed memory stays with the process, so that the next rendering does not wait for the driver, nor for the pages of
-/// its images.
-void keep_freed_memory() {
+/// Freed memory of the device stays with the process, so that the next rendering does not wait for the driver.
+void keep_freed_device_memory() {
   int device = 0;
   check(cudaGetDevice(&device), "cudaGetDevice");
   cudaMemPool_t pool = nullptr;
@@ -219,7 +219,10 @@ struct CudaRenderer::Uploads {
   PinnedBuffer staging;
 };
 
-CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_memory(); }
+CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) {
+  keep_freed_memory();
+  keep_freed_device_memory();
+}
 CudaRenderer::~CudaRenderer() = default;
 
 Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
