@@ -5,7 +5,8 @@
 #include "render/scene/ray_record.h"
 
 /// Truth and light of a dot from the whole cone of its rays: the deflection table says what each would do, the rays
-/// that were traced correct it. Integrals over the cone are then as good as their rule, with few rays a dot.
+/// that were traced correct it. Integrals over the cone are then as good as their rule, with few rays a dot; the rule
+/// follows waves of three of the field's finest lengths, in cones up to some hundred of them wide.
 namespace gladstone {
 
 /// Moments of a distribution of displacements up to fourth order about some origin: sums of weight x^a y^b.
