@@ -31,8 +31,8 @@ struct Instant {
   int rays;  ///< a dot; fronts need more
 };
 constexpr Instant instants[] = {
-    {"kepeak", "t = 2.56, just after the peak of kinetic energy", "hbdt512_kepeak_slice.h5", 2048},
-    {"late", "t = 6.00, decayed", "hbdt512_late_slice.h5", 1024},
+    {"kepeak", "t = 2.56, just after the peak of kinetic energy", "hbdt512_kepeak_slice.h5", 512},
+    {"late", "t = 6.00, decayed", "hbdt512_late_slice.h5", 256},
 };
 
 MapAxes axes_of(FieldMap const& field) {
