@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cuda/device_deflections.h"
+#include "cuda/device_light.h"
 #include "cuda/expose_dots.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
@@ -100,14 +101,12 @@ class ImagePairOnDevice {
   DeviceImages view(double light_per_weight) {
     return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
   }
-  LightPair to_host() const {
-    DeviceArray<double> light(pixels(), "the images");
-    LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
-    for (int frame = 0; frame < frame_count; ++frame) {
-      to_light(light_[frame].data(), light.data(), pixels());
-      light.download((frame == 0 ? pair.reference : pair.flow).data(), pixels());
+  std::shared_ptr<DeviceLight> to_light() const {
+    auto light = std::make_shared<DeviceLight>(columns_, rows_);
+    for (Frame const frame : {Frame::reference, Frame::flow}) {
+      cuda::to_light(light_[static_cast<int>(frame)].data(), light->light(frame), pixels());
     }
-    return pair;
+    return light;
   }
 
  private:
@@ -131,11 +130,11 @@ DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t ray
   }
 }
 
-/// One try at a scene. @param images null: truth only
+/// One try at a scene. @param spot null: truth only @param light_out of the images, for bright dots
 template <class T>
 TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
                       MirroredMedium const& medium, DeflectionTable const& deflections, SpotView const* spot,
-                      RenderTheory theory) {
+                      RenderTheory theory, std::shared_ptr<DeviceLight>& light_out) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
@@ -195,7 +194,7 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
       }
     }
   }
-  if (images) pass.rendering.light = images->to_host();
+  if (images) light_out = images->to_light();
   return pass;
 }
 
@@ -235,13 +234,18 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   }
   MirroredSources on_device(sources);
   if (single) on_device.mirror_single(sources);
+  std::shared_ptr<DeviceLight> light;
   auto const trace = [&]<class T>(T) {
     MirroredMedium const& medium = uploads_->medium;
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
-    return trace_all<T>(scene, sources, on_device, medium, deflections, images == RenderImages::yes ? &spot : nullptr,
-                        theory);
+    return trace_all<T>(scene, sources, on_device, medium, deflections, images == RenderImages::no ? nullptr : &spot,
+                        theory, light);
   };
-  return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });
+  Rendering rendering = render_with_margin(scene, [&] { return single ? trace(float{}) : trace(double{}); });
+  if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
+  if (images == RenderImages::yes) rendering.light = light->to_host();
+  if (images == RenderImages::kept) rendering.kept = std::move(light);
+  return rendering;
 }
 
 }  // namespace gladstone::cuda
