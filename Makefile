@@ -5,6 +5,10 @@ PREFIX ?= /usr/local
 WARNINGS_AS_ERRORS ?= $(if $(filter dev,$(PRESET)),ON,OFF)
 BUILD := $(if $(filter default,$(PRESET)),build,build/$(PRESET))
 
+# what `make studies` computes
+STUDIES ?= $(patsubst studies/cases/study_%.toml,%,$(sort $(wildcard studies/cases/study_*.toml)))
+DEVICE ?= auto
+
 # As many jobs as cores, but no more than the free memory holds compilers (1.5 GB each).
 JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 	fit=$$(awk '/^MemAvailable:/ {print int($$2 / 1500000)}' /proc/meminfo 2>/dev/null); \
@@ -25,7 +29,7 @@ space := $(subst ,, )
 TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
 
-.PHONY: build test demo bench lint format install clean help packages configure
+.PHONY: build test demo studies bench lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
@@ -38,6 +42,13 @@ test: configure  ## build and run every test; only some: ctest --test-dir build 
 
 demo: build  ## the seed's experiment from setup to error report, into out/demo
 	$(BUILD)/bin/gladstone demo -o out/demo
+
+studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number z_d'; a GPU: DEVICE=cuda; docs' figures: DOCS=1
+	@for study in $(STUDIES); do run=out/studies/$$study; \
+		$(BUILD)/bin/gladstone sweep plan studies/cases/study_$$study.toml -o $$run --device $(DEVICE) && \
+		$(BUILD)/bin/gladstone sweep run $$run --quiet && $(BUILD)/bin/gladstone sweep collect $$run --quiet || exit; \
+		[ -z "$(DOCS)" ] || for figure in docs/studies/$$study/*.png; do cp $$run/figures/$${figure##*/} $$figure || exit; done; \
+	done
 
 bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench

@@ -33,10 +33,10 @@ DeviceState device_state() {
   if (status == cudaSuccess) status = cudaGetDeviceProperties(&device, 0);
   // creates the context: an exclusive or broken device says so here
   if (status == cudaSuccess) status = cudaFree(nullptr);
+  if (status != cudaSuccess) cudaGetLastError();  // forget it: the next launch has not failed
   if (status == cudaErrorInsufficientDriver)
     return {false, "the NVIDIA driver is absent or older than this CUDA build needs"};
   if (status != cudaSuccess) {
-    cudaGetLastError();
     return {false, fmt::format("no usable CUDA device: {}", cudaGetErrorString(status))};
   }
   return {true, fmt::format("{}, {:.0f} GiB", device.name, static_cast<double>(device.totalGlobalMem) / 0x1p30)};

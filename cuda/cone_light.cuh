@@ -9,7 +9,6 @@ namespace gladstone::cuda {
 /// What the block's threads have in common while they work on a cone.
 struct ConeState {
   DisplacementMoments moments[PlaceRule::most_places];
-  double without_medium[PlaceRule::most_places];
   MomentField field;
   BoxRange boxes;
   double rims[PlaceRule::most_places][ConeRule::most_directions];
@@ -34,14 +33,24 @@ __device__ inline bool find_rims(CorrectedCone const& cone, ConeRule const& rule
   return sound;
 }
 
-/// Calls visit(light) for the warp's points of a cone's cross-section.
-/// @param rims null: the stop's edge is smoothed
+/// Calls visit(light) for the warp's points of a cone's cross-section as seen from a place.
+/// @param kept where the points of all places are kept, once they are worked out; null: they are not
 template <class Visit>
-__device__ void visit_cone(CorrectedCone const& cone, ConeRule const& rule, Vec2d offset, double const* rims,
-                           Visit const& visit) {
+__device__ void visit_cone(LightModel const& model, CorrectedCone const& cone, ConeState const& state, int place,
+                           ConeLight* kept, bool work_out, Visit const& visit) {
+  ConeRule const& rule = model.cone;
+  Vec2d const offset = model.offset(model.places.places[place]);
+  double const* const rims = state.simple ? state.rims[place] : nullptr;
   int const count = rims ? rule.count : rule.scattered_count;
+  if (kept) kept += static_cast<std::size_t>(place) * count;
   for (int k = threadIdx.x % warp_size; k < count; k += warp_size) {
-    visit(rims ? cone_light(cone, rule, k, offset, rims) : smoothed_light(cone, rule, k, offset));
+    if (!work_out) {
+      visit(kept[k]);
+      continue;
+    }
+    ConeLight const light = rims ? cone_light(cone, rule, k, offset, rims) : smoothed_light(cone, rule, k, offset);
+    if (kept) kept[k] = light;
+    visit(light);
   }
   __syncwarp();
 }
@@ -55,37 +64,24 @@ __device__ inline void keep_moments(ConeState& state, int place, DisplacementMom
 }
 
 /// Moments of the whole cone at every place, and what they say of its light. @return state.sound
-__device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state) {
+__device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state,
+                                      ConeLight* kept = nullptr) {
   int const warp = threadIdx.x / warp_size;
   if (threadIdx.x == 0) {
     state.simple = state.sound = state.narrow = true;
-    state.boxes = {};
   }
   __syncthreads();
   for (int place = warp; place < model.places.count; place += dot_warps) {
     if (!find_rims(cone, model.cone, model.offset(model.places.places[place]), state.rims[place])) state.simple = false;
   }
   __syncthreads();
-  double const side = model.box_side();
   for (int place = warp; place < model.places.count; place += dot_warps) {
     DisplacementMoments moments;
-    double without_medium = 0;
-    BoxRange boxes;
-    visit_cone(cone, model.cone, model.offset(model.places.places[place]), state.simple ? state.rims[place] : nullptr,
-               [&](ConeLight const& light) {
-                 moments.add(light.weight, light.displacement);
-                 without_medium += light.without_medium;
-                 boxes.include(light.displacement, side);
-               });
+    visit_cone(model, cone, state, place, kept, true,
+               [&](ConeLight const& light) { moments.add(light.weight, light.displacement); });
     keep_moments(state, place, moments);
-    without_medium = warp_sum(without_medium);
-    atomicMin(&state.boxes.low.x, boxes.low.x);
-    atomicMin(&state.boxes.low.y, boxes.low.y);
-    atomicMax(&state.boxes.high.x, boxes.high.x);
-    atomicMax(&state.boxes.high.y, boxes.high.y);
     if (threadIdx.x % warp_size == 0) {
-      state.without_medium[place] = without_medium;
-      cone.finish(state.moments[place], without_medium);
+      cone.finish(state.moments[place], model.offset(model.places.places[place]));
       if (!isfinite(state.moments[place].square())) state.sound = false;
       if (!model.narrow(state.moments[place])) state.narrow = false;
     }
@@ -94,24 +90,41 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
   return state.sound;
 }
 
+/// Finds the squares that the cone's displacements span.
+__device__ inline void find_boxes(LightModel const& model, CorrectedCone const& cone, ConeState& state,
+                                  ConeLight* kept) {
+  double const per_side = 1 / model.box_side();
+  BoxRange boxes;
+  for (int place = threadIdx.x / warp_size; place < model.places.count; place += dot_warps) {
+    visit_cone(model, cone, state, place, kept, false,
+               [&](ConeLight const& light) { boxes.include(light.displacement, per_side); });
+  }
+  if (threadIdx.x == 0) state.boxes = {};
+  __syncthreads();
+  atomicMin(&state.boxes.low.x, boxes.low.x);
+  atomicMin(&state.boxes.low.y, boxes.low.y);
+  atomicMax(&state.boxes.high.x, boxes.high.x);
+  atomicMax(&state.boxes.high.y, boxes.high.y);
+  __syncthreads();
+}
+
 /// Moments of the part of the cone whose displacements lie in one square, about its middle. @return whether there is
 /// any
 __device__ inline bool integrate_box(LightModel const& model, CorrectedCone const& cone, ConeState& state,
-                                     Vec2<int> which, Vec2d middle) {
+                                     ConeLight* kept, Vec2<int> which, Vec2d middle) {
   int const warp = threadIdx.x / warp_size;
-  double const side = model.box_side();
+  double const per_side = 1 / model.box_side();
   bool any = false;
   for (int place = warp; place < model.places.count; place += dot_warps) {
     DisplacementMoments moments;
-    visit_cone(cone, model.cone, model.offset(model.places.places[place]), state.simple ? state.rims[place] : nullptr,
-               [&](ConeLight const& light) {
-                 Vec2<int> const box = box_of(light.displacement, side);
-                 if (box.x != which.x || box.y != which.y) return;
-                 moments.add(light.weight, light.displacement - middle);
-                 any = true;
-               });
+    visit_cone(model, cone, state, place, kept, false, [&](ConeLight const& light) {
+      Vec2<int> const box = box_of(light.displacement, per_side);
+      if (box.x != which.x || box.y != which.y) return;
+      moments.add(light.weight, light.displacement - middle);
+      any = true;
+    });
     keep_moments(state, place, moments);
-    if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], state.without_medium[place]);
+    if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], model.offset(model.places.places[place]));
   }
   return __syncthreads_or(any);
 }
@@ -127,16 +140,18 @@ __device__ inline void fit_moments(LightModel const& model, ConeState& state) {
   __syncthreads();
 }
 
-/// Lays down the source's disc with the spots that state.field makes of it. A warp takes some points of the source at a
+/// Lays down the source's disc with the spots that the moments make of it. A warp takes some points of the source at a
 /// time: first its lanes work out all their pixels' edges, then the spots' factors, then a lane a pixel.
 /// @param scratch of the warps @param moved where the moments count from [px]
-__device__ inline void lay_down_part(LightModel const& model, DotPlan const& plan, ConeState const& state, Vec2d moved,
-                                     Patch const& patch, DeviceImages const& images, SharesOfGroup* scratch) {
+__device__ inline void lay_down_part(LightModel const& model, DotPlan const& plan, MomentField const& field,
+                                     Vec2d moved, Patch const& patch, DeviceImages const& images,
+                                     SharesOfGroup* scratch) {
   using M = DisplacementMoments;
   using Spot = GaussianSpot<double>;
   constexpr int orders = M::order + 1, most_group = 4;
   int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
   Spot const spot = model.spot.gaussian;
+  double const per_sigma = 1 / spot.sigma;
   int const width = 2 * spot.half_width() + 1, edges = width + 1;
   int const room_of_point = 2 * orders * edges + M::count;
   int const group = min(most_group, SharesOfGroup::room / room_of_point);
@@ -151,20 +166,23 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
     int const here = min(group, model.source.count - first);
     // factors of a point: [axis][order][edge], then its moments
     auto const factors = [&](int which) { return scratch[warp].of + which * room_of_point; };
-    for (int task = lane; task < here * 2 * edges; task += warp_size) {
-      int const which = task / (2 * edges), axis = task / edges % 2, edge = task % edges;
+    for (int row = lane / 8; row < 2 * here; row += warp_size / 8) {
+      int const which = row / 2, axis = row % 2;
       Deposit const light = place(first + which);
       Footprint const reach = spot.footprint(light.at);
-      double const t = axis == 0 ? (reach.column + edge - 0.5 - light.at.x) / spot.sigma
-                                 : (reach.row + edge - 0.5 - light.at.y) / spot.sigma;
-      Spot::EdgeTerms const terms(t, spot.sigma);
-      double* const out = factors(which) + axis * orders * edges + edge;
-      out[0] = 0.5 * erf(t * 0.70710678118654752440);
-      for (int k = 1; k < orders; ++k) out[k * edges] = terms.of[k];
+      double const from = axis == 0 ? reach.column - light.at.x : reach.row - light.at.y;
+      double* const out = factors(which) + axis * orders * edges;
+      for (int edge = lane % 8; edge < edges; edge += 8) {
+        double const t = (from + edge - 0.5) * per_sigma;
+        Spot::EdgeTerms const terms(t, per_sigma);
+        out[edge] = 0.5 * erf(t * 0.70710678118654752440);
+        for (int k = 1; k < orders; ++k) out[k * edges + edge] = terms.of[k];
+      }
     }
-    for (int task = lane; task < here * M::count; task += warp_size) {
-      int const which = task / M::count, moment = task % M::count;
-      factors(which)[2 * orders * edges + moment] = state.field.value(moment, model.source.points[first + which]);
+    for (int which = lane / 16; which < here; which += warp_size / 16) {
+      int const moment = lane % 16;
+      if (moment >= M::count) continue;
+      factors(which)[2 * orders * edges + moment] = field.value(moment, model.source.points[first + which]);
     }
     __syncwarp();
     // from edges to pixels
@@ -179,20 +197,22 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
     }
     __syncwarp();
     // from the orders along y to what stands with an order along x
-    for (int task = lane; task < here * width; task += warp_size) {
-      int const which = task / width, i = task % width;
+    for (int task = lane; task < 8 * here; task += warp_size) {
+      int const which = task / 8;
       double const* const moments = factors(which) + 2 * orders * edges;
-      double* const along_y = factors(which) + orders * edges + i;
       double const weight = place(first + which).weight;
-      double share[orders], with[orders] = {};
-      for (int b = 0; b < orders; ++b) share[b] = weight * along_y[b * edges];
+      for (int i = task % 8; i < width; i += 8) {
+        double* const along_y = factors(which) + orders * edges + i;
+        double share[orders], with[orders] = {};
+        for (int b = 0; b < orders; ++b) share[b] = weight * along_y[b * edges];
 #pragma unroll
-      for (int a = 0; a < orders; ++a) {
+        for (int a = 0; a < orders; ++a) {
 #pragma unroll
-        for (int b = 0; a + b < orders; ++b) with[a] += moments[M::at(a, b)] * share[b];
+          for (int b = 0; a + b < orders; ++b) with[a] += moments[M::at(a, b)] * share[b];
+        }
+#pragma unroll
+        for (int a = 0; a < orders; ++a) along_y[a * edges] = with[a];
       }
-#pragma unroll
-      for (int a = 0; a < orders; ++a) along_y[a * edges] = with[a];
     }
     __syncwarp();
     for (int which = 0; which < here; ++which) {
@@ -201,16 +221,18 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
                           reach.column + width <= patch.left + patch.side &&
                           reach.row + width <= patch.top + patch.side;
       double* const corner = gathered + (reach.row - patch.top) * patch.side + reach.column - patch.left;
-      for (int pixel = lane; pixel < width * width; pixel += warp_size) {
-        int const row = pixel / width, column = pixel % width;
-        double const *const x = factors(which) + column, *const y = factors(which) + orders * edges + row;
-        double share = 0;
+      for (int row = lane / 8; row < width; row += warp_size / 8) {
+        double const* const y = factors(which) + orders * edges + row;
+        for (int column = lane % 8; column < width; column += 8) {
+          double const* const x = factors(which) + column;
+          double share = 0;
 #pragma unroll
-        for (int a = 0; a < orders; ++a) share += x[a * edges] * y[a * edges];
-        if (inside) {
-          corner[row * patch.side + column] += share;
-        } else {
-          add_light(images, Frame::flow, reach.column + column, reach.row + row, share);
+          for (int a = 0; a < orders; ++a) share += x[a * edges] * y[a * edges];
+          if (inside) {
+            corner[row * patch.side + column] += share;
+          } else {
+            add_light(images, Frame::flow, reach.column + column, reach.row + row, share);
+          }
         }
       }
       __syncwarp();
@@ -218,23 +240,22 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
   }
 }
 
-/// Lays down all light of a cone that integrate_cone() found sound. @return false: it is too wide, and nothing was done
-__device__ inline bool expose_cone(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
-                                   ConeState& state, Patch& patch, DeviceImages const& images, SharesOfGroup* scratch) {
-  if (!model.by_moments() || !(state.narrow || state.boxes.few())) return false;
+/// Lays down the light of a cone that integrate_cone() found sound and kept, square by square. @return false: there are
+/// too many, and nothing was done
+__device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
+                                   ConeState& state, ConeLight* kept, Patch& patch, DeviceImages const& images,
+                                   SharesOfGroup* scratch) {
+  find_boxes(model, cone, state, kept);
+  BoxRange const boxes = state.boxes;
+  if (!boxes.few()) return false;
   patch.begin(plan.origin + cone.origin());
-  if (state.narrow) {
-    fit_moments(model, state);
-    lay_down_part(model, plan, state, cone.origin(), patch, images, scratch);
-  } else {
-    for (int row = state.boxes.low.y; row <= state.boxes.high.y; ++row) {
-      for (int column = state.boxes.low.x; column <= state.boxes.high.x; ++column) {
-        Vec2d const middle{column * model.box_side(), row * model.box_side()};
-        __syncthreads();
-        if (!integrate_box(model, cone, state, {column, row}, middle)) continue;
-        fit_moments(model, state);
-        lay_down_part(model, plan, state, cone.origin() + middle, patch, images, scratch);
-      }
+  for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
+    for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
+      Vec2d const middle{column * model.box_side(), row * model.box_side()};
+      __syncthreads();
+      if (!integrate_box(model, cone, state, kept, {column, row}, middle)) continue;
+      fit_moments(model, state);
+      lay_down_part(model, plan, state.field, cone.origin() + middle, patch, images, scratch);
     }
   }
   patch.flush(images, Frame::flow);

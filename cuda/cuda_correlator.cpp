@@ -7,6 +7,7 @@
 #include "cuda/correlation_kernels.h"
 #include "cuda/device_array.h"
 #include "cuda/device_light.h"
+#include "render/base/interrupt.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -75,14 +76,13 @@ class CorrelationPlan {
       known_ = DeviceArray<char>(most_vectors, purpose);
       extended_ = DeviceArray<Vec2d>(most_nodes, purpose);
     }
-    make_scratch();
   }
 
   bool suits(int columns, int rows) const { return columns == columns_ && rows == rows_; }
 
   /// Copies images to the device.
   void upload(Image<double> const& reference, Image<double> const& flow) {
-    if (uploaded_[0].size() == 0)
+    if (uploaded_[1].size() == 0)
       for (DeviceArray<double>& image : uploaded_) image = DeviceArray<double>(reference.size(), purpose);
     uploaded_[0].upload(reference.data());
     uploaded_[1].upload(flow.data());
@@ -90,6 +90,7 @@ class CorrelationPlan {
   DeviceImage uploaded(int which) const { return {uploaded_[which].data(), columns_, rows_}; }
 
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) {
+    if (slots_ == 0) make_scratch();  // last, since it takes what is left
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
     prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
     BsplineView<float> spline[2] = {};
@@ -100,6 +101,7 @@ class CorrelationPlan {
                                  &deformed.pixels->reference, spline_[k].data());
     }
     for (int pass = 0;; ++pass) {
+      throw_if_interrupted();
       Pass const& now = passes_[pass];
       if (pass > 0)
         deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, predictor(pass - 1), deformed);
@@ -158,11 +160,12 @@ class CorrelationPlan {
         windows = std::max(windows, pass.grid.size());
       }
     if (values == 0) return;
-    for (slots_ = static_cast<int>(std::min<std::size_t>(windows, 264));; slots_ = (slots_ + 1) / 2) try {
-        scratch_ = DeviceArray<float>(values * static_cast<std::size_t>(slots_), "correlation of large windows");
+    for (auto slots = std::min<std::size_t>(windows, 264);; slots = (slots + 1) / 2) try {
+        scratch_ = DeviceArray<float>(values * slots, "correlation of large windows");
+        slots_ = static_cast<int>(slots);
         return;
       } catch (OutOfDeviceMemory const&) {
-        if (slots_ == 1) throw;
+        if (slots == 1) throw;
       }
   }
 

@@ -2,19 +2,23 @@
 
 #include <fmt/format.h>
 
+#include "cuda/device_memory.h"
+
 namespace gladstone::cuda {
 namespace {
 
-constexpr double mebibyte = 1024.0 * 1024.0;
+/// In MiB, small sizes with their decimals.
+std::string mebibytes(std::size_t bytes) {
+  double const size = static_cast<double>(bytes) / 0x1p20;
+  return fmt::format("{:.{}f}", size, size < 10 ? 3 : 0);
+}
 
 std::string shortage(std::string const& what_for, std::size_t bytes) {
-  std::size_t free = 0, total = 0;
-  cudaMemGetInfo(&free, &total);
+  DeviceRoom const room = device_room();
   return fmt::format(
-      "out of device memory: {} needs {:.0f} MiB, {:.0f} of {:.0f} MiB are free; use fewer rays, smaller "
-      "images or volumes, or --device cpu",
-      what_for, static_cast<double>(bytes) / mebibyte, static_cast<double>(free) / mebibyte,
-      static_cast<double>(total) / mebibyte);
+      "out of device memory: {} needs {} MiB, {} of {} MiB are free; use fewer rays, smaller images or volumes, or "
+      "--device cpu",
+      what_for, mebibytes(bytes), mebibytes(room.free), mebibytes(room.total));
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 #include "cuda/cuda_renderer.h"
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -116,25 +120,13 @@ class ImagePairOnDevice {
   DeviceArray<unsigned long long> light_[frame_count];
 };
 
-/// Records for as many dots as fit: fewer, where the device is short of memory, but at least one.
+/// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only @param light_out of the
+/// images, for bright dots
 template <class T>
-DeviceArray<RayRecord<T>> allocate_records(std::uint64_t dots, std::uint64_t rays, std::uint64_t& dots_a_batch) {
-  dots_a_batch = std::clamp<std::uint64_t>(most_record_bytes / (rays * sizeof(RayRecord<T>)), 1, dots);
-  while (true) {
-    try {
-      return DeviceArray<RayRecord<T>>(dots_a_batch * rays, "the rays of a batch of dots");
-    } catch (OutOfDeviceMemory const&) {
-      if (dots_a_batch == 1) throw;
-      dots_a_batch /= 2;
-    }
-  }
-}
-
-/// One try at a scene. @param spot null: truth only @param light_out of the images, for bright dots
-template <class T>
-TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSources const& on_device,
-                      MirroredMedium const& medium, DeflectionTable const& deflections, SpotView const* spot,
-                      RenderTheory theory, std::shared_ptr<DeviceLight>& light_out) {
+TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern const& sources,
+                      MirroredSources const& on_device, MirroredMedium const& medium,
+                      DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory,
+                      std::shared_ptr<DeviceLight>& light_out) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
@@ -159,14 +151,19 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
     tally.zero();
     DeviceArray<DotSums> sums(dots, "the dots' truth");
     DeviceArray<DotTheory> integrals(theory == RenderTheory::yes ? dots : 0, "the dots' theory");
-    std::uint64_t dots_a_batch = 0;
-    DeviceArray<RayRecord<T>> records = allocate_records<T>(dots, rays, dots_a_batch);
+    DeviceArray<RayRecord<T>> records(dots_a_batch * rays, "the rays of a batch of dots");
+    DeviceArray<DotCone> cones(images ? dots_a_batch : 0, "the cones of a batch of dots");
     Progress progress(spot ? "tracing rays" : "tracing truth", dots);
     for (Batch batch{0, 0, rays}; batch.first < dots; batch.first += batch.dots) {
       throw_if_interrupted();
       batch.dots = std::min(dots_a_batch, dots - batch.first);
       trace_rays<T>(traced, medium.view<T>(), light.model().image, batch, records.data(), tally.data());
-      expose_dots<T>(light.model(), view.sources, batch, records.data(), frames, sums.data() + batch.first);
+      sum_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data());
+      if (images) {
+        if (host_light.model.controlled) expose_cones(light.model(), view.sources, batch, cones.data(), frames);
+        expose_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data(),
+                       frames);
+      }
       if (theory == RenderTheory::yes) {
         integrate_dots(theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
       }
@@ -198,8 +195,13 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, MirroredSou
   return pass;
 }
 
-/// Freed memory stays with the process, so that the next rendering does not wait for the driver.
+/// Freed memory stays with the process, so that the next rendering does not wait for the driver, nor for the pages of
+/// its images.
 void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+#endif
   int device = 0;
   check(cudaGetDevice(&device), "cudaGetDevice");
   cudaMemPool_t pool = nullptr;
@@ -215,6 +217,7 @@ struct CudaRenderer::Uploads {
   MirroredMedium medium;
   bool wide = false;
   KeptDeflections<DeviceDeflections> deflections;
+  PinnedBuffer staging;
 };
 
 CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_memory(); }
@@ -227,6 +230,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   // an upload of the same grid serves again; views without a grid cost nothing to mirror
   if (!scene.medium.owner || uploads_->owner != scene.medium.owner || uploads_->wide == single) {
     uploads_->deflections.forget();
+    uploads_->owner.reset();
     uploads_->medium = MirroredMedium();
     uploads_->medium = MirroredMedium(scene.medium.view, !single);
     uploads_->owner = scene.medium.owner;
@@ -238,12 +242,19 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   auto const trace = [&]<class T>(T) {
     MirroredMedium const& medium = uploads_->medium;
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
-    return trace_all<T>(scene, sources, on_device, medium, deflections, images == RenderImages::no ? nullptr : &spot,
-                        theory, light);
+    std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
+    std::uint64_t const most = most_record_bytes / (scene.rays_per_dot * sizeof(RayRecord<T>));
+    // where the device is short of memory, once more with smaller batches, which give the same bits
+    for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
+        return trace_all<T>(batch, scene, sources, on_device, medium, deflections,
+                            images == RenderImages::no ? nullptr : &spot, theory, light);
+      } catch (OutOfDeviceMemory const&) {
+        if (batch == 1) throw;
+      }
   };
   Rendering rendering = render_with_margin(scene, [&] { return single ? trace(float{}) : trace(double{}); });
   if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
-  if (images == RenderImages::yes) rendering.light = light->to_host();
+  if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::kept) rendering.kept = std::move(light);
   return rendering;
 }

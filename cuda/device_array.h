@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cuda/cuda_error.h"
+#include "cuda/device_memory.h"
 
 namespace gladstone::cuda {
 
@@ -17,13 +18,7 @@ class DeviceArray {
   DeviceArray() = default;
   /// @param what_for named in the message should memory be short. Contents are undefined. @throws OutOfDeviceMemory
   DeviceArray(std::size_t size, std::string const& what_for) : size_(size) {
-    if (size == 0) return;
-    cudaError_t const status = cudaMallocAsync(reinterpret_cast<void**>(&data_), size * sizeof(T), nullptr);
-    if (status == cudaErrorMemoryAllocation) {
-      cudaGetLastError();  // the failure is not sticky: forget it
-      throw OutOfDeviceMemory(what_for, size * sizeof(T));
-    }
-    check(status, "cudaMallocAsync");
+    if (size > 0) data_ = static_cast<T*>(allocate_on_device(size * sizeof(T), what_for));
   }
   DeviceArray(T const* host, std::size_t size, std::string const& what_for) : DeviceArray(size, what_for) {
     upload(host);
@@ -37,9 +32,7 @@ class DeviceArray {
   }
   DeviceArray(DeviceArray const&) = delete;
   DeviceArray& operator=(DeviceArray const&) = delete;
-  ~DeviceArray() {
-    if (data_) cudaFreeAsync(data_, nullptr);
-  }
+  ~DeviceArray() { release_on_device(data_, size_ * sizeof(T)); }
 
   T* data() { return data_; }
   T const* data() const { return data_; }
@@ -62,6 +55,31 @@ class DeviceArray {
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
+};
+
+/// Page-locked memory of the host, which a device copies to at full speed; grows, never shrinks.
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  PinnedBuffer(PinnedBuffer const&) = delete;
+  PinnedBuffer& operator=(PinnedBuffer const&) = delete;
+  ~PinnedBuffer() {
+    if (data_) cudaFreeHost(data_);
+  }
+  /// @return room for so many bytes; what was in it is lost
+  void* reserve(std::size_t bytes) {
+    if (bytes > bytes_) {
+      if (data_) check(cudaFreeHost(std::exchange(data_, nullptr)), "cudaFreeHost");
+      bytes_ = 0;
+      check(cudaMallocHost(&data_, bytes), "cudaMallocHost");
+      bytes_ = bytes;
+    }
+    return data_;
+  }
+
+ private:
+  void* data_ = nullptr;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace gladstone::cuda

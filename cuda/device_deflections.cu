@@ -1,21 +1,47 @@
 #include "cuda/device_deflections.h"
-#include "cuda/launch.h"
 
 namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 128;
 
+/// One ray a thread: first those of the straight lattice, neighbours in a warp neighbours in the medium; then four for
+/// every node of the slopes'.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
-    deflect_kernel(SceneView<double> const open, Medium const medium, DeflectionTable const plan,
-                   DeflectionLattice const lattice, int const axis, Vec2d* const displacements, Vec2d* const bends) {
-  long long const stride = static_cast<long long>(gridDim.x) * threads;
-  for (long long i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x; i < lattice.size(); i += stride) {
-    Vec2d const q = lattice.node(static_cast<int>(i % lattice.columns), static_cast<int>(i / lattice.columns));
-    Deflection const here = node_deflection(open, medium, plan, q, axis);
-    displacements[i] = here.displacement;
-    bends[i] = here.bend;
+    deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
+                   DeflectionTable const __grid_constant__ plan, Vec2d* const displacements, Vec2d* const bends,
+                   KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
+  long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
+  long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
+  bool const straight = i < nodes;
+  long long const node = straight ? i : (i - nodes) / 4;
+  SquareLattice const& lattice = straight ? plan.straight : plan.sloping;
+  Deflection here{};
+  int const side = static_cast<int>(i % 4);  // of a node's four, which lie side by side in a warp
+  if (node < lattice.size()) {
+    Vec2d const q = lattice.node(static_cast<int>(node % lattice.columns), static_cast<int>(node / lattice.columns));
+    here = deflect(open, medium, plan.way, q, straight ? Vec2d{} : slope_pupil(plan, side));
+  }
+  if (straight) {
+    if (node < lattice.size()) {
+      displacements[node] = here.displacement;
+      bends[node] = here.bend;
+    }
+    return;
+  }
+  int const lane = static_cast<int>(threadIdx.x % 32);
+  unsigned int const four = 0xfu << (lane - side);
+  Deflection sides[4];
+  for (int other = 0; other < 4; ++other) {
+    int const from = lane - side + other;
+    sides[other] = {{__shfl_sync(four, here.displacement.x, from), __shfl_sync(four, here.displacement.y, from)},
+                    {__shfl_sync(four, here.bend.x, from), __shfl_sync(four, here.bend.y, from)}};
+  }
+  if (side == 0 && i < all) {
+    DeflectionSlopes const slopes = slopes_of(plan, sides);
+    displacement_slopes[node] = slopes.displacement;
+    bend_slopes[node] = slopes.bend;
   }
 }
 
@@ -25,25 +51,26 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
                                      DeviceMedium<double> const& medium) {
   if (!plan.wanted) return;
   SceneView<double> const open = open_view(scene);
+  auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
+  auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
+  displacements_ = DeviceArray<Vec2d>(nodes, "the deflection table");
+  bends_ = DeviceArray<Vec2d>(nodes, "the deflection table");
+  displacement_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
+  bend_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
+  std::visit(
+      [&](auto const& held) {
+        auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
+        auto const blocks = static_cast<unsigned>((nodes + 4 + 4 * slopes + threads - 1) / threads);
+        kernel<<<blocks, threads>>>(open, held, plan.table, displacements_.data(), bends_.data(),
+                                    displacement_slopes_.data(), bend_slopes_.data());
+        check_launch("deflect");
+      },
+      medium);
   table_ = plan.table;
-  for (int axis = -1; axis < 2; ++axis) {
-    DeflectionLattice& lattice = table_.lattice(axis);
-    auto const size = static_cast<std::size_t>(lattice.size());
-    DeviceArray<Vec2d>&displacements = displacements_[axis + 1], &bends = bends_[axis + 1];
-    displacements = DeviceArray<Vec2d>(size, "the deflection table");
-    bends = DeviceArray<Vec2d>(size, "the deflection table");
-    std::visit(
-        [&](auto const& held) {
-          auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
-          std::uint64_t const blocks = (size + threads - 1) / threads;
-          kernel<<<blocks_for(kernel, threads, 0, blocks), threads>>>(open, held, plan.table, lattice, axis,
-                                                                      displacements.data(), bends.data());
-          check_launch("deflect");
-        },
-        medium);
-    lattice.displacements = displacements.data();
-    lattice.bends = bends.data();
-  }
+  table_.displacements = displacements_.data();
+  table_.bends = bends_.data();
+  table_.displacement_slopes = displacement_slopes_.data();
+  table_.bend_slopes = bend_slopes_.data();
 }
 
 }  // namespace gladstone::cuda

@@ -16,7 +16,8 @@ class DeviceDeflections {
 
  private:
   DeflectionTable table_;
-  DeviceArray<Vec2d> displacements_[3], bends_[3];
+  DeviceArray<Vec2d> displacements_, bends_;
+  DeviceArray<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 
 }  // namespace gladstone::cuda

@@ -1,6 +1,9 @@
 #include "cuda/device_light.h"
 
+#include <algorithm>
+
 #include "cuda/detect_light.h"
+#include "render/base/parallel.h"
 
 namespace gladstone::cuda {
 
@@ -28,10 +31,15 @@ void DeviceLight::take_from(Image<double> const& white) {
   for (auto& light : light_) take_from_white(paper.data(), light.data(), pixels());
 }
 
-LightPair DeviceLight::to_host() const {
+LightPair DeviceLight::to_host(PinnedBuffer& staging) const {
+  auto* const staged = static_cast<double*>(staging.reserve(frame_count * pixels() * sizeof(double)));
+  light_[0].download(staged, pixels());
+  light_[1].download(staged + pixels(), pixels());
   LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
-  light_[0].download(pair.reference.data(), pixels());
-  light_[1].download(pair.flow.data(), pixels());
+  parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+    std::copy(staged + begin, staged + end, pair.reference.data() + begin);
+    std::copy(staged + pixels() + begin, staged + pixels() + end, pair.flow.data() + begin);
+  });
   return pair;
 }
 

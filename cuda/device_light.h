@@ -35,7 +35,8 @@ class DeviceLight final : public KeptLight {
   double* light(Frame frame) { return light_[static_cast<int>(frame)].data(); }
   /// Takes the dots from a white target: what is there becomes white minus that.
   void take_from(Image<double> const& white);
-  LightPair to_host() const;
+  /// @param staging that the device copies to; all cores copy on from there
+  LightPair to_host(PinnedBuffer& staging) const;
 
   double brightest() const override;
   RecordedFrames record(Detector const& detector) const override;

@@ -3,20 +3,27 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Volumes up to this many nodes are held in double: 128 MiB [nodes].
-constexpr std::size_t most_wide_nodes = std::size_t{1} << 24;
-
 template <class Grid>
 std::size_t coefficient_count(Grid const& grid) {
+  int const ghosts = 2 * Grid::padding + (grid.periodic[2] ? 1 : 0);
   return static_cast<std::size_t>(grid.plane) *
-         static_cast<std::size_t>(Grid::dimensions == 2 ? 1 : grid.nodes[2] + 2 * Grid::padding);
+         static_cast<std::size_t>(Grid::dimensions == 2 ? 1 : grid.nodes[2] + ghosts);
 }
 
 /// @throws OutOfDeviceMemory before anything is allocated
 void require_room(char const* what_for, std::size_t bytes) {
-  std::size_t free = 0, total = 0;
-  check(cudaMemGetInfo(&free, &total), "cudaMemGetInfo");
-  if (bytes > free) throw OutOfDeviceMemory(what_for, bytes);
+  if (bytes > device_room().free) throw OutOfDeviceMemory(what_for, bytes);
+}
+
+/// A volume's polynomials, or nothing: they may take a quarter of what is free.
+template <class T, class Grid>
+DeviceArray<T> make_polynomials(Grid const& grid) {
+  using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
+  std::size_t const count = Cells(grid, nullptr).cell_count() * Cells::size;
+  if (count * sizeof(T) > device_room().free / 4) return {};
+  DeviceArray<T> cells(count, "the field's polynomials");
+  fill_cells(grid, cells.data());
+  return cells;
 }
 
 }  // namespace
@@ -28,16 +35,22 @@ MirroredMedium::MirroredMedium(Medium<double> const& medium, bool wide) : host_(
           using Grid = std::remove_cvref_t<decltype(grid)>;
           using Stored = std::remove_cvref_t<decltype(*grid.coefficients)>;
           std::size_t const count = coefficient_count(grid);
-          bool const widen = wide && std::is_same_v<Grid, SplineVolume<double>> && count <= most_wide_nodes;
           char const* const name = "the field's refractivity";
-          require_room(name, count * (widen ? sizeof(double) : sizeof(Stored)));
-          if (widen) {
-            std::vector<double> const widened(grid.coefficients, grid.coefficients + count);
-            doubles_ = DeviceArray<double>(widened.data(), count, name);
-          } else if constexpr (std::is_same_v<Stored, float>) {
+          require_room(name, count * sizeof(Stored));
+          if constexpr (std::is_same_v<Stored, float>) {
             floats_ = DeviceArray<float>(grid.coefficients, count, name);
           } else {
             doubles_ = DeviceArray<double>(grid.coefficients, count, name);
+          }
+          if constexpr (Grid::dimensions == 3) {
+            Grid on_device = grid;
+            on_device.coefficients = floats_.data();
+            if (!wide) {
+              single_polynomials_ = make_polynomials<float>(on_device);  // theory, in double, still reads the grid
+            } else {
+              polynomials_ = make_polynomials<double>(on_device);
+              if (polynomials_.size() > 0) floats_ = {};
+            }
           }
         }
       },

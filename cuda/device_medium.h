@@ -6,30 +6,38 @@
 
 #include "cuda/device_array.h"
 #include "cuda/scalar_cast.h"
+#include "render/medium/cell_polynomials.h"
 
 namespace gladstone::cuda {
 
-/// Small volumes are held in double on the device: converting sixty-four floats a sample costs more than reading twice
-/// the bytes.
-template <class T>
-using WideVolume = GriddedIndex<T, double, CubicBspline, 3>;
-
-template <class Variant, class More>
-struct WithAlternative;
-template <class... Held, class More>
-struct WithAlternative<std::variant<Held...>, More> {
-  using type = std::variant<Held..., More>;
+template <class Variant, class... More>
+struct WithAlternatives;
+template <class... Held, class... More>
+struct WithAlternatives<std::variant<Held...>, More...> {
+  using type = std::variant<Held..., More...>;
 };
 
-/// Every medium as the device holds it.
+/// Every medium as the device traces it: volumes as polynomials, where there is room for them.
 template <class T>
-using DeviceMedium = typename WithAlternative<Medium<T>, WideVolume<T>>::type;
+using DeviceMedium =
+    typename WithAlternatives<Medium<T>, CellPolynomials<T, CubicBspline, false>,
+                              CellPolynomials<T, CubicBspline, true>, CellPolynomials<T, Linear, false>,
+                              CellPolynomials<T, Linear, true>>::type;
 
-/// Owner of a medium's coefficients on the device; n - 1 is held once.
+/// Fills the coefficients of all cells. @param grid with its coefficients on the device
+template <class T, class Basis>
+void fill_cells(GriddedIndex<double, float, Basis, 3> const& grid, T* out);
+extern template void fill_cells(SplineVolume<double> const&, double*);
+extern template void fill_cells(SplineVolume<double> const&, float*);
+extern template void fill_cells(LinearVolume<double> const&, double*);
+extern template void fill_cells(LinearVolume<double> const&, float*);
+
+/// Owner of a medium's coefficients on the device.
 class MirroredMedium {
  public:
   MirroredMedium() = default;
-  /// Uploads. @param wide may hold a volume in double @throws DeviceError where the card is too small
+  /// Uploads. @param wide rays will cross it in double, not in single precision @throws DeviceError where the card is
+  /// too small
   MirroredMedium(Medium<double> const& medium, bool wide);
 
   /// The medium's view in scalar T, its coefficients on the device.
@@ -37,10 +45,15 @@ class MirroredMedium {
   DeviceMedium<T> view() const {
     return std::visit(
         [this](auto const& medium) -> DeviceMedium<T> {
+          using Held = std::remove_cvref_t<decltype(medium)>;
           if constexpr (requires { medium.coefficients; }) {
             using Stored = std::remove_cvref_t<decltype(*medium.coefficients)>;
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(medium)>, SplineVolume<double>>) {
-              if (doubles_.size() > 0) return cast_grid<T>(medium, doubles_.data());
+            if constexpr (Held::dimensions == 3) {
+              T const* const cells = polynomials<T>().data();
+              if (cells && (medium.periodic[0] || medium.periodic[1] || medium.periodic[2])) {
+                return CellPolynomials<T, typename Held::Interpolant, true>(medium, cells);
+              }
+              if (cells) return CellPolynomials<T, typename Held::Interpolant, false>(medium, cells);
             }
             if constexpr (std::is_same_v<Stored, float>) {
               return cast_grid<T>(medium, floats_.data());
@@ -55,9 +68,20 @@ class MirroredMedium {
   }
 
  private:
+  template <class T>
+  DeviceArray<T> const& polynomials() const {
+    if constexpr (std::is_same_v<T, double>) {
+      return polynomials_;
+    } else {
+      return single_polynomials_;
+    }
+  }
+
   Medium<double> host_;
   DeviceArray<float> floats_;
   DeviceArray<double> doubles_;
+  DeviceArray<double> polynomials_;
+  DeviceArray<float> single_polynomials_;
 };
 
 }  // namespace gladstone::cuda

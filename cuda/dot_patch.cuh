@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "cuda/expose_dots.h"
 #include "render/sensor/exposure.h"
 
@@ -10,6 +13,19 @@ inline constexpr int dot_threads = 128;
 inline constexpr int warp_size = 32;
 inline constexpr int dot_warps = dot_threads / warp_size;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
+
+/// A record in double.
+template <class T>
+__device__ RayRecord<double> widened(RayRecord<T> const& ray) {
+  if constexpr (std::is_same_v<T, double>) {
+    return ray;
+  } else {
+    auto const wide = [](Vec2<T> v) { return Vec2d{v.x, v.y}; };
+    return {wide(ray.place),      wide(ray.pupil), wide(ray.arrival),    wide(ray.reference),
+            wide(ray.flow),       ray.weight,      ray.reference_weight, ray.flow_weight,
+            ray.reference_counts, ray.flow_counts, ray.leaves_medium};
+  }
+}
 
 __device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double light) {
   if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
@@ -111,6 +127,24 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
       __syncwarp();
     }
   }
+}
+
+/// Side of a patch: wide enough for a dot, its spot and some pixels of spread; what falls beside it goes to the image
+/// at once. Eight more than a multiple of sixteen, so that four rows of a spot lie in different banks.
+inline int patch_side(LightModel const& model) {
+  int const width = 2 * model.spot.half_width() + 1;
+  int const wanted = width + 2 * static_cast<int>(std::ceil(model.image.half_size_px())) + 6;
+  return std::min(56, 8 + (wanted + 7) / 16 * 16);
+}
+inline std::size_t patch_bytes(int side) { return sizeof(double) * dot_warps * side * side; }
+
+/// The light of a source in the reference frame, by a whole block.
+__device__ inline void lay_down_reference(LightModel const& model, DotPlan const& plan, Patch& patch,
+                                          DeviceImages const& images, Frame frame, SharesOfGroup* shares) {
+  patch.begin(plan.origin);
+  lay_down(model.spot, patch, images, frame, shares, model.source.count,
+           [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
+  patch.flush(images, frame);
 }
 
 }  // namespace gladstone::cuda

@@ -9,19 +9,9 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = dot_threads;
-constexpr int tile_rays = threads;  // whose factors are summed together
+constexpr std::uint64_t most_blocks = 1024;  // each of which keeps the points of a cone
+constexpr int tile_rays = threads;           // whose factors are summed together
 constexpr int sums_per_thread = (FlowFit::most_sums + threads - 1) / threads;
-
-template <class T>
-__device__ RayRecord<double> widened(RayRecord<T> const& ray) {
-  if constexpr (std::is_same_v<T, double>) {
-    return ray;
-  } else {
-    auto const wide = [](Vec2<T> v) { return Vec2d{v.x, v.y}; };
-    return {wide(ray.place), wide(ray.pupil),      wide(ray.arrival), wide(ray.reference),  wide(ray.flow),
-            ray.weight,      ray.reference_weight, ray.flow_weight,   ray.reference_counts, ray.flow_counts};
-  }
-}
 
 /// What the block's threads have in common.
 struct BlockState {
@@ -101,81 +91,46 @@ __device__ void fit_flow(LightModel const& model, RayRecord<T> const* rays, std:
 
 /// Dynamic shared memory: the tile of factors, then the patch, in the same place.
 std::size_t shared_bytes(int side) {
-  return std::max(std::max(sizeof(TableCheck) * threads, sizeof(double) * tile_rays * (FlowFit::most_factors + 1)),
-                  sizeof(double) * dot_warps * side * side);
+  return std::max(sizeof(double) * tile_rays * (FlowFit::most_factors + 1), patch_bytes(side));
 }
 
 template <class T>
 __global__ void __launch_bounds__(threads, 4)
-    expose_dots_kernel(LightModel const model, SourcesView<double> const sources, Batch const batch,
-                       RayRecord<T> const* const records, DeviceImages const images, int const side,
-                       DotSums* const sums) {
+    expose_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
+                       RayRecord<T> const* const records, DotSums const* const sums, DotCone const* const cones,
+                       DeviceImages const images, int const side, ConeLight* const points,
+                       std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
-  __shared__ __align__(16) unsigned char state_storage[sizeof(BlockState)];
-  BlockState& state = *reinterpret_cast<BlockState*>(state_storage);
-  __shared__ SharesOfGroup shares[dot_warps];
-  void* const reduction = dynamic;
+  __shared__ __align__(16) unsigned char state_storage[std::max(sizeof(BlockState), sizeof(ConeState))];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
-  __shared__ __align__(16) unsigned char cone_state_storage[sizeof(ConeState)];
+  __shared__ SharesOfGroup shares[dot_warps];
+  BlockState& state = *reinterpret_cast<BlockState*>(state_storage);
+  ConeState& cone_state = *reinterpret_cast<ConeState*>(state_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
-  ConeState& cone_state = *reinterpret_cast<ConeState*>(cone_state_storage);
-  bool const with_images = images.light[0] != nullptr;
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
+    DotKind const kind = cones[i].kind;
+    if (kind != DotKind::wide && kind != DotKind::rays) continue;
     std::uint64_t const index = batch.first + i;
     RayRecord<T> const* const rays = records + i * batch.rays;
     DotPlan const plan = DotPlan::make(model, sources.centre[index], sources.radiance ? sources.radiance[index] : 1.0);
-    CentroidSum<double> hits[frame_count];
-    bool moved = false, tabled = model.tabled(sources.centre[index]);
-    TableCheck table_check;
-    for (std::uint64_t j = threadIdx.x; j < batch.rays; j += threads) {
-      RayRecord<double> const ray = widened(rays[j]);
-      hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
-      hits[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
-      moved |= ray.moved();
-      if (tabled) {
-        table_check.add(model.table, sources.centre[index] + model.offset(ray.place), flow_displacement(model, ray),
-                        ray);
-      }
-    }
-    moved = __syncthreads_or(moved);
-    for (int frame = 0; frame < frame_count; ++frame) {
-      hits[frame] = block_sum(hits[frame], reinterpret_cast<CentroidSum<double>*>(reduction));
-    }
-    tabled = tabled && moved;
-    if (tabled) {
-      table_check = block_sum(table_check, reinterpret_cast<TableCheck*>(dynamic));
-      if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], table_check);
-      __syncthreads();
-      tabled = integrate_cone(model, cone, cone_state);
-      if (tabled) sum_cone(model, plan, cone.origin(), cone_state.moments, cone_state.without_medium, hits);
-    }
-    if (threadIdx.x == 0) sums[i] = {plan.origin, {hits[0], hits[1]}};
-    if (!with_images) continue;
-
     Patch patch{dynamic, side, 0, 0};
     auto const expose = [&](Frame frame, std::uint64_t count, auto const& source) {
       lay_down(model.spot, patch, images, frame, shares, count, source);
     };
-    if (model.controlled && !moved) {
-      for (Frame const frame : {Frame::reference, Frame::flow}) {
-        patch.begin(plan.origin);
-        expose(frame, model.source.count,
-               [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
-        patch.flush(images, frame);
-      }
-    } else if (tabled && expose_cone(model, plan, cone, cone_state, patch, images, shares)) {
-      patch.begin(plan.origin);
-      expose(Frame::reference, model.source.count,
-             [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
-      patch.flush(images, Frame::reference);
-    } else if (model.controlled) {
+    __syncthreads();
+    if (model.controlled) lay_down_reference(model, plan, patch, images, Frame::reference, shares);
+    if (kind == DotKind::wide) {
+      if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], cones[i].check);
+      __syncthreads();
+      ConeLight* const kept = points + blockIdx.x * points_a_block;
+      integrate_cone(model, cone, cone_state, kept);
+      if (expose_wide(model, plan, cone, cone_state, kept, patch, images, shares)) continue;
+      __syncthreads();
+    }
+    if (model.controlled) {
       fit_flow(model, rays, batch.rays, state, reinterpret_cast<double(*)[FlowFit::most_factors + 1]>(dynamic),
-               reduction);
+               dynamic);
       FlowFit const& fit = state.fit;
-      patch.begin(plan.origin);
-      expose(Frame::reference, model.source.count,
-             [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
-      patch.flush(images, Frame::reference);
       CubatureView const& pupil = model.pupil[pupil_rule(fit.pupil_spread())];
       patch.begin(plan.origin + fit.displacement({}, {}));
       expose(Frame::flow, std::uint64_t(model.source.count) * pupil.count, [&](std::uint64_t k) {
@@ -189,7 +144,7 @@ __global__ void __launch_bounds__(threads, 4)
       patch.flush(images, Frame::flow);
     } else {
       for (Frame const frame : {Frame::reference, Frame::flow}) {
-        CentroidSum<double> const& seen = hits[static_cast<int>(frame)];
+        CentroidSum<double> const seen = sums[i].hits[static_cast<int>(frame)];
         patch.begin(seen.weight > 0 ? plan.origin + seen.first / seen.weight : plan.origin);
         expose(frame, batch.rays, [&](std::uint64_t k) {
           RayRecord<double> const ray = widened(rays[k]);
@@ -211,25 +166,26 @@ __global__ void to_light_kernel(unsigned long long const* fixed_point, double* l
 
 template <class T>
 void expose_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-                 RayRecord<T> const* records, DeviceImages const& images, DotSums* sums) {
-  // wide enough for the dot, its spot and some pixels of spread, what falls beside it goes to the image at once; eight
-  // more than a multiple of sixteen, so that four rows of a spot lie in different banks
-  int const width = 2 * model.spot.half_width() + 1;
-  int const wanted = width + 2 * static_cast<int>(std::ceil(model.image.half_size_px())) + 6;
-  int const side = std::min(56, 8 + (wanted + 7) / 16 * 16);
+                 RayRecord<T> const* records, DotSums const* sums, DotCone const* cones, DeviceImages const& images) {
   auto* const kernel = expose_dots_kernel<T>;
+  int const side = patch_side(model);
   std::size_t const shared = shared_bytes(side);
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
         "cudaFuncSetAttribute");
-  kernel<<<blocks_for(kernel, threads, shared, batch.dots), threads, shared>>>(model, sources, batch, records, images,
-                                                                               side, sums);
+  int const blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
+  auto const points_a_block =
+      static_cast<std::size_t>(model.places.count) *
+      static_cast<std::size_t>(model.by_moments() ? std::max(model.cone.count, model.cone.scattered_count) : 0);
+  DeviceArray<ConeLight> points(static_cast<std::size_t>(blocks) * points_a_block, "the points of wide cones");
+  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, points.data(),
+                                      points_a_block);
   check_launch("expose_dots");
 }
 
 template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
-                          DeviceImages const&, DotSums*);
+                          DotSums const*, DotCone const*, DeviceImages const&);
 template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
-                          DeviceImages const&, DotSums*);
+                          DotSums const*, DotCone const*, DeviceImages const&);
 
 void to_light(unsigned long long const* fixed_point, double* light, std::size_t count) {
   constexpr int block = 256;

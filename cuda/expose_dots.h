@@ -13,6 +13,22 @@ struct DotSums {
   CentroidSum<double> hits[frame_count];
 };
 
+/// How a dot's light is laid down.
+enum class DotKind : int {
+  still,   ///< the flow left it alone: one disc in both frames
+  narrow,  ///< by the moments of its cone about their mean
+  wide,    ///< by moments, square by square of displacement
+  rays,    ///< ray by ray
+};
+
+/// What is known of a dot's light once its rays are summed up; stays on the device.
+struct DotCone {
+  DotKind kind;
+  Vec2d origin;       ///< mean displacement of the traced rays [px]
+  MomentField field;  ///< of a narrow one
+  TableCheck check;   ///< of a wide one
+};
+
 /// Images in the making: 64-bit fixed point, row by row.
 struct DeviceImages {
   unsigned long long* light[frame_count] = {};  ///< null: no images
@@ -21,15 +37,29 @@ struct DeviceImages {
   double light_per_weight = 0;
 };
 
-/// Sums up the records of a batch's dots, a block a dot, and lays down their light. sums[i] belongs to dot first + i.
-/// The same bits on any number of blocks: a dot's sums have one order, and images add up in fixed point.
+/// Sums up the records of a batch's dots to truth, a block a dot: sums[i] and cones[i] belong to dot first + i.
+/// The same bits on any number of blocks: a dot's sums have one order.
+/// @param cones null: no images
+template <class T>
+void sum_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
+              RayRecord<T> const* records, DotSums* sums, DotCone* cones);
+extern template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
+                              DotSums*, DotCone*);
+extern template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
+                              DotSums*, DotCone*);
+
+/// Lays down the light of still and narrow dots. Images add up in fixed point, in any order.
+void expose_cones(LightModel const& model, SourcesView<double> const& sources, Batch const& batch, DotCone const* cones,
+                  DeviceImages const& images);
+
+/// Lays down the light of all others.
 template <class T>
 void expose_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-                 RayRecord<T> const* records, DeviceImages const& images, DotSums* sums);
+                 RayRecord<T> const* records, DotSums const* sums, DotCone const* cones, DeviceImages const& images);
 extern template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
-                                 DeviceImages const&, DotSums*);
+                                 DotSums const*, DotCone const*, DeviceImages const&);
 extern template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
-                                 DeviceImages const&, DotSums*);
+                                 DotSums const*, DotCone const*, DeviceImages const&);
 
 /// Turns fixed point into light per pixel. @param light count doubles on the device
 void to_light(unsigned long long const* fixed_point, double* light, std::size_t count);

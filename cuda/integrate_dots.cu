@@ -1,4 +1,5 @@
 #include "cuda/block_sum.cuh"
+#include "cuda/launch.h"
 #include "cuda/trace_rays.cuh"
 
 namespace gladstone::cuda {

@@ -80,6 +80,8 @@ __device__ Complex packed_product(Complex p, Complex m, Complex r, Complex s) {
 __device__ void leave_nothing(WindowCorrelation::Outcome why, WindowPeaks& peaks) {
   peaks.outcome = why;
   peaks.count = 0;
+  peaks.scale = 0.0;
+  for (PeakSample& sample : peaks.peak) sample = {};  // measure_peaks reads the heights of absent peaks, too
 }
 
 /// @param turns 1: how often a transform is repeated in the other direction; where Layout::copies is 1 the compiler

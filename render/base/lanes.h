@@ -37,6 +37,38 @@ struct Lanes {
     return load(from);
 #endif
   }
+  /// The same for even N from memory aligned to N numbers or 16 bytes, by as few loads as there can be.
+  GLADSTONE_HD static Lanes fetch_aligned(T const* from) {
+    static_assert(N % 2 == 0);
+#if defined(__CUDA_ARCH__)
+    Lanes a;
+    if constexpr (sizeof(T) == sizeof(double)) {
+      for (int i = 0; i < N; i += 2) {
+        double2 const two = __ldg(reinterpret_cast<double2 const*>(from + i));
+        a.v[i] = two.x;
+        a.v[i + 1] = two.y;
+      }
+    } else if constexpr (N % 4 == 0) {
+      for (int i = 0; i < N; i += 4) {
+        float4 const four = __ldg(reinterpret_cast<float4 const*>(from + i));
+        a.v[i] = four.x;
+        a.v[i + 1] = four.y;
+        a.v[i + 2] = four.z;
+        a.v[i + 3] = four.w;
+      }
+    } else {
+      for (int i = 0; i < N; i += 2) {
+        float2 const two = __ldg(reinterpret_cast<float2 const*>(from + i));
+        a.v[i] = two.x;
+        a.v[i + 1] = two.y;
+      }
+    }
+    return a;
+#else
+    return load(from);
+#endif
+  }
+  GLADSTONE_HD T lane(int i) const { return v[i]; }
   /// Every lane equal to lane `i`.
   GLADSTONE_HD Lanes spread(int i) const { return all(v[i]); }
 
@@ -70,6 +102,8 @@ struct Lanes<double, 4> {
   static Lanes fetch(Stored const* from) {
     return load(from);
   }
+  static Lanes fetch_aligned(double const* from) { return load(from); }
+  double lane(int i) const { return v[i]; }
   Lanes spread(int i) const { return all(v[i]); }
 
   friend Lanes operator+(Lanes a, Lanes b) { return {a.v + b.v}; }

@@ -11,6 +11,13 @@ struct CubicBspline {
   static constexpr int support = 4;
   static constexpr int first = -1;  ///< first coefficient, counted from the cell's lower node
 
+  /// The factor of u^power in the weight of a cell's coefficient number `node`.
+  GLADSTONE_HD static constexpr double power_in_weight(int power, int node) {
+    constexpr double s = 1.0 / 6.0, t = 2.0 / 3.0, h = 0.5;
+    constexpr double factor[4][4] = {{s, t, s, 0}, {-h, 0, h, 0}, {h, -1, h, 0}, {-s, h, -h, s}};
+    return factor[power][node];
+  }
+
   /// Weights w and derivatives d (per cell width) at fraction u in [0, 1] of the cell, as polynomials of u.
   template <class T>
   GLADSTONE_HD static void weigh(T u, Lanes<T, 4>& w, Lanes<T, 4>& d) {
@@ -51,6 +58,10 @@ struct CubicBspline {
 struct Linear {
   static constexpr int support = 2;
   static constexpr int first = 0;
+
+  GLADSTONE_HD static constexpr double power_in_weight(int power, int node) {
+    return power == 0 ? (node == 0 ? 1.0 : 0.0) : (node == 0 ? -1.0 : 1.0);
+  }
 
   template <class T>
   GLADSTONE_HD static void weigh(T u, Lanes<T, 2>& w, Lanes<T, 2>& d) {

@@ -51,11 +51,14 @@ struct Force {
   Vec3<T> d;  ///< [1/m]
   T n2;       ///< n^2 [1]
 };
-template <class T, class Medium>
-[[gnu::always_inline]] GLADSTONE_HD inline Force<T> force_at(Medium const& medium, Vec3<T> p) {
-  IndexSample<T> const s = medium.sample(p);
+template <class T>
+[[gnu::always_inline]] GLADSTONE_HD inline Force<T> force_of(IndexSample<T> const& s) {
   T const n = T(1) + s.refractivity;
   return {n * s.gradient, n * n};
+}
+template <class T, class Medium>
+[[gnu::always_inline]] GLADSTONE_HD inline Force<T> force_at(Medium const& medium, Vec3<T> p) {
+  return force_of<T>(medium.sample(p));
 }
 
 /// Sharma's three samples of a step for N rays, stage by stage, so that no ray's samples wait for another's.

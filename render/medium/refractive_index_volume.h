@@ -33,6 +33,7 @@ struct GriddedIndex {
 
   static constexpr int padding = 1;
   static constexpr int dimensions = Dimensions;
+  using Interpolant = Basis;
 
   GLADSTONE_HD Bounds<T> bounds() const { return box; }
 

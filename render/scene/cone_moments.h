@@ -160,7 +160,8 @@ class CorrectedCone {
       : table_(table),
         stop_radius_(stop_radius),
         sent_radius_(sent_radius),
-        distance_(distance),
+        per_stop_radius_(1 / stop_radius),
+        per_distance2_(1 / (distance * distance)),
         centre_(centre),
         bend_(check.bend / check.rays),
         bend_by_x_((2 / check.pupil2) * check.bend_by_x),
@@ -175,7 +176,8 @@ class CorrectedCone {
 
   /// Mean displacement of the traced rays: where moments count from [px].
   GLADSTONE_HD Vec2d origin() const { return origin_; }
-  GLADSTONE_HD double stop_radius() const { return stop_radius_; }
+  /// A radius of the pupil in units of the stop's.
+  GLADSTONE_HD double of_stop(double radius) const { return radius * per_stop_radius_; }
   /// Of the disc that rays are sent to [m].
   GLADSTONE_HD double sent_radius() const { return sent_radius_; }
 
@@ -184,16 +186,17 @@ class CorrectedCone {
   /// @param offset of the place from the dot's centre [m]
   GLADSTONE_HD double rim(Vec2d offset, Vec2d direction) const {
     using std::abs;
-    using std::sqrt;
-    double radius = stop_radius_;
-    for (int iteration = 0; iteration < 4; ++iteration) {  // where bends hardly change within their own length
-      Vec2d const moved = bend(offset, radius * direction);
-      double const along = dot(moved, direction), before = radius;
-      radius = sqrt(stop_radius_ * stop_radius_ - dot(moved, moved) + along * along) - along;
-      if (!(radius <= sent_radius_)) return undefined();
-      if (abs(radius - before) < settled * stop_radius_) return radius;
+    // where bends change little within their own length two looks do, as if their change went on (Aitken)
+    double const first = arriving(offset, direction, stop_radius_);
+    if (!(first <= sent_radius_)) return undefined();
+    double const second = arriving(offset, direction, first);
+    double const change = first - stop_radius_, last = second - first;
+    if (abs(change) <= settled * stop_radius_) return second;
+    if (!(abs(last) <= 0.1 * abs(change)) || !(abs(last) <= 1e-3 * stop_radius_)) {
+      return searched_rim(offset, direction);
     }
-    return searched_rim(offset, direction);
+    double const radius = second + last * last / (change - last);
+    return radius <= sent_radius_ ? radius : undefined();
   }
 
   /// Displacement of a ray, counted from origin() [px].
@@ -212,22 +215,37 @@ class CorrectedCone {
   /// cos^4 of the angle at which a ray leaves the target.
   GLADSTONE_HD double lambert(Vec2d offset, Vec2d pupil) const {
     Vec2d const across = pupil - centre_ - offset;
-    double const spread = 1 + dot(across, across) / (distance_ * distance_);
+    double const spread = 1 + dot(across, across) * per_distance2_;
     return 1 / (spread * spread);
   }
-  /// Makes sums over the cone shares of what the reference frame shows of it, with the width that the rays have.
-  GLADSTONE_HD void finish(DisplacementMoments& moments, double without_medium) const {
-    for (double& m : moments.of) m /= without_medium;
+  /// Its mean over the stop, to second order of the aperture.
+  GLADSTONE_HD double mean_lambert(Vec2d offset) const {
+    Vec2d const across = centre_ + offset;
+    double const spread = 1 + (dot(across, across) + 0.5 * stop_radius_ * stop_radius_) * per_distance2_;
+    return 1 / (spread * spread);
+  }
+  /// Makes sums over the cone from a place shares of what the reference frame shows of it, with the width that the rays
+  /// have.
+  GLADSTONE_HD void finish(DisplacementMoments& moments, Vec2d offset) const {
+    double const scale = 1 / mean_lambert(offset);
+    for (double& m : moments.of) m *= scale;
     for (int i = 0; i < 3; ++i) moments.of[DisplacementMoments::at(2, 0) + i] += moments.of[0] * widening_[i];
   }
 
  private:
   static constexpr double settled = 1e-6;  ///< of the stop's radius
   DeflectionTable table_;
-  double stop_radius_, sent_radius_, distance_;
+  double stop_radius_, sent_radius_, per_stop_radius_, per_distance2_;
   Vec2d centre_, bend_, bend_by_x_, bend_by_y_, origin_, miss_;
   double widening_[3];
 
+  /// Radius at which a ray would have to be sent to arrive at the stop's edge, bent as one at `radius` is.
+  GLADSTONE_HD double arriving(Vec2d offset, Vec2d direction, double radius) const {
+    using std::sqrt;
+    Vec2d const moved = bend(offset, radius * direction);
+    double const along = dot(moved, direction);
+    return sqrt(stop_radius_ * stop_radius_ - dot(moved, moved) + along * along) - along;
+  }
   /// By how much a ray to a pupil point arrives outside the stop's edge [m].
   GLADSTONE_HD double outside(Vec2d offset, Vec2d pupil) const {
     return length(pupil + bend(offset, pupil)) - stop_radius_;
@@ -264,9 +282,8 @@ class CorrectedCone {
 
 /// What one point of the rule stands for.
 struct ConeLight {
-  Vec2d displacement;     ///< counted from the cone's origin [px]
-  double weight;          ///< of the light that arrives in the flow
-  double without_medium;  ///< and in the reference frame
+  Vec2d displacement;  ///< counted from the cone's origin [px]
+  double weight;       ///< of the light that arrives
 };
 
 /// @param rims of the rule's directions, from a place of the source: the points fill what they enclose
@@ -274,28 +291,27 @@ GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule con
                                          double const* rims) {
   ConePoint const at = rule.points[point];
   Vec2d const direction = rule.directions[at.direction];
-  double const rim = rims[at.direction], widened = rim / cone.stop_radius();
+  double const rim = rims[at.direction], widened = cone.of_stop(rim);
   Vec2d const pupil = (at.radius * rim) * direction;
-  return {cone.displacement(offset, pupil), at.weight * widened * widened * cone.lambert(offset, pupil),
-          at.weight * cone.lambert(offset, (at.radius * cone.stop_radius()) * direction)};
+  return {cone.displacement(offset, pupil), at.weight * widened * widened * cone.lambert(offset, pupil)};
 }
 
 /// The same where the stop's edge has no single rim as seen from the source, near a caustic: the points fill all of the
 /// pupil that rays are sent to, and the stop's edge is smoothed as it is for rays.
 GLADSTONE_HD inline ConeLight smoothed_light(CorrectedCone const& cone, ConeRule const& rule, int point, Vec2d offset) {
-  double const widened = cone.sent_radius() / cone.stop_radius();
+  double const widened = cone.of_stop(cone.sent_radius());
   Vec2d const pupil = cone.sent_radius() * rule.scattered[point];
-  double const weight = widened * widened * cone.lambert(offset, pupil) / rule.scattered_count;
+  double const weight = widened * widened / rule.scattered_count * cone.lambert(offset, pupil);
   return {cone.displacement(offset, pupil),
-          weight * cone.transmission(pupil + cone.bend(offset, pupil), rule.smoothing),
-          weight * cone.transmission(pupil, rule.smoothing)};
+          weight * cone.transmission(pupil + cone.bend(offset, pupil), rule.smoothing)};
 }
 
 /// The square of displacements that one belongs to, by its column and row; the middle of square (0, 0) is the origin.
-GLADSTONE_HD inline Vec2<int> box_of(Vec2d displacement, double side) {
+/// @param per_side one over the squares' side [1/px]
+GLADSTONE_HD inline Vec2<int> box_of(Vec2d displacement, double per_side) {
   using std::floor;
-  auto const cell = [side](double d) {
-    double const at = floor(d / side + 0.5);
+  auto const cell = [per_side](double d) {
+    double const at = floor(d * per_side + 0.5);
     return static_cast<int>(at < -1000 ? -1000 : (at > 1000 ? 1000 : at));
   };
   return {cell(displacement.x), cell(displacement.y)};
@@ -305,8 +321,8 @@ GLADSTONE_HD inline Vec2<int> box_of(Vec2d displacement, double side) {
 struct BoxRange {
   Vec2<int> low{0, 0}, high{0, 0};
 
-  GLADSTONE_HD void include(Vec2d displacement, double side) {
-    Vec2<int> const box = box_of(displacement, side);
+  GLADSTONE_HD void include(Vec2d displacement, double per_side) {
+    Vec2<int> const box = box_of(displacement, per_side);
     low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
     high = {box.x > high.x ? box.x : high.x, box.y > high.y ? box.y : high.y};
   }

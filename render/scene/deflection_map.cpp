@@ -14,9 +14,10 @@ constexpr double cheap_rays_a_source = 32;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
 /// A lattice from low to high, with four nodes at least.
-void place(DeflectionLattice& lattice, double spacing, Vec2d low, Vec2d high) {
+void place(SquareLattice& lattice, double spacing, Vec2d low, Vec2d high) {
   double const width = high.x - low.x, height = high.y - low.y;
   lattice.spacing = std::min({spacing, width / 3, height / 3});
+  lattice.per_metre = 1 / lattice.spacing;
   lattice.columns = static_cast<int>(std::ceil(width / lattice.spacing)) + 1;
   lattice.rows = static_cast<int>(std::ceil(height / lattice.spacing)) + 1;
   // the last node may lie beyond: as far before the first
@@ -54,8 +55,8 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   high = (1 - table.way) * high + Vec2d{reach, reach};
   double const to_lens = view.bundle.lens_z - middle_z;
   auto const lean = [&](double q) { return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + pupil) / to_lens; };
-  // a grid's table has a node a cell, a wave's twelve a wavelength; its slopes, which are corrections, half as many
-  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 3, coarseness = 2;
+  // a grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as many
+  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 6, coarseness = 2;
   auto const rays = [&](double node_spacing, double slopes_coarseness) {
     double const nodes = (high.x - low.x) * (high.y - low.y) / (node_spacing * node_spacing);
     return nodes * (1 + 4 / (slopes_coarseness * slopes_coarseness));
@@ -71,7 +72,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   if (!(low.x < high.x && low.y < high.y)) return;
   if (!(rays(spacing, coarseness) <= std::min(rays_a_source * count, 1e8))) return;
   place(table.straight, spacing, low, high);
-  for (DeflectionLattice& slope : table.by_pupil) place(slope, coarseness * spacing, low, high);
+  place(table.sloping, coarseness * spacing, low, high);
   wanted = true;
 
   SceneView<double> const open = open_view(scene);
@@ -88,8 +89,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
               static_cast<double>(open.tracing.faces),
               table.way,
               table.pupil_step};
-  for (int axis = -1; axis < 2; ++axis) {
-    DeflectionLattice const& lattice = table.lattice(axis);
+  for (SquareLattice const& lattice : {table.straight, table.sloping}) {
     numbers_.insert(numbers_.end(), {lattice.first.x, lattice.first.y, lattice.spacing,
                                      static_cast<double>(lattice.columns), static_cast<double>(lattice.rows)});
   }
@@ -111,28 +111,43 @@ DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
   if (!plan.wanted) return;
   SceneView<double> const open = open_view(scene);
   table_ = plan.table;
+  auto const for_each_node = [](SquareLattice const& lattice, auto const& visit) {
+    parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
+      throw_if_interrupted();
+      std::size_t at = row * static_cast<std::size_t>(lattice.columns);
+      for (int column = 0; column < lattice.columns; ++column) {
+        visit(lattice.node(column, static_cast<int>(row)), at++);
+      }
+    });
+  };
+  auto const nodes = static_cast<std::size_t>(table_.straight.size());
+  auto const slopes = static_cast<std::size_t>(table_.sloping.size());
+  displacements_.resize(nodes);
+  bends_.resize(nodes);
+  displacement_slopes_.resize(slopes);
+  bend_slopes_.resize(slopes);
   std::visit(
       [&](auto const& medium) {
-        for (int axis = -1; axis < 2; ++axis) {
-          DeflectionLattice& lattice = table_.lattice(axis);
-          std::vector<Vec2d>&displacements = displacements_[axis + 1], &bends = bends_[axis + 1];
-          displacements.resize(static_cast<std::size_t>(lattice.size()));
-          bends.resize(displacements.size());
-          parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
-            throw_if_interrupted();
-            std::size_t at = row * static_cast<std::size_t>(lattice.columns);
-            for (int column = 0; column < lattice.columns; ++column, ++at) {
-              Vec2d const q = lattice.node(column, static_cast<int>(row));
-              Deflection const here = node_deflection(open, medium, plan.table, q, axis);
-              displacements[at] = here.displacement;
-              bends[at] = here.bend;
-            }
-          });
-          lattice.displacements = displacements.data();
-          lattice.bends = bends.data();
-        }
+        for_each_node(table_.straight, [&](Vec2d q, std::size_t at) {
+          Deflection const node = deflect(open, medium, plan.table.way, q, {});
+          displacements_[at] = node.displacement;
+          bends_[at] = node.bend;
+        });
+        for_each_node(table_.sloping, [&](Vec2d q, std::size_t at) {
+          Deflection sides[4];
+          for (int side = 0; side < 4; ++side) {
+            sides[side] = deflect(open, medium, plan.table.way, q, slope_pupil(plan.table, side));
+          }
+          DeflectionSlopes const node = slopes_of(plan.table, sides);
+          displacement_slopes_[at] = node.displacement;
+          bend_slopes_[at] = node.bend;
+        });
       },
       scene.medium.view);
+  table_.displacements = displacements_.data();
+  table_.bends = bends_.data();
+  table_.displacement_slopes = displacement_slopes_.data();
+  table_.bend_slopes = bend_slopes_.data();
 }
 
 }  // namespace gladstone

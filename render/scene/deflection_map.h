@@ -43,7 +43,8 @@ class DeflectionMap {
 
  private:
   DeflectionTable table_;
-  std::vector<Vec2d> displacements_[3], bends_[3];
+  std::vector<Vec2d> displacements_, bends_;
+  std::vector<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 
 /// A renderer's last table, for those who render one scene several times: its dots, and truth at vectors round by

@@ -219,7 +219,6 @@ bool DotExposure::integrate_cone() {
   int const points = simple ? cross_section.count : cross_section.scattered_count;
   cone_points_.clear();
   DisplacementMoments whole[PlaceRule::most_places];
-  double without_medium[PlaceRule::most_places] = {};
   BoxRange boxes;
   bool narrow = true;
   for (int i = 0; i < rule.count; ++i) {
@@ -227,16 +226,15 @@ bool DotExposure::integrate_cone() {
     for (int k = 0; k < points; ++k) {
       ConeLight const light = simple ? cone_light(cone, cross_section, k, offset, rims.data() + i * directions)
                                      : smoothed_light(cone, cross_section, k, offset);
-      without_medium[i] += light.without_medium;
       whole[i].add(light.weight, light.displacement);
-      boxes.include(light.displacement, model_.box_side());
+      boxes.include(light.displacement, 1 / model_.box_side());
       cone_points_.push_back(light);
     }
-    cone.finish(whole[i], without_medium[i]);
+    cone.finish(whole[i], offset);
     if (!std::isfinite(whole[i].square())) return false;
     narrow = narrow && model_.narrow(whole[i]);
   }
-  sum_cone(model_, plan_, cone.origin(), whole, without_medium, sums_);
+  sum_cone(model_, plan_, cone, whole, sums_);
   if (!with_images_ || !model_.by_moments() || !(narrow || boxes.few())) return true;
 
   for (int i = 0; i < model_.source.count; ++i) deposit(Frame::reference, reference_light(model_, plan_, i));
@@ -255,7 +253,7 @@ bool DotExposure::integrate_cone() {
   ConeLight const* light = cone_points_.data();
   for (int i = 0; i < rule.count; ++i) {
     for (int k = 0; k < points; ++k, ++light) {
-      Vec2<int> const box = box_of(light->displacement, model_.box_side());
+      Vec2<int> const box = box_of(light->displacement, 1 / model_.box_side());
       part_of(box)[i].add(light->weight, light->displacement - middle_of(box));
     }
   }
@@ -265,7 +263,7 @@ bool DotExposure::integrate_cone() {
       bool empty = true;
       for (int i = 0; i < rule.count; ++i) {
         empty = empty && part[i].of[0] == 0;
-        cone.finish(part[i], without_medium[i]);
+        cone.finish(part[i], model_.offset(rule.places[i]));
       }
       if (!empty) deposit_part(cone.origin() + middle_of({column, row}), part);
     }

@@ -72,7 +72,7 @@ struct LightModel {
   }
   /// Whether four orders of moments about the mean give a spot to 1e-4 of its peak for all of a distribution.
   GLADSTONE_HD bool narrow(DisplacementMoments const& moments) const {
-    double const allowed = 0.4 * box_side();
+    double const allowed = 0.5 * box_side();
     return moments.square() <= allowed * allowed * moments.of[0];
   }
   /// Whether the table knows all rays of a dot.
@@ -104,21 +104,21 @@ struct DotPlan {
 };
 
 /// A dot's truth from its cone: sums over the places of the source, in place of those over its rays.
-/// @param moments,without_medium of the whole cone at every place @param hits both frames'; keep their counts of rays
-GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, Vec2d origin,
-                                  DisplacementMoments const* moments, double const* without_medium,
-                                  CentroidSum<double>* hits) {
+/// @param moments of the whole cone at every place @param hits both frames'; keep their counts of rays
+GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
+                                  DisplacementMoments const* moments, CentroidSum<double>* hits) {
   PlaceRule const& rule = model.places;
   double all = 0;
-  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * without_medium[i];
+  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * cone.mean_lambert(model.offset(rule.places[i]));
   for (int frame = 0; frame < frame_count; ++frame) {
     std::int64_t const count = hits[frame].count;
     hits[frame] = {};
     hits[frame].count = count;
   }
   for (int i = 0; i < rule.count; ++i) {
-    double const weight = plan.expected_weight * rule.weights[i] * without_medium[i] / all;
-    add_place(hits[0], hits[1], model.image.half_size_px() * rule.places[i], weight, moments[i], origin);
+    double const share = rule.weights[i] * cone.mean_lambert(model.offset(rule.places[i])) / all;
+    add_place(hits[0], hits[1], model.image.half_size_px() * rule.places[i], plan.expected_weight * share, moments[i],
+              cone.origin());
   }
 }
 

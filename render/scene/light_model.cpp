@@ -67,12 +67,21 @@ SourceCubature SourceCubature::square(int side) {
 
 namespace {
 
+/// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
+/// other, or side by side on a device, then lies together in memory.
+unsigned z_order(Vec2d p) {
+  auto const x = static_cast<unsigned>(128 * (p.x + 1)), y = static_cast<unsigned>(128 * (p.y + 1));
+  unsigned order = 0;
+  for (unsigned bit = 0; bit < 8; ++bit) order |= (x >> bit & 1u) << (2 * bit) | (y >> bit & 1u) << (2 * bit + 1);
+  return order;
+}
+
 /// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
 /// finest lengths.
 /// @param radius of the cone, in those lengths
 void make_cone_rule(double radius, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
-  int const rings = std::min(40, static_cast<int>(std::ceil(0.4 * radius)) + 4);
-  int const count = std::min(ConeRule::most_directions, 4 * static_cast<int>(std::ceil(0.5 * radius + 3)));
+  int const rings = std::min(40, static_cast<int>(std::ceil(0.35 * radius)) + 4);
+  int const count = std::min(ConeRule::most_directions, 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
   for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
   GaussLegendre const nodes(rings);
   for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
@@ -80,6 +89,11 @@ void make_cone_rule(double radius, std::vector<ConePoint>& points, std::vector<V
     int const stride = r > 0.5 ? 1 : (r > 0.25 ? 2 : 4);
     for (int k = 0; k < count; k += stride) points.push_back({r, nodes.weight[ring] * r * stride / count, k});
   }
+  std::vector<Vec2d> const& at = directions;
+  std::stable_sort(points.begin(), points.end(), [&at](ConePoint const& a, ConePoint const& b) {
+    return z_order(a.radius * at[static_cast<std::size_t>(a.direction)]) <
+           z_order(b.radius * at[static_cast<std::size_t>(b.direction)]);
+  });
 }
 
 /// Points that fill the unit disc evenly, no two at one radius or angle: turned by the golden angle from each to the
@@ -91,6 +105,7 @@ std::vector<Vec2d> sunflower(int count) {
     double const radius = std::sqrt((k + 0.5) / count);
     points.push_back({radius * std::cos(k * golden_angle), radius * std::sin(k * golden_angle)});
   }
+  std::stable_sort(points.begin(), points.end(), [](Vec2d a, Vec2d b) { return z_order(a) < z_order(b); });
   return points;
 }
 

@@ -65,8 +65,9 @@ struct GaussianSpot {
   /// @param out [order + 1][width]
   GLADSTONE_HD void taylor_shares(T p, int first, int width, int order, T* out) const {
     shares(p, first, width, out);
+    T const per_sigma = T(1) / sigma;
     for (int edge = 0; edge <= width; ++edge) {
-      EdgeTerms const terms((T(first + edge) - T(0.5) - p) / sigma, sigma);
+      EdgeTerms const terms((T(first + edge) - T(0.5) - p) * per_sigma, per_sigma);
       for (int k = 1; k <= order; ++k) {
         T const here = terms.of[k];
         if (edge < width) out[k * width + edge] = -here;
@@ -77,16 +78,16 @@ struct GaussianSpot {
 
   /// Derivatives of the normal distribution's integral up to an edge, by the place of its middle, over k!: from the
   /// Hermite polynomials (Abramowitz & Stegun 26.2.31). @param t the edge's distance in standard deviations
+  /// @param per_sigma one over the standard deviation [1/px]
   struct EdgeTerms {
     T of[5];
-    GLADSTONE_HD EdgeTerms(T t, T sigma) {
+    GLADSTONE_HD EdgeTerms(T t, T per_sigma) {
       using std::exp;
-      T const step = T(1) / sigma, density = T(0.39894228040143267794) * exp(T(-0.5) * t * t);
       of[0] = T(0);
-      of[1] = -density * step;
-      of[2] = of[1] * t * step / T(2);
-      of[3] = of[1] * (t * t - T(1)) * step * step / T(6);
-      of[4] = of[1] * (t * t - T(3)) * t * step * step * step / T(24);
+      of[1] = T(-0.39894228040143267794) * exp(T(-0.5) * t * t) * per_sigma;
+      of[2] = of[1] * t * per_sigma * T(1.0 / 2);
+      of[3] = of[1] * (t * t - T(1)) * per_sigma * per_sigma * T(1.0 / 6);
+      of[4] = of[1] * (t * t - T(3)) * t * per_sigma * per_sigma * per_sigma * T(1.0 / 24);
     }
   };
 };

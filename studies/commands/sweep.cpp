@@ -3,10 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "studies/commands/command.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/study_figures.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/plan.h"
 #include "studies/sweep/state_report.h"
@@ -74,20 +77,41 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
+/// Draws RUN/figures/, each figure a whole file. @return their paths; none without gnuplot
+std::vector<std::string> draw_figures(std::string const& run, StudyTable const& table) {
+  try {
+    return draw_study((std::filesystem::path(run) / "figures").string(), table);
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+    return {};
+  }
+}
+
 CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
-  auto run = std::make_shared<std::string>();
-  app.add_option("run", *run, "RUN folder")->required();
-  return [run, &options] {
-    StudyTable const table = collect_study(*run);
-    std::vector<ManifestCase> const cases = read_manifest(*run);
-    RunState const state = state_of(*run, cases, all_of(cases));
-    nlohmann::ordered_json json = state_json(*run, cases, state);
+  struct Arguments {
+    std::string run;
+    bool no_figures = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("run", arguments->run, "RUN folder")->required();
+  app.add_flag("--no-figures", arguments->no_figures, "Tables only");
+  return [arguments, &options] {
+    std::string const& run = arguments->run;
+    StudyTable const table = collect_study(run);
+    std::vector<ManifestCase> const cases = read_manifest(run);
+    RunState const state = state_of(run, cases, all_of(cases));
+    std::vector<std::string> figures;
+    if (!arguments->no_figures) figures = draw_figures(run, table);
+    nlohmann::ordered_json json = state_json(run, cases, state);
     json["axes"] = table.axes.size();
     json["measures"] = table.measures.size();
-    json["files"] = {*run + '/' + run_file::table_text, *run + '/' + run_file::table};
+    json["files"] = {run + '/' + run_file::table_text, run + '/' + run_file::table};
+    json["figures"] = figures;
+    std::string const drawn =
+        figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
     print_result(options, json.dump(2),
-                 state_text(*run, cases, state) +
-                     fmt::format("wrote {0}/{1} and {0}/{2}\n", *run, run_file::table_text, run_file::table));
+                 state_text(run, cases, state) +
+                     fmt::format("wrote {0}/{1} and {0}/{2}\n{3}", run, run_file::table_text, run_file::table, drawn));
     return table.unfinished().empty() ? ok : incomplete;
   };
 }
@@ -108,8 +132,8 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
              "gladstone sweep run out/run --jobs 2", attach_sweep_run},
       Action{"status", "Say what is done, failed, missing and running; reads files only",
              "gladstone sweep status out/run --json", attach_status},
-      Action{"collect", "Write RUN/study.csv and RUN/study.h5, a row a case", "gladstone sweep collect out/run",
-             attach_collect},
+      Action{"collect", "Write RUN/study.csv and RUN/study.h5, a row a case, and draw RUN/figures/",
+             "gladstone sweep collect out/run", attach_collect},
   };
   app.require_subcommand(0, 1);
   auto parsed = std::make_shared<std::vector<std::pair<CLI::App*, CommandBody>>>();

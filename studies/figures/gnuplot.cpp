@@ -71,8 +71,9 @@ std::string text_of(std::string const& path) {
   return text.str();
 }
 
-/// gnuplot ends well even where the disk was full and its picture is cut short: a PNG ends with a chunk IEND.
-bool is_whole_png(std::string const& path) { return text_of(path).find("IEND") != std::string::npos; }
+/// What a whole picture ends with: gnuplot ends well even where the disk was full and its picture is cut short.
+constexpr char const* end_of_png = "IEND";
+constexpr char const* end_of_svg = "</svg>";
 
 /// No byte more can be written into the folder.
 bool is_full(std::string const& folder) {
@@ -85,10 +86,6 @@ bool is_full(std::string const& folder) {
 GnuplotFigure::GnuplotFigure(int width_px, int height_px)
     : width_px_(width_px), height_px_(height_px), folder_(make_temporary_folder()) {
   GLADSTONE_EXPECTS(width_px > 0 && height_px > 0);
-  command(fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11' noenhanced background '#ffffff'",
-                      width_px, height_px));
-  command("set encoding utf8");
-  command("set output 'figure.png'");
   command("set border linewidth 1 linecolor '#404040'");
   command("set tics nomirror out scale 0.5 textcolor '#202020'");
   command("set key noautotitle textcolor '#202020'");
@@ -143,20 +140,25 @@ std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& col
 
 void GnuplotFigure::write(std::string const& path) const {
   OutputFile output(path);
+  bool const svg = path.ends_with(".svg");
   {
     errno = 0;
     std::ofstream script(folder_ + "/script.gp", std::ios::binary);
+    script << fmt::format(
+        "set terminal {} size {},{} font 'DejaVu Sans,11' noenhanced background '#ffffff'\nset encoding utf8\n"
+        "set output 'figure'\n",
+        svg ? "svg" : "pngcairo", width_px_, height_px_);
     script << script_ << "\nunset output\n";
     if (!script.flush()) throw OutputError(folder_ + "/script.gp", why_not(errno));
   }
   int const code = run_gnuplot(folder_);
   throw_if_interrupted();  // Ctrl-C stops gnuplot as well
-  std::string const picture = folder_ + "/figure.png";
-  if (code != 0 || !is_whole_png(picture)) {
+  std::string const picture = folder_ + "/figure";
+  std::string const bytes = text_of(picture);
+  if (code != 0 || bytes.find(svg ? end_of_svg : end_of_png) == std::string::npos) {
     if (is_full(folder_)) throw OutputError(picture, why_not(ENOSPC));
     throw OutputError(path, fmt::format("gnuplot failed (exit code {}): {}", code, text_of(folder_ + "/log.txt")));
   }
-  std::string const bytes = text_of(picture);
   output.write(bytes.data(), bytes.size());
   output.commit();
 }

@@ -19,8 +19,8 @@ class GnuplotMissing : public std::runtime_error {
             "are written all the same") {}
 };
 
-/// A figure in the making: commands and data for one run of gnuplot, in the house style (pngcairo, DejaVu Sans,
-/// UTF-8 text taken literally). Data stand in a temporary folder that goes with the object.
+/// A figure in the making: commands and data for one run of gnuplot, in the house style (DejaVu Sans, UTF-8 text taken
+/// literally). Data stand in a temporary folder that goes with the object.
 class GnuplotFigure {
  public:
   /// @param width_px,height_px of the picture
@@ -41,7 +41,7 @@ class GnuplotFigure {
   /// Stores columns of equal length and returns their data source; columns are 1, 2, ... for `using`. NaN breaks lines.
   std::string add_table(std::vector<std::vector<double>> const& columns);
 
-  /// Runs gnuplot and writes the picture as one whole file.
+  /// Runs gnuplot and writes the picture as one whole file: SVG where the path ends so, else PNG.
   /// @throws GnuplotMissing; OutputError where the picture cannot be made or written
   void write(std::string const& path) const;
 

@@ -18,7 +18,7 @@ constexpr char const* diverging_palette =
     "set palette defined (0 '#0b3c6f', 0.125 '#2a6fae', 0.25 '#6aacd0', 0.375 '#c3dcea', 0.5 '#f7f7f7', "
     "0.625 '#f9d3bf', 0.75 '#ec9374', 0.875 '#c43b3e', 1 '#6d0720')";
 /// Viridis (S. van der Walt & N. Smith, CC0) at nine points.
-constexpr char const* sequential_palette =
+constexpr char const* viridis =
     "set palette defined (0 '#440154', 0.125 '#482878', 0.25 '#3e4a89', 0.375 '#31688e', 0.5 '#26828e', "
     "0.625 '#1f9e89', 0.75 '#6cce59', 0.875 '#b5de2b', 1 '#fde725')";
 
@@ -114,6 +114,8 @@ std::pair<Image<double>, int> reduced(Image<double> const& map, int width_px) {
 
 }  // namespace
 
+char const* sequential_palette() { return viridis; }
+
 ColourRange colour_range(Image<double> const& map, ColourScale scale) { return range_of(finite_values(map), scale); }
 
 void write_map_figure(std::string const& path, MapFigure const& figure) {
@@ -178,7 +180,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
                              screen_x(Layout::bar), layout.map_height / static_cast<double>(height)));
     plot.command(fmt::format("set title {} font 'DejaVu Sans,12' offset 0,-0.5 textcolor '#101010'",
                              GnuplotFigure::quoted(panel.title)));
-    plot.command(panel.scale == ColourScale::diverging ? diverging_palette : sequential_palette);
+    plot.command(panel.scale == ColourScale::diverging ? diverging_palette : viridis);
     ColourRange const range = ranges[static_cast<std::size_t>(i)];
     plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",
                              range.lower, range.upper));

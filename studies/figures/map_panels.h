@@ -47,6 +47,9 @@ struct MapFigure {
 /// @throws GnuplotMissing, OutputError
 void write_map_figure(std::string const& path, MapFigure const& figure);
 
+/// The command that sets the palette of sequential maps.
+char const* sequential_palette();
+
 /// The range of colours that a panel takes by itself.
 struct ColourRange {
   double lower = 0.0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -71,6 +72,13 @@ void flatten(nlohmann::ordered_json const& json, std::string const& path,
   } else if (json.is_number() || json.is_null()) {
     measures.emplace_back(path, json.is_null() ? nan : json.get<double>());
   }
+}
+
+/// NaN are left out.
+double largest(Image<double> const& map) {
+  double most = 0;
+  for (double const value : map) most = std::max(most, std::isnan(value) ? 0 : value);
+  return most;
 }
 
 /// Says nothing on the log below errors while it lives: a study's warnings stand in its results.
@@ -227,6 +235,9 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);
+  result.measures.emplace_back("blur_px",
+                               summarize_errors(comparison.point.displacement_std_px, still, comparison.mask).rms_px);
+  result.measures.emplace_back("strain_max", prepared.strain.strain.empty() ? nan : largest(prepared.strain.strain));
   result.measures.emplace_back("magnification", prepared.scene.imaging.magnification);
   result.measures.emplace_back("step_mm", prepared.step.step_mm);
   result.measures.emplace_back("rays_per_dot", static_cast<double>(prepared.rays.rays));

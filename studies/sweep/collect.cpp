@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -11,6 +10,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/output_file.h"
 #include "render/base/text_file.h"
+#include "studies/sweep/unit_ending.h"
 
 namespace gladstone {
 namespace {
@@ -33,26 +33,17 @@ std::string cell(std::string const& text) {
 }
 
 std::string unit_of(std::string const& name) {
-  constexpr std::array<std::pair<char const*, char const*>, 10> endings{{{"_px2", "px^2"},
-                                                                         {"_px", "px"},
-                                                                         {"_mm", "mm"},
-                                                                         {"_um", "um"},
-                                                                         {"_nm", "nm"},
-                                                                         {"_deg", "deg"},
-                                                                         {"_rad", "rad"},
-                                                                         {"_kg_m3", "kg/m^3"},
-                                                                         {"_kg_m4", "kg/m^4"},
-                                                                         {"_e", "e"}}};
   if (name.starts_with("seconds_")) return "s";
-  for (auto const& [ending, unit] : endings) {
-    if (name.ends_with(ending)) return unit;
-  }
-  return name == "exposure" ? "e" : "1";
+  if (name == "exposure") return "e";
+  return std::string(unit_ending(name).value_or(UnitEnding{"", "1"}).unit);
 }
 
 std::string description_of(std::string const& measure) {
   static std::map<std::string, std::string> const known{
       {"signal_px", "rms of the ray truth at the vectors that count, per component"},
+      {"blur_px",
+       "rms over those vectors of the standard deviation of a virtual dot's hits in the flow, per component"},
+      {"strain_max", "largest strain of the cone-averaged Eq. 9 in the view"},
       {"magnification", "M = z_i / Z_B"},
       {"step_mm", "step that rays were traced with"},
       {"rays_per_dot", "rays of a dot"},

@@ -96,26 +96,40 @@ TEST_F(CudaRendererTest, PlumeBlobAndShock) {
   }
 }
 
-TEST_F(CudaRendererTest, VolumesSplineAndLinear) {
-  for (bool const spline : {true, false}) {
-    std::string const path = testing::TempDir() + "gladstone_cuda_volume.nrrd";
-    std::ofstream file(path, std::ios::binary);
-    file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
-    for (int i = 0; i < 12 * 14 * 10; ++i) {
-      auto const number =
-          static_cast<float>(1.2 + 0.05 * std::sin(0.7 * (i % 12) + 0.4 * (i / 12 % 14) + 0.5 * (i / 168)));
-      file.write(reinterpret_cast<char const*>(&number), sizeof number);
-    }
-    file.close();
-    FieldSetup field;
-    field.kind = FieldKind::file;
-    field.file = path;
-    field.where = "test";
-    field.spacing = Vec3d{1.5e-3, 1.5e-3, 1.5e-3};
-    expect_as_on_cpu(scene_of(field, 200, [&](BosSetup& setup) {
-      if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
-    }));
+/// A volume of 12 x 14 x 10 nodes, 1.5 mm apart.
+FieldSetup volume_file() {
+  FieldSetup field;
+  field.kind = FieldKind::file;
+  field.file = testing::TempDir() + "gladstone_cuda_volume.nrrd";
+  field.where = "test";
+  field.spacing = Vec3d{1.5e-3, 1.5e-3, 1.5e-3};
+  std::ofstream file(field.file, std::ios::binary);
+  file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
+  for (int i = 0; i < 12 * 14 * 10; ++i) {
+    auto const number =
+        static_cast<float>(1.2 + 0.05 * std::sin(0.7 * (i % 12) + 0.4 * (i / 12 % 14) + 0.5 * (i / 168)));
+    file.write(reinterpret_cast<char const*>(&number), sizeof number);
   }
+  return field;
+}
+
+TEST_F(CudaRendererTest, VolumesSplineAndLinear) {
+  FieldSetup field = volume_file();
+  for (bool const tiled : {false, true}) {
+    field.periodic = {tiled, tiled, tiled};
+    for (bool const spline : {true, false}) {
+      expect_as_on_cpu(scene_of(field, 200, [&](BosSetup& setup) {
+        if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
+      }));
+    }
+  }
+}
+
+// The rays of a dot are traced in another order, a chunk of 16384 at a time.
+TEST_F(CudaRendererTest, MoreRaysThanAreOrderedTogether) {
+  Scene scene = scene_of(volume_file(), 20000);
+  scene.dots.centre.resize(2);
+  expect_as_on_cpu(scene);
 }
 
 TEST_F(CudaRendererTest, EulerStraightAndRefractingFaces) {
@@ -201,6 +215,23 @@ TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
   EXPECT_LT(off, 1e-3);
   EXPECT_GT(off, 1e-9);
   EXPECT_LT(largest_difference(exact.light.flow, rough.light.flow), 16 * grey_level(exact.light.flow));
+}
+
+/// The same through volumes, whose polynomials are held in single precision too.
+TEST_F(CudaRendererTest, SinglePrecisionThroughVolumes) {
+  for (bool const spline : {true, false}) {
+    Scene scene = scene_of(volume_file(), 256, [&](BosSetup& setup) {
+      if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
+    });
+    scene.pupil_margin *= 1.2;  // enough for both, so that they send the same rays
+    Scene preview = scene;
+    preview.setup.render.precision = Precision::single;
+    Rendering const exact = on_device(scene), rough = on_device(preview);
+    double const off = largest_difference(exact.truth.displacement_px, rough.truth.displacement_px);
+    EXPECT_LT(off, 1e-3);
+    EXPECT_GT(off, 1e-9);
+    EXPECT_LT(largest_difference(exact.truth.eq9_px, rough.truth.eq9_px), 1e-9);  // theory stays double
+  }
 }
 
 TEST_F(CudaRendererTest, NothingToTraceIsNoError) {

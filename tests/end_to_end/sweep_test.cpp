@@ -44,7 +44,7 @@ class Sweeps : public Workplace {
   void finish(std::string const& run, std::string const& study = "study.toml") const {
     plan(run, study);
     succeed({"sweep", "run", run, "--quiet"});
-    succeed({"sweep", "collect", run, "--quiet"});
+    succeed({"sweep", "collect", run, "--no-figures", "--quiet"});
   }
   nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
 
@@ -81,7 +81,10 @@ TEST_F(Sweeps, FromStudyToTable) {
   EXPECT_EQ(ran["done"], 12);
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
   EXPECT_EQ(status("run")["done"], 12);
-  succeed({"sweep", "collect", "run"});
+  auto const collected = json_of({"sweep", "collect", "run"});
+  ASSERT_EQ(collected["figures"].size(), 10u);  // curves and a budget for two axes, a map of both; PNG and SVG
+  EXPECT_EQ(collected["figures"][0], "run/figures/error_against_lens_f_number.png");
+  EXPECT_GT(read_image(in("run/figures/error_against_lens_f_number.png").string()).columns(), 700);
 
   std::istringstream table(read("run/study.csv"));
   std::string header, first;
@@ -129,14 +132,14 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   plan("jobs");
   auto const ran = json_of({"sweep", "run", "jobs", "--jobs", "3"});
   EXPECT_EQ(ran["computed"], 12);  // each once
-  succeed({"sweep", "collect", "jobs"});
+  succeed({"sweep", "collect", "jobs", "--no-figures"});
   expect_same_study("whole", "jobs");
 
   plan("shards");
   for (std::string const shard : {"2/3", "0/3", "1/3"}) {
     EXPECT_EQ(json_of({"sweep", "run", "shards", "--shard", shard})["computed"], 4);
   }
-  succeed({"sweep", "collect", "shards"});
+  succeed({"sweep", "collect", "shards", "--no-figures"});
   expect_same_study("whole", "shards");
 
   // on machines that share nothing: their results are put together by copying
@@ -148,7 +151,7 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
       std::filesystem::copy(in("machine" + i + "/cases/" + name), in("apart/cases/" + name));
     }
   }
-  succeed({"sweep", "collect", "apart"});
+  succeed({"sweep", "collect", "apart", "--no-figures"});
   expect_same_study("whole", "apart");
 }
 
@@ -170,7 +173,7 @@ TEST_F(Sweeps, KilledAtAnyMomentTheNextRunFinishesTheSameStudy) {
   }
   EXPECT_GT(interrupted, 0u);
   succeed({"sweep", "run", "run", "--quiet"});
-  succeed({"sweep", "collect", "run", "--quiet"});
+  succeed({"sweep", "collect", "run", "--no-figures", "--quiet"});
   expect_same_study("whole", "run");
 }
 
@@ -184,14 +187,14 @@ TEST_F(Sweeps, OnlyWhatIsNotWholeIsComputedAgain) {
   write("run/cases/6.json", "");
   std::filesystem::remove(in("run/cases/7.json"));
   EXPECT_EQ(status("run")["missing_cases"], nlohmann::json({4, 5, 6, 7}));
-  EXPECT_EQ(gladstone({"sweep", "collect", "run"}).exit_code, 3);
+  EXPECT_EQ(gladstone({"sweep", "collect", "run", "--no-figures"}).exit_code, 3);
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 4);
   auto const after = results("run");
   for (auto const& [name, time] : before) {
     bool const again = name == "4.json" || name == "5.json" || name == "6.json" || name == "7.json";
     EXPECT_EQ(after.at(name) == time, !again) << name;
   }
-  succeed({"sweep", "collect", "run"});
+  succeed({"sweep", "collect", "run", "--no-figures"});
   expect_same_study("whole", "run");
 }
 
@@ -207,7 +210,7 @@ TEST_F(Sweeps, TwoRunnersShareTheWorkAndBothEndWithAllOfIt) {
   EXPECT_EQ(first + second, 6);
   EXPECT_GT(first, 0);
   EXPECT_GT(second, 0);
-  succeed({"sweep", "collect", "run"});
+  succeed({"sweep", "collect", "run", "--no-figures"});
 }
 
 // A window of 64 px fits one of two images.
@@ -223,7 +226,7 @@ TEST_F(Sweeps, AFailingCaseIsRecordedAndDoesNotStopTheOthers) {
   EXPECT_THAT(ran.out, testing::AllOf(HasSubstr("3 done, 1 failed"), HasSubstr("case 3 (camera.pixels = [48, 48]"),
                                       HasSubstr("a window of 64 px is larger than the image of 48 x 48 px")));
   EXPECT_EQ(status("run")["failures"][0]["case"], 3);
-  Outcome const collected = gladstone({"sweep", "collect", "run"});
+  Outcome const collected = gladstone({"sweep", "collect", "run", "--no-figures"});
   EXPECT_EQ(collected.exit_code, 3);
   EXPECT_THAT(collected.out, HasSubstr("failed: case 3"));
   EXPECT_THAT(read("run/study.csv"), HasSubstr("\n\"[48, 48]\",\"[64, 16]\",3,1,failed,0,nan,"));
@@ -309,7 +312,7 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
     EXPECT_GT(status("run")["done"], 0);
   }
   succeed({"sweep", "run", "run", "--quiet"});
-  succeed({"sweep", "collect", "run", "--quiet"});
+  succeed({"sweep", "collect", "run", "--no-figures", "--quiet"});
   expect_same_study("whole", "run");
 }
 

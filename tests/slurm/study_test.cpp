@@ -46,7 +46,7 @@ class StudyOnACluster : public Workplace {
     Workplace::TearDown();
   }
 
-  void collect(std::string const& run) const { succeed({"sweep", "collect", run, "--quiet"}); }
+  void collect(std::string const& run) const { succeed({"sweep", "collect", run, "--no-figures", "--quiet"}); }
 
   /// Equal study.h5, but for how long it took.
   void expect_same_study() const {

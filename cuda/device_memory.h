@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <limits>
+#include <string>
+
+/// Who takes how much of the device's memory. No CUDA header here: tests set limits where there is no CUDA, too.
+namespace gladstone::cuda {
+
+/// What the arrays of this process hold on the device, and may hold [bytes].
+struct DeviceMemoryAccount {
+  std::atomic<std::size_t> held{0};
+  std::atomic<std::size_t> most_held{0};
+  std::atomic<std::size_t> limit{std::numeric_limits<std::size_t>::max()};
+};
+inline DeviceMemoryAccount device_memory_account;
+
+/// While it lives, arrays get no more than `bytes` beyond what they hold now, as on a smaller card; for tests of what
+/// happens then. One at a time.
+class DeviceMemoryLimit {
+ public:
+  static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+  explicit DeviceMemoryLimit(std::size_t bytes) : held_before_(device_memory_account.held) {
+    device_memory_account.most_held = held_before_;
+    device_memory_account.limit = std::min(bytes, none - held_before_) + held_before_;
+  }
+  ~DeviceMemoryLimit() { device_memory_account.limit = none; }
+  DeviceMemoryLimit(DeviceMemoryLimit const&) = delete;
+  DeviceMemoryLimit& operator=(DeviceMemoryLimit const&) = delete;
+
+  /// The most that was held at a time since then, beyond what was before [bytes].
+  std::size_t most_held() const { return device_memory_account.most_held - held_before_; }
+
+ private:
+  std::size_t held_before_;
+};
+
+/// [bytes]
+struct DeviceRoom {
+  std::size_t free;
+  std::size_t total;
+};
+
+/// What arrays can still get, memory that the pool keeps for them included. Waits for the default stream.
+/// @throws DeviceError
+DeviceRoom device_room();
+
+/// Memory from the device's pool, in the order of the default stream; contents are undefined.
+/// @param what_for named in the message should memory be short @throws OutOfDeviceMemory, DeviceError
+void* allocate_on_device(std::size_t bytes, std::string const& what_for);
+
+/// Gives it back. @param bytes as allocated
+void release_on_device(void* memory, std::size_t bytes) noexcept;
+
+}  // namespace gladstone::cuda

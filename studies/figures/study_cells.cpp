@@ -1,0 +1,97 @@
+#include "studies/figures/study_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace gladstone {
+namespace {
+
+/// Most places of an axis in a figure.
+constexpr std::size_t most_places = 12;
+
+/// "Z_D 250 mm" for the place of an axis titled "Z_D [mm]"; a category names itself.
+std::string place_name(FigureAxis const& axis, std::size_t place) {
+  if (!axis.numeric) return axis.label[place];
+  auto const bracket = axis.title.find(" [");
+  if (bracket == std::string::npos) return axis.title + ' ' + axis.label[place];
+  std::string const unit = axis.title.substr(bracket + 2, axis.title.size() - bracket - 3);
+  return fmt::format("{} {} {}", axis.title.substr(0, bracket), axis.label[place], unit);
+}
+
+}  // namespace
+
+StudyCells::StudyCells(StudyTable const& table) : table_(&table) {
+  for (std::size_t k = 0; k < table.axes.size(); ++k) {
+    axes_.push_back(figure_axis(table.axes[k], most_places));
+    if (axes_[k].size() > 1) varied_.push_back(k);
+  }
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i].status == CaseStatus::ok) finished_.push_back(i);
+  }
+}
+
+std::vector<std::size_t> StudyCells::rows_at(std::map<std::size_t, std::size_t> const& places) const {
+  std::vector<std::size_t> rows;
+  std::copy_if(finished_.begin(), finished_.end(), std::back_inserter(rows), [&](std::size_t row) {
+    return std::all_of(places.begin(), places.end(), [&](auto const& place) {
+      return axes_[place.first].place_of[table_->rows[row].value[place.first]] == place.second;
+    });
+  });
+  return rows;
+}
+
+std::vector<double> StudyCells::values(std::string const& measure, std::vector<std::size_t> const& rows) const {
+  std::vector<double> found;
+  if (auto const place = table_->find_measure(measure)) {
+    for (std::size_t const row : rows) found.push_back(table_->rows[row].measures[*place]);
+  }
+  return found;
+}
+
+bool StudyCells::repeats_alone(std::vector<std::size_t> const& rows) const {
+  return std::all_of(rows.begin(), rows.end(),
+                     [&](std::size_t row) { return table_->rows[row].value == table_->rows[rows.front()].value; });
+}
+
+std::vector<CurveChoice> curves_over(StudyCells const& cells, std::size_t axis, std::size_t most) {
+  std::vector<std::size_t> others;
+  for (std::size_t const k : cells.varied()) {
+    if (k != axis) others.push_back(k);
+  }
+  // Combinations of the other axes' places, each with how many places of this axis it has.
+  std::map<std::vector<std::size_t>, std::set<std::size_t>> combinations;
+  for (std::size_t const row : cells.rows_at({})) {
+    std::vector<std::size_t> const& value = cells.table().rows[row].value;
+    std::vector<std::size_t> combination;
+    for (std::size_t const k : others) combination.push_back(cells.axis(k).place_of[value[k]]);
+    combinations[combination].insert(cells.axis(axis).place_of[value[axis]]);
+  }
+  bool const curves = std::any_of(combinations.begin(), combinations.end(),
+                                  [](auto const& combination) { return combination.second.size() > 1; });
+  std::vector<CurveChoice> choices;
+  if (!others.empty() && curves && combinations.size() <= most) {
+    for (auto const& [combination, places] : combinations) {
+      CurveChoice choice;
+      for (std::size_t i = 0; i < others.size(); ++i) {
+        choice.name += (i > 0 ? ", " : "") + place_name(cells.axis(others[i]), combination[i]);
+        choice.places[others[i]] = combination[i];
+      }
+      choices.push_back(std::move(choice));
+    }
+    return choices;
+  }
+  std::size_t chosen = axis;
+  for (std::size_t const k : others) {
+    if (cells.axis(k).numeric || cells.axis(k).size() > most) continue;
+    if (chosen == axis || cells.axis(k).size() < cells.axis(chosen).size()) chosen = k;
+  }
+  if (chosen == axis || !curves) return {{}};
+  for (std::size_t place = 0; place < cells.axis(chosen).size(); ++place) {
+    choices.push_back({place_name(cells.axis(chosen), place), {{chosen, place}}});
+  }
+  return choices;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "studies/figures/study_drawings.h"
+
+namespace gladstone {
+namespace {
+
+using namespace study_drawing;
+
+/// One line of a panel.
+struct Curve {
+  std::string name;
+  std::string colour;
+  bool dashed = false;
+  std::vector<Scatter> points;  ///< at every place of the axis
+};
+
+struct Panel {
+  std::string heading;
+  std::vector<Curve> curves;
+};
+
+struct Reference {
+  char const* measure;
+  char const* name;
+};
+constexpr Reference references[] = {{"ray_truth.rms_px", "measured − ray truth"},
+                                    {"eq9.rms_px", "measured − Eq. 9"},
+                                    {"eq9_cone.rms_px", "measured − cone-filtered Eq. 9"},
+                                    {"window_truth.rms_px", "measured − ray truth on the window"}};
+constexpr char const* signal = "signal_px";
+
+/// Collects curves and remembers what their points stand for.
+struct CurveMaker {
+  StudyCells const& cells;
+  std::size_t axis;
+  bool repeats_alone = true;
+  std::size_t repeats = 0;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+
+  Curve operator()(std::string name, std::string_view colour, CurveChoice const& choice, char const* measure,
+                   bool dashed = false) {
+    Curve curve{std::move(name), std::string(colour), dashed, {}};
+    for (std::size_t place = 0; place < cells.axis(axis).size(); ++place) {
+      auto places = choice.places;
+      places[axis] = place;
+      std::vector<std::size_t> const rows = cells.rows_at(places);
+      bool const alone = cells.repeats_alone(rows);
+      repeats_alone = repeats_alone && alone;
+      repeats = std::max(repeats, rows.size());
+      Scatter const point = scatter_of(cells.values(measure, rows), alone);
+      if (point.low > 0) low = std::min(low, point.low);
+      if (std::isfinite(point.high)) high = std::max(high, point.high);
+      curve.points.push_back(point);
+    }
+    return curve;
+  }
+};
+
+void plot_panel(GnuplotFigure& plot, FigureAxis const& axis, Panel const& panel) {
+  std::string commands;
+  auto const add = [&](std::string const& command) { commands += (commands.empty() ? "plot " : ", ") + command; };
+  std::size_t solid = 0, seen = 0;
+  for (Curve const& curve : panel.curves) solid += curve.dashed ? 0 : 1;
+  for (Curve const& curve : panel.curves) {
+    std::vector<std::vector<double>> columns(4);
+    // Categories have no way between them: points stand side by side there.
+    double const shift = axis.numeric ? 0.0 : 0.09 * (static_cast<double>(seen) - 0.5 * static_cast<double>(solid - 1));
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      columns[0].push_back(axis.position[i] + (curve.dashed && !axis.numeric ? 0.0 : shift));
+      columns[1].push_back(curve.points[i].centre);
+      columns[2].push_back(curve.points[i].low);
+      columns[3].push_back(curve.points[i].high);
+    }
+    std::string const source = plot.add_table(columns);
+    std::string const title =
+        curve.name.empty() ? std::string("notitle") : "title " + GnuplotFigure::quoted(curve.name);
+    if (curve.dashed && axis.numeric) {
+      add(fmt::format("{} using 1:2 with lines linewidth 1.5 dashtype 2 linecolor '{}' {}", source, curve.colour,
+                      title));
+    } else if (curve.dashed) {
+      add(fmt::format("{} using 1:2:(0.4) with xerrorbars pointtype 0 linewidth 1.5 dashtype 2 linecolor '{}' {}",
+                      source, curve.colour, title));
+    } else {
+      if (axis.numeric) add(fmt::format("{} using 1:2 with lines linewidth 2 linecolor '{}'", source, curve.colour));
+      add(fmt::format("{} using 1:2:3:4 with yerrorbars linewidth 1.6 pointtype 7 pointsize 0.8 linecolor '{}' {}",
+                      source, curve.colour, title));
+      ++seen;
+    }
+  }
+  plot.command(commands);
+}
+
+}  // namespace
+
+std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::size_t axis_index) {
+  FigureAxis const& axis = cells.axis(axis_index);
+  std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 7);
+  CurveMaker make{cells, axis_index};
+  std::vector<Panel> panels;
+  std::string dashes;
+  if (choices.size() == 1) {
+    Panel panel{choices.front().name, {}};
+    std::size_t colour = 0;
+    for (Reference const& reference : references) {
+      panel.curves.push_back(make(reference.name, house_colour(colour++), choices.front(), reference.measure));
+    }
+    panel.curves.push_back(make("signal: ray truth itself", "#404040", choices.front(), signal, true));
+    panels.push_back(std::move(panel));
+  } else {
+    for (Reference const& reference : {references[0], references[1]}) {
+      Panel panel{reference.name, {}};
+      for (std::size_t i = 0; i < choices.size(); ++i) {
+        panel.curves.push_back(make(choices[i].name, house_colour(i), choices[i], reference.measure));
+      }
+      for (std::size_t i = 0; i < choices.size(); ++i) {
+        panel.curves.push_back(make("", house_colour(i), choices[i], signal, true));
+      }
+      panels.push_back(std::move(panel));
+    }
+    dashes = "; dashed: signal (rms of the ray truth)";
+  }
+  if (!(make.high > 0)) return nullptr;
+
+  int const count = static_cast<int>(panels.size());
+  double const width = count == 1 ? 660.0 : 500.0;
+  std::size_t const named = count == 1 ? panels.front().curves.size() : choices.size();
+  int const legend = 20 * static_cast<int>(named) + 8;
+  int const below = room_below(axis, width) + 44;
+  int const top = 44 + (count > 1 ? 28 : 0) + legend;
+  auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(count * (width + 96.0)) + 20, top + 360 + below);
+  GnuplotFigure& plot = *figure;
+  set_texts(plot, "Error against " + axis.title,
+            fmt::format("{}\n{}{}", study_name(cells), meaning(make.repeats_alone, make.repeats), dashes));
+  plot.command("set multiplot");
+  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  for (int i = 0; i < count; ++i) {
+    double const left = 92.0 + i * (width + 96.0);
+    place(plot, left, left + width, top, plot.height_px() - below);
+    set_x_axis(plot, axis, width);
+    set_y_axis(plot, "rms per component [px]", make.low, make.high);
+    if (count > 1) {
+      plot.command(fmt::format("set label 4 {} at graph 0, screen {:.6f} left font 'DejaVu Sans Bold,11'",
+                               GnuplotFigure::quoted(panels[static_cast<std::size_t>(i)].heading),
+                               1.0 - 58.0 / plot.height_px()));
+    }
+    plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
+                             1.0 - (top - legend - 2.0) / plot.height_px()));
+    plot_panel(plot, axis, panels[static_cast<std::size_t>(i)]);
+    plot.command("unset label 1; unset label 2; unset label 3");
+  }
+  plot.command("unset multiplot");
+  return figure;
+}
+
+}  // namespace gladstone

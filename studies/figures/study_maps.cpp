@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "studies/figures/map_panels.h"
+#include "studies/figures/study_drawings.h"
+
+namespace gladstone {
+namespace {
+
+using namespace study_drawing;
+
+/// Places of both axes as rows and columns of equal cells.
+struct ErrorMap {
+  char const* measure;
+  char const* heading;
+  std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(3);  ///< x, y, error
+};
+
+/// Cells stand side by side, whatever the scale: tics name their values.
+std::string cell_tics(FigureAxis const& axis) {
+  std::string tics;
+  for (std::size_t i = 0; i < axis.size(); ++i) {
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), i);
+  }
+  return '(' + tics + ')';
+}
+
+std::size_t longest_label(FigureAxis const& axis) {
+  std::size_t longest = 0;
+  for (std::string const& label : axis.label) longest = std::max(longest, label.size());
+  return longest;
+}
+
+}  // namespace
+
+std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis) {
+  FigureAxis const& x = cells.axis(x_axis);
+  FigureAxis const& y = cells.axis(y_axis);
+  std::vector<ErrorMap> maps{{"ray_truth.rms_px", "measured − ray truth [px]"},
+                             {"eq9.rms_px", "measured − Eq. 9 [px]"}};
+  bool repeats_alone = true;
+  std::size_t repeats = 0, filled = 0;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (ErrorMap& map : maps) {
+    for (std::size_t j = 0; j < y.size(); ++j) {
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        std::vector<std::size_t> const rows = cells.rows_at({{x_axis, i}, {y_axis, j}});
+        bool const alone = cells.repeats_alone(rows);
+        double const error = scatter_of(cells.values(map.measure, rows), alone).centre;
+        repeats_alone = repeats_alone && alone;
+        repeats = std::max(repeats, rows.size());
+        map.columns[0].push_back(static_cast<double>(i));
+        map.columns[1].push_back(static_cast<double>(j));
+        map.columns[2].push_back(error);
+        if (!std::isfinite(error)) continue;
+        ++filled;
+        if (error > 0) low = std::min(low, error);
+        high = std::max(high, error);
+      }
+    }
+  }
+  if (!(high > 0) || filled < x.size() * y.size()) return nullptr;  // less than half of both: the axes go together
+
+  bool const logarithmic = high > 10 * low;
+  double const cell = x.size() > 8 ? 50.0 : 62.0;
+  double const width = std::max(240.0, cell * static_cast<double>(x.size()));
+  double const height = std::clamp(44.0 * static_cast<double>(y.size()), 160.0, 480.0);
+  double const left = 70.0 + 7.0 * static_cast<double>(longest_label(y));
+  int const below = room_below(x, width) + 44;
+  auto figure =
+      std::make_unique<GnuplotFigure>(static_cast<int>(left + 2 * width + 140), static_cast<int>(86 + height) + below);
+  GnuplotFigure& plot = *figure;
+  set_texts(plot, fmt::format("Error over {} and {}", x.title, y.title),
+            fmt::format("{}\n{}", study_name(cells),
+                        !repeats_alone ? "median of all cases of a cell"
+                        : repeats > 1  ? fmt::format("root mean square over {} repeats; per component", repeats)
+                                       : std::string("single cases; rms per component")));
+  plot.command("set multiplot");
+  plot.command(sequential_palette());
+  double const least = logarithmic ? low : 0.0;
+  plot.command(fmt::format("{}set cbrange [{:.10g}:{:.10g}]", logarithmic ? "set logscale cb; " : "", least, high));
+  if (logarithmic) plot.command("set cbtics " + logarithmic_tics(low, high));
+  plot.command("set cbtics font 'DejaVu Sans,9' scale 0.3; set tics scale 0");
+  plot.command(fmt::format("set xrange [-0.5:{:.1f}]; set yrange [-0.5:{:.1f}]", static_cast<double>(x.size()) - 0.5,
+                           static_cast<double>(y.size()) - 0.5));
+  plot.command(fmt::format("set xlabel {}", GnuplotFigure::quoted(x.title)));
+  bool const crowded = room_below(x, width) > 56;
+  plot.command(
+      fmt::format("set xtics {} {} font 'DejaVu Sans,10'", crowded ? "rotate by 28 right" : "norotate", cell_tics(x)));
+  plot.command(
+      "set object 1 rectangle from graph 0,0 to graph 1,1 fillcolor '#b8b8b8' fillstyle solid noborder behind");
+  for (std::size_t m = 0; m < maps.size(); ++m) {
+    double const from = left + static_cast<double>(m) * (width + 26.0);
+    place(plot, from, from + width, 74, plot.height_px() - below);
+    plot.command(
+        fmt::format("set title {} font 'DejaVu Sans Bold,11' offset 0,-0.4", GnuplotFigure::quoted(maps[m].heading)));
+    if (m == 0) {
+      plot.command(fmt::format("set ylabel {}; set ytics {} font 'DejaVu Sans,10'; unset colorbox",
+                               GnuplotFigure::quoted(y.title), cell_tics(y)));
+    } else {
+      plot.command("unset ylabel; unset ytics");
+      plot.command(
+          fmt::format("set colorbox user origin screen {:.6f}, screen {:.6f} size screen {:.6f}, screen {:.6f}",
+                      (from + width + 10.0) / plot.width_px(), below / static_cast<double>(plot.height_px()),
+                      12.0 / plot.width_px(), (plot.height_px() - below - 74.0) / plot.height_px()));
+    }
+    std::vector<std::vector<double>> const& columns = maps[m].columns;
+    for (std::size_t k = 0; k < columns[2].size() && x.size() <= 12 && y.size() <= 12; ++k) {
+      double const error = columns[2][k];
+      if (!std::isfinite(error)) continue;
+      double const share = logarithmic ? std::log(error / low) / std::log(high / low) : error / high;
+      plot.command(fmt::format("set label {} '{:.2g}' at {},{} center front font 'DejaVu Sans,9' textcolor '{}'",
+                               10 + k, error, columns[0][k], columns[1][k], share > 0.6 ? "#101010" : "#f4f4f4"));
+    }
+    plot.command(fmt::format("plot {} using 1:2:(0.5):(0.5):3 with boxxyerror fillstyle solid 1.0 noborder palette",
+                             plot.add_table(columns)));
+    plot.command("unset label 1; unset label 2; unset label 3");
+  }
+  plot.command("unset multiplot");
+  return figure;
+}
+
+}  // namespace gladstone

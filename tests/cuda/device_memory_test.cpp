@@ -1,0 +1,189 @@
+#include "cuda/device_memory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+
+#include "analysis/correlator.h"
+#include "cuda/backend.h"
+#include "render/base/error.h"
+#include "render/scene/ray_record.h"
+#include "tests/analysis/support/particle_pair.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone::cuda {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::size_t mebibyte = std::size_t{1} << 20;
+
+/// What happens on a card that is too small: with less memory smaller batches, then an error that names the sizes.
+class SmallDevice : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (DeviceState const state = device_state(); !state.usable) GTEST_SKIP() << state.text;
+    renderer_ = make_renderer();
+  }
+  Rendering render(Scene& scene) const {
+    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  }
+  std::unique_ptr<Renderer> renderer_;
+};
+
+Scene scene_of(FieldSetup const& field, int dots_a_side, std::uint64_t rays) {
+  gladstone::Setup setup = table1_setup(96);
+  setup.medium.field = field;
+  return scene_with_dots(setup, lattice(96, dots_a_side, 14), rays);
+}
+
+/// The volume of benchmark case P: 64^3 floats, just over 1 MiB.
+FieldSetup volume() {
+  FieldSetup field;
+  field.kind = FieldKind::file;
+  field.file = std::string(GLADSTONE_DATA_DIR) + "/benchmarks/case_p_volume.nrrd";
+  field.where = "test";
+  field.quantity = FieldQuantity::refractivity;
+  double const cell = 32.7e-3 / 63;
+  field.spacing = Vec3d{cell, cell, cell};
+  return field;
+}
+
+std::string error_of(std::function<void()> const& work) {
+  try {
+    work();
+  } catch (DeviceError const& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_same(Rendering const& a, Rendering const& b) {
+  EXPECT_TRUE(std::equal(a.light.reference.begin(), a.light.reference.end(), b.light.reference.begin()));
+  EXPECT_TRUE(std::equal(a.light.flow.begin(), a.light.flow.end(), b.light.flow.begin()));
+  EXPECT_EQ(a.truth.displacement_px, b.truth.displacement_px);
+  EXPECT_EQ(a.truth.eq9_cone_px, b.truth.eq9_cone_px);
+  EXPECT_EQ(a.statuses, b.statuses);
+}
+
+TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
+  constexpr std::uint64_t rays = 10000;
+  constexpr std::size_t dot_bytes = rays * sizeof(RayRecord<double>);
+  for (FieldSetup const& field : {dns_plane("kepeak"), volume()}) {
+    Scene scene = scene_of(field, 6, rays);
+    render(scene);  // puts the field on the device, where it stays
+    auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
+      DeviceMemoryLimit const limit(bytes);
+      Rendering rendering = render(scene);
+      most = limit.most_held();
+      return rendering;
+    };
+    std::size_t whole = 0, parts = 0;
+    Rendering const expected = with_limit(DeviceMemoryLimit::none, whole);
+    ASSERT_GT(whole, 36 * dot_bytes) << "36 dots at once";
+    // room for 6 dots or a few more, whatever else is held: halved batches of 36 get there with 4
+    std::size_t const room = whole - 30 * dot_bytes;
+    Rendering const rendering = with_limit(room, parts);
+    EXPECT_LE(parts, room);
+    expect_same(expected, rendering);
+  }
+}
+
+TEST_F(SmallDevice, NamesTheSizesWhereOneDotsRaysDoNotFit) {
+  Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
+  std::string error;
+  {
+    DeviceMemoryLimit const limit(64 * mebibyte);
+    error = error_of([&] { render(scene); });
+    EXPECT_LT(limit.most_held(), 64 * mebibyte);
+  }
+  EXPECT_THAT(error, HasSubstr("out of device memory: the rays of a batch of dots needs " +
+                               std::to_string(sizeof(RayRecord<double>)) + " MiB, "));
+  EXPECT_THAT(error, HasSubstr(" of 64 MiB are free; use fewer rays, smaller images or volumes, or --device cpu"));
+  // the renderer is none the worse for it
+  EXPECT_EQ(render(scene).truth.size(), 1u);
+}
+
+TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
+  Scene before = scene_of(dns_plane("late"), 3, 64), large = scene_of(volume(), 3, 64);
+  {
+    DeviceMemoryLimit const limit(mebibyte);
+    EXPECT_THAT(error_of([&] { make_renderer()->render(large, large.dots, RenderImages::yes, RenderTheory::no); }),
+                ::testing::MatchesRegex("out of device memory: the field's refractivity needs 1\\.[0-9]+ MiB, "
+                                        "1\\.000 of 1\\.000 MiB are free; .*"));
+    EXPECT_EQ(limit.most_held(), 0u);
+  }
+  // what was rendered before the refusal is rendered alike after it
+  Rendering const expected = render(before);
+  {
+    DeviceMemoryLimit const limit(0);
+    EXPECT_THAT(error_of([&] { render(large); }), HasSubstr("the field's refractivity needs"));
+  }
+  expect_same(expected, render(before));
+}
+
+testing::ParticlePair particles(int columns, int rows) {
+  testing::ParticleSettings settings;
+  settings.columns = columns;
+  settings.rows = rows;
+  return testing::render_particle_pair(settings, [](Vec2d p) { return Vec2d{1.7, 0.02 * p.x}; });
+}
+
+void expect_same(DisplacementField const& a, DisplacementField const& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.status[i], b.status[i]) << i;
+    if (a.counts(i)) {
+      EXPECT_EQ(a.displacement_px[i], b.displacement_px[i]) << i;
+    }
+  }
+}
+
+// At whichever allocation it fails.
+TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
+  testing::ParticlePair const pair = particles(256, 256);
+  auto const field_of = [&](Correlator const& correlator) { return correlator.correlate(pair.reference, pair.flow); };
+  std::size_t most = 0;
+  DisplacementField const expected = [&] {
+    DeviceMemoryLimit const limit(DeviceMemoryLimit::none);
+    DisplacementField field = field_of(*cuda::make_correlator({}));
+    most = limit.most_held();
+    return field;
+  }();
+  for (std::size_t part = 0; part < 16; ++part) {
+    SCOPED_TRACE(part);
+    auto const correlator = [&] {
+      DeviceMemoryLimit const limit(most * part / 16);
+      auto made = cuda::make_correlator({});
+      EXPECT_THAT(error_of([&] { field_of(*made); }), HasSubstr("out of device memory: correlation needs "));
+      return made;
+    }();
+    expect_same(expected, field_of(*correlator));
+  }
+}
+
+// Windows of 94 px have supports of 188 px, 2 * 189 * 188 floats each, which lie in the device's memory: fewer of them
+// are worked on at a time.
+TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
+  testing::ParticlePair const pair = particles(300, 260);
+  CorrelationSettings settings;
+  settings.window_px = {94};
+  auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
+    DeviceMemoryLimit const limit(bytes);
+    DisplacementField field = cuda::make_correlator(settings)->correlate(pair.reference, pair.flow);
+    most = limit.most_held();
+    return field;
+  };
+  std::size_t whole = 0, parts = 0;
+  DisplacementField const expected = with_limit(DeviceMemoryLimit::none, whole);
+  std::size_t const room = whole - 2 * (2 * 189 * 188 * sizeof(float));
+  DisplacementField const field = with_limit(room, parts);
+  EXPECT_LE(parts, room);
+  expect_same(expected, field);
+}
+
+}  // namespace
+}  // namespace gladstone::cuda

@@ -1,0 +1,192 @@
+#include "studies/figures/study_figures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "render/base/image_file.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/study_cells.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+StudyAxis numbers(std::string key, std::vector<double> values) {
+  StudyAxis axis{std::move(key), true, {}, values};
+  for (double const value : values) {
+    std::ostringstream text;
+    text << value;
+    axis.labels.push_back(text.str());
+  }
+  return axis;
+}
+
+StudyAxis words(std::string key, std::vector<std::string> labels) {
+  std::vector<double> const none(labels.size(), std::numeric_limits<double>::quiet_NaN());
+  return {std::move(key), false, std::move(labels), none};
+}
+
+/// Every combination of the axes, the last fastest, with repeats outermost; error 0.01 (1 + case) px.
+StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
+  StudyTable table;
+  table.name = "some_study";
+  table.axes = std::move(axes);
+  table.measures = {"ray_truth.rms_px", "eq9.rms_px", "signal_px", "budget.terms.cone.rms_px", "budget.total.rms_px"};
+  std::size_t points = 1;
+  for (StudyAxis const& axis : table.axes) points *= axis.labels.size();
+  for (std::size_t i = 0; i < points * repeats; ++i) {
+    StudyRow row;
+    row.index = i;
+    row.repeat = i / points;
+    row.status = CaseStatus::ok;
+    row.value.resize(table.axes.size());
+    std::size_t rest = i % points;
+    for (std::size_t k = table.axes.size(); k-- > 0; rest /= table.axes[k].labels.size()) {
+      row.value[k] = rest % table.axes[k].labels.size();
+    }
+    double const error = 0.01 * (1.0 + static_cast<double>(i));
+    row.measures = {error, 2 * error, 0.5, error, 1.5 * error};
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+class StudyFigures : public ::testing::Test {
+ protected:
+  StudyFigures()
+      : folder_(std::filesystem::path(::testing::TempDir()) /
+                (std::string("gladstone_study_figures_") +
+                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::remove_all(folder_);
+  }
+  ~StudyFigures() override { std::filesystem::remove_all(folder_); }
+  /// Names of the figures drawn.
+  std::vector<std::string> draw(StudyTable const& table) const {
+    std::vector<std::string> names;
+    for (std::string const& path : draw_study(folder_.string(), table)) {
+      EXPECT_TRUE(std::filesystem::exists(path)) << path;
+      names.push_back(std::filesystem::path(path).filename().string());
+    }
+    return names;
+  }
+  std::string text(std::string const& name) const {
+    std::ostringstream all;
+    all << std::ifstream(folder_ / name).rdbuf();
+    return all.str();
+  }
+  std::filesystem::path folder_;
+};
+
+TEST(AxisTitle, ComesFromTheKeyWithItsUnit) {
+  EXPECT_EQ(axis_title("lens.focal_length_mm"), "focal length [mm]");
+  EXPECT_EQ(axis_title("lens.f_number"), "f-number");
+  EXPECT_EQ(axis_title("geometry.z_d_mm"), "Z_D [mm]");
+  EXPECT_EQ(axis_title("medium.field.amplitude_kg_m3"), "amplitude [kg/m³]");
+  EXPECT_EQ(axis_title("camera.noise.read_noise_e"), "read noise [e⁻]");
+  EXPECT_EQ(axis_title("camera.pixel_pitch_um"), "pixel pitch [µm]");
+  EXPECT_EQ(axis_title("correlate.overlap"), "overlap");
+}
+
+TEST(FigureAxis, IsLogarithmicWhereTheValuesAre) {
+  EXPECT_TRUE(figure_axis(numbers("a", {4, 5.6, 8, 11, 16, 22, 32}), 12).logarithmic);
+  EXPECT_TRUE(figure_axis(numbers("a", {100, 300, 500, 1100}), 12).logarithmic);  // more than a decade
+  EXPECT_FALSE(figure_axis(numbers("a", {5, 10, 15, 20}), 12).logarithmic);
+  EXPECT_FALSE(figure_axis(numbers("a", {0, 1, 10, 100}), 12).logarithmic);
+  EXPECT_FALSE(figure_axis(numbers("a", {1, 100}), 12).logarithmic);
+}
+
+TEST(FigureAxis, SortsNumbersAndKeepsCategories) {
+  FigureAxis const sorted = figure_axis(numbers("a", {30, 10, 20}), 12);
+  EXPECT_THAT(sorted.position, ElementsAre(10, 20, 30));
+  EXPECT_THAT(sorted.place_of, ElementsAre(2, 0, 1));
+  FigureAxis const kept = figure_axis(words("a", {"z", "a", "m"}), 12);
+  EXPECT_THAT(kept.label, ElementsAre("z", "a", "m"));
+  EXPECT_THAT(figure_axis(words("a", {"z", "a", "m"}), 2).label, ElementsAre("z", "others"));
+}
+
+TEST(FigureAxis, BinsManyNumbersByEqualCount) {
+  FigureAxis const axis = figure_axis(numbers("a", {1, 2, 3, 5, 6, 7}), 2);
+  EXPECT_THAT(axis.position, ElementsAre(2, 6));
+  EXPECT_THAT(axis.place_of, ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_TRUE(axis.binned);
+}
+
+// sqrt((9 + 16) / 2)
+TEST(Scatter, IsRootMeanSquareOfRepeatsAndMedianOfOthers) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  Scatter const repeats = scatter_of({4, nan, 3}, true);
+  EXPECT_DOUBLE_EQ(repeats.centre, std::sqrt(12.5));
+  EXPECT_EQ(repeats.low, 3);
+  EXPECT_EQ(repeats.high, 4);
+  EXPECT_EQ(scatter_of({1, 2, 90}, false).centre, 2);
+  EXPECT_TRUE(std::isnan(scatter_of({nan}, true).centre));
+}
+
+TEST(StudyCurves, AreCombinationsOfTheOtherAxesWhileColoursLast) {
+  StudyTable const table = grid(
+      {words("medium.field", {"a", "b"}), numbers("geometry.z_d_mm", {1, 2}), numbers("lens.f_number", {4, 8, 16})}, 2);
+  StudyCells const cells(table);
+  std::vector<CurveChoice> const four = curves_over(cells, 2, 7);
+  ASSERT_EQ(four.size(), 4u);
+  EXPECT_EQ(four[1].name, "a, Z_D 2 mm");
+  EXPECT_EQ(cells.rows_at({{2, 0}, {0, 0}, {1, 1}}).size(), 2u);
+  EXPECT_TRUE(cells.repeats_alone(cells.rows_at({{2, 0}, {0, 0}, {1, 1}})));
+  EXPECT_FALSE(cells.repeats_alone(cells.rows_at({{2, 0}, {0, 0}})));
+  std::vector<CurveChoice> const by_field = curves_over(cells, 2, 3);
+  ASSERT_EQ(by_field.size(), 2u);
+  EXPECT_EQ(by_field[1].name, "b");
+  EXPECT_EQ(curves_over(cells, 2, 1).size(), 1u);
+}
+
+TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
+  std::vector<std::string> const names =
+      draw(grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200})}, 2));
+  EXPECT_THAT(
+      names,
+      ElementsAre("error_against_lens_f_number.png", "error_against_lens_f_number.svg", "budget_lens_f_number.png",
+                  "budget_lens_f_number.svg", "error_map_lens_f_number_geometry_z_d_mm.png",
+                  "error_map_lens_f_number_geometry_z_d_mm.svg", "error_against_geometry_z_d_mm.png",
+                  "error_against_geometry_z_d_mm.svg", "budget_geometry_z_d_mm.png", "budget_geometry_z_d_mm.svg"));
+  EXPECT_GT(read_image((folder_ / names[0]).string()).columns(), 700);
+  std::string const svg = text("error_against_lens_f_number.svg");
+  for (char const* piece : {"Error against f-number", "Z_D 200 mm", "measured − Eq. 9", "study some_study, 12 cases",
+                            "root mean square over 2 repeats"}) {
+    EXPECT_THAT(svg, HasSubstr(piece));
+  }
+  // Cell (f/4, 200 mm) has cases 1 and 7, errors 0.02 and 0.08: sqrt((4 + 64) / 2) / 100 = 0.058.
+  EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr("0.058"));
+}
+
+TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
+  StudyTable table = grid({numbers("lens.f_number", {4, 8}), words("medium.field", {"plume"})}, 1);
+  EXPECT_EQ(draw(table).size(), 4u);  // an axis of one value is none
+  for (StudyRow& row : table.rows) row.status = CaseStatus::failed;
+  EXPECT_TRUE(draw(table).empty());
+}
+
+// In "zip" mode two axes go together: of a map three of nine cells would be filled.
+TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
+  StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200, 400})}, 1);
+  std::erase_if(table.rows, [](StudyRow const& row) { return row.value[0] != row.value[1]; });
+  for (std::string const& name : draw(table)) EXPECT_THAT(name, Not(HasSubstr("map")));
+}
+
+TEST_F(StudyFigures, ManyValuesAreBinned) {
+  std::vector<double> many;
+  for (int i = 0; i < 60; ++i) many.push_back(4.0 + i);
+  EXPECT_EQ(draw(grid({numbers("lens.f_number", many)}, 1)).size(), 4u);
+  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr("median of all cases there"));
+}
+
+}  // namespace
+}  // namespace gladstone
