@@ -165,7 +165,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
                        frames);
       }
       if (theory == RenderTheory::yes) {
-        integrate_dots(theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
+        integrate_dots(light.model(), theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
       }
       if (dots_a_batch < dots) check(cudaDeviceSynchronize(), "a batch of dots");
       progress.advance(batch.dots);

@@ -18,14 +18,16 @@ struct WeightedSum {
 
 template <class Medium>
 __global__ void __launch_bounds__(threads)
-    integrate_dots_kernel(TheoryModel const model, SceneView<double> const view, Medium const medium, Batch const batch,
-                          DotTheory* const out) {
+    integrate_dots_kernel(LightModel const __grid_constant__ light, TheoryModel const model,
+                          SceneView<double> const view, Medium const medium, Batch const batch, DotTheory* const out) {
   __shared__ unsigned char storage[threads * sizeof(WeightedSum)];
   auto* const shared = reinterpret_cast<WeightedSum*>(storage);
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
     std::uint64_t const dot = batch.first + i;
     WeightedSum sum;
-    for (std::uint64_t ray = threadIdx.x; ray < batch.rays; ray += threads) sum.cone.add(model, view, medium, dot, ray);
+    for (std::uint64_t ray = threadIdx.x; ray < theory_rays(light, batch.rays); ray += threads) {
+      add_straight_ray(light, model, view, medium, dot, ray, sum.cone);
+    }
     sum = block_sum(sum, shared);
     if (threadIdx.x == 0) out[i] = {integrate_chief(model, view, medium, dot), sum.cone};
   }
@@ -33,12 +35,12 @@ __global__ void __launch_bounds__(threads)
 
 }  // namespace
 
-void integrate_dots(TheoryModel const& model, SceneView<double> const& view, DeviceMedium<double> const& medium,
-                    Batch const& batch, DotTheory* out) {
+void integrate_dots(LightModel const& light, TheoryModel const& model, SceneView<double> const& view,
+                    DeviceMedium<double> const& medium, Batch const& batch, DotTheory* out) {
   std::visit(
       [&](auto const& held) {
         auto* const kernel = integrate_dots_kernel<std::remove_cvref_t<decltype(held)>>;
-        kernel<<<blocks_for(kernel, threads, 0, batch.dots), threads>>>(model, view, held, batch, out);
+        kernel<<<blocks_for(kernel, threads, 0, batch.dots), threads>>>(light, model, view, held, batch, out);
         check_launch("integrate_dots");
       },
       medium);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "cuda/device_medium.h"
+#include "render/scene/dot_light.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/ray_record.h"
 #include "render/scene/theory.h"
@@ -40,7 +41,7 @@ struct DotTheory {
 };
 
 /// Integrates the gradient along the straight rays of the batch's dots: out[i] belongs to dot first + i.
-void integrate_dots(TheoryModel const& model, SceneView<double> const& view, DeviceMedium<double> const& medium,
-                    Batch const& batch, DotTheory* out);
+void integrate_dots(LightModel const& light, TheoryModel const& model, SceneView<double> const& view,
+                    DeviceMedium<double> const& medium, Batch const& batch, DotTheory* out);
 
 }  // namespace gladstone::cuda

@@ -168,6 +168,12 @@ class CorrectedCone {
         bend_by_y_((2 / check.pupil2) * check.bend_by_y),
         origin_(check.traced / check.weight),
         miss_(origin_ - check.expected / check.weight) {
+    // a handful of rays tells the mean, not how it varies
+    if (check.rays < fewest_rays) {
+      bend_by_x_ = bend_by_y_ = {};
+      widening_[0] = widening_[1] = widening_[2] = 0;
+      return;
+    }
     Vec2d const guess = origin_ - miss_;
     widening_[0] = (check.traced2[0] - check.expected2[0]) / check.weight - origin_.x * origin_.x + guess.x * guess.x;
     widening_[1] = (check.traced2[1] - check.expected2[1]) / check.weight - origin_.x * origin_.y + guess.x * guess.y;
@@ -233,7 +239,8 @@ class CorrectedCone {
   }
 
  private:
-  static constexpr double settled = 1e-6;  ///< of the stop's radius
+  static constexpr double settled = 1e-6;    ///< of the stop's radius
+  static constexpr double fewest_rays = 16;  ///< that say how the table is off across the cone
   DeflectionTable table_;
   double stop_radius_, sent_radius_, per_stop_radius_, per_distance2_;
   Vec2d centre_, bend_, bend_by_x_, bend_by_y_, origin_, miss_;

@@ -20,12 +20,12 @@ namespace {
 
 /// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
 template <class Medium>
-void record_theory(TheoryModel const& model, SceneView<double> const& view, Medium const& medium, std::size_t dot,
-                   std::uint64_t rays, GroundTruth& truth) {
+void record_theory(LightModel const& light, TheoryModel const& model, SceneView<double> const& view,
+                   Medium const& medium, std::size_t dot, std::uint64_t rays, GroundTruth& truth) {
   ConeSum cone;
-  for (std::uint64_t ray = 0; ray < rays; ++ray) {
+  for (std::uint64_t ray = 0; ray < theory_rays(light, rays); ++ray) {
     if (ray % rays_between_polls == 0) throw_if_interrupted();
-    cone.add(model, view, medium, dot, ray);
+    add_straight_ray(light, model, view, medium, dot, ray, cone);
   }
   truth.set_theory(dot, model, integrate_chief(model, view, medium, dot), cone);
 }
@@ -55,7 +55,7 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium cons
       trace_dot(pair, dot, scene.rays_per_dot, exposure);
       exposure.finish(truth, dot);
       if (theory == RenderTheory::yes) {
-        record_theory(theory_model, pair.scene, medium, dot, scene.rays_per_dot, truth);
+        record_theory(light.model, theory_model, pair.scene, medium, dot, scene.rays_per_dot, truth);
       }
     }
     progress.advance(end - begin);

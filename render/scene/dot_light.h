@@ -3,6 +3,7 @@
 #include "render/optics/lens_setup.h"
 #include "render/scene/cone_moments.h"
 #include "render/scene/flow_fit.h"
+#include "render/scene/theory.h"
 #include "render/sensor/diffraction_spot.h"
 
 /// How a dot's rays become light on the sensor, for every device: where light is to be laid down, and how much of it.
@@ -120,6 +121,31 @@ GLADSTONE_HD inline void sum_cone(LightModel const& model, DotPlan const& plan, 
     add_place(hits[0], hits[1], model.image.half_size_px() * rule.places[i], plan.expected_weight * share, moments[i],
               cone.origin());
   }
+}
+
+/// Number of straight rays that a dot's cone average of Eq. 9 takes: the points of the rule at every place of the
+/// source where there is one, else the dot's own rays.
+GLADSTONE_HD inline std::uint64_t theory_rays(LightModel const& model, std::uint64_t rays) {
+  std::uint64_t const points =
+      static_cast<std::uint64_t>(model.cone.count) * static_cast<std::uint64_t>(model.places.count);
+  return points > 0 ? points : rays;
+}
+/// Adds the i-th of them.
+template <class Medium>
+GLADSTONE_HD void add_straight_ray(LightModel const& model, TheoryModel const& theory, SceneView<double> const& view,
+                                   Medium const& medium, std::uint64_t dot, std::uint64_t i, ConeSum& sum) {
+  if (model.cone.count == 0) {
+    sum.add(theory, view, medium, dot, i);
+    return;
+  }
+  int const place = static_cast<int>(i) / model.cone.count;
+  ConePoint const at = model.cone.points[static_cast<int>(i) % model.cone.count];
+  Vec2d const from = view.sources.centre[dot] + model.offset(model.places.places[place]);
+  Vec2d const pupil = (at.radius * model.image.stop_radius) * model.cone.directions[at.direction];
+  Vec3d const start{from.x, from.y, view.sources.plane_z};
+  Ray<double> const ray{start, normalized(Vec3d{pupil.x - from.x, pupil.y - from.y, view.bundle.lens_z - start.z})};
+  double const cosine2 = ray.direction.z * ray.direction.z;
+  sum.add(theory, medium, ray, model.places.weights[place] * at.weight * cosine2 * cosine2);
 }
 
 /// Displacement of a ray of a controlled dot: from hit to hit, so that what the medium leaves alone is exactly zero;

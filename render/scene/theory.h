@@ -89,8 +89,12 @@ struct ConeSum {
                         std::uint64_t dot, std::uint64_t ray) {
     EmittedRay<double> const emitted = emit(view.sources, view.bundle, dot, ray);
     if (model.stop_radius > 0 && length(emitted.pupil) > model.stop_radius) return;
-    levered += emitted.weight * integrate_gradient(medium, emitted.ray, model.step).levered;
-    weight += emitted.weight;
+    add(model, medium, emitted.ray, emitted.weight);
+  }
+  template <class Medium>
+  GLADSTONE_HD void add(TheoryModel const& model, Medium const& medium, Ray<double> const& ray, double ray_weight) {
+    levered += ray_weight * integrate_gradient(medium, ray, model.step).levered;
+    weight += ray_weight;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/scene/dot_exposure.h"
+#include "render/scene/light_model.h"
 #include "render/sensor/diffraction_spot.h"
 #include "tests/benchmarks/bench_scenes.h"
 #include "tests/benchmarks/plain_loop.h"

@@ -108,7 +108,7 @@ TEST_F(SmallDevice, NamesTheSizesWhereOneDotsRaysDoNotFit) {
 }
 
 TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
-  Scene before = scene_of(dns_plane("late"), 3, 64), large = scene_of(volume(), 3, 64);
+  Scene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
   {
     DeviceMemoryLimit const limit(mebibyte);
     EXPECT_THAT(error_of([&] { make_renderer()->render(large, large.dots, RenderImages::yes, RenderTheory::no); }),

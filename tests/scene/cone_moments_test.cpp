@@ -195,7 +195,7 @@ TEST_P(TableAgainstRays, AgreeOnTruthAndLight) {
   setup.medium.field = dns_plane(c.instant);
   Scene few = scene_with_dots(setup, lattice(256, 60, 4), c.rays);
   few.pupil_margin *= 1.5;
-  DeflectionMap const map(few, few.dots);
+  DeflectionMap const map(few, DeflectionPlan(few, few.dots));
   ASSERT_TRUE(map.table().exists());
   Scene many = few;
   many.rays_per_dot = 32768;
