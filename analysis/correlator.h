@@ -7,6 +7,7 @@
 #include "analysis/correlation_settings.h"
 #include "analysis/interrogation_grid.h"
 #include "render/base/displacement_field.h"
+#include "render/base/frame_pair.h"
 #include "render/base/image.h"
 
 namespace gladstone {
@@ -22,6 +23,10 @@ class Correlator {
   ///         sound neighbour). sigma_px is empty. The same bits for any number of threads.
   /// @throws DataError where the sizes differ or a window does not fit, Interrupted
   virtual DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const = 0;
+  /// The same for frames wherever they are kept; those that are on the correlator's own device stay there.
+  virtual DisplacementField correlate_pair(FramePair const& frames) const {
+    return correlate(frames.reference(), frames.flow());
+  }
 };
 
 /// Names of the methods that make_correlator knows.

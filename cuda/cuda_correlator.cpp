@@ -6,6 +6,7 @@
 #include "analysis/standard_correlator.h"
 #include "cuda/correlation_kernels.h"
 #include "cuda/device_array.h"
+#include "cuda/device_light.h"
 #include "render/base/interrupt.h"
 
 namespace gladstone::cuda {
@@ -234,6 +235,11 @@ DisplacementField CudaCorrelator::correlate(Image<double> const& reference, Imag
   CorrelationPlan& plan = state_->plan_for(reference.columns(), reference.rows());
   plan.upload(reference, flow);
   return plan.correlate(plan.uploaded(0), plan.uploaded(1));
+}
+
+DisplacementField CudaCorrelator::correlate_pair(FramePair const& frames) const {
+  auto const* const here = dynamic_cast<DeviceFrames const*>(&frames);
+  return here ? correlate(here->image(Frame::reference), here->image(Frame::flow)) : Correlator::correlate_pair(frames);
 }
 
 DisplacementField CudaCorrelator::correlate(DeviceImage const& reference, DeviceImage const& flow) const {

@@ -23,6 +23,8 @@ class CudaCorrelator final : public Correlator {
 
   /// As Correlator::correlate. @throws also DeviceError
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override;
+  /// Frames of this device's renderer are taken where they are.
+  DisplacementField correlate_pair(FramePair const& frames) const override;
   /// The same for images that are on the device already, complete on the default stream.
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cuda/device_deflections.h"
+#include "cuda/device_light.h"
 #include "cuda/expose_dots.h"
 #include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
-#include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/scene/light_model.h"
 
@@ -102,20 +102,12 @@ class ImagePairOnDevice {
   DeviceImages view(double light_per_weight) {
     return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
   }
-  /// @param staging that the device copies to; all cores copy on from there
-  LightPair to_host(PinnedBuffer& staging) const {
-    DeviceArray<double> light(frame_count * pixels(), "the images");
-    auto* const staged = static_cast<double*>(staging.reserve(frame_count * pixels() * sizeof(double)));
-    for (std::size_t frame = 0; frame < frame_count; ++frame) {
-      to_light(light_[frame].data(), light.data() + frame * pixels(), pixels());
+  std::shared_ptr<DeviceLight> to_light() const {
+    auto light = std::make_shared<DeviceLight>(columns_, rows_);
+    for (Frame const frame : {Frame::reference, Frame::flow}) {
+      cuda::to_light(light_[static_cast<int>(frame)].data(), light->light(frame), pixels());
     }
-    light.download(staged, frame_count * pixels());
-    LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
-    parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-      std::copy(staged + begin, staged + end, pair.reference.data() + begin);
-      std::copy(staged + pixels() + begin, staged + pixels() + end, pair.flow.data() + begin);
-    });
-    return pair;
+    return light;
   }
 
  private:
@@ -125,12 +117,13 @@ class ImagePairOnDevice {
   DeviceArray<unsigned long long> light_[frame_count];
 };
 
-/// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only, no images
+/// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only @param light_out of the
+/// images, for bright dots
 template <class T>
 TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern const& sources,
                       MirroredSources const& on_device, MirroredMedium const& medium,
                       DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory,
-                      PinnedBuffer& staging) {
+                      std::shared_ptr<DeviceLight>& light_out) {
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
@@ -195,7 +188,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       }
     }
   }
-  if (images) pass.rendering.light = images->to_host(staging);
+  if (images) light_out = images->to_light();
   return pass;
 }
 
@@ -240,6 +233,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   }
   MirroredSources on_device(sources);
   if (single) on_device.mirror_single(sources);
+  std::shared_ptr<DeviceLight> light;
   auto const trace = [&]<class T>(T) {
     MirroredMedium const& medium = uploads_->medium;
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
@@ -248,12 +242,16 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
     // where the device is short of memory, once more with smaller batches, which give the same bits
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all<T>(batch, scene, sources, on_device, medium, deflections,
-                            images == RenderImages::yes ? &spot : nullptr, theory, uploads_->staging);
+                            images == RenderImages::no ? nullptr : &spot, theory, light);
       } catch (OutOfDeviceMemory const&) {
         if (batch == 1) throw;
       }
   };
-  return render_with_margin(scene, images, [&] { return single ? trace(float{}) : trace(double{}); });
+  Rendering rendering = render_with_margin(scene, [&] { return single ? trace(float{}) : trace(double{}); });
+  if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
+  if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
+  if (images == RenderImages::kept) rendering.kept = std::move(light);
+  return rendering;
 }
 
 }  // namespace gladstone::cuda

@@ -3,6 +3,7 @@
 
 #include "cuda/correlation_kernels.h"
 #include "cuda/cuda_error.h"
+#include "cuda/ordered_key.cuh"
 
 namespace gladstone::cuda {
 namespace {
@@ -10,16 +11,6 @@ namespace {
 constexpr int threads = 256;
 
 __device__ bool finite(double value) { return fabs(value) <= 1.7976931348623157e308; }
-
-/// Whole numbers in the order of the floating-point ones; 0 is below all.
-__device__ unsigned long long ordered_key(double value) {
-  auto const bits = static_cast<unsigned long long>(__double_as_longlong(value));
-  return bits >> 63 ? ~bits : bits | 0x8000000000000000ull;
-}
-
-__device__ double key_value(unsigned long long key) {
-  return __longlong_as_double(static_cast<long long>(key >> 63 ? key & 0x7fffffffffffffffull : ~key));
-}
 
 __global__ void find_levels(double const* reference, double const* flow, long long count, LevelKeys* keys) {
   unsigned long long highest = 0, minus_lowest = 0;

@@ -148,6 +148,14 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
 
 namespace {
 
+/// Whole grey levels as a picture's file holds them.
+Image<std::uint16_t> picture_of(Image<double> const& levels) {
+  Image<std::uint16_t> picture(levels.columns(), levels.rows());
+  std::transform(levels.begin(), levels.end(), picture.begin(),
+                 [](double level) { return static_cast<std::uint16_t>(level); });
+  return picture;
+}
+
 /// The preview is the GPU's alone; the CPU gives better than was asked for.
 bool single_precision(Setup const& setup, Renderer const& renderer) {
   return setup.render.precision == Precision::single && renderer.device() == "cuda";
@@ -155,34 +163,24 @@ bool single_precision(Setup const& setup, Renderer const& renderer) {
 
 }  // namespace
 
-double exposure_of(CameraSetup const& camera, LightPair const& light) {
-  if (camera.exposure_e) return *camera.exposure_e;
-  double const brightest = std::max(*std::max_element(light.reference.begin(), light.reference.end()),
-                                    *std::max_element(light.flow.begin(), light.flow.end()));
-  return Detector::auto_exposure(camera, brightest);
+double exposure_of(CameraSetup const& camera, KeptLight const& light) {
+  return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, light.brightest());
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
-  rendered.rendering = std::make_shared<Rendering const>(renderer.render(scene, scene.dots, RenderImages::yes, theory));
+  rendered.rendering =
+      std::make_shared<Rendering const>(renderer.render(scene, scene.dots, RenderImages::kept, theory));
   rendered.pupil_margin = scene.pupil_margin;
-  rendered.exposure_e = exposure_of(scene.setup.camera, rendered.rendering->light);
+  rendered.exposure_e = exposure_of(scene.setup.camera, *rendered.rendering->kept);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
 
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered) {
-  Detector const detector(prepared.scene.setup.camera, rendered.exposure_e);
-  return {detector.record(rendered.rendering->light.reference, RandomStream::noise_reference),
-          detector.record(rendered.rendering->light.flow, RandomStream::noise_flow)};
-}
-
-Image<double> grey_levels(Recording const& recording) {
-  Image<double> levels(recording.image.columns(), recording.image.rows());
-  std::copy(recording.image.begin(), recording.image.end(), levels.begin());
-  return levels;
+  return rendered.rendering->kept->record(Detector(prepared.scene.setup.camera, rendered.exposure_e));
 }
 
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
@@ -212,18 +210,18 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   scene.pupil_margin = rendered.pupil_margin;
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = scene.setup.camera;
-  auto const& [reference, flow] = frames;
+  auto const& [levels, saturated_reference, saturated_flow] = frames;
   loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   std::string const resolved = loaded.document.resolved();
 
-  if (reference.saturated + flow.saturated > 0) {
+  if (saturated_reference + saturated_flow > 0) {
     warn(warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
-                               reference.saturated, flow.saturated));
+                               saturated_reference, saturated_flow));
   }
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  write_tiff(place(case_file::reference), reference.image, metadata);
-  write_tiff(place(case_file::flow), flow.image, metadata);
+  write_tiff(place(case_file::reference), picture_of(levels->reference()), metadata);
+  write_tiff(place(case_file::flow), picture_of(levels->flow()), metadata);
   FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
   write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, map_field(scene, map_spacing_px),
               origin);
@@ -258,7 +256,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
         {"flow", status_counts(rendering.statuses, 1)}}},
       {"pupil_margin_mm", scene.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
-      {"saturated", {{"reference", reference.saturated}, {"flow", flow.saturated}}},
+      {"saturated", {{"reference", saturated_reference}, {"flow", saturated_flow}}},
       {"photons_fully_lit", rendered.exposure_e / camera.noise.quantum_efficiency},
       {"warnings", warnings},
       {"seconds_render", rendered.seconds},

@@ -60,16 +60,10 @@ struct RenderedCase {
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
 
 /// The exposure that a camera takes of this light: its own, or by its brightest pixel [e].
-double exposure_of(CameraSetup const& camera, LightPair const& light);
+double exposure_of(CameraSetup const& camera, KeptLight const& light);
 
 /// What the camera records of a rendering.
-struct RecordedFrames {
-  Recording reference, flow;
-};
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
-
-/// Grey levels as a correlator takes them, the very numbers that the picture's file holds.
-Image<double> grey_levels(Recording const& recording);
 
 /// A case from its setup to its frames, and the text of its summary.json.
 struct FinishedCase {

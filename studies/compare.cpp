@@ -13,6 +13,7 @@
 #include "analysis/scattered_grid.h"
 #include "render/base/hdf5_file.h"
 #include "render/sensor/detector.h"
+#include "studies/correlate.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 #include "studies/truth_file.h"
@@ -215,9 +216,7 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
       window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
   if (rendered) {
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
-    LightPair const& light = rendered->rendering->light;
-    DisplacementField again =
-        device.correlator(settings)->correlate(detector.ideal(light.reference), detector.ideal(light.flow));
+    DisplacementField again = correlate_frames(*rendered->rendering->kept->ideal(detector), settings, device).field;
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 

@@ -34,6 +34,14 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
   return file;
 }
 
+template <class Correlate>
+Measurement timed(Correlate const& correlate) {
+  auto const start = std::chrono::steady_clock::now();
+  Measurement measurement{correlate(), 0};
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
+}
+
 }  // namespace
 
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
@@ -50,10 +58,11 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                     fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
                                 reference.columns(), reference.rows(), largest));
   }
-  auto const start = std::chrono::steady_clock::now();
-  Measurement measurement{device.correlator(settings)->correlate(reference, flow), 0};
-  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return measurement;
+  return timed([&] { return device.correlator(settings)->correlate(reference, flow); });
+}
+
+Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device) {
+  return timed([&] { return device.correlator(settings)->correlate_pair(frames); });
 }
 
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides) {

@@ -19,6 +19,8 @@ struct Measurement {
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Device const& device);
+/// The same for frames that a device may keep. @pre no window is larger than they are
+Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device);
 
 /// Reads the [correlate] table of a whole setup, whose other tables are not looked at, or of a file with nothing else.
 /// @throws SetupError

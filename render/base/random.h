@@ -36,14 +36,15 @@ constexpr std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat) {
 /// Uniform in [0, 1) with 53 bits.
 GLADSTONE_HD constexpr double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// A generator for the standard library's distributions, keyed like everything else: one per pixel or item.
+/// A generator of random bits, keyed like everything else: one per pixel or item.
 class KeyedEngine {
  public:
   using result_type = std::uint64_t;
-  KeyedEngine(std::uint64_t seed, RandomStream stream, std::uint64_t item) : key_(random_bits(seed, stream, item)) {}
+  GLADSTONE_HD KeyedEngine(std::uint64_t seed, RandomStream stream, std::uint64_t item)
+      : key_(random_bits(seed, stream, item)) {}
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return ~result_type{0}; }
-  result_type operator()() { return mix64(key_ += 0x9e3779b97f4a7c15ULL); }
+  GLADSTONE_HD result_type operator()() { return mix64(key_ += 0x9e3779b97f4a7c15ULL); }
 
  private:
   std::uint64_t key_;

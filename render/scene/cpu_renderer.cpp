@@ -71,19 +71,35 @@ TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium cons
   return pass;
 }
 
+/// Turns the light that bright dots send into what the target's polarity says: dark dots are taken from a white target.
+void apply_polarity(Scene const& scene, LightPair& light) {
+  if (scene.setup.target.polarity != Polarity::dark) return;
+  Image<double> const white = white_light(scene);
+  for (Image<double>* frame : {&light.reference, &light.flow}) {
+    std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
+                   [](double paper, double dots) { return paper - dots; });
+  }
+}
+
 }  // namespace
 
 Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
-  return render_with_margin(scene, images, [&] {
+  Rendering rendering = render_with_margin(scene, [&] {
     DeflectionTable const deflections = deflections_.table(scene, sources);
     return std::visit(
         [&](auto const& medium) {
-          return trace_all(scene, sources, medium, deflections, images == RenderImages::yes ? &spot : nullptr, theory);
+          return trace_all(scene, sources, medium, deflections, images == RenderImages::no ? nullptr : &spot, theory);
         },
         scene.medium.view);
   });
+  if (images != RenderImages::no) apply_polarity(scene, rendering.light);
+  if (images == RenderImages::kept) {
+    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+    rendering.light = {};
+  }
+  return rendering;
 }
 
 TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
@@ -95,21 +111,10 @@ TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
   }
 }
 
-Rendering render_with_margin(Scene& scene, RenderImages images, std::function<TracingPass()> const& trace) {
+Rendering render_with_margin(Scene& scene, std::function<TracingPass()> const& trace) {
   while (true) {
     TracingPass pass = trace();
-    if (!scene.covers_bend(pass.largest_bend)) continue;
-    if (images == RenderImages::yes) apply_polarity(scene, pass.rendering.light);
-    return std::move(pass.rendering);
-  }
-}
-
-void apply_polarity(Scene const& scene, LightPair& light) {
-  if (scene.setup.target.polarity != Polarity::dark) return;
-  Image<double> const white = white_light(scene);
-  for (Image<double>* frame : {&light.reference, &light.flow}) {
-    std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
-                   [](double paper, double dots) { return paper - dots; });
+    if (scene.covers_bend(pass.largest_bend)) return std::move(pass.rendering);
   }
 }
 

@@ -7,25 +7,22 @@
 #include "render/base/image.h"
 #include "render/scene/deflection_map.h"
 #include "render/scene/ground_truth.h"
+#include "render/scene/kept_light.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
 
-/// Two frames as light per pixel, in fully lit pixels on the axis; noise-free, not rounded.
-struct LightPair {
-  Image<double> reference;
-  Image<double> flow;
-};
-
 /// What tracing a scene gives.
 struct Rendering {
-  LightPair light;  ///< empty where no images were asked for
+  LightPair light;                        ///< empty where no images were asked for, or where they are kept
+  std::shared_ptr<KeptLight const> kept;  ///< with RenderImages::kept alone
   GroundTruth truth;
   StatusCounts statuses{};
   std::int64_t rays = 0;  ///< traced, both frames
 };
 
-enum class RenderImages { yes, no };
+/// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.
+enum class RenderImages { yes, no, kept };
 enum class RenderTheory { yes, no };
 
 /// Traces scenes, on whichever device.
@@ -58,12 +55,9 @@ struct TracingPass {
   TracingPass(Scene const& scene, DotPattern const& sources);
 };
 
-/// Traces a scene as often as it takes for the pupil to be wide enough for what the medium bends, and gives the images
-/// their polarity: what render() is on every device.
-Rendering render_with_margin(Scene& scene, RenderImages images, std::function<TracingPass()> const& trace);
-
-/// Turns the light that bright dots send into what the target's polarity says: dark dots are taken from a white target.
-void apply_polarity(Scene const& scene, LightPair& light);
+/// Traces a scene as often as it takes for the pupil to be wide enough for what the medium bends: what render() is on
+/// every device.
+Rendering render_with_margin(Scene& scene, std::function<TracingPass()> const& trace);
 
 /// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from;
 /// the flow does not change it, since radiance is conserved along rays.

@@ -5,6 +5,7 @@
 #include "render/base/image.h"
 #include "render/base/random.h"
 #include "render/sensor/camera_setup.h"
+#include "render/sensor/pixel_detector.h"
 
 namespace gladstone {
 
@@ -24,23 +25,21 @@ class Detector {
   static double auto_exposure(CameraSetup const& camera, double brightest_light);
 
   /// Grey level without noise, rounding and saturation: offset + electrons * full scale / full well.
-  double ideal_level(double light) const { return offset_ + light * levels_per_light_; }
+  double ideal_level(double light) const { return pixel_.ideal(light); }
   Image<double> ideal(Image<double> const& light) const;
 
   /// Records a frame: shot noise (Poisson in light and dark electrons), read noise (normal), full well, rounding to the
   /// bit depth. Noise is keyed by (seed, stream, pixel). Without [camera.noise]: rounding and saturation only.
   Recording record(Image<double> const& light, RandomStream stream) const;
 
+  /// What it does to a pixel, for those who do it elsewhere.
+  PixelDetector const& pixel() const { return pixel_; }
   /// Grey levels that one unit of light is worth.
-  double levels_per_light() const { return levels_per_light_; }
-  double full_scale() const { return full_scale_; }
+  double levels_per_light() const { return pixel_.electrons * pixel_.levels_per_electron; }
+  double full_scale() const { return pixel_.full_scale; }
 
  private:
-  NoiseSetup noise_;
-  double full_scale_;
-  double offset_;
-  double electrons_;
-  double levels_per_light_;
+  PixelDetector pixel_;
 };
 
 }  // namespace gladstone

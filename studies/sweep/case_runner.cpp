@@ -202,7 +202,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);
-  rendered.exposure_e = exposure_of(loaded.setup.camera, rendered.rendering->light);
+  rendered.exposure_e = exposure_of(loaded.setup.camera, *rendered.rendering->kept);
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 
@@ -215,8 +215,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   }
 
   std::string const name = fmt::format("case {}", one.index);
-  Measurement const measured =
-      correlate_frames(name, grey_levels(frames.reference), name, grey_levels(frames.flow), loaded.correlate, device_);
+  Measurement const measured = correlate_frames(*frames.levels, loaded.correlate, device_);
   result.seconds_correlate = measured.seconds;
 
   start = std::chrono::steady_clock::now();
@@ -245,7 +244,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.measures.emplace_back("exposure", rendered.exposure_e);
   result.measures.emplace_back("dots", static_cast<double>(prepared.scene.dots.centre.size()));
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
-  result.measures.emplace_back("saturated", static_cast<double>(frames.reference.saturated + frames.flow.saturated));
+  result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
   result.measures.emplace_back("warnings", static_cast<double>(prepared.warnings.size()));
   result.warnings = prepared.warnings;
   result.seconds_compare = seconds_since(start);

@@ -163,6 +163,50 @@ TEST_F(CudaRendererTest, TwoRunsGiveTheSameBits) {
 }
 
 /// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
+// What is kept on the device is what would have been brought to the host: light, the camera's levels of it, noise
+// included, and the brightest pixel. Logarithms differ in their last digits, so that a noisy pixel in 10,000 may round
+// to the next level or, where a rejection flips, be drawn anew.
+TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
+  for (bool const noisy : {false, true}) {
+    Scene scene = scene_of(dns_plane("late"), 64, [&](BosSetup& setup) {
+      setup.camera.bit_depth = 12;
+      setup.camera.offset_dn = 20;
+      setup.camera.noise.enabled = noisy;
+      setup.camera.noise.dark_current_e = 30;
+    });
+    for (Polarity const polarity : {Polarity::bright, Polarity::dark}) {
+      scene.setup.target.polarity = polarity;
+      Rendering const moved = on_device(scene);
+      Rendering const kept = renderer_->render(scene, scene.dots, RenderImages::kept, RenderTheory::no);
+      ASSERT_TRUE(kept.kept);
+      EXPECT_TRUE(kept.light.reference.empty());
+      HostLight const host(moved.light);
+      EXPECT_EQ(kept.kept->brightest(), host.brightest());
+      Detector const detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, 0.8 * host.brightest()));
+      auto const ideal = kept.kept->ideal(detector), ideal_on_host = host.ideal(detector);
+      EXPECT_LT(largest_difference(ideal->reference(), ideal_on_host->reference()), 1e-9);
+      EXPECT_LT(largest_difference(ideal->flow(), ideal_on_host->flow()), 1e-9);
+      RecordedFrames const recorded = kept.kept->record(detector), on_host = host.record(detector);
+      EXPECT_EQ(recorded.saturated_reference, on_host.saturated_reference);
+      EXPECT_EQ(recorded.saturated_flow, on_host.saturated_flow);
+      std::size_t differ = 0;
+      for (std::size_t i = 0; i < recorded.levels->flow().size(); ++i) {
+        differ += recorded.levels->reference().data()[i] != on_host.levels->reference().data()[i];
+        differ += recorded.levels->flow().data()[i] != on_host.levels->flow().data()[i];
+      }
+      EXPECT_LE(differ, 2 * recorded.levels->flow().size() / 10000);
+      EXPECT_TRUE(same_bits(recorded.levels->flow(), kept.kept->record(detector).levels->flow()));
+
+      // and correlated where they are, as if they had been brought to the host and back
+      auto const correlator = cuda::make_correlator({});
+      DisplacementField const here = correlator->correlate_pair(*recorded.levels);
+      DisplacementField const there = correlator->correlate(recorded.levels->reference(), recorded.levels->flow());
+      ASSERT_GT(here.size(), 0u);
+      EXPECT_EQ(largest_difference(here.displacement_px, there.displacement_px), 0);
+    }
+  }
+}
+
 TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
   Scene scene = scene_of(dns_plane("late"), 256), preview = scene;
   preview.setup.render.precision = Precision::single;

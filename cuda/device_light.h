@@ -1,0 +1,52 @@
+#pragma once
+
+#include "cuda/cuda_correlator.h"
+#include "cuda/device_array.h"
+#include "render/scene/kept_light.h"
+#include "render/scene/trace_pair.h"
+
+namespace gladstone::cuda {
+
+/// Grey levels of two frames in the device's memory.
+class DeviceFrames final : public FramePair {
+ public:
+  DeviceFrames(int columns, int rows);
+
+  DeviceImage image(Frame frame) const { return {levels(frame), columns_, rows_}; }
+  double* levels(Frame frame) { return levels_[static_cast<int>(frame)].data(); }
+  double const* levels(Frame frame) const { return levels_[static_cast<int>(frame)].data(); }
+  Image<double> const& reference() const override { return on_host(Frame::reference); }
+  Image<double> const& flow() const override { return on_host(Frame::flow); }
+
+ private:
+  Image<double> const& on_host(Frame frame) const;
+
+  int columns_, rows_;
+  DeviceArray<double> levels_[frame_count];
+  mutable Image<double> on_host_[frame_count];
+};
+
+/// Light of both frames in the device's memory, and a camera for it there.
+class DeviceLight final : public KeptLight {
+ public:
+  /// Light per pixel is for the renderer to write.
+  DeviceLight(int columns, int rows);
+
+  double* light(Frame frame) { return light_[static_cast<int>(frame)].data(); }
+  /// Takes the dots from a white target: what is there becomes white minus that.
+  void take_from(Image<double> const& white);
+  /// @param staging that the device copies to; all cores copy on from there
+  LightPair to_host(PinnedBuffer& staging) const;
+
+  double brightest() const override;
+  RecordedFrames record(Detector const& detector) const override;
+  std::unique_ptr<FramePair const> ideal(Detector const& detector) const override;
+
+ private:
+  std::size_t pixels() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+
+  int columns_, rows_;
+  DeviceArray<double> light_[frame_count];
+};
+
+}  // namespace gladstone::cuda
