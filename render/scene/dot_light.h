@@ -80,13 +80,14 @@ struct LightModel {
   GLADSTONE_HD bool tabled(Vec2d centre) const {
     return image.has_stop && table.covers(centre, 1.5 * image.source_half, sent_radius);
   }
-  /// Whether a dot's rays say enough to correct the table: a fifth of them pass the stop in the flow; and whether they
-  /// are not better by themselves, where the stop's edge has to be smoothed.
+  /// Whether a dot's rays say enough to correct the table: a fifth of them pass the stop in the flow.
   GLADSTONE_HD bool correctable(TableCheck const& check, double expected_weight_of_dot) const {
     return check.weight > 0.2 * expected_weight_of_dot;
   }
+  /// Whether they are better by themselves: where the stop's edge has to be smoothed, the cone leaves truth up to half
+  /// a per cent of its spread; rays scatter by that with 16 times as many of them as the smoothed cone has points.
   GLADSTONE_HD bool rays_are_better(TableCheck const& check, bool simple_edge) const {
-    return !simple_edge && check.rays >= cone.scattered_count;
+    return !simple_edge && check.rays >= 16 * cone.scattered_count;
   }
   GLADSTONE_HD CorrectedCone corrected(Vec2d centre, TableCheck const& check) const {
     return {table, image.stop_radius, sent_radius, distance, centre, check};

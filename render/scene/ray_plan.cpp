@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numeric>
 #include <optional>
 
@@ -27,12 +26,17 @@ constexpr int scramblings = 4;
 constexpr std::size_t sample_dots = 96;
 constexpr double widest_image_px = 100;  // of a dot that is measured whole
 
+constexpr std::size_t checked_dots = 24;  // of these, whose table is checked by rays alone
+constexpr std::uint64_t fewest_checking_rays = 1024, most_checking_rays = 16384;
+
 constexpr std::size_t probed_dots = 256;  // by all rays, of a target with more
 
-/// Displacements of dots by shared rays, and how far the lens plane sees them bent.
+/// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
 struct Probe {
   std::vector<Vec2d> displacement_px;
-  double largest_bend = 0;
+  std::vector<double> bend;  ///< [m]
+
+  double largest_bend() const { return bend.empty() ? 0.0 : *std::max_element(bend.begin(), bend.end()); }
 };
 
 /// Rays that a dot is probed by.
@@ -50,9 +54,8 @@ Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size
   int const rays = scene.chief_rays_only() ? 1 : static_cast<int>(which);
   Probe probe;
   probe.displacement_px.resize(dots.size());
-  std::mutex merge;
+  probe.bend.resize(dots.size());
   parallel_chunks(dots.size(), 64, [&](std::size_t begin, std::size_t end) {
-    double bend = 0;
     for (std::size_t i = begin; i < end; ++i) {
       throw_if_interrupted();
       Vec2d const centre = scene.dots.centre[dots[i]];
@@ -66,13 +69,11 @@ Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size
         if (!reaches_sensor_plane(flow.status)) continue;
         RayHit<double> const reference = through_camera(view, straight, 1.0);
         sum += flow.pixel - reference.pixel;
-        bend = std::max(bend, length(flow.at_lens - pupil[ray]));
+        probe.bend[i] = std::max(probe.bend[i], length(flow.at_lens - pupil[ray]));
         ++seen;
       }
       probe.displacement_px[i] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
     }
-    std::lock_guard const lock(merge);
-    probe.largest_bend = std::max(probe.largest_bend, bend);
   });
   return probe;
 }
@@ -89,24 +90,20 @@ std::vector<double> changes(Probe const& coarse, Probe const& fine) {
 /// Probes the dots of a scene at one step after the other.
 class StepProbe {
  public:
-  /// Chooses the dots to be probed: those whose chief rays change most when this step is halved.
+  /// Chooses the dots to be probed: those whose chief rays change most when this step is halved. Those whose chief
+  /// rays are bent most are probed for the bend alone.
   StepProbe(Scene const& scene, double step) : scene_(scene), dots_(scene.dots.centre.size()) {
     std::iota(dots_.begin(), dots_.end(), std::size_t{0});
     if (dots_.size() <= probed_dots) return;
-    Probe const coarse = probe(ProbeRays::chief, step), fine = probe(ProbeRays::chief, step / 2);
-    largest_bend_ = std::max(coarse.largest_bend, fine.largest_bend);
-    std::vector<double> const change = changes(coarse, fine);
-    auto const more = [&change](std::size_t a, std::size_t b) {
-      return change[a] > change[b] || (change[a] == change[b] && a < b);
-    };
-    std::partial_sort(dots_.begin(), dots_.begin() + probed_dots, dots_.end(), more);
-    dots_.resize(probed_dots);
+    Probe const coarse = probe(dots_, ProbeRays::chief, step), fine = probe(dots_, ProbeRays::chief, step / 2);
+    largest_bend_ = probe(most_of(coarse.bend), ProbeRays::cone, step).largest_bend();
+    dots_ = most_of(changes(coarse, fine));
   }
 
-  Probe at(double step) const { return probe(ProbeRays::cone, step); }
+  Probe at(double step) const { return probe(dots_, ProbeRays::cone, step); }
   /// Largest change between two probes, and where; and the largest bend of all rays so far.
   void compare(Probe const& coarse, Probe const& fine, StepPlan& plan) const {
-    plan.largest_bend = std::max({largest_bend_, coarse.largest_bend, fine.largest_bend});
+    plan.largest_bend = std::max({largest_bend_, coarse.largest_bend(), fine.largest_bend()});
     std::vector<double> const change = changes(coarse, fine);
     if (change.empty()) return;
     auto const most = std::max_element(change.begin(), change.end());
@@ -115,9 +112,20 @@ class StepProbe {
   }
 
  private:
-  Probe probe(ProbeRays which, double step) const {
-    return std::visit([&](auto const& medium) { return probe_dots(scene_, medium, dots_, which, step); },
+  Probe probe(std::vector<std::size_t> const& dots, ProbeRays which, double step) const {
+    return std::visit([&](auto const& medium) { return probe_dots(scene_, medium, dots, which, step); },
                       scene_.medium.view);
+  }
+  /// The dots with the largest values. @pre more than probed_dots values
+  static std::vector<std::size_t> most_of(std::vector<double> const& value) {
+    std::vector<std::size_t> dots(value.size());
+    std::iota(dots.begin(), dots.end(), std::size_t{0});
+    auto const more = [&value](std::size_t a, std::size_t b) {
+      return value[a] > value[b] || (value[a] == value[b] && a < b);
+    };
+    std::partial_sort(dots.begin(), dots.begin() + probed_dots, dots.end(), more);
+    dots.resize(probed_dots);
+    return dots;
   }
 
   Scene const& scene_;
@@ -161,6 +169,13 @@ Sampled sample_dot(Scene const& scene, SceneView<double> view, Medium const& med
   return sampled;
 }
 
+/// The scene's view with other rays.
+SceneView<double> scrambled(Scene const& scene, int scrambling) {
+  SceneView<double> view = scene.view();
+  view.bundle.seed = repeat_seed(view.bundle.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
+  return view;
+}
+
 /// Scatter between scramblings at the scene's present number of rays.
 struct Scatter {
   double truth_variance = 0;  ///< mean over dots and components [px^2]
@@ -173,6 +188,40 @@ double image_width_px(Scene const& scene) {
   double const sharp = 1 / (1 / scene.setup.lens.focal_length - 1 / scene.setup.z_b());
   double const blur = scene.imaging.entrance_pupil * std::abs(1 - scene.imaging.image_distance / sharp);
   return (2 * scene.dots.half_size * scene.imaging.magnification + blur) / scene.setup.camera.pixel_pitch;
+}
+
+/// Displacement of a dot at independent scramblings of its rays.
+struct MeanDisplacement {
+  Vec2d mean{};
+  double variance = 0;  ///< of the mean, averaged over both components [px^2]
+};
+
+double mean_variance(std::vector<MeanDisplacement> const& displacements) {
+  double sum = 0;
+  for (MeanDisplacement const& one : displacements) sum += one.variance;
+  return sum / static_cast<double>(displacements.size());
+}
+
+template <class Medium>
+MeanDisplacement mean_displacement(Scene const& scene, Medium const& medium, LightModel const& model, std::size_t index,
+                                   std::uint64_t rays) {
+  Vec2d found[scramblings];
+  DotExposure exposure(model, false);
+  LightImage* const no_images[frame_count] = {};
+  GroundTruth truth;
+  truth.resize(1);
+  MeanDisplacement result;
+  for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
+    TracePair<double, Medium> const pair{scrambled(scene, scrambling), medium};
+    exposure.begin(scene.dots.centre[index], scene.dots.radiance_of(index), no_images, 0);
+    trace_dot(pair, index, rays, exposure);
+    exposure.finish(truth, 0);
+    found[scrambling] = truth.displacement_px[0];
+    result.mean += found[scrambling] / static_cast<double>(scramblings);
+  }
+  for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
+  result.variance /= scramblings * (scramblings - 1);
+  return result;
 }
 
 /// What dots look like on average in one frame: sums over a dot's pixels.
@@ -201,9 +250,7 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
                               static_cast<int>(std::floor(at.y)) - side / 2, side};
           std::vector<Sampled> samples;
           for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
-            SceneView<double> view = scene.view();
-            view.bundle.seed = repeat_seed(view.bundle.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-            samples.push_back(sample_dot(scene, view, medium, light.model, dot, window));
+            samples.push_back(sample_dot(scene, scrambled(scene, scrambling), medium, light.model, dot, window));
           }
           PerDot& result = measured[index];
           auto const unbiased = [&](auto const& value_of) {
@@ -271,10 +318,10 @@ std::vector<std::size_t> dots_in_view(Scene const& scene) {
 }
 
 /// Spread evenly over the list: random dots are in random order, regular ones row by row.
-std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& in_view) {
-  if (in_view.size() <= sample_dots) return in_view;
+std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& dots, std::size_t count) {
+  if (dots.size() <= count) return dots;
   std::vector<std::size_t> sample;
-  for (std::size_t i = 0; i < sample_dots; ++i) sample.push_back(in_view[i * in_view.size() / sample_dots]);
+  for (std::size_t i = 0; i < count; ++i) sample.push_back(dots[i * dots.size() / count]);
   return sample;
 }
 
@@ -285,7 +332,15 @@ class RayErrors {
       : scene_(scene), spot_(make_spot(scene, airy_)), deflections_(scene, DeflectionPlan(scene, scene.dots)) {
     CameraSetup const& camera = scene.setup.camera;
     std::vector<std::size_t> const in_view = dots_in_view(scene);
-    sample_ = choose_sample(in_view);
+    sample_ = choose_sample(in_view, sample_dots);
+    if (deflections_.table().exists()) {
+      checked_ = choose_sample(sample_, checked_dots);
+      for (std::uint64_t rays = fewest_checking_rays;; rays *= 2) {
+        by_rays_ = mean_displacements(DeflectionTable{}, rays);
+        if (mean_variance(by_rays_) <= 0.1 * truth_tolerance_px * truth_tolerance_px || rays == most_checking_rays)
+          break;
+      }
+    }
     density_ = static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows);
     bits_ = std::min(camera.bit_depth, 12);
     double const full_scale = std::pow(2.0, bits_) - 1;
@@ -301,18 +356,45 @@ class RayErrors {
     if (sample_.empty()) return plan;
     Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, deflections_.table(), level_, at_peak_);
     double const light_per_level = level_ > 0 ? level_ : scatter.brightest / at_peak_;
-    plan.truth_error_px = std::sqrt(scatter.truth_variance);
+    plan.truth_error_px = std::sqrt(scatter.truth_variance + table_bias());
     plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
     return plan;
   }
 
  private:
+  std::vector<MeanDisplacement> mean_displacements(DeflectionTable const& table, std::uint64_t rays) const {
+    std::vector<MeanDisplacement> means(checked_.size());
+    OwnedLightModel const light(scene_, scene_.dots, nullptr, table);
+    std::visit(
+        [&](auto const& medium) {
+          parallel_for(means.size(), [&](std::size_t i) {
+            means[i] = mean_displacement(scene_, medium, light.model, checked_[i], rays);
+          });
+        },
+        scene_.medium.view);
+    return means;
+  }
+
+  /// Mean square by which the table leads displacements from those of rays alone, the scatter of both taken off [px^2].
+  double table_bias() const {
+    if (checked_.empty()) return 0;
+    std::vector<MeanDisplacement> const by_table = mean_displacements(deflections_.table(), scene_.rays_per_dot);
+    double sum = 0;
+    for (std::size_t i = 0; i < by_table.size(); ++i) {
+      Vec2d const off = by_table[i].mean - by_rays_[i].mean;
+      double const bias = 0.5 * dot(off, off) - by_table[i].variance - by_rays_[i].variance;
+      if (std::isfinite(bias)) sum += bias;
+    }
+    return std::max(0.0, sum / static_cast<double>(by_table.size()));
+  }
+
   Scene const& scene_;
   std::optional<AiryTable> airy_;
   SpotView spot_;
   DeflectionMap deflections_;
-  std::vector<std::size_t> sample_;
-  double density_, level_, at_peak_;  // dots a pixel, light of a grey level or 0, levels of the brightest pixel
+  std::vector<std::size_t> sample_, checked_;
+  std::vector<MeanDisplacement> by_rays_;  // of the dots that are checked
+  double density_, level_, at_peak_;       // dots a pixel, light of a grey level or 0, levels of the brightest pixel
   int bits_;
 };
 

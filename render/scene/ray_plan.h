@@ -18,7 +18,7 @@ struct StepPlan {
 /// How the number of rays was chosen.
 struct RaysPlan {
   std::uint64_t rays = 0;
-  double truth_error_px = 0;      ///< rms over dots, components and scramblings of the displacement's scatter
+  double truth_error_px = 0;      ///< of displacements, rms over dots, components and scramblings
   double image_error_levels = 0;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
@@ -36,8 +36,10 @@ void use_step(Scene& scene, StepPlan const& plan);
 
 /// Errors at the scene's present number of rays: how far independent scramblings of it scatter on a sample of up to 96
 /// dots spread over the target, each traced four times. Images as they are where dots overlap: pixels that several dots
-/// light have the sum of their variances, and "auto" exposes for the brightest pixel that dots at random make. Scatter
-/// does not show what a deflection table leaves of every ray alike: some 1e-4 px and a third of a grey level of 12 bits.
+/// light have the sum of their variances, and "auto" exposes for the brightest pixel that dots at random make. To
+/// truth's scatter comes what a deflection table leaves of every ray alike: up to 24 dots are traced by 4096 to 65,536
+/// rays each without it. Of images scatter is all that is measured: a table leaves a third of a grey level of 12 bits
+/// more, and 2 to 8 levels where fronts spread a dot's rays over pixels.
 RaysPlan measure_rays(Scene const& scene);
 
 /// Chooses rays_per_dot: the smallest power of two for which measure_rays() finds less than 1e-3 px rms in truth and
