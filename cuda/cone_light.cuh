@@ -180,7 +180,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
       for (int edge = lane % 8; edge < edges; edge += 8) {
         double const t = (from + edge - 0.5) * per_sigma;
         Spot::EdgeTerms const terms(t, per_sigma);
-        out[edge] = 0.5 * erf(t * 0.70710678118654752440);
+        out[edge] = Spot::edge_value(t);
         for (int k = 1; k < orders; ++k) out[k * edges + edge] = terms.of[k];
       }
     }

@@ -13,14 +13,6 @@ struct DotSums {
   CentroidSum<double> hits[frame_count];
 };
 
-/// How a dot's light is laid down.
-enum class DotKind : int {
-  still,   ///< the flow left it alone: one disc in both frames
-  narrow,  ///< by the moments of its cone about their mean
-  wide,    ///< by moments, square by square of displacement
-  rays,    ///< ray by ray
-};
-
 /// What is known of a dot's light once its rays are summed up; stays on the device.
 struct DotCone {
   DotKind kind;

@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double rays_a_source = 1024; // of the table: more are not paid for by the rays that they save
+constexpr double rays_a_source = 1024;  // of the table: more are not paid for by the rays that they save
 constexpr double cheap_rays_a_source = 32;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 

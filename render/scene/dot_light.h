@@ -36,6 +36,14 @@ GLADSTONE_HD inline int pupil_rule(double spread_px) {
   return spread_px == 0 ? 0 : (spread_px < 0.02 ? 1 : (spread_px < 0.2 ? 2 : (spread_px < 0.6 ? 3 : 4)));
 }
 
+/// How a dot's light is laid down.
+enum class DotKind : int {
+  still,   ///< the flow left it alone: one disc in both frames
+  narrow,  ///< by the moments of its cone about their mean
+  wide,    ///< by moments, square by square of displacement, where there are not too many; else ray by ray
+  rays,    ///< ray by ray
+};
+
 /// How the images of all dots are made.
 ///
 /// Where the reference frame is known in closed form (a thin lens focused on the target maps every ray of a source's
@@ -75,6 +83,13 @@ struct LightModel {
   GLADSTONE_HD bool narrow(DisplacementMoments const& moments) const {
     double const allowed = 0.5 * box_side();
     return moments.square() <= allowed * allowed * moments.of[0];
+  }
+  /// How a dot's light is laid down. @param moved the flow did something to some of its rays @param integrated its cone
+  /// was, by the table @param narrow_cone narrow() at all places of the source
+  GLADSTONE_HD DotKind kind(bool moved, bool integrated, bool narrow_cone) const {
+    if (controlled && !moved) return DotKind::still;
+    if (!integrated || !by_moments()) return DotKind::rays;
+    return narrow_cone ? DotKind::narrow : DotKind::wide;
   }
   /// Whether the table knows all rays of a dot.
   GLADSTONE_HD bool tabled(Vec2d centre) const {

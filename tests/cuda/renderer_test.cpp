@@ -162,7 +162,6 @@ TEST_F(CudaRendererTest, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(one.truth.eq9_cone_px, two.truth.eq9_cone_px);
 }
 
-/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
 // What is kept on the device is what would have been brought to the host: light, the camera's levels of it, noise
 // included, and the brightest pixel. Logarithms differ in their last digits, so that a noisy pixel in 10,000 may round
 // to the next level or, where a rejection flips, be drawn anew.
@@ -207,6 +206,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   }
 }
 
+/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
 TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
   Scene scene = scene_of(dns_plane("late"), 256), preview = scene;
   preview.setup.render.precision = Precision::single;
