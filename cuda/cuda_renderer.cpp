@@ -13,6 +13,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
 #include "render/scene/light_model.h"
+#include "render/sensor/exposure.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -100,7 +101,7 @@ class ImagePairOnDevice {
     }
   }
   DeviceImages view(double light_per_weight) {
-    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
+    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight * fixed_point_one};
   }
   std::shared_ptr<DeviceLight> to_light() const {
     auto light = std::make_shared<DeviceLight>(columns_, rows_);

@@ -38,6 +38,18 @@ class DeviceMemoryLimit {
   std::size_t held_before_;
 };
 
+/// Shared memory that a block gets at most, where the device offers more [bytes].
+inline std::atomic<std::size_t> shared_memory_limit{std::numeric_limits<std::size_t>::max()};
+
+/// While it lives, blocks get no more shared memory than `bytes`, as on a smaller card; for tests. One at a time.
+class SharedMemoryLimit {
+ public:
+  explicit SharedMemoryLimit(std::size_t bytes) { shared_memory_limit = bytes; }
+  ~SharedMemoryLimit() { shared_memory_limit = std::numeric_limits<std::size_t>::max(); }
+  SharedMemoryLimit(SharedMemoryLimit const&) = delete;
+  SharedMemoryLimit& operator=(SharedMemoryLimit const&) = delete;
+};
+
 /// [bytes]
 struct DeviceRoom {
   std::size_t free;

@@ -26,7 +26,7 @@ struct DeviceImages {
   unsigned long long* light[frame_count] = {};  ///< null: no images
   int columns = 0;
   int rows = 0;
-  double light_per_weight = 0;
+  double units_per_weight = 0;  ///< units of fixed point
 };
 
 /// Sums up the records of a batch's dots to truth, a block a dot: sums[i] and cones[i] belong to dot first + i.
