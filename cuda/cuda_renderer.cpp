@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "cuda/cuda_error.h"
 #include "cuda/device_deflections.h"
 #include "cuda/device_light.h"
 #include "cuda/expose_dots.h"

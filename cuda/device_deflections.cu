@@ -1,3 +1,4 @@
+#include "cuda/cuda_error.h"
 #include "cuda/device_deflections.h"
 
 namespace gladstone::cuda {
