@@ -50,11 +50,15 @@ enum class DotKind : int {
 /// point on one image point, so the reference image is the source's disc convolved with the spot), the rays serve as a
 /// control variate's remainder: the flow image is the same disc moved by a smooth fit to the rays' displacements, both
 /// discs integrated by cubature, plus for every ray the spot where it lands minus the spot where the fit puts it.
-/// Whatever the fit, the sum converges to the image that the rays alone would give; the better the fit, the less it
+/// Whatever the fit, this sum converges to the image that the rays alone would give; the better the fit, the less it
 /// scatters. Elsewhere every ray's spot is laid down where it lands.
 ///
-/// With a deflection table and a Gaussian spot, light and truth come from integrals over the cone instead
-/// (CorrectedCone): the rays correct the table, and no spot is laid down for them.
+/// With a deflection table truth comes from integrals over the cone instead (CorrectedCone), and so does light where
+/// the spot is Gaussian: the rays correct the table, and no spot is laid down for them. That does not converge with the
+/// number of rays to what they alone would give: what the table is off by beyond their mean, their spread and a tilt of
+/// the bend stays, some 1e-4 px of truth and half a grey level of 12 bits. It is more near caustics, where the stop's
+/// edge is no simple curve as seen from the dot and is smoothed: on the early DNS plane with four times its density
+/// truth is off by up to 0.008 px. From 1024 rays a dot on (rays_are_better) such dots are left to their rays.
 struct LightModel {
   TargetImage image;
   SpotView spot;
