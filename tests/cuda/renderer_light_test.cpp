@@ -111,7 +111,7 @@ TEST_F(CudaLightTest, SourcesWithoutRadiance) {
   }
 }
 
-// Spots of 43, 65 and 291 px: the widest that moments are laid down for, one whose shares a warp has room for four of,
+// Spots of 43, 65 and 291 px: the widest that moments are laid down for, one whose shares a warp has room for three of,
 // and one whose shares it has no room for, wider than the image.
 TEST_F(CudaLightTest, WideSpots) {
   struct Case {
