@@ -180,7 +180,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
       for (int edge = lane % 8; edge < edges; edge += 8) {
         double const t = (from + edge - 0.5) * per_sigma;
         Spot::EdgeTerms const terms(t, per_sigma);
-        out[edge] = 0.5 * erf(t * 0.70710678118654752440);
+        out[edge] = Spot::edge_value(t);
         for (int k = 1; k < orders; ++k) out[k * edges + edge] = terms.of[k];
       }
     }
@@ -205,7 +205,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
     for (int task = lane; task < 8 * here; task += warp_size) {
       int const which = task / 8;
       double const* const moments = factors(which) + 2 * orders * edges;
-      double const weight = place(first + which).weight;
+      double const weight = place(first + which).weight * images.units_per_weight;
       for (int i = task % 8; i < width; i += 8) {
         double* const along_y = factors(which) + orders * edges + i;
         double share[orders], with[orders] = {};
@@ -233,6 +233,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
           double share = 0;
 #pragma unroll
           for (int a = 0; a < orders; ++a) share += x[a * edges] * y[a * edges];
+          share = whole_units(share);
           if (inside) {
             corner[row * patch.side + column] += share;
           } else {

@@ -2,18 +2,9 @@
 
 #include <cuda_runtime_api.h>
 
-#include <cstddef>
-#include <string>
-
 #include "render/base/error.h"
 
 namespace gladstone::cuda {
-
-/// The device has no room left: callers may try again with less. what() names the sizes.
-class OutOfDeviceMemory : public DeviceError {
- public:
-  OutOfDeviceMemory(std::string const& what_for, std::size_t bytes);
-};
 
 /// Throws DeviceError naming the failed call, unless `status` says success.
 void check(cudaError_t status, char const* call);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "cuda/cuda_error.h"
 #include "cuda/device_deflections.h"
 #include "cuda/device_light.h"
 #include "cuda/expose_dots.h"
@@ -13,6 +14,7 @@
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
 #include "render/scene/light_model.h"
+#include "render/sensor/exposure.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -100,7 +102,7 @@ class ImagePairOnDevice {
     }
   }
   DeviceImages view(double light_per_weight) {
-    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight};
+    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight * fixed_point_one};
   }
   std::shared_ptr<DeviceLight> to_light() const {
     auto light = std::make_shared<DeviceLight>(columns_, rows_);

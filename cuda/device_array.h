@@ -1,12 +1,9 @@
 #pragma once
 
-#include <cuda_runtime_api.h>
-
 #include <cstddef>
 #include <string>
 #include <utility>
 
-#include "cuda/cuda_error.h"
 #include "cuda/device_memory.h"
 
 namespace gladstone::cuda {
@@ -40,16 +37,14 @@ class DeviceArray {
 
   /// Copies size() elements from `host`.
   void upload(T const* host) {
-    if (size_ > 0)
-      check(cudaMemcpy(data_, host, size_ * sizeof(T), cudaMemcpyHostToDevice), "cudaMemcpy to the device");
+    if (size_ > 0) copy_to_device(data_, host, size_ * sizeof(T));
   }
   /// Copies the first `count` elements to `host`; waits for the work before it.
   void download(T* host, std::size_t count) const {
-    if (count > 0)
-      check(cudaMemcpy(host, data_, count * sizeof(T), cudaMemcpyDeviceToHost), "cudaMemcpy from the device");
+    if (count > 0) copy_to_host(host, data_, count * sizeof(T));
   }
   void zero() {
-    if (size_ > 0) check(cudaMemset(data_, 0, size_ * sizeof(T)), "cudaMemset");
+    if (size_ > 0) zero_on_device(data_, size_ * sizeof(T));
   }
 
  private:
@@ -57,21 +52,19 @@ class DeviceArray {
   std::size_t size_ = 0;
 };
 
-/// Page-locked memory of the host, which a device copies to at full speed; grows, never shrinks.
+/// Page-locked memory that grows and never shrinks.
 class PinnedBuffer {
  public:
   PinnedBuffer() = default;
   PinnedBuffer(PinnedBuffer const&) = delete;
   PinnedBuffer& operator=(PinnedBuffer const&) = delete;
-  ~PinnedBuffer() {
-    if (data_) cudaFreeHost(data_);
-  }
+  ~PinnedBuffer() { release_pinned(data_); }
   /// @return room for so many bytes; what was in it is lost
   void* reserve(std::size_t bytes) {
     if (bytes > bytes_) {
-      if (data_) check(cudaFreeHost(std::exchange(data_, nullptr)), "cudaFreeHost");
       bytes_ = 0;
-      check(cudaMallocHost(&data_, bytes), "cudaMallocHost");
+      release_pinned(std::exchange(data_, nullptr));
+      data_ = allocate_pinned(bytes);
       bytes_ = bytes;
     }
     return data_;

@@ -1,3 +1,4 @@
+#include "cuda/cuda_error.h"
 #include "cuda/device_deflections.h"
 
 namespace gladstone::cuda {
@@ -53,24 +54,24 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
   SceneView<double> const open = open_view(scene);
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
-  displacements_ = DeviceArray<Vec2d>(nodes, "the deflection table");
-  bends_ = DeviceArray<Vec2d>(nodes, "the deflection table");
-  displacement_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
-  bend_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
+  values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");
+  auto* const displacements = reinterpret_cast<Vec2d*>(values_.data());
+  Vec2d* const bends = displacements + nodes;
+  auto* const displacement_slopes = reinterpret_cast<KeptSlopes*>(bends + nodes);
+  KeptSlopes* const bend_slopes = displacement_slopes + slopes;
   std::visit(
       [&](auto const& held) {
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
         auto const blocks = static_cast<unsigned>((nodes + 4 + 4 * slopes + threads - 1) / threads);
-        kernel<<<blocks, threads>>>(open, held, plan.table, displacements_.data(), bends_.data(),
-                                    displacement_slopes_.data(), bend_slopes_.data());
+        kernel<<<blocks, threads>>>(open, held, plan.table, displacements, bends, displacement_slopes, bend_slopes);
         check_launch("deflect");
       },
       medium);
   table_ = plan.table;
-  table_.displacements = displacements_.data();
-  table_.bends = bends_.data();
-  table_.displacement_slopes = displacement_slopes_.data();
-  table_.bend_slopes = bend_slopes_.data();
+  table_.displacements = displacements;
+  table_.bends = bends;
+  table_.displacement_slopes = displacement_slopes;
+  table_.bend_slopes = bend_slopes;
 }
 
 }  // namespace gladstone::cuda

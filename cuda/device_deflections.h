@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "cuda/device_array.h"
 #include "cuda/device_medium.h"
 #include "render/scene/deflection_map.h"
@@ -9,6 +11,7 @@ namespace gladstone::cuda {
 /// A scene's deflection table in the device's memory, as DeflectionMap is in the host's.
 class DeviceDeflections {
  public:
+  /// @throws OutOfDeviceMemory naming the size of the whole table
   DeviceDeflections(Scene const& scene, DeflectionPlan const& plan, DeviceMedium<double> const& medium);
 
   /// exists() only where it was wanted.
@@ -16,8 +19,7 @@ class DeviceDeflections {
 
  private:
   DeflectionTable table_;
-  DeviceArray<Vec2d> displacements_, bends_;
-  DeviceArray<KeptSlopes> displacement_slopes_, bend_slopes_;
+  DeviceArray<std::byte> values_;  ///< all of the table's: displacements, bends, and the slopes of both
 };
 
 }  // namespace gladstone::cuda

@@ -2,10 +2,41 @@
 
 #include <algorithm>
 
+#include "cuda/cuda_error.h"
 #include "cuda/detect_light.h"
 #include "render/base/parallel.h"
 
 namespace gladstone::cuda {
+namespace {
+
+/// A copy to page-locked memory, which the host need not wait for until it wants the values.
+class CopyToHost {
+ public:
+  CopyToHost(double* to, double const* from, std::size_t count) : to_(to) {
+    check(cudaEventCreateWithFlags(&done_, cudaEventDisableTiming), "cudaEventCreate");
+    cudaError_t status = cudaMemcpyAsync(to, from, count * sizeof(double), cudaMemcpyDeviceToHost);
+    if (status == cudaSuccess) status = cudaEventRecord(done_);
+    if (status != cudaSuccess) cudaEventDestroy(done_);
+    check(status, "cudaMemcpyAsync from the device");
+  }
+  CopyToHost(CopyToHost const&) = delete;
+  CopyToHost& operator=(CopyToHost const&) = delete;
+  ~CopyToHost() {
+    cudaEventSynchronize(done_);  // nothing is written to the memory any more
+    cudaEventDestroy(done_);
+  }
+  /// @return the values, arrived
+  double const* wait() const {
+    check(cudaEventSynchronize(done_), "cudaMemcpyAsync from the device");
+    return to_;
+  }
+
+ private:
+  double* to_;
+  cudaEvent_t done_ = nullptr;
+};
+
+}  // namespace
 
 DeviceFrames::DeviceFrames(int columns, int rows) : columns_(columns), rows_(rows) {
   for (auto& levels : levels_) {
@@ -33,13 +64,17 @@ void DeviceLight::take_from(Image<double> const& white) {
 
 LightPair DeviceLight::to_host(PinnedBuffer& staging) const {
   auto* const staged = static_cast<double*>(staging.reserve(frame_count * pixels() * sizeof(double)));
-  light_[0].download(staged, pixels());
-  light_[1].download(staged + pixels(), pixels());
+  CopyToHost const reference(staged, light_[0].data(), pixels());
+  CopyToHost const flow(staged + pixels(), light_[1].data(), pixels());
   LightPair pair{Image<double>(columns_, rows_), Image<double>(columns_, rows_)};
-  parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
-    std::copy(staged + begin, staged + end, pair.reference.data() + begin);
-    std::copy(staged + pixels() + begin, staged + pixels() + end, pair.flow.data() + begin);
-  });
+  auto const copy_on = [&](CopyToHost const& copy, Image<double>& image) {
+    double const* const arrived = copy.wait();
+    parallel_chunks(pixels(), std::size_t{1} << 16, [&](std::size_t begin, std::size_t end) {
+      std::copy(arrived + begin, arrived + end, image.data() + begin);
+    });
+  };
+  copy_on(reference, pair.reference);
+  copy_on(flow, pair.flow);
   return pair;
 }
 

@@ -35,7 +35,7 @@ class DeviceLight final : public KeptLight {
   double* light(Frame frame) { return light_[static_cast<int>(frame)].data(); }
   /// Takes the dots from a white target: what is there becomes white minus that.
   void take_from(Image<double> const& white);
-  /// @param staging that the device copies to; all cores copy on from there
+  /// @param staging that the device copies to; all cores copy one frame on from there while the other is on its way
   LightPair to_host(PinnedBuffer& staging) const;
 
   double brightest() const override;

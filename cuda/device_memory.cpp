@@ -1,5 +1,7 @@
 #include "cuda/device_memory.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 
 #include "cuda/cuda_error.h"
@@ -27,7 +29,24 @@ std::size_t pool_attribute(cudaMemPool_t pool, cudaMemPoolAttr attribute) {
   return value;
 }
 
+/// In MiB, small sizes with their decimals.
+std::string mebibytes(std::size_t bytes) {
+  double const size = static_cast<double>(bytes) / 0x1p20;
+  return fmt::format("{:.{}f}", size, size < 10 ? 3 : 0);
+}
+
+std::string shortage(std::string const& what_for, std::size_t bytes) {
+  DeviceRoom const room = device_room();
+  return fmt::format(
+      "out of device memory: {} needs {} MiB, {} of {} MiB are free; use fewer rays, smaller images or volumes, or "
+      "--device cpu",
+      what_for, mebibytes(bytes), mebibytes(room.free), mebibytes(room.total));
+}
+
 }  // namespace
+
+OutOfDeviceMemory::OutOfDeviceMemory(std::string const& what_for, std::size_t bytes)
+    : DeviceError(shortage(what_for, bytes)) {}
 
 DeviceRoom device_room() {
   check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is given back in the order of the stream
@@ -58,6 +77,26 @@ void release_on_device(void* memory, std::size_t bytes) noexcept {
   if (!memory) return;
   cudaFreeAsync(memory, nullptr);  // fails only after an error that was reported where it happened
   device_memory_account.held -= bytes;
+}
+
+void copy_to_device(void* to, void const* from, std::size_t bytes) {
+  check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "cudaMemcpy to the device");
+}
+
+void copy_to_host(void* to, void const* from, std::size_t bytes) {
+  check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "cudaMemcpy from the device");
+}
+
+void zero_on_device(void* memory, std::size_t bytes) { check(cudaMemset(memory, 0, bytes), "cudaMemset"); }
+
+void* allocate_pinned(std::size_t bytes) {
+  void* memory = nullptr;
+  check(cudaMallocHost(&memory, bytes), "cudaMallocHost");
+  return memory;
+}
+
+void release_pinned(void* memory) noexcept {
+  if (memory) cudaFreeHost(memory);
 }
 
 }  // namespace gladstone::cuda

@@ -6,7 +6,10 @@
 #include <limits>
 #include <string>
 
-/// Who takes how much of the device's memory. No CUDA header here: tests set limits where there is no CUDA, too.
+#include "render/base/error.h"
+
+/// The device's memory: who takes how much of it, and what goes there and back. No CUDA header here, so that tests and
+/// benchmarks, which lie outside of cuda/, can use it.
 namespace gladstone::cuda {
 
 /// What the arrays of this process hold on the device, and may hold [bytes].
@@ -38,6 +41,18 @@ class DeviceMemoryLimit {
   std::size_t held_before_;
 };
 
+/// Shared memory that a block gets at most, where the device offers more [bytes].
+inline std::atomic<std::size_t> shared_memory_limit{std::numeric_limits<std::size_t>::max()};
+
+/// While it lives, blocks get no more shared memory than `bytes`, as on a smaller card; for tests. One at a time.
+class SharedMemoryLimit {
+ public:
+  explicit SharedMemoryLimit(std::size_t bytes) { shared_memory_limit = bytes; }
+  ~SharedMemoryLimit() { shared_memory_limit = std::numeric_limits<std::size_t>::max(); }
+  SharedMemoryLimit(SharedMemoryLimit const&) = delete;
+  SharedMemoryLimit& operator=(SharedMemoryLimit const&) = delete;
+};
+
 /// [bytes]
 struct DeviceRoom {
   std::size_t free;
@@ -48,11 +63,27 @@ struct DeviceRoom {
 /// @throws DeviceError
 DeviceRoom device_room();
 
+/// The device has no room left: callers may try again with less. what() names the sizes.
+class OutOfDeviceMemory : public DeviceError {
+ public:
+  OutOfDeviceMemory(std::string const& what_for, std::size_t bytes);
+};
+
 /// Memory from the device's pool, in the order of the default stream; contents are undefined.
 /// @param what_for named in the message should memory be short @throws OutOfDeviceMemory, DeviceError
 void* allocate_on_device(std::size_t bytes, std::string const& what_for);
 
 /// Gives it back. @param bytes as allocated
 void release_on_device(void* memory, std::size_t bytes) noexcept;
+
+/// Copies, and zeroes, in the order of the default stream; copies to the host wait for the work before them.
+/// @throws DeviceError
+void copy_to_device(void* to, void const* from, std::size_t bytes);
+void copy_to_host(void* to, void const* from, std::size_t bytes);
+void zero_on_device(void* memory, std::size_t bytes);
+
+/// Page-locked memory of the host, which a device copies to at full speed. @throws DeviceError
+void* allocate_pinned(std::size_t bytes);
+void release_pinned(void* memory) noexcept;
 
 }  // namespace gladstone::cuda

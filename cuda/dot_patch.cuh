@@ -27,15 +27,22 @@ __device__ RayRecord<double> widened(RayRecord<T> const& ray) {
   }
 }
 
-__device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double light) {
+/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up
+/// to 2^53, 512 fully lit pixels), so that images depend neither on the order of deposits nor on where they are
+/// gathered on their way to the image.
+__device__ inline double whole_units(double units) { return rint(units); }
+
+/// @param units whole
+__device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double units) {
   if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
-  auto const share = static_cast<unsigned long long>(to_fixed_point(light * images.light_per_weight));
+  auto const share = static_cast<unsigned long long>(static_cast<long long>(units));
   atomicAdd(images.light[static_cast<int>(frame)] + static_cast<std::size_t>(row) * images.columns + column, share);
 }
 
-/// A square piece of a frame in which a block gathers a dot's light, one copy a warp.
+/// A square piece of a frame in which a block gathers a dot's light, one copy a warp, so that few additions go to the
+/// image; what falls beside it does so at once.
 struct Patch {
-  double* light;  ///< [warp][side][side]
+  double* light;  ///< [warp][side][side], whole units
   int side;
   int left, top;  ///< image position of its corner
 
@@ -84,6 +91,7 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
     Deposit mine;
     if (lane < group && base + lane < count) mine = source(base + lane);
     if (!(fabs(mine.at.x) < 1e8 && fabs(mine.at.y) < 1e8)) mine = {};
+    mine.weight *= images.units_per_weight;
     unsigned int const lit = __ballot_sync(whole_warp, mine.weight != 0);
     if (lit == 0) continue;
     int const my_column = static_cast<int>(floor(mine.at.x + 0.5)) - width / 2;
@@ -105,7 +113,9 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
       double* const corner = gathered + (r0 - patch.top) * patch.side + c0 - patch.left;
       if (gaussian && inside) {
         for (int r = first_row; r < width; r += 4) {
-          for (int c = first_column; c < width; c += 8) corner[r * patch.side + c] += of_rows[r] * of_columns[c];
+          for (int c = first_column; c < width; c += 8) {
+            corner[r * patch.side + c] += whole_units(of_rows[r] * of_columns[c]);
+          }
         }
       } else {
         Deposit const light{{__shfl_sync(whole_warp, mine.at.x, which), __shfl_sync(whole_warp, mine.at.y, which)},
@@ -124,6 +134,7 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
             if (spot.model == SpotModel::airy) {
               share *= spot.airy.share(light.at.x - (c0 + width / 2), light.at.y - (r0 + width / 2), r, c);
             }
+            share = whole_units(share);
             if (inside) {
               corner[r * patch.side + c] += share;
             } else {
@@ -137,14 +148,17 @@ __device__ void lay_down(SpotView const& spot, Patch const& patch, DeviceImages 
   }
 }
 
-/// Side of a patch: wide enough for a dot, its spot and some pixels of spread; what falls beside it goes to the image
-/// at once. Eight more than a multiple of sixteen, so that four rows of a spot lie in different banks.
-inline int patch_side(LightModel const& model) {
+inline std::size_t patch_bytes(int side) { return sizeof(double) * dot_warps * side * side; }
+/// Side of a patch: wide enough for a dot, its spot and some pixels of spread, as far as a block's shared memory goes.
+/// Eight more than a multiple of sixteen, so that four rows of a spot lie in different banks.
+/// @param most_bytes that a patch may take
+inline int patch_side(LightModel const& model, std::size_t most_bytes) {
   int const width = 2 * model.spot.half_width() + 1;
   int const wanted = width + 2 * static_cast<int>(std::ceil(model.image.half_size_px())) + 6;
-  return std::min(56, 8 + (wanted + 7) / 16 * 16);
+  int side = std::min(56, 8 + (wanted + 7) / 16 * 16);
+  while (side > 8 && patch_bytes(side) > most_bytes) side -= 16;
+  return side;
 }
-inline std::size_t patch_bytes(int side) { return sizeof(double) * dot_warps * side * side; }
 
 /// The light of a source in the reference frame, by a whole block.
 __device__ inline void lay_down_reference(LightModel const& model, DotPlan const& plan, Patch& patch,

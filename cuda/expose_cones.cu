@@ -36,10 +36,9 @@ __global__ void __launch_bounds__(dot_threads, 6)
 void expose_cones(LightModel const& model, SourcesView<double> const& sources, Batch const& batch, DotCone const* cones,
                   DeviceImages const& images) {
   auto* const kernel = expose_cones_kernel;
-  int const side = patch_side(model);
+  int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = patch_bytes(side);
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
-        "cudaFuncSetAttribute");
+  allow_shared_bytes(kernel, shared);
   kernel<<<blocks_for(kernel, dot_threads, shared, batch.dots), dot_threads, shared>>>(model, sources, batch, cones,
                                                                                        images, side);
   check_launch("expose_cones");

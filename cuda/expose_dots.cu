@@ -94,6 +94,23 @@ std::size_t shared_bytes(int side) {
   return std::max(sizeof(double) * tile_rays * (FlowFit::most_factors + 1), patch_bytes(side));
 }
 
+/// Points that a wide cone is integrated over, at most.
+std::size_t points_of_a_cone(LightModel const& model) {
+  if (!model.by_moments()) return 0;
+  return static_cast<std::size_t>(model.places.count) *
+         static_cast<std::size_t>(std::max(model.cone.count, model.cone.scattered_count));
+}
+
+/// Room for one cone's points a block, since a block works on one dot at a time.
+/// @param blocks fewer on return where the device has little left, which only costs time
+DeviceArray<ConeLight> make_room_for_cones(std::size_t points, int& blocks) {
+  for (;; blocks = (blocks + 1) / 2) try {
+      return DeviceArray<ConeLight>(static_cast<std::size_t>(blocks) * points, "the points of wide cones");
+    } catch (OutOfDeviceMemory const&) {
+      if (blocks == 1) throw;
+    }
+}
+
 template <class T>
 __global__ void __launch_bounds__(threads, 4)
     expose_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
@@ -168,15 +185,12 @@ template <class T>
 void expose_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
                  RayRecord<T> const* records, DotSums const* sums, DotCone const* cones, DeviceImages const& images) {
   auto* const kernel = expose_dots_kernel<T>;
-  int const side = patch_side(model);
+  int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = shared_bytes(side);
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)),
-        "cudaFuncSetAttribute");
-  int const blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
-  auto const points_a_block =
-      static_cast<std::size_t>(model.places.count) *
-      static_cast<std::size_t>(model.by_moments() ? std::max(model.cone.count, model.cone.scattered_count) : 0);
-  DeviceArray<ConeLight> points(static_cast<std::size_t>(blocks) * points_a_block, "the points of wide cones");
+  allow_shared_bytes(kernel, shared);
+  int blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
+  std::size_t const points_a_block = points_of_a_cone(model);
+  DeviceArray<ConeLight> points = make_room_for_cones(points_a_block, blocks);
   kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, points.data(),
                                       points_a_block);
   check_launch("expose_dots");

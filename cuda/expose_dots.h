@@ -13,14 +13,6 @@ struct DotSums {
   CentroidSum<double> hits[frame_count];
 };
 
-/// How a dot's light is laid down.
-enum class DotKind : int {
-  still,   ///< the flow left it alone: one disc in both frames
-  narrow,  ///< by the moments of its cone about their mean
-  wide,    ///< by moments, square by square of displacement
-  rays,    ///< ray by ray
-};
-
 /// What is known of a dot's light once its rays are summed up; stays on the device.
 struct DotCone {
   DotKind kind;
@@ -34,7 +26,7 @@ struct DeviceImages {
   unsigned long long* light[frame_count] = {};  ///< null: no images
   int columns = 0;
   int rows = 0;
-  double light_per_weight = 0;
+  double units_per_weight = 0;  ///< units of fixed point
 };
 
 /// Sums up the records of a batch's dots to truth, a block a dot: sums[i] and cones[i] belong to dot first + i.

@@ -1,3 +1,4 @@
+#include "cuda/cuda_error.h"
 #include "cuda/device_medium.h"
 
 namespace gladstone::cuda {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "cuda/cuda_error.h"
+#include "cuda/device_memory.h"
 
 namespace gladstone::cuda {
 
@@ -21,6 +22,26 @@ int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64
   std::uint64_t const most =
       8 * static_cast<std::uint64_t>(processors) * static_cast<std::uint64_t>(std::max(1, resident));
   return static_cast<int>(std::max<std::uint64_t>(1, std::min(wanted, most)));
+}
+
+/// Dynamic shared memory that a block of a kernel can have beside its static one [bytes].
+template <class Kernel>
+std::size_t most_shared_bytes(Kernel kernel) {
+  int device = 0, of_block = 0;
+  cudaFuncAttributes attributes{};
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  check(cudaDeviceGetAttribute(&of_block, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "cudaDeviceGetAttribute");
+  check(cudaFuncGetAttributes(&attributes, reinterpret_cast<void const*>(kernel)), "cudaFuncGetAttributes");
+  std::size_t const most = std::min<std::size_t>(static_cast<std::size_t>(of_block), shared_memory_limit);
+  return most - std::min(most, attributes.sharedSizeBytes);
+}
+
+/// Lets a kernel be launched with so much dynamic shared memory.
+template <class Kernel>
+void allow_shared_bytes(Kernel kernel, std::size_t bytes) {
+  check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                             static_cast<int>(bytes)),
+        "cudaFuncSetAttribute");
 }
 
 }  // namespace gladstone::cuda

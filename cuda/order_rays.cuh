@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cuda/device_array.h"
+#include "cuda/launch.h"
 #include "cuda/trace_rays.h"
 
 /// Which rays are traced side by side.
@@ -119,9 +120,7 @@ DeviceArray<std::uint32_t> order_rays(SceneView<T> const& view, Bounds<T> const&
   }
   Chunks const chunks(batch);
   auto const bytes = static_cast<unsigned>(chunks.dots * chunks.rays) * sizeof(unsigned short);
-  check(cudaFuncSetAttribute(order_rays_kernel<T>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                             Chunks::most_rays * sizeof(unsigned short)),
-        "cudaFuncSetAttribute");
+  allow_shared_bytes(order_rays_kernel<T>, Chunks::most_rays * sizeof(unsigned short));
   order_rays_kernel<T>
       <<<static_cast<unsigned>(chunks.number), order_threads, bytes>>>(view, box, batch, chunks, order.data());
   check_launch("order_rays");

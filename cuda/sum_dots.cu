@@ -49,14 +49,10 @@ __global__ void __launch_bounds__(dot_threads, 5)
     }
     if (threadIdx.x == 0) sums[i] = {plan.origin, {sum.hits[0], sum.hits[1]}};
     if (cones) {
-      bool const by_moments = tabled && model.by_moments();
-      DotKind const kind = model.controlled && !moved ? DotKind::still
-                           : !by_moments              ? DotKind::rays
-                           : state.narrow             ? DotKind::narrow
-                                                      : DotKind::wide;
+      DotKind const kind = model.kind(moved, tabled, tabled && state.narrow);
       if (threadIdx.x == 0) {
         cones[i].kind = kind;
-        if (by_moments) {
+        if (kind == DotKind::narrow || kind == DotKind::wide) {
           cones[i].origin = cone.origin();
           cones[i].check = sum.check;
         }

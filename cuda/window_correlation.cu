@@ -1,5 +1,5 @@
 #include "cuda/correlation_kernels.h"
-#include "cuda/cuda_error.h"
+#include "cuda/launch.h"
 #include "cuda/peak_search.cuh"
 #include "cuda/register_fourier.cuh"
 
@@ -346,8 +346,7 @@ template <int size, int windows_per_block, int blocks_per_multiprocessor>
 void launch(WindowJob const& job, WindowPeaks* peaks) {
   auto const kernel = correlate_window<size, windows_per_block, blocks_per_multiprocessor>;
   constexpr std::size_t bytes = windows_per_block * sizeof(WindowMemory<size>);
-  check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)),
-        "cudaFuncSetAttribute");
+  allow_shared_bytes(kernel, bytes);
   auto const blocks = static_cast<unsigned>((job.grid.size() + windows_per_block - 1) / windows_per_block);
   kernel<<<blocks, size * windows_per_block, bytes>>>(job, peaks, 1);
   check_launch("correlate_window");

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "cuda/correlation_kernels.h"
-#include "cuda/cuda_error.h"
+#include "cuda/launch.h"
 #include "cuda/peak_search.cuh"
 #include "cuda/register_fourier.cuh"
 #include "render/base/contracts.h"
@@ -215,7 +215,8 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
 
 LinePlan make_line_plan(int size) {
   GLADSTONE_EXPECTS(size > 0 && size <= 1024);
-  constexpr std::size_t most_shared = 227 * 1024 - 4096;
+  std::size_t const most_shared =
+      std::min<std::size_t>(227 * 1024 - 4096, most_shared_bytes(correlate_window_by_lines));
   LinePlan plan{};
   plan.size = size;
   int left = size;
@@ -228,6 +229,7 @@ LinePlan make_line_plan(int size) {
   if (bytes() + window_bytes > most_shared && size <= 256) plan.warps = 8;
   plan.window_in_shared = bytes() + window_bytes <= most_shared;
   if (!plan.window_in_shared && size <= 256) plan.warps = 16;
+  while (bytes() > most_shared && plan.warps > 1) plan.warps /= 2;
   plan.shared_bytes = bytes() + (plan.window_in_shared ? window_bytes : 0);
   return plan;
 }
@@ -244,9 +246,7 @@ std::vector<float> unit_roots(int size) {
 
 void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float const* roots, float* scratch,
                                 int slots) {
-  check(cudaFuncSetAttribute(correlate_window_by_lines, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                             static_cast<int>(plan.shared_bytes)),
-        "cudaFuncSetAttribute");
+  allow_shared_bytes(correlate_window_by_lines, plan.shared_bytes);
   auto const windows = static_cast<unsigned>(job.grid.size());
   unsigned const blocks =
       plan.window_in_shared || windows < static_cast<unsigned>(slots) ? windows : static_cast<unsigned>(slots);

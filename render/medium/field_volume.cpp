@@ -187,6 +187,11 @@ double steps_across(MediumSetup const& setup) {
   return depth / (cells_a_step(setup) * finest_cell(setup.field, grid));
 }
 
+double finest_length(MediumSetup const& setup) {
+  if (setup.field.kind != FieldKind::file) return build_analytic(setup).finest;
+  return finest_cell(setup.field, world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset)));
+}
+
 BuiltMedium build_medium(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return build_analytic(setup);
   auto const source = open_field(setup.field.file, setup.field.dataset);

@@ -28,6 +28,9 @@ std::size_t medium_bytes_needed(MediumSetup const& setup);
 /// @throws DataError for a file that cannot be read
 double steps_across(MediumSetup const& setup);
 
+/// What BuiltMedium::finest will be [m]; opens a file to see its grid. @throws DataError for a file that cannot be read
+double finest_length(MediumSetup const& setup);
+
 /// Builds the medium; a file is read, scaled to n - 1 and prefiltered, with progress.
 /// @throws DataError for files that are missing, broken or of the wrong shape
 BuiltMedium build_medium(MediumSetup const& setup);

@@ -278,7 +278,8 @@ class CorrectedCone {
         high = radius, above = here;
       }
     }
-    return 0.5 * (low + high);
+    // the secant's root, which does not jump where rounding changes the number of iterations
+    return low + below / (below - above) * (high - low);
   }
   GLADSTONE_HD static double undefined() { return std::numeric_limits<double>::quiet_NaN(); }
 };

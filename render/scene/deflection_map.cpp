@@ -9,8 +9,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double rays_a_source = 1024; // of the table: more are not paid for by the rays that they save
+constexpr double rays_a_source = 1024;  // of the table: more are not paid for by the rays that they save
 constexpr double cheap_rays_a_source = 32;
+constexpr double most_rays = 1e8;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
 /// A lattice from low to high. @pre three spacings or more in both directions
@@ -25,7 +26,52 @@ void place(SquareLattice& lattice, double spacing, Vec2d low, Vec2d high) {
                    low.y - 0.5 * ((lattice.rows - 1) * lattice.spacing - height)};
 }
 
+/// How densely a table's nodes lie.
+struct NodeDensity {
+  double spacing;     ///< of the straight lattice [m]
+  double coarseness;  ///< the slopes' spacing over that
+
+  /// A grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as
+  /// many; twice as many of both, and as many slopes, where there are sources enough.
+  /// @param finest of the medium @param area of the mid-plane that cones cross [m^2]
+  static NodeDensity choose(double finest, bool grid, double area, double sources) {
+    double const spacing = grid ? finest : finest / 6;
+    NodeDensity const fine{spacing / 2, 1}, usual{spacing, 2};
+    return fine.rays(area) <= cheap_rays_a_source * sources ? fine : usual;
+  }
+  double nodes(double area) const { return area / (spacing * spacing); }
+  double rays(double area) const { return nodes(area) * (1 + 4 / (coarseness * coarseness)); }
+  double bytes(double area) const {
+    return nodes(area) * 2 * (sizeof(Vec2d) + sizeof(KeptSlopes) / (coarseness * coarseness));
+  }
+};
+
+/// Rays that a table for so many sources may have.
+double allowed_rays(double sources) { return std::min(rays_a_source * sources, most_rays); }
+
+/// How far from the cone of a source's middle its rays cross the mid-plane [m].
+double cone_reach(double way, double half_size, double pupil) {
+  return (1 - way) * 1.5 * half_size + way * pupil + 1e-9;
+}
+
 }  // namespace
+
+double table_bytes_needed(Setup const& setup) {
+  FieldSetup const& field = setup.medium.field;
+  if (field.kind == FieldKind::none || !std::isfinite(setup.lens.f_number) ||
+      setup.render.sampling != PupilSampling::sobol) {
+    return 0;
+  }
+  double const way = (setup.z_d + field.center.z) / setup.z_b();
+  double const pupil = setup.imaging().entrance_pupil / 2 * std::sqrt(1 + Scene::stop_edge(1) / 2);
+  double const beyond = 2 * cone_reach(way, setup.dot_diameter() / 2, pupil);
+  Vec2d const extent = setup.target_extent();
+  double const area = ((1 - way) * extent.x + beyond) * ((1 - way) * extent.y + beyond);
+  double const sources = setup.target.kind == TargetKind::dots ? setup.dot_count() : most_rays;
+  NodeDensity const density =
+      NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, area, sources);
+  return density.bytes(area) * std::min(1.0, allowed_rays(sources) / density.rays(area));
+}
 
 DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   Setup const& setup = scene.setup;
@@ -48,35 +94,27 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
     }
   }
   double const half_size = std::max(sources.half_size, scene.dots.half_size), pupil = scene.pupil_radius(1);
-  double const reach = (1 - way) * 1.5 * half_size + way * pupil + 1e-9;
+  double const reach = cone_reach(way, half_size, pupil);
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};
   double const to_lens = view.bundle.lens_z - middle_z;
   auto const lean = [&](double q) { return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + pupil) / to_lens; };
-  // a grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as many
-  double spacing = scene.medium.grid.nodes[0] > 1 ? scene.medium.finest : scene.medium.finest / 6, coarseness = 2;
-  auto const rays = [&](double node_spacing, double slopes_coarseness) {
-    double const nodes = (high.x - low.x) * (high.y - low.y) / (node_spacing * node_spacing);
-    return nodes * (1 + 4 / (slopes_coarseness * slopes_coarseness));
-  };
+  auto const area = [&] { return (high.x - low.x) * (high.y - low.y); };
   auto const count = static_cast<double>(std::max(sources.centre.size(), scene.dots.centre.size()));
-  if (rays(spacing / 2, 1) <= cheap_rays_a_source * count) {
-    spacing /= 2;
-    coarseness = 1;
-  }
-  double const edge = 0.5 * coarseness * spacing;
+  NodeDensity const density = NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, area(), count);
+  double const spacing_of_slopes = density.coarseness * density.spacing, edge = 0.5 * spacing_of_slopes;
   low = {std::max(low.x, box.low.x + lean(low.x) + edge), std::max(low.y, box.low.y + lean(low.y) + edge)};
   high = {std::min(high.x, box.high.x - lean(high.x) - edge), std::min(high.y, box.high.y - lean(high.y) - edge)};
-  double const least = 3 * coarseness * spacing;
+  double const least = 3 * spacing_of_slopes;
   if (!(high.x - low.x >= least && high.y - low.y >= least)) return;
-  if (!(rays(spacing, coarseness) <= std::min(rays_a_source * count, 1e8))) return;
+  if (!(density.rays(area()) <= allowed_rays(count))) return;
   // a source's cone is integrated from a few places of it: it must not change much between them
   double const stop = scene.imaging.entrance_pupil / 2;
   if ((1 - way) * half_size > 0.5 * std::max(scene.medium.finest, way * stop)) return;
   table.way = way;
   table.pupil_step = slope_reach * stop;
-  place(table.straight, spacing, low, high);
-  place(table.sloping, coarseness * spacing, low, high);
+  place(table.straight, density.spacing, low, high);
+  place(table.sloping, spacing_of_slopes, low, high);
   wanted = std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b();
 
   SceneView<double> const open = open_view(scene);

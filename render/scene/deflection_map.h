@@ -27,6 +27,10 @@ struct DeflectionPlan {
   std::shared_ptr<void const> medium_;
 };
 
+/// Memory that the table of a setup's dots will take, before anything is built [bytes]: an estimate that a field which
+/// ends within the view makes too large. Opens a file to see its grid. @throws DataError for one that cannot be read
+double table_bytes_needed(Setup const& setup);
+
 /// The scene as rays of the table see it: without a stop.
 SceneView<double> open_view(Scene const& scene);
 

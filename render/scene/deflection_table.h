@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "render/scene/trace_pair.h"
@@ -113,6 +114,11 @@ struct DeflectionTable {
   KeptSlopes const* bend_slopes = nullptr;
 
   GLADSTONE_HD bool exists() const { return displacements != nullptr; }
+  /// Memory that its values take [bytes].
+  std::size_t bytes() const {
+    return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(Vec2d) +
+                static_cast<std::size_t>(sloping.size()) * sizeof(KeptSlopes));
+  }
   /// Whether it holds all rays from within `half` of a point of the target to within `pupil` of the axis.
   GLADSTONE_HD bool covers(Vec2d on_target, double half, double pupil) const {
     Vec2d const middle = (1 - way) * on_target;

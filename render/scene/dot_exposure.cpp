@@ -117,7 +117,7 @@ void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&image
     images_[frame] = images[frame];
     sums_[frame] = {};
   }
-  moved_ = light_is_done_ = false;
+  moved_ = false;
   tabled_ = model_.tabled(centre);
   check_ = {};
   rays_.clear();
@@ -181,17 +181,14 @@ FlowFit DotExposure::fit_flow() const {
   return fit;
 }
 
-void DotExposure::deposit_controlled() {
-  if (!moved_) {
-    for (Frame const frame : {Frame::reference, Frame::flow}) {
-      for (int i = 0; i < model_.source.count; ++i) deposit(frame, reference_light(model_, plan_, i));
-    }
-    return;
-  }
+void DotExposure::deposit_source(Frame frame) {
+  for (int i = 0; i < model_.source.count; ++i) deposit(frame, reference_light(model_, plan_, i));
+}
+
+void DotExposure::deposit_rays() {
   FlowFit const fit = fit_flow();
   CubatureView const& pupil = model_.pupil[pupil_rule(fit.pupil_spread())];
   for (int i = 0; i < model_.source.count; ++i) {
-    deposit(Frame::reference, reference_light(model_, plan_, i));
     for (int k = 0; k < pupil.count; ++k) deposit(Frame::flow, expected_light(model_, plan_, fit, pupil, i, k));
   }
   for (RayRecord<double> const& ray : rays_) {
@@ -201,9 +198,10 @@ void DotExposure::deposit_controlled() {
   }
 }
 
-bool DotExposure::integrate_cone() {
-  if (!model_.correctable(check_, plan_.expected_weight)) return false;
-  CorrectedCone const cone = model_.corrected(centre_, check_);
+std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
+  if (!model_.correctable(check_, plan_.expected_weight)) return {};
+  ConeIntegral integral{model_.corrected(centre_, check_), {}};
+  CorrectedCone const& cone = integral.cone;
   PlaceRule const& rule = model_.places;
   ConeRule const& cross_section = model_.cone;
   int const directions = cross_section.direction_count;
@@ -216,61 +214,56 @@ bool DotExposure::integrate_cone() {
       simple = !std::isnan(rim);
     }
   }
-
-  if (model_.rays_are_better(check_, simple)) return false;
+  if (model_.rays_are_better(check_, simple)) return {};
   int const points = simple ? cross_section.count : cross_section.scattered_count;
   cone_points_.clear();
-  DisplacementMoments whole[PlaceRule::most_places];
-  double without_medium[PlaceRule::most_places] = {};
-  BoxRange boxes;
-  bool narrow = true;
   for (int i = 0; i < rule.count; ++i) {
     Vec2d const offset = model_.offset(rule.places[i]);
+    DisplacementMoments& moments = integral.whole[i];
     for (int k = 0; k < points; ++k) {
       ConeLight const light = simple ? cone_light(cone, cross_section, k, offset, rims.data() + i * directions)
                                      : smoothed_light(cone, cross_section, k, offset);
-      without_medium[i] += light.without_medium;
-      whole[i].add(light.weight, light.displacement);
+      integral.without_medium[i] += light.without_medium;
+      moments.add(light.weight, light.displacement);
       cone_points_.push_back(light);
     }
-    cone.finish(whole[i], without_medium[i]);
-    if (!std::isfinite(whole[i].square())) return false;
-    narrow = narrow && model_.narrow(whole[i]);
+    cone.finish(moments, integral.without_medium[i]);
+    if (!std::isfinite(moments.square())) return {};
+    integral.narrow = integral.narrow && model_.narrow(moments);
   }
-  sum_cone(model_, plan_, cone.origin(), whole, without_medium, sums_);
-  for (ConeLight const& light : cone_points_) boxes.include(light, 1 / model_.box_side());
-  if (!with_images_ || !model_.by_moments() || !(narrow || boxes.few())) return true;
+  sum_cone(model_, plan_, cone.origin(), integral.whole, integral.without_medium, sums_);
+  return integral;
+}
 
-  for (int i = 0; i < model_.source.count; ++i) deposit(Frame::reference, reference_light(model_, plan_, i));
-  light_is_done_ = true;
-  if (narrow) {
-    deposit_part(cone.origin(), whole);
-    return true;
-  }
-  parts_.assign(static_cast<std::size_t>(boxes.columns() * boxes.rows() * rule.count), {});
+bool DotExposure::deposit_wide(ConeIntegral const& integral) {
+  double const side = model_.box_side();
+  int const places = model_.places.count;
+  BoxRange boxes;
+  for (ConeLight const& light : cone_points_) boxes.include(light, 1 / side);
+  if (!boxes.few()) return false;
+  parts_.assign(static_cast<std::size_t>(boxes.columns() * boxes.rows() * places), {});
   auto const middle_of = [&](Vec2<int> box) {
-    return model_.box_side() * Vec2d{static_cast<double>(box.x), static_cast<double>(box.y)};
+    return side * Vec2d{static_cast<double>(box.x), static_cast<double>(box.y)};
   };
   auto const part_of = [&](Vec2<int> box) {
-    return parts_.data() + ((box.y - boxes.low.y) * boxes.columns() + box.x - boxes.low.x) * rule.count;
+    return parts_.data() + ((box.y - boxes.low.y) * boxes.columns() + box.x - boxes.low.x) * places;
   };
-  ConeLight const* light = cone_points_.data();
-  for (int i = 0; i < rule.count; ++i) {
-    for (int k = 0; k < points; ++k, ++light) {
-      if (light->weight == 0) continue;
-      Vec2<int> const box = box_of(light->displacement, 1 / model_.box_side());
-      part_of(box)[i].add(light->weight, light->displacement - middle_of(box));
-    }
+  std::size_t const points = cone_points_.size() / static_cast<std::size_t>(places);
+  for (std::size_t i = 0; i < cone_points_.size(); ++i) {
+    ConeLight const& light = cone_points_[i];
+    if (light.weight == 0) continue;
+    Vec2<int> const box = box_of(light.displacement, 1 / side);
+    part_of(box)[i / points].add(light.weight, light.displacement - middle_of(box));
   }
   for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
     for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
       DisplacementMoments* const part = part_of({column, row});
       bool empty = true;
-      for (int i = 0; i < rule.count; ++i) {
+      for (int i = 0; i < places; ++i) {
         empty = empty && part[i].of[0] == 0;
-        cone.finish(part[i], without_medium[i]);
+        integral.cone.finish(part[i], integral.without_medium[i]);
       }
-      if (!empty) deposit_part(cone.origin() + middle_of({column, row}), part);
+      if (!empty) deposit_part(integral.cone.origin() + middle_of({column, row}), part);
     }
   }
   return true;
@@ -286,8 +279,22 @@ void DotExposure::deposit_part(Vec2d moved, DisplacementMoments const* moments) 
 }
 
 void DotExposure::finish_light() {
-  if (moved_ && tabled_) integrate_cone();
-  if (with_images_ && model_.controlled && !light_is_done_) deposit_controlled();
+  std::optional<ConeIntegral> const integral = moved_ && tabled_ ? integrate_cone() : std::nullopt;
+  if (!with_images_ || !model_.controlled) return;  // else every ray's light was laid down as it came
+  deposit_source(Frame::reference);
+  switch (model_.kind(moved_, integral.has_value(), integral && integral->narrow)) {
+    case DotKind::still:
+      deposit_source(Frame::flow);
+      break;
+    case DotKind::narrow:
+      deposit_part(integral->cone.origin(), integral->whole);
+      break;
+    case DotKind::wide:
+      if (!deposit_wide(*integral)) deposit_rays();
+      break;
+    case DotKind::rays:
+      deposit_rays();
+  }
 }
 
 void DotExposure::finish(GroundTruth& truth, std::size_t dot) {

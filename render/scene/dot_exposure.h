@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/base/image.h"
@@ -102,13 +103,24 @@ class DotExposure {
 
  private:
   void deposit(Frame frame, Deposit const& light);
-  /// Truth, and light where it can be, from the cone of a dot that the table covers. @return false: the cone has no
-  /// simple edge, and the rays have to do
-  bool integrate_cone();
+  /// What the cone of a dot comes to at every place of the source; its points are in cone_points_.
+  struct ConeIntegral {
+    CorrectedCone cone;
+    DisplacementMoments whole[PlaceRule::most_places];
+    double without_medium[PlaceRule::most_places] = {};
+    bool narrow = true;  ///< at all places
+  };
+  /// Of a dot that the table covers; empty: its rays have to do.
+  std::optional<ConeIntegral> integrate_cone();
+  /// Lays down the light in the flow square by square. @return false: there are too many, and nothing was done
+  bool deposit_wide(ConeIntegral const& integral);
   /// Lays down the light of a part of the cone. @param moved where its moments count from [px]
   void deposit_part(Vec2d moved, DisplacementMoments const* moments);
+  /// Lays down the source's disc as the reference frame shows it.
+  void deposit_source(Frame frame);
   FlowFit fit_flow() const;
-  void deposit_controlled();
+  /// Lays down the light in the flow by a fit and what the rays leave of it.
+  void deposit_rays();
 
   LightModel const& model_;
   bool with_images_;
@@ -123,8 +135,7 @@ class DotExposure {
   TableCheck check_;
   std::vector<ConeLight> cone_points_;      ///< of all places
   std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
-  bool light_is_done_ = false;
-  bool moved_ = false;  ///< whether the flow did anything to any of its rays
+  bool moved_ = false;                      ///< whether the flow did anything to any of its rays
   StatusCounts statuses_{};
   double largest_bend2_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/medium/density_field.h"
+#include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
 
 namespace gladstone {
@@ -171,17 +172,18 @@ void check_memory(Setup const& setup, FieldMemory field_memory) {
                    field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0};
   Need const dots{"target.dots_per_32px_window", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0};
   Need const rays{"render.rays_per_dot", ray_record_bytes(setup)};
-  double const needed = field.bytes + images.bytes + dots.bytes + rays.bytes;
+  Need const table{"camera.pixels", table_bytes_needed(setup)};
+  double const needed = field.bytes + images.bytes + dots.bytes + rays.bytes + table.bytes;
   double const available = available_memory();
   if (needed <= available) return;
   Need const most =
-      std::max({images, field, dots, rays}, [](Need const& a, Need const& b) { return a.bytes < b.bytes; });
+      std::max({images, field, dots, rays, table}, [](Need const& a, Need const& b) { return a.bytes < b.bytes; });
   throw DataError(
       most.key,
-      fmt::format("needs {:.3g} GB of memory (images {:.3g}, field {:.3g}, dots {:.3g}, rays of a dot {:.3g}) but this "
-                  "machine has {:.3g} GB free; reduce {}",
+      fmt::format("needs {:.3g} GB of memory (images {:.3g}, field {:.3g}, dots {:.3g}, rays of a dot {:.3g}, table of "
+                  "deflections {:.3g}) but this machine has {:.3g} GB free; reduce {}",
                   gigabytes(needed), gigabytes(images.bytes), gigabytes(field.bytes), gigabytes(dots.bytes),
-                  gigabytes(rays.bytes), gigabytes(available), most.key));
+                  gigabytes(rays.bytes), gigabytes(table.bytes), gigabytes(available), most.key));
 }
 
 BuiltMedium build_checked_medium(MediumSetup const& setup) {

@@ -47,16 +47,16 @@ struct GaussianSpot {
   GLADSTONE_HD void shares(T p, int first, int width, T* out) const {
     constexpr T offset[8] = {T(-0.5), T(0.5), T(1.5), T(2.5), T(3.5), T(4.5), T(5.5), T(6.5)};
     using Four = Lanes<T, 4>;
-    Four const scale = Four::all(T(0.70710678118654752440) / sigma);
+    Four const scale = Four::all(T(1) / sigma);
     T before{};
     // edges from the left, eight at a time; pixel i lies between edges i and i + 1
     for (int edge = 0; edge <= width; edge += 8) {
       Four const left = Four::all(T(first + edge) - p);
-      Four erf[2] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale};
-      error_function(erf);
+      Four value[2] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale};
+      edge_values(value);
       for (int i = 0; i < 8 && edge + i <= width; ++i) {
-        T const here = erf[i / 4].v[i % 4];
-        if (edge + i > 0) out[edge + i - 1] = T(0.5) * (here - before);
+        T const here = value[i / 4].v[i % 4];
+        if (edge + i > 0) out[edge + i - 1] = here - before;
         before = here;
       }
     }
@@ -74,6 +74,20 @@ struct GaussianSpot {
         if (edge > 0) out[k * width + edge - 1] += here;
       }
     }
+  }
+
+  /// The normal distribution's integral from its middle to every edge, given by its distance t in standard deviations:
+  /// a pixel's share is the difference between its edges'.
+  template <int N, int K>
+  [[gnu::always_inline]] GLADSTONE_HD static void edge_values(Lanes<T, N> (&t)[K]) {
+    for (auto& row : t) row = row * Lanes<T, N>::all(T(0.70710678118654752440));
+    error_function(t);
+    for (auto& row : t) row = row * Lanes<T, N>::all(T(0.5));
+  }
+  GLADSTONE_HD static T edge_value(T t) {
+    Lanes<T, 1> alone[1] = {{{t}}};
+    edge_values(alone);
+    return alone[0].lane(0);
   }
 
   /// Derivatives of the normal distribution's integral up to an edge, by the place of its middle, over k!: from the

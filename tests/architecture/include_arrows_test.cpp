@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -110,8 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"analysis/a.h", "<opencv2/core.hpp>"}, Planted{"analysis/a.cpp", "\"studies/b.h\""},
         Planted{"cuda/a.cu", "\"studies/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
         Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers in cuda/ alone
-        Planted{"studies/a.cpp", "<cufft.h>"}, Planted{"render/base/a.h", "<cuda/std/complex>"},
-        Planted{"render/base/a.h", "<thrust/sort.h>"},
+        Planted{"tests/cuda/a_test.cpp", "<cuda_runtime_api.h>"}, Planted{"studies/a.cpp", "<cufft.h>"},
+        Planted{"render/base/a.h", "<cuda/std/complex>"}, Planted{"render/base/a.h", "<thrust/sort.h>"},
         Planted{"studies/a.cpp", "\"tests/support/b.h\""},  // nothing includes tests
         Planted{"render/base/a.cpp", "<gtest/gtest.h>"},
         Planted{"render/base/a.cpp", "<boost/any.hpp>"},  // a library that nobody listed
@@ -136,6 +139,35 @@ TEST(Tree, HasOnlyTheArrowsOfTheTable) {
     EXPECT_THAT(forbidden_arrows(file.path, file.text), IsEmpty());
   }
   EXPECT_GT(includes, files.size());
+}
+
+using IncludesOfFiles = std::map<std::string, std::vector<Include>>;
+
+/// Whether a file draws in CUDA's headers, by itself or through others. @param seen files that were looked at
+bool draws_cuda(std::string const& path, IncludesOfFiles const& files, std::set<std::string>& seen) {
+  auto const file = files.find(path);
+  if (file == files.end() || !seen.insert(path).second) return false;
+  return std::any_of(file->second.begin(), file->second.end(), [&](Include const& include) {
+    return include.quoted ? draws_cuda(include.target, files, seen) : library_of(include.target) == "CUDA";
+  });
+}
+
+TEST(Tree, KeepsCudaHeadersInTheirRoom) {
+  IncludesOfFiles files;
+  for (SourceFile const& file : sources_of({"render", "analysis", "cuda", "studies", "tests"})) {
+    files[file.path] = includes_of(file.text);
+    if (room_of(file.path) == "tests") {
+      EXPECT_THAT(forbidden_arrows(file.path, file.text), IsEmpty());
+    }
+  }
+  std::set<std::string> none_yet;
+  EXPECT_TRUE(draws_cuda("cuda/launch.h", files, none_yet));  // what is looked for is there to be found
+  for (auto const& [path, includes] : files) {
+    std::set<std::string> seen;
+    if (room_of(path) != "cuda") {
+      EXPECT_FALSE(draws_cuda(path, files, seen)) << path;
+    }
+  }
 }
 
 TEST(Tree, NamesCudaInExactlyOneFileOfStudies) {

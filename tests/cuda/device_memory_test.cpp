@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "analysis/correlator.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
+#include "render/scene/deflection_map.h"
 #include "render/scene/ray_record.h"
 #include "tests/analysis/support/particle_pair.h"
 #include "tests/scene/small_scenes.h"
@@ -107,6 +110,72 @@ TEST_F(SmallDevice, NamesTheSizesWhereOneDotsRaysDoNotFit) {
   EXPECT_EQ(render(scene).truth.size(), 1u);
 }
 
+// Light is gathered in squares of up to 56 x 56 px a warp where a block's shared memory has room for that; not on every
+// card. Sums are of whole numbers, so that a pixel's does not depend on what was gathered before it went to the image.
+TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
+  gladstone::Setup setup = table1_setup(96);
+  setup.target.dot_diameter_px = 30;
+  std::vector<Scene> scenes{scene_of(dns_plane("kepeak"), 8, 32)};  // by a table; the others by their rays
+  for (Focus const focus : {Focus::target, Focus::medium}) {
+    for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.2, 4e-3)}) {
+      setup.lens.focus = focus;
+      setup.medium.field = field;
+      scenes.push_back(scene_with_dots(setup, lattice(96, 3, 33), 200));
+    }
+  }
+  for (Scene& scene : scenes) {
+    Rendering const expected = render(scene);
+    for (std::size_t const kibibytes : {99, 64, 40, 24}) {
+      SharedMemoryLimit const limit(kibibytes << 10);
+      expect_same(expected, render(scene));
+    }
+  }
+}
+
+// 64 dots pay for a table of the plane, four do not.
+TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
+  Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
+  few.dots.centre.resize(4);
+  DeflectionPlan const plan(scene, scene.dots);
+  ASSERT_TRUE(plan.wanted);
+  ASSERT_FALSE(DeflectionPlan(few, few.dots).wanted);
+  render(few);  // puts the field on the device, where it stays
+  {
+    DeviceMemoryLimit const limit(plan.table.bytes() - 1);
+    char size[32];
+    std::snprintf(size, sizeof size, "%.3f", static_cast<double>(plan.table.bytes()) / 0x1p20);
+    EXPECT_THAT(error_of([&] { render(scene); }),
+                HasSubstr(std::string("out of device memory: the deflection table needs ") + size + " MiB, "));
+    EXPECT_LT(limit.most_held(), plan.table.bytes());
+  }
+  EXPECT_EQ(render(scene).truth.size(), 64u);
+}
+
+// In caustics each of 400 blocks keeps a cone's points, 1024 and more of 32 bytes at each of 7 places on a dot. With
+// half the room half the blocks work.
+TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
+  FieldSetup field = dns_plane("kepeak");
+  field.scale *= 4;
+  gladstone::Setup setup = table1_setup(96);
+  setup.medium.field = field;
+  Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
+  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted);
+  render(scene);  // puts field and table on the device, where they stay
+  auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
+    DeviceMemoryLimit const limit(bytes);
+    Rendering rendering = render(scene);
+    most = limit.most_held();
+    return rendering;
+  };
+  std::size_t const half_the_points = std::size_t{200} * 7 * 1024 * 32;
+  std::size_t whole = 0, parts = 0;
+  Rendering const expected = with_limit(DeviceMemoryLimit::none, whole);
+  ASSERT_GT(whole, 2 * half_the_points);
+  Rendering const rendering = with_limit(whole - half_the_points, parts);
+  EXPECT_LE(parts, whole - half_the_points);
+  expect_same(expected, rendering);
+}
+
 TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
   Scene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
   {
@@ -183,6 +252,31 @@ TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
   DisplacementField const field = with_limit(room, parts);
   EXPECT_LE(parts, room);
   expect_same(expected, field);
+}
+
+// A support of 128 px (windows of 64) lies in shared memory where there is room for it, else in the device's; one of
+// 800 px has fewer warps, whose sums of floats have another order.
+TEST_F(SmallDevice, CorrelatesWithLessSharedMemory) {
+  testing::ParticlePair const pair = particles(420, 410);
+  for (int const window : {64, 400}) {
+    CorrelationSettings settings;
+    settings.window_px = {window};
+    auto const correlate = [&] { return cuda::make_correlator(settings)->correlate(pair.reference, pair.flow); };
+    DisplacementField const expected = correlate();
+    SharedMemoryLimit const limit(std::size_t{99} << 10);
+    DisplacementField const field = correlate();
+    if (window == 64) {
+      expect_same(expected, field);
+      continue;
+    }
+    ASSERT_EQ(expected.size(), field.size());
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      ASSERT_EQ(expected.status[i], field.status[i]);
+      if (field.counts(i)) {
+        EXPECT_LT(length(expected.displacement_px[i] - field.displacement_px[i]), 1e-4);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -1,81 +1,12 @@
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
+#include <fstream>
+#include <limits>
 
-#include "cuda/backend.h"
-#include "render/sensor/exposure.h"
-#include "tests/scene/small_scenes.h"
+#include "tests/cuda/cuda_renderer_fixture.h"
 
 namespace gladstone {
 namespace {
-
-using BosSetup = Setup;  // testing::Test has a Setup of its own
-
-/// A grey level of 16 bits when the brightest pixel of a frame is at 90 % of full scale.
-double grey_level(Image<double> const& frame) { return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535); }
-
-double largest_difference(Image<double> const& a, Image<double> const& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a.data()[i] - b.data()[i]));
-  return most;
-}
-
-double largest_difference(std::vector<Vec2d> const& a, std::vector<Vec2d> const& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (std::isnan(a[i].x) && std::isnan(b[i].x)) continue;
-    double const here = length(a[i] - b[i]);
-    most = here >= 0 ? std::max(most, here) : 1e300;
-  }
-  return most;
-}
-
-bool same_bits(Image<double> const& a, Image<double> const& b) { return std::equal(a.begin(), a.end(), b.begin()); }
-
-class CudaRendererTest : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!cuda::device_state().usable) GTEST_SKIP() << cuda::device_state().text;
-    renderer_ = cuda::make_renderer();
-  }
-  Rendering on_device(Scene& scene) {
-    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
-  }
-
-  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to a grey level, counts exactly.
-  void expect_as_on_cpu(Scene scene) {
-    Scene again = scene;
-    Rendering const cpu = render_all(scene), gpu = on_device(again);
-    EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
-    EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
-    EXPECT_LT(largest_difference(cpu.truth.displacement_std_px, gpu.truth.displacement_std_px), 1e-6);
-    EXPECT_LT(largest_difference(cpu.truth.eq9_px, gpu.truth.eq9_px), 1e-9);
-    EXPECT_LT(largest_difference(cpu.truth.chief_px, gpu.truth.chief_px), 1e-9);
-    EXPECT_LT(largest_difference(cpu.truth.eq9_cone_px, gpu.truth.eq9_cone_px), 1e-9);
-    EXPECT_EQ(cpu.truth.rays, gpu.truth.rays);
-    EXPECT_EQ(cpu.statuses, gpu.statuses);
-    EXPECT_EQ(cpu.rays, gpu.rays);
-    EXPECT_NEAR(scene.pupil_margin, again.pupil_margin, 1e-12);
-    double const level = grey_level(cpu.light.reference);
-    EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), 0.01 * level);
-    EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), 0.01 * level);
-  }
-
-  Scene scene_of(FieldSetup const& field, std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
-    BosSetup setup = table1_setup(96);
-    setup.medium.field = field;
-    if (change) change(setup);
-    std::vector<Vec2d> places = lattice(96, 6, 14);
-    for (Vec2d& place : places) place += {0.0173, 0.0091};  // off the pixels' edges, where rounding moves a spot's cut
-    return scene_with_dots(setup, places, rays);
-  }
-
-  std::unique_ptr<Renderer> renderer_;
-};
 
 TEST_F(CudaRendererTest, NoMedium) { expect_as_on_cpu(scene_of({}, 100)); }
 TEST_F(CudaRendererTest, UniformGradient) { expect_as_on_cpu(scene_of(uniform_gradient(20, -8, 3), 128)); }
@@ -162,7 +93,6 @@ TEST_F(CudaRendererTest, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(one.truth.eq9_cone_px, two.truth.eq9_cone_px);
 }
 
-/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
 // What is kept on the device is what would have been brought to the host: light, the camera's levels of it, noise
 // included, and the brightest pixel. Logarithms differ in their last digits, so that a noisy pixel in 10,000 may round
 // to the next level or, where a rejection flips, be drawn anew.
@@ -207,6 +137,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   }
 }
 
+/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
 TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
   Scene scene = scene_of(dns_plane("late"), 256), preview = scene;
   preview.setup.render.precision = Precision::single;

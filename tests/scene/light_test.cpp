@@ -94,6 +94,29 @@ TEST(Light, OfADotIsCentredWhereTruthSays) {
   }
 }
 
+// A smaller sensor about the same axis sees what a larger one sees of dots inside, across and beyond its border.
+// Rounding to fixed point alone differs, some 1e-13.
+TEST(Light, AtTheBorderIsThatOfALargerSensor) {
+  std::vector<Vec2d> const small_px{{20.3, 30.4}, {-1.2, 27.3}, {63.4, 20.1}, {31.7, 64.6}, {-4.3, -3.6}, {66.2, 65.9}};
+  std::vector<Vec2d> large_px = small_px;
+  for (Vec2d& p : large_px) p += {16, 16};
+  for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.2, 4e-3), dns_plane("kepeak")}) {
+    auto setup = table1_setup(64);
+    setup.medium.field = field;
+    Scene small = scene_with_dots(setup, small_px, 100);
+    setup.camera.columns = setup.camera.rows = 96;
+    Scene large = scene_with_dots(setup, large_px, 100);
+    Rendering const seen = render_all(small), whole = render_all(large);
+    EXPECT_GT(seen.light.flow(0, 27), 0.05);
+    for (int row = 0; row < 64; ++row) {
+      for (int column = 0; column < 64; ++column) {
+        ASSERT_NEAR(seen.light.reference(column, row), whole.light.reference(column + 16, row + 16), 1e-9);
+        ASSERT_NEAR(seen.light.flow(column, row), whole.light.flow(column + 16, row + 16), 1e-9);
+      }
+    }
+  }
+}
+
 // The sensor's own view of white paper: cos^4 of the angle to the axis.
 TEST(Light, OfWhitePaperFallsWithCosFour) {
   Scene const scene = build_scene(table1_setup(101));

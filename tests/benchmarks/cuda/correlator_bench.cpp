@@ -8,6 +8,7 @@
 #include "cuda/correlation_kernels.h"
 #include "cuda/cuda_correlator.h"
 #include "cuda/device_array.h"
+#include "cuda/device_timer.h"
 #include "tests/analysis/support/particle_pair.h"
 
 namespace gladstone::bench {
@@ -77,22 +78,14 @@ void correlate_windows(benchmark::State& state) {
   cuda::DevicePair const pair{greys.data(), size, size};
   cuda::prepare_pair(images.first(), images.second(), keys.data(), contrast.data(), pair);
   cuda::WindowJob const job{pair, contrast.data(), grid, view, view, grid.window_px / 2, results.data()};
-  cudaEvent_t begin, end;
-  cuda::check(cudaEventCreate(&begin), "cudaEventCreate");
-  cuda::check(cudaEventCreate(&end), "cudaEventCreate");
+  cuda::DeviceTimer timer;
   cuda::correlate_windows_in_registers(job, peaks.data());
   for (auto _ : state) {
-    cuda::check(cudaEventRecord(begin), "cudaEventRecord");
+    timer.start();
     cuda::correlate_windows_in_registers(job, peaks.data());
-    cuda::check(cudaEventRecord(end), "cudaEventRecord");
-    cuda::check(cudaEventSynchronize(end), "cudaEventSynchronize");
-    float milliseconds = 0.0f;
-    cuda::check(cudaEventElapsedTime(&milliseconds, begin, end), "cudaEventElapsedTime");
-    state.SetIterationTime(1e-3 * static_cast<double>(milliseconds));
+    state.SetIterationTime(timer.stop());
   }
   set_rate(state, grid.size());
-  cudaEventDestroy(begin);
-  cudaEventDestroy(end);
 }
 BENCHMARK(correlate_windows)
     ->Name("cuda_correlate_windows")

@@ -1,5 +1,4 @@
 #include <benchmark/benchmark.h>
-#include <cuda_runtime_api.h>
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +6,6 @@
 #include <vector>
 
 #include "cuda/backend.h"
-#include "cuda/cuda_error.h"
 #include "render/base/progress.h"
 #include "tests/benchmarks/bench_scenes.h"
 

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "cuda/backend.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+
+using BosSetup = Setup;  // testing::Test has a Setup of its own
+
+/// A grey level of 16 bits when the brightest pixel of a frame is at 90 % of full scale.
+inline double grey_level(Image<double> const& frame) {
+  return *std::max_element(frame.begin(), frame.end()) / (0.9 * 65535);
+}
+
+inline double largest_difference(Image<double> const& a, Image<double> const& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a.data()[i] - b.data()[i]));
+  return most;
+}
+
+inline double largest_difference(std::vector<Vec2d> const& a, std::vector<Vec2d> const& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (std::isnan(a[i].x) && std::isnan(b[i].x)) continue;
+    double const here = length(a[i] - b[i]);
+    most = here >= 0 ? std::max(most, here) : 1e300;
+  }
+  return most;
+}
+
+inline bool same_bits(Image<double> const& a, Image<double> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin());
+}
+
+/// Renders on the device and beside it on the CPU; skipped where there is no device.
+class CudaRendererTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!cuda::device_state().usable) GTEST_SKIP() << cuda::device_state().text;
+    renderer_ = cuda::make_renderer();
+  }
+  Rendering on_device(Scene& scene) {
+    return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  }
+
+  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to a grey level, counts exactly.
+  void expect_as_on_cpu(Scene scene) {
+    Scene again = scene;
+    Rendering const cpu = render_all(scene), gpu = on_device(again);
+    EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.displacement_std_px, gpu.truth.displacement_std_px), 1e-6);
+    EXPECT_LT(largest_difference(cpu.truth.eq9_px, gpu.truth.eq9_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.chief_px, gpu.truth.chief_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.eq9_cone_px, gpu.truth.eq9_cone_px), 1e-9);
+    EXPECT_EQ(cpu.truth.rays, gpu.truth.rays);
+    EXPECT_EQ(cpu.statuses, gpu.statuses);
+    EXPECT_EQ(cpu.rays, gpu.rays);
+    EXPECT_NEAR(scene.pupil_margin, again.pupil_margin, 1e-12);
+    double const level = grey_level(cpu.light.reference);
+    EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), 0.01 * level);
+    EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), 0.01 * level);
+  }
+
+  Scene scene_of(FieldSetup const& field, std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
+    BosSetup setup = table1_setup(96);
+    setup.medium.field = field;
+    if (change) change(setup);
+    std::vector<Vec2d> places = lattice(96, 6, 14);
+    for (Vec2d& place : places) place += {0.0173, 0.0091};  // off the pixels' edges, where rounding moves a spot's cut
+    return scene_with_dots(setup, places, rays);
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace gladstone

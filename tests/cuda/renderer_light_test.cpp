@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "render/base/image_file.h"
+#include "render/scene/deflection_map.h"
+#include "render/scene/light_model.h"
+#include "tests/cuda/cuda_renderer_fixture.h"
+
+/// Every way in which a dot's light is laid down, on the device as on the CPU.
+namespace gladstone {
+namespace {
+
+class CudaLightTest : public CudaRendererTest {
+ protected:
+  /// 400 dots on 96 x 96 px, enough to pay for a table of a DNS plane. @param times its density
+  static Scene dense_scene(std::string const& instant, double times, std::uint64_t rays) {
+    BosSetup setup = table1_setup(96);
+    setup.medium.field = dns_plane(instant);
+    setup.medium.field.scale *= times;
+    std::vector<Vec2d> places = lattice(96, 20, 4.3);
+    for (Vec2d& place : places) place += {0.0173, 0.0091};
+    return scene_with_dots(setup, places, rays);
+  }
+};
+
+/// Dots with cones by the table whose stop's edge is crossed more than once in some direction: they lie in a caustic.
+int dots_in_caustics(Scene const& scene) {
+  DeflectionMap const map(scene, DeflectionPlan(scene, scene.dots));
+  OwnedLightModel const light(scene, scene.dots, nullptr, map.table());
+  LightModel const& model = light.model;
+  TableCheck agreeing;
+  agreeing.rays = agreeing.weight = agreeing.pupil2 = 1;
+  return static_cast<int>(std::count_if(scene.dots.centre.begin(), scene.dots.centre.end(), [&](Vec2d centre) {
+    if (!model.tabled(centre)) return false;
+    CorrectedCone const cone = model.corrected(centre, agreeing);
+    return std::any_of(model.cone.directions, model.cone.directions + model.cone.direction_count,
+                       [&](Vec2d direction) { return std::isnan(cone.rim({}, direction)); });
+  }));
+}
+
+/// Largest standard deviation of where a dot's light lands [px]; half a pixel and more is the dot's own.
+double widest_dot(GroundTruth const& truth) {
+  double widest = 0;
+  for (Vec2d const s : truth.displacement_std_px) widest = std::max(widest, length(s));
+  return widest;
+}
+
+// All cones of the late plane see the stop's edge as a simple curve, some of the early one's do not.
+TEST_F(CudaLightTest, TablesOnPlanes) {
+  for (std::string const instant : {"late", "kepeak"}) {
+    SCOPED_TRACE(instant);
+    Scene scene = dense_scene(instant, 1, 32);
+    ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted);
+    EXPECT_EQ(dots_in_caustics(scene) > 0, instant == "kepeak");
+    expect_as_on_cpu(scene);
+  }
+}
+
+// With four times its density the early plane focuses: cones are so wide that they are sorted by squares of
+// displacement, and none has a simple edge. With few rays their edge is smoothed, with 1024 and more their rays do.
+TEST_F(CudaLightTest, TablesInCaustics) {
+  for (std::uint64_t const rays : {64, 1100}) {
+    SCOPED_TRACE(rays);
+    Scene scene = dense_scene("kepeak", 4, rays);
+    ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted);
+    EXPECT_EQ(dots_in_caustics(scene), 400);
+    EXPECT_GT(widest_dot(trace_truth(scene, RenderTheory::no)), 3);
+    expect_as_on_cpu(scene);
+  }
+}
+
+TEST_F(CudaLightTest, SquareSources) {
+  for (double const side : {2.0, 9.0}) {
+    Scene scene = scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& setup) { setup.target.dot_diameter_px = side; });
+    scene.dots.shape = SourceShape::square;
+    expect_as_on_cpu(scene);
+  }
+}
+
+// Grey values from black, which sends no rays, to white, over a part of the view.
+TEST_F(CudaLightTest, PictureAsSources) {
+  Image<std::uint16_t> picture(9, 7);
+  for (std::size_t i = 0; i < picture.size(); ++i) picture.data()[i] = static_cast<std::uint16_t>(i % 4 * 15000);
+  BosSetup setup = table1_setup(96);
+  setup.medium.field = sinusoid(0.1, 6e-3);
+  setup.target.kind = TargetKind::image;
+  setup.target.file = testing::TempDir() + "gladstone_cuda_picture.tif";
+  setup.target.extent_m = Vec2d{45, 35} * (setup.camera.pixel_pitch / setup.imaging().magnification);
+  write_tiff(setup.target.file, picture, {});
+  Scene scene = build_scene(setup);
+  ASSERT_EQ(scene.dots.centre.size(), 47u);  // 16 of 63 are black
+  ASSERT_EQ(scene.dots.radiance.size(), 47u);
+  plan_step(scene);
+  scene.rays_per_dot = 100;
+  expect_as_on_cpu(scene);
+}
+
+// A source without light is traced like any other, and has no truth.
+TEST_F(CudaLightTest, SourcesWithoutRadiance) {
+  for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.1, 6e-3)}) {
+    Scene scene = scene_of(field, 64);
+    for (std::size_t i = 0; i < scene.dots.centre.size(); ++i) {
+      scene.dots.radiance.push_back(0.5 * static_cast<double>(i % 3));
+    }
+    expect_as_on_cpu(scene);
+    for (double& radiance : scene.dots.radiance) radiance = 0;
+    Rendering const dark = on_device(scene);
+    EXPECT_EQ(*std::max_element(dark.light.reference.begin(), dark.light.reference.end()), 0);
+    EXPECT_EQ(*std::max_element(dark.light.flow.begin(), dark.light.flow.end()), 0);
+  }
+}
+
+// Spots of 43, 65 and 291 px: the widest that moments are laid down for, one whose shares a warp has room for three of,
+// and one whose shares it has no room for, wider than the image.
+TEST_F(CudaLightTest, WideSpots) {
+  struct Case {
+    double f_number;
+    int width;
+  };
+  for (Case const& one : {Case{32, 43}, Case{50, 65}, Case{230, 291}}) {
+    SCOPED_TRACE(one.width);
+    Scene scene = scene_of(sinusoid(0.1, 6e-3), 16, [&](BosSetup& setup) {
+      setup.lens.spot = SpotModel::seed_eq8;
+      setup.lens.f_number = one.f_number;
+    });
+    if (one.width > 256) scene.dots.centre.resize(2);
+    std::optional<AiryTable> airy;
+    ASSERT_EQ(2 * make_spot(scene, airy).half_width() + 1, one.width);
+    expect_as_on_cpu(scene);
+  }
+}
+
+// 144 dots inside, across and outside the image's border, still ones and with cones by tables; and nine by their rays.
+TEST_F(CudaLightTest, DotsAtTheBorder) {
+  std::vector<Vec2d> const few{{0.3, 0.4},   {-1.2, 47.3},  {95.4, 20.1},  {31.7, 96.6}, {98.2, 98.1},
+                               {-4.3, -3.6}, {48.2, -30.1}, {-60.3, 50.2}, {150.1, 47.8}};
+  for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.2, 4e-3), dns_plane("kepeak")}) {
+    BosSetup setup = table1_setup(96);
+    setup.medium.field = field;
+    expect_as_on_cpu(scene_with_dots(setup, few, 200));
+    Scene const many = scene_with_dots(setup, lattice(96, 12, 10.71), 64);
+    EXPECT_EQ(DeflectionPlan(many, many.dots).wanted, field.kind != FieldKind::none);
+    expect_as_on_cpu(many);
+  }
+}
+
+}  // namespace
+}  // namespace gladstone
