@@ -105,13 +105,14 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     nlohmann::ordered_json json = state_json(run, cases, state);
     json["axes"] = table.axes.size();
     json["measures"] = table.measures.size();
-    json["files"] = {run + '/' + run_file::table_text, run + '/' + run_file::table};
+    std::vector<std::string> files{run + '/' + run_file::table_text, run + '/' + run_file::table};
+    if (table.repeats() > 1) files.push_back(run + '/' + run_file::points_text);
+    json["files"] = files;
     json["figures"] = figures;
     std::string const drawn =
         figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
     print_result(options, json.dump(2),
-                 state_text(run, cases, state) +
-                     fmt::format("wrote {0}/{1} and {0}/{2}\n{3}", run, run_file::table_text, run_file::table, drawn));
+                 state_text(run, cases, state) + fmt::format("wrote {}\n{}", fmt::join(files, ", "), drawn));
     return table.unfinished().empty() ? ok : incomplete;
   };
 }

@@ -40,7 +40,7 @@ std::vector<Term> terms_of(StudyTable const& table) {
 
 }  // namespace
 
-std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis_index) {
+std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis_index, StudyCells const* points) {
   FigureAxis const& axis = cells.axis(axis_index);
   std::vector<CurveChoice> const choices = curves_over(cells, axis_index, 3);
   std::vector<std::vector<Term>> panels;
@@ -60,7 +60,11 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
       for (Term& term : terms) {
         std::string const measure =
             term.name == "total" ? "budget.total.rms_px" : fmt::format("budget.terms.{}.rms_px", term.name);
-        term.rms.push_back(scatter_of(cells.values(measure, rows), alone).centre);
+        std::vector<double> values = cells.values(measure, rows);
+        if (points && (term.name == "estimator" || term.name == "pattern")) {
+          values = points->values(fmt::format("budget.{}_px", term.name), points->rows_at(places));
+        }
+        term.rms.push_back(scatter_of(values, alone).centre);
         if (std::isfinite(term.rms.back())) high = std::max(high, term.rms.back());
       }
     }

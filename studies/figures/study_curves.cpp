@@ -95,6 +95,44 @@ void plot_panel(GnuplotFigure& plot, FigureAxis const& axis, Panel const& panel)
   plot.command(commands);
 }
 
+/// Panels side by side under one title, with one scale of errors.
+std::unique_ptr<GnuplotFigure> lay_out(FigureAxis const& axis, std::vector<Panel> const& panels, double low,
+                                       double high, std::string const& title, std::string const& caption) {
+  int const count = static_cast<int>(panels.size());
+  double const width = count == 1 ? 660.0 : 500.0;
+  std::size_t named = 0;
+  for (Panel const& panel : panels) {
+    auto const with_name = [](Curve const& curve) { return !curve.name.empty(); };
+    named =
+        std::max(named, static_cast<std::size_t>(std::count_if(panel.curves.begin(), panel.curves.end(), with_name)));
+  }
+  int const legend = 20 * static_cast<int>(named) + 8;
+  int const below = room_below(axis, width) + 44;
+  int const top = 44 + (count > 1 ? 28 : 0) + legend;
+  auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(count * (width + 96.0)) + 20, top + 360 + below);
+  GnuplotFigure& plot = *figure;
+  set_texts(plot, title, caption);
+  plot.command("set multiplot");
+  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  for (int i = 0; i < count; ++i) {
+    double const left = 92.0 + i * (width + 96.0);
+    place(plot, left, left + width, top, plot.height_px() - below);
+    set_x_axis(plot, axis, width);
+    set_y_axis(plot, "rms per component [px]", low, high);
+    if (count > 1) {
+      plot.command(fmt::format("set label 4 {} at graph 0, screen {:.6f} left font 'DejaVu Sans Bold,11'",
+                               GnuplotFigure::quoted(panels[static_cast<std::size_t>(i)].heading),
+                               1.0 - 58.0 / plot.height_px()));
+    }
+    plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
+                             1.0 - (top - legend - 2.0) / plot.height_px()));
+    plot_panel(plot, axis, panels[static_cast<std::size_t>(i)]);
+    plot.command("unset label 1; unset label 2; unset label 3");
+  }
+  plot.command("unset multiplot");
+  return figure;
+}
+
 }  // namespace
 
 std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::size_t axis_index) {
@@ -125,36 +163,34 @@ std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::s
     dashes = "; dashed: signal (rms of the ray truth)";
   }
   if (!(make.high > 0)) return nullptr;
+  return lay_out(axis, panels, make.low, make.high, "Error against " + axis.title,
+                 fmt::format("{}\n{}{}", study_name(cells), meaning(make.repeats_alone, make.repeats), dashes));
+}
 
-  int const count = static_cast<int>(panels.size());
-  double const width = count == 1 ? 660.0 : 500.0;
-  std::size_t const named = count == 1 ? panels.front().curves.size() : choices.size();
-  int const legend = 20 * static_cast<int>(named) + 8;
-  int const below = room_below(axis, width) + 44;
-  int const top = 44 + (count > 1 ? 28 : 0) + legend;
-  auto figure = std::make_unique<GnuplotFigure>(static_cast<int>(count * (width + 96.0)) + 20, top + 360 + below);
-  GnuplotFigure& plot = *figure;
-  set_texts(plot, "Error against " + axis.title,
-            fmt::format("{}\n{}{}", study_name(cells), meaning(make.repeats_alone, make.repeats), dashes));
-  plot.command("set multiplot");
-  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
-  for (int i = 0; i < count; ++i) {
-    double const left = 92.0 + i * (width + 96.0);
-    place(plot, left, left + width, top, plot.height_px() - below);
-    set_x_axis(plot, axis, width);
-    set_y_axis(plot, "rms per component [px]", make.low, make.high);
-    if (count > 1) {
-      plot.command(fmt::format("set label 4 {} at graph 0, screen {:.6f} left font 'DejaVu Sans Bold,11'",
-                               GnuplotFigure::quoted(panels[static_cast<std::size_t>(i)].heading),
-                               1.0 - 58.0 / plot.height_px()));
+std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_t axis_index) {
+  FigureAxis const& axis = points.axis(axis_index);
+  std::vector<CurveChoice> const choices = curves_over(points, axis_index, 7);
+  CurveMaker make{points, axis_index};
+  std::vector<Panel> panels;
+  for (auto const& [error, name] : {std::pair{"ray_truth", references[0].name}, std::pair{"eq9", references[1].name}}) {
+    Panel panel{name, {}};
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      std::string const curve = choices.size() > 1 ? choices[i].name : "the same in every repeat";
+      panel.curves.push_back(make(curve, house_colour(i), choices[i], fmt::format("{}.systematic_px", error).c_str()));
     }
-    plot.command(fmt::format("set key at graph 0, screen {:.6f} left top Left reverse samplen 2 font 'DejaVu Sans,10'",
-                             1.0 - (top - legend - 2.0) / plot.height_px()));
-    plot_panel(plot, axis, panels[static_cast<std::size_t>(i)]);
-    plot.command("unset label 1; unset label 2; unset label 3");
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      std::string const curve = choices.size() > 1 ? "" : "changes between repeats";
+      panel.curves.push_back(
+          make(curve, house_colour(i), choices[i], fmt::format("{}.scatter_px", error).c_str(), true));
+    }
+    panels.push_back(std::move(panel));
   }
-  plot.command("unset multiplot");
-  return figure;
+  if (!(make.high > 0)) return nullptr;
+  return lay_out(
+      axis, panels, make.low, make.high, "Error over the repeats, against " + axis.title,
+      fmt::format("study {}, {} points{}\nsolid: the same in every repeat; dashed: standard deviation between "
+                  "repeats (dots, rays, noise)",
+                  points.table().name, points.finished(), make.repeats_alone ? "" : ", of which medians"));
 }
 
 }  // namespace gladstone

@@ -11,7 +11,10 @@ namespace gladstone {
 /// The figures of a study, not yet written. Null where the study has no finite number to show.
 std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::size_t axis);
 std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis);
-std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis);
+/// @param points of a study with repeats (study_points()): estimator and pattern are told apart there; else null
+std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis, StudyCells const* points);
+/// What is the same in every repeat and what changes between them. @param points of a study with repeats
+std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_t axis);
 
 /// What the drawings have in common.
 namespace study_drawing {

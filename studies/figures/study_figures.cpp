@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "studies/figures/study_drawings.h"
+#include "studies/sweep/study_points.h"
 
 namespace gladstone {
 namespace study_drawing {
@@ -123,6 +124,9 @@ std::string file_part(std::string key) {
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table) {
   StudyCells const cells(table);
+  bool const repeated = table.repeats() > 1;
+  StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
+  StudyCells const points(point_table);
   std::vector<std::string> paths;
   auto const write = [&](std::unique_ptr<GnuplotFigure> const& figure, std::string const& name) {
     if (!figure) return;
@@ -135,7 +139,8 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   for (std::size_t i = 0; i < varied.size(); ++i) {
     std::string const name = file_part(cells.key(varied[i]));
     write(draw_error_curves(cells, varied[i]), "error_against_" + name);
-    write(draw_budget(cells, varied[i]), "budget_" + name);
+    write(draw_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
+    if (repeated) write(draw_repeats(points, varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
       write(draw_error_map(cells, varied[j], varied[i]),
             fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));

@@ -15,6 +15,8 @@ namespace gladstone {
 ///                     of all its cases with the band from 10 to 90 %.
 /// error_map_AXIS_AXIS the same errors over two axes, median over the others
 /// budget_AXIS         the rms of each term of the error budget, side by side, and of the total
+/// repeats_AXIS        of a study with repeats: the part of either error that is the same in every repeat, and the
+///                     standard deviation between repeats
 ///
 /// An axis of one value is no axis. Points are the root mean square over repeats, bars reach from the smallest to the
 /// largest. Cases that are not done are left out; a study without one has no figures.

@@ -147,7 +147,8 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   result.line_hash = one.line_hash;
   result.device = device_.name();
   auto const fail = [&](std::string error) {
-    result = {one.index, one.line_hash, CaseStatus::failed, std::move(error), {}, {}, nan, nan, nan, device_.name()};
+    result = {one.index, one.line_hash, CaseStatus::failed, std::move(error), {}, {}, {}, nan,
+              nan,       nan,           device_.name()};
   };
   QuietLog const quiet;
   try {
@@ -246,6 +247,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
   result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
   result.measures.emplace_back("warnings", static_cast<double>(prepared.warnings.size()));
+  result.vectors = vector_errors(comparison);
   result.warnings = prepared.warnings;
   result.seconds_compare = seconds_since(start);
 

@@ -10,6 +10,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/output_file.h"
 #include "render/base/text_file.h"
+#include "studies/sweep/study_points.h"
 #include "studies/sweep/unit_ending.h"
 
 namespace gladstone {
@@ -32,7 +33,11 @@ std::string cell(std::string const& text) {
   return quoted + '"';
 }
 
-std::string unit_of(std::string const& name) {
+/// @param name of a column; a statistic of a measure has the measure's unit
+std::string unit_of(std::string name) {
+  for (char const* statistic : {".mean", ".std"}) {
+    if (name.ends_with(statistic)) name.erase(name.rfind('.'));
+  }
   if (name.starts_with("seconds_")) return "s";
   if (name == "exposure") return "e";
   return std::string(unit_ending(name).value_or(UnitEnding{"", "1"}).unit);
@@ -51,12 +56,22 @@ std::string description_of(std::string const& measure) {
       {"dots", "dots on the target"},
       {"caustic_fraction", "share of the view where the cone-averaged strain is 1 or more"},
       {"saturated", "saturated pixels of both frames"},
-      {"warnings", "warnings that the case gave; they stand in its result"}};
-  auto const found = known.find(measure);
-  return found != known.end() ? found->second : "as in errors.json";
+      {"warnings", "warnings that the case gave; they stand in its result"},
+      {"repeats", "finished repeats of the point"},
+      {"vectors", "vectors that count in all of them"},
+      {"ray_truth.systematic_px", "measured less ray truth: rms of what is the same in every repeat, per component"},
+      {"ray_truth.scatter_px", "measured less ray truth: standard deviation between repeats, per component"},
+      {"eq9.systematic_px", "measured less Eq. 9: rms of what is the same in every repeat, per component"},
+      {"eq9.scatter_px", "measured less Eq. 9: standard deviation between repeats, per component"},
+      {"budget.estimator_px", "rms of the estimator's mean error over the patterns of the repeats, per component"},
+      {"budget.pattern_px", "standard deviation of the estimator's error between patterns, per component"}};
+  if (auto const found = known.find(measure); found != known.end()) return found->second;
+  if (measure.ends_with(".mean")) return "mean over the repeats";
+  return measure.ends_with(".std") ? "sample standard deviation over the repeats" : "as in errors.json";
 }
 
-std::vector<Column> columns_of(StudyTable const& table) {
+/// Columns that tell a table's rows apart.
+std::vector<Column> axis_columns(StudyTable const& table) {
   std::vector<Column> columns;
   for (std::size_t k = 0; k < table.axes.size(); ++k) {
     StudyAxis const& axis = table.axes[k];
@@ -70,8 +85,22 @@ std::vector<Column> columns_of(StudyTable const& table) {
   columns.push_back({"case",
                      [](StudyRow const& row) { return static_cast<double>(row.index); },
                      {},
-                     "line of the manifest, from 0",
+                     "line of the manifest, from 0; of a point, the first",
                      true});
+  return columns;
+}
+
+void add_measures(StudyTable const& table, std::vector<Column>& columns) {
+  for (std::size_t m = 0; m < table.measures.size(); ++m) {
+    columns.push_back({table.measures[m],
+                       [m](StudyRow const& row) { return row.measures[m]; },
+                       {},
+                       description_of(table.measures[m])});
+  }
+}
+
+std::vector<Column> columns_of(StudyTable const& table) {
+  std::vector<Column> columns = axis_columns(table);
   columns.push_back({"seed",
                      [](StudyRow const& row) { return static_cast<double>(row.seed); },
                      {},
@@ -84,12 +113,7 @@ std::vector<Column> columns_of(StudyTable const& table) {
                      true});
   columns.push_back(
       {"repeat", [](StudyRow const& row) { return static_cast<double>(row.repeat); }, {}, "from 0", true});
-  for (std::size_t m = 0; m < table.measures.size(); ++m) {
-    columns.push_back({table.measures[m],
-                       [m](StudyRow const& row) { return row.measures[m]; },
-                       {},
-                       description_of(table.measures[m])});
-  }
+  add_measures(table, columns);
   columns.push_back({"seconds_compare",
                      [](StudyRow const& row) { return row.seconds_compare; },
                      {},
@@ -108,10 +132,13 @@ std::vector<Column> columns_of(StudyTable const& table) {
   return columns;
 }
 
-}  // namespace
+std::vector<Column> point_columns(StudyTable const& points) {
+  std::vector<Column> columns = axis_columns(points);
+  add_measures(points, columns);
+  return columns;
+}
 
-std::string study_csv(StudyTable const& table) {
-  std::vector<Column> const columns = columns_of(table);
+std::string csv_of(StudyTable const& table, std::vector<Column> const& columns) {
   std::string text;
   for (Column const& column : columns) {
     if (!text.empty()) text += ',';
@@ -135,25 +162,41 @@ std::string study_csv(StudyTable const& table) {
   return text + '\n';
 }
 
-void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup) {
-  FileOrigin const origin{"gladstone study", 1, setup, table.rows.front().seed, table.rows.front().device};
-  Hdf5Writer file(path, origin);
+/// @param group "/" or "/points/" @param row_name what a row is
+void write_columns(Hdf5Writer& file, std::string const& group, std::string const& row_name, StudyTable const& table,
+                   std::vector<Column> const& columns) {
   std::vector<std::size_t> const shape{table.rows.size()};
-  for (Column const& column : columns_of(table)) {
-    std::string const name = '/' + column.name;
+  for (Column const& column : columns) {
+    std::string const name = group + column.name;
     if (column.whole) {
       std::vector<std::int64_t> numbers;
       for (StudyRow const& row : table.rows) {
         numbers.push_back(column.name == "seed" ? static_cast<std::int64_t>(row.seed)
                                                 : static_cast<std::int64_t>(column.number(row)));
       }
-      file.write(name, numbers, shape, "1", column.description, "case");
+      file.write(name, numbers, shape, "1", column.description, row_name);
     } else {
       std::vector<double> numbers;
       for (StudyRow const& row : table.rows) numbers.push_back(column.number(row));
-      file.write(name, numbers, shape, unit_of(column.name), column.description, "case");
+      file.write(name, numbers, shape, unit_of(column.name), column.description, row_name);
     }
     if (!column.labels.empty()) file.attribute(name, "labels", nlohmann::json(column.labels).dump());
+  }
+}
+
+}  // namespace
+
+std::string study_csv(StudyTable const& table) { return csv_of(table, columns_of(table)); }
+
+std::string points_csv(StudyTable const& points) { return csv_of(points, point_columns(points)); }
+
+void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup) {
+  FileOrigin const origin{"gladstone study", 2, setup, table.rows.front().seed, table.rows.front().device};
+  Hdf5Writer file(path, origin);
+  write_columns(file, "/", "case", table, columns_of(table));
+  if (table.repeats() > 1) {
+    StudyTable const points = study_points(table);
+    write_columns(file, "/points/", "point", points, point_columns(points));
   }
   nlohmann::json keys = nlohmann::json::array();
   for (StudyAxis const& axis : table.axes) keys.push_back(axis.key);
@@ -169,6 +212,12 @@ StudyTable collect_study(std::string const& run) {
   write_study_h5((fs::path(run) / run_file::table).string(), table,
                  fs::exists(study, error) ? read_text_file(study) : "");
   OutputFile::write_text((fs::path(run) / run_file::table_text).string(), study_csv(table));
+  fs::path const points = fs::path(run) / run_file::points_text;
+  if (table.repeats() > 1) {
+    OutputFile::write_text(points.string(), points_csv(study_points(table)));
+  } else {
+    fs::remove(points, error);
+  }
   return table;
 }
 

@@ -10,12 +10,17 @@ namespace gladstone {
 /// back to the same double; texts stand in quotes where they must.
 std::string study_csv(StudyTable const& table);
 
-/// Writes study.h5: a dataset a column, of one value a case. What is a text in study.csv is a whole number here, the
+/// The table of study_points() as text: the axes, the first case, every measure.
+std::string points_csv(StudyTable const& points);
+
+/// Writes study.h5: a dataset a column, of one value a case; of a study with repeats also its points, in the group
+/// /points. What is a text in study.csv is a whole number here, the
 /// place in the dataset's attribute `labels`, a JSON array.
 /// @param setup text of the study file, for the root attribute of that name
 void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup);
 
-/// Writes RUN/study.csv and RUN/study.h5 from what is finished: equal results, equal data. @return the table
+/// Writes RUN/study.csv and RUN/study.h5 from what is finished, and with repeats RUN/study_points.csv: equal results,
+/// equal data. @return the table
 StudyTable collect_study(std::string const& run);
 
 }  // namespace gladstone

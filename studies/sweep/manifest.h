@@ -38,6 +38,7 @@ inline constexpr char const* claims = "claims";     ///< locked byte by byte by 
 inline constexpr char const* cases = "cases";       ///< folder of results, INDEX.json
 inline constexpr char const* table = "study.h5";
 inline constexpr char const* table_text = "study.csv";
+inline constexpr char const* points_text = "study_points.csv";
 }  // namespace run_file
 
 inline constexpr int manifest_version = 1;

@@ -118,14 +118,18 @@ void try_all(StudyFile const& study) {
   if (!problems.empty()) throw SetupError(problems);
 }
 
-/// Results in RUN that are whole: each with its index.
+/// Results in RUN that are whole, without their numbers.
 std::vector<CaseResult> whole_results(fs::path const& run) {
   std::vector<CaseResult> results;
   std::error_code error;
   for (fs::directory_iterator entry(run / run_file::cases, error), end; !error && entry != end;
        entry.increment(error)) {
     if (entry->path().extension() != ".json" || !entry->is_regular_file()) continue;
-    if (auto result = parse_result(read_text_file(entry->path().string()))) results.push_back(std::move(*result));
+    auto result = parse_result(read_text_file(entry->path().string()));
+    if (!result) continue;
+    result->measures.clear();
+    result->vectors.clear();
+    results.push_back(std::move(*result));
   }
   return results;
 }

@@ -22,13 +22,43 @@ namespace gladstone {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int result_version = 1;
+constexpr int result_version = 2;
 constexpr std::size_t hash_digits = 16;
 constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_of(Json const& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+
+/// Errors of vectors stand as whole numbers of this many px, u and v by turns.
+constexpr double vector_unit_px = 1e-6;
+
+Json vectors_json(std::vector<VectorErrors> const& vectors) {
+  Json json = Json::object();
+  auto const whole = [](double error_px) {
+    return std::isfinite(error_px) ? Json(std::llround(error_px / vector_unit_px)) : Json(nullptr);
+  };
+  for (VectorErrors const& one : vectors) {
+    Json& numbers = json[one.name] = Json::array();
+    for (Vec2d const& error : one.errors_px) {
+      numbers.push_back(whole(error.x));
+      numbers.push_back(whole(error.y));
+    }
+  }
+  return json;
+}
+
+std::vector<VectorErrors> vectors_of(Json const& json) {
+  std::vector<VectorErrors> vectors;
+  for (auto const& [name, numbers] : json.items()) {
+    VectorErrors one{name, {}};
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
+      one.errors_px.push_back({number_of(numbers[i]) * vector_unit_px, number_of(numbers[i + 1]) * vector_unit_px});
+    }
+    vectors.push_back(std::move(one));
+  }
+  return vectors;
 }
 
 CaseResult result_of(Json const& json) {
@@ -38,6 +68,7 @@ CaseResult result_of(Json const& json) {
   result.status = json.at("status").get<std::string>() == "ok" ? CaseStatus::ok : CaseStatus::failed;
   result.error = json.at("error").get<std::string>();
   for (auto const& [name, value] : json.at("measures").items()) result.measures.emplace_back(name, number_of(value));
+  result.vectors = vectors_of(json.at("vectors"));
   result.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.seconds_render = number_of(json.at("seconds_render"));
   result.seconds_correlate = number_of(json.at("seconds_correlate"));
@@ -85,6 +116,7 @@ std::string result_text(CaseResult const& result) {
   json["measures"] = Json::object();
   Json::object_t& measures = json["measures"].get_ref<Json::object_t&>();
   for (auto const& [name, value] : result.measures) measures.emplace_back(name, number(value));
+  json["vectors"] = vectors_json(result.vectors);
   // texts of errors may hold bytes that are no UTF-8 (file names): they are replaced
   std::string const rest = json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(1) + '\n';
   return std::string(head) + content_hash(rest) + "\"," + rest;

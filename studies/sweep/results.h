@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "studies/sweep/manifest.h"
+#include "studies/sweep/vector_errors.h"
 
 namespace gladstone {
 
@@ -20,6 +21,7 @@ struct CaseResult {
   CaseStatus status = CaseStatus::ok;                    ///< ok or failed
   std::string error;                                     ///< of a failed case
   std::vector<std::pair<std::string, double>> measures;  ///< errors.json flattened with dots, and more; NaN: unknown
+  std::vector<VectorErrors> vectors;                     ///< by vector_error_names(); what repeats are compared by
   std::vector<std::string> warnings;
   double seconds_render = 0, seconds_correlate = 0, seconds_compare = 0;
   std::string device;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <unordered_map>
 
 #include "render/base/error.h"
@@ -57,14 +58,19 @@ std::vector<std::size_t> StudyTable::unfinished() const {
   return places;
 }
 
-StudyTable read_study_table(std::string const& run) {
-  std::vector<ManifestCase> const cases = read_manifest(run);
-  StudyTable table;
-  std::filesystem::path const folder = std::filesystem::absolute(run).lexically_normal();
-  table.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+std::size_t StudyTable::repeats() const {
+  std::size_t most = 0;
+  for (StudyPoint const& point : points) most = std::max(most, point.rows.size());
+  return most;
+}
+
+namespace {
+
+/// Rows of the manifest without what they came to, and the points that they are repeats of.
+void add_rows(std::vector<ManifestCase> const& cases, std::string const& manifest, StudyTable& table) {
   std::vector<AxisCollector> axes;
   for (auto const& parameter : cases.front().parameters) axes.emplace_back(parameter.first);
-  std::unordered_map<std::string, std::size_t> columns;
+  std::map<std::vector<std::size_t>, std::size_t> points;
   for (ManifestCase const& one : cases) {
     StudyRow row;
     row.index = one.index;
@@ -72,29 +78,59 @@ StudyTable read_study_table(std::string const& run) {
     row.seed = one.seed;
     row.device = one.device;
     if (one.parameters.size() != axes.size()) {
-      throw DataError((folder / run_file::manifest).string() + ':' + std::to_string(one.index + 1),
+      throw DataError(manifest + ':' + std::to_string(one.index + 1),
                       "has other axes than the first line; plan the study again");
     }
     for (std::size_t k = 0; k < axes.size(); ++k) row.value.push_back(axes[k].place_of(one.parameters[k].second));
-    if (std::optional<CaseResult> const result = read_result(run, one)) {
-      row.status = result->status;
-      row.error = result->error;
-      if (row.status == CaseStatus::ok) {
-        row.seconds_render = result->seconds_render;
-        row.seconds_correlate = result->seconds_correlate;
-        row.seconds_compare = result->seconds_compare;
-      }
-      for (auto const& [name, value] : result->measures) {
-        auto const [known, fresh] = columns.try_emplace(name, table.measures.size());
-        if (fresh) table.measures.push_back(name);
-        row.measures.resize(std::max(row.measures.size(), known->second + 1), nan);
-        row.measures[known->second] = value;
-      }
-    }
+    auto const [known, fresh] = points.try_emplace(row.value, table.points.size());
+    if (fresh) table.points.emplace_back();
+    table.points[known->second].rows.push_back(table.rows.size());
     table.rows.push_back(std::move(row));
   }
-  for (StudyRow& row : table.rows) row.measures.resize(table.measures.size(), nan);
   for (AxisCollector const& axis : axes) table.axes.push_back(axis.axis());
+}
+
+/// What a case came to, as its row; new measures get the next columns.
+void fill_row(CaseResult const& result, std::unordered_map<std::string, std::size_t>& columns, StudyTable& table,
+              StudyRow& row) {
+  row.status = result.status;
+  row.error = result.error;
+  if (row.status == CaseStatus::ok) {
+    row.seconds_render = result.seconds_render;
+    row.seconds_correlate = result.seconds_correlate;
+    row.seconds_compare = result.seconds_compare;
+  }
+  for (auto const& [name, value] : result.measures) {
+    auto const [known, fresh] = columns.try_emplace(name, table.measures.size());
+    if (fresh) table.measures.push_back(name);
+    row.measures.resize(std::max(row.measures.size(), known->second + 1), nan);
+    row.measures[known->second] = value;
+  }
+}
+
+}  // namespace
+
+StudyTable read_study_table(std::string const& run) {
+  std::vector<ManifestCase> const cases = read_manifest(run);
+  StudyTable table;
+  std::filesystem::path const folder = std::filesystem::absolute(run).lexically_normal();
+  table.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+  add_rows(cases, (folder / run_file::manifest).string(), table);
+  // Point by point, so that no more than one point's vectors are held.
+  std::unordered_map<std::string, std::size_t> columns;
+  for (StudyPoint& point : table.points) {
+    std::vector<std::vector<std::vector<Vec2d>>> errors(vector_error_names().size());  // of each kind, repeat, vector
+    for (std::size_t const index : point.rows) {
+      std::optional<CaseResult> result = read_result(run, cases[index]);
+      if (!result) continue;
+      fill_row(*result, columns, table, table.rows[index]);
+      for (std::size_t k = 0; k < std::min(errors.size(), result->vectors.size()); ++k) {
+        errors[k].push_back(std::move(result->vectors[k].errors_px));
+      }
+    }
+    for (auto const& repeats : errors) point.splits.push_back(split_repeats(repeats));
+  }
+  for (StudyRow& row : table.rows) row.measures.resize(table.measures.size(), nan);
   return table;
 }
 

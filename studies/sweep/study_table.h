@@ -34,17 +34,26 @@ struct StudyRow {
   std::string device;
 };
 
+/// All repeats of one point of a study.
+struct StudyPoint {
+  std::vector<std::size_t> rows;    ///< of the table, growing: the repeats, finished or not
+  std::vector<RepeatSplit> splits;  ///< by vector_error_names(): of the finished ones
+};
+
 /// A study as a table: what figures are drawn from and what study.csv and study.h5 hold.
 struct StudyTable {
   std::string name;  ///< of the RUN folder
   std::vector<StudyAxis> axes;
   std::vector<std::string> measures;  ///< "ray_truth.rms_px", "budget.terms.cone.rms_px", "magnification", ...
   std::vector<StudyRow> rows;         ///< every case of the manifest, in its order
+  std::vector<StudyPoint> points;     ///< in the order of their first cases
 
   /// Place of a measure in every row. Nothing where no case has it.
   std::optional<std::size_t> find_measure(std::string_view name) const;
   /// Place of an axis. Nothing where the study has no such axis.
   std::optional<std::size_t> find_axis(std::string_view key) const;
+  /// Most repeats of a point.
+  std::size_t repeats() const;
   /// The rows that are not ok.
   std::vector<std::size_t> unfinished() const;
 };

@@ -36,7 +36,8 @@ StudyAxis words(std::string key, std::vector<std::string> labels) {
   return {std::move(key), false, std::move(labels), none};
 }
 
-/// Every combination of the axes, the last fastest, with repeats outermost; error 0.01 (1 + case) px.
+/// Every combination of the axes, the last fastest, with repeats outermost; error 0.01 (1 + case) px, of which repeats
+/// share 0.03 px and change 0.01 px.
 StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
   StudyTable table;
   table.name = "some_study";
@@ -54,6 +55,10 @@ StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
     for (std::size_t k = table.axes.size(); k-- > 0; rest /= table.axes[k].labels.size()) {
       row.value[k] = rest % table.axes[k].labels.size();
     }
+    if (row.repeat == 0) {
+      table.points.push_back({{}, std::vector<RepeatSplit>(vector_error_names().size(), RepeatSplit{9, 0.03, 0.01})});
+    }
+    table.points[i % points].rows.push_back(i);
     double const error = 0.01 * (1.0 + static_cast<double>(i));
     row.measures = {error, 2 * error, 0.5, error, 1.5 * error};
     table.rows.push_back(row);
@@ -151,12 +156,13 @@ TEST(StudyCurves, AreCombinationsOfTheOtherAxesWhileColoursLast) {
 TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
   std::vector<std::string> const names =
       draw(grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200})}, 2));
-  EXPECT_THAT(
-      names,
-      ElementsAre("error_against_lens_f_number.png", "error_against_lens_f_number.svg", "budget_lens_f_number.png",
-                  "budget_lens_f_number.svg", "error_map_lens_f_number_geometry_z_d_mm.png",
-                  "error_map_lens_f_number_geometry_z_d_mm.svg", "error_against_geometry_z_d_mm.png",
-                  "error_against_geometry_z_d_mm.svg", "budget_geometry_z_d_mm.png", "budget_geometry_z_d_mm.svg"));
+  EXPECT_THAT(names,
+              ElementsAre("error_against_lens_f_number.png", "error_against_lens_f_number.svg",
+                          "budget_lens_f_number.png", "budget_lens_f_number.svg", "repeats_lens_f_number.png",
+                          "repeats_lens_f_number.svg", "error_map_lens_f_number_geometry_z_d_mm.png",
+                          "error_map_lens_f_number_geometry_z_d_mm.svg", "error_against_geometry_z_d_mm.png",
+                          "error_against_geometry_z_d_mm.svg", "budget_geometry_z_d_mm.png",
+                          "budget_geometry_z_d_mm.svg", "repeats_geometry_z_d_mm.png", "repeats_geometry_z_d_mm.svg"));
   EXPECT_GT(read_image((folder_ / names[0]).string()).columns(), 700);
   std::string const svg = text("error_against_lens_f_number.svg");
   for (char const* piece : {"Error against f-number", "Z_D 200 mm", "measured − Eq. 9", "study some_study, 12 cases",
@@ -165,6 +171,22 @@ TEST_F(StudyFigures, AreCurvesBudgetsAndMapsInTwoFormats) {
   }
   // Cell (f/4, 200 mm) has cases 1 and 7, errors 0.02 and 0.08: sqrt((4 + 64) / 2) / 100 = 0.058.
   EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr("0.058"));
+}
+
+// A case alone does not know its pattern term; with repeats the budget has it, and a figure shows both parts.
+TEST_F(StudyFigures, TellEstimatorAndPatternApartWithRepeats) {
+  for (std::size_t const repeats : {1, 2}) {
+    StudyTable table = grid({numbers("lens.f_number", {4, 8, 16})}, repeats);
+    for (char const* term : {"estimator", "pattern"}) {
+      table.measures.push_back(std::string("budget.terms.") + term + ".rms_px");
+      double const known = std::string(term) == "estimator" ? 0.04 : std::numeric_limits<double>::quiet_NaN();
+      for (StudyRow& row : table.rows) row.measures.push_back(known);
+    }
+    std::vector<std::string> const names = draw(table);
+    EXPECT_EQ(testing::Matches(testing::Contains("repeats_lens_f_number.svg"))(names), repeats > 1);
+    EXPECT_EQ(testing::Matches(HasSubstr("below the axis: pattern"))(text("budget_lens_f_number.svg")), repeats == 1);
+    std::filesystem::remove_all(folder_);
+  }
 }
 
 TEST_F(StudyFigures, LeaveOutWhatIsNotThere) {
