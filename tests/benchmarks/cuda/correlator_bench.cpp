@@ -80,10 +80,10 @@ void correlate_windows(benchmark::State& state) {
   cudaEvent_t begin, end;
   cuda::check(cudaEventCreate(&begin), "cudaEventCreate");
   cuda::check(cudaEventCreate(&end), "cudaEventCreate");
-  cuda::correlate_windows_in_registers(job, peaks.data());
+  cuda::correlate_small_windows(job, peaks.data());
   for (auto _ : state) {
     cuda::check(cudaEventRecord(begin), "cudaEventRecord");
-    cuda::correlate_windows_in_registers(job, peaks.data());
+    cuda::correlate_small_windows(job, peaks.data());
     cuda::check(cudaEventRecord(end), "cudaEventRecord");
     cuda::check(cudaEventSynchronize(end), "cudaEventSynchronize");
     float milliseconds = 0.0f;
