@@ -10,8 +10,8 @@ constexpr int threads = 128;
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
-                   DeflectionTable const __grid_constant__ plan, Vec2d* const displacements, Vec2d* const bends,
-                   KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
+                   DeflectionTable const __grid_constant__ plan, KeptVector* const displacements,
+                   KeptVector* const bends, KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
   long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
   long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
   bool const straight = i < nodes;
@@ -25,8 +25,8 @@ __global__ void __launch_bounds__(threads, 3)
   }
   if (straight) {
     if (node < lattice.size()) {
-      displacements[node] = here.displacement;
-      bends[node] = here.bend;
+      displacements[node] = KeptVector::of(here.displacement);
+      bends[node] = KeptVector::of(here.bend);
     }
     return;
   }
@@ -53,8 +53,8 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
   SceneView<double> const open = open_view(scene);
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
-  displacements_ = DeviceArray<Vec2d>(nodes, "the deflection table");
-  bends_ = DeviceArray<Vec2d>(nodes, "the deflection table");
+  displacements_ = DeviceArray<KeptVector>(nodes, "the deflection table");
+  bends_ = DeviceArray<KeptVector>(nodes, "the deflection table");
   displacement_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
   bend_slopes_ = DeviceArray<KeptSlopes>(slopes, "the deflection table");
   std::visit(

@@ -16,7 +16,7 @@ class DeviceDeflections {
 
  private:
   DeflectionTable table_;
-  DeviceArray<Vec2d> displacements_, bends_;
+  DeviceArray<KeptVector> displacements_, bends_;
   DeviceArray<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 

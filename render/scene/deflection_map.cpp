@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double rays_a_source = 1024; // of the table: more are not paid for by the rays that they save
+constexpr double rays_a_source = 1024;  // of the table: more are not paid for by the rays that they save
 constexpr double cheap_rays_a_source = 32;
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
@@ -134,8 +134,8 @@ DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
       [&](auto const& medium) {
         for_each_node(table_.straight, [&](Vec2d q, std::size_t at) {
           Deflection const node = deflect(open, medium, plan.table.way, q, {});
-          displacements_[at] = node.displacement;
-          bends_[at] = node.bend;
+          displacements_[at] = KeptVector::of(node.displacement);
+          bends_[at] = KeptVector::of(node.bend);
         });
         for_each_node(table_.sloping, [&](Vec2d q, std::size_t at) {
           Deflection sides[4];
