@@ -72,11 +72,14 @@ struct WindowPeaks {
   PeakSample peak[3];
 };
 
-/// Whether correlate_windows_in_registers knows this size of support.
-bool fits_registers(int size);
-/// One window after the other with its transforms in registers. @param peaks scratch: a place for every window
-/// @pre fits_registers(job.x.size)
-void correlate_windows_in_registers(WindowJob const& job, WindowPeaks* peaks);
+/// Whether windows of this support have a kernel of their own.
+bool has_own_kernel(int size);
+/// Windows that have: their planes stay on the processor. @param peaks scratch: a place for every window
+/// @pre has_own_kernel(job.x.size)
+void correlate_small_windows(WindowJob const& job, WindowPeaks* peaks);
+/// Finds the peaks of every window of such a support, to be measured.
+void correlate_windows_of_32(WindowJob const& job, WindowPeaks* peaks);
+void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks);
 
 /// Transforms of any size, line by line in shared memory.
 struct LinePlan {

@@ -155,7 +155,7 @@ class CorrelationPlan {
   void make_scratch() {
     std::size_t values = 0, windows = 0;
     for (Pass const& pass : passes_)
-      if (!fits_registers(pass.lines.size) && !pass.lines.window_in_shared) {
+      if (!has_own_kernel(pass.lines.size) && !pass.lines.window_in_shared) {
         values = std::max(values, pass.lines.window_values());
         windows = std::max(windows, pass.grid.size());
       }
@@ -172,8 +172,8 @@ class CorrelationPlan {
   void correlate_windows(Pass const& pass, DevicePair const& pair) {
     WindowJob const job{pair,          contrast_.data(),      pass.grid,      pass.x.view(),
                         pass.y.view(), pass.search_radius_px, windows_.data()};
-    if (fits_registers(pass.lines.size))
-      correlate_windows_in_registers(job, peaks_.data());
+    if (has_own_kernel(pass.lines.size))
+      correlate_small_windows(job, peaks_.data());
     else
       correlate_windows_by_lines(job, pass.lines, pass.roots.data(), scratch_.data(), slots_);
   }

@@ -11,8 +11,8 @@ constexpr int threads = 128;
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
-                   DeflectionTable const __grid_constant__ plan, Vec2d* const displacements, Vec2d* const bends,
-                   KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
+                   DeflectionTable const __grid_constant__ plan, KeptVector* const displacements,
+                   KeptVector* const bends, KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
   long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
   long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
   bool const straight = i < nodes;
@@ -26,8 +26,8 @@ __global__ void __launch_bounds__(threads, 3)
   }
   if (straight) {
     if (node < lattice.size()) {
-      displacements[node] = here.displacement;
-      bends[node] = here.bend;
+      displacements[node] = KeptVector::of(here.displacement);
+      bends[node] = KeptVector::of(here.bend);
     }
     return;
   }
@@ -55,8 +55,8 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
   values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");
-  auto* const displacements = reinterpret_cast<Vec2d*>(values_.data());
-  Vec2d* const bends = displacements + nodes;
+  auto* const displacements = reinterpret_cast<KeptVector*>(values_.data());
+  KeptVector* const bends = displacements + nodes;
   auto* const displacement_slopes = reinterpret_cast<KeptSlopes*>(bends + nodes);
   KeptSlopes* const bend_slopes = displacement_slopes + slopes;
   std::visit(

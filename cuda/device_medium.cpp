@@ -19,8 +19,8 @@ void require_room(char const* what_for, std::size_t bytes) {
 template <class T, class Grid>
 DeviceArray<T> make_polynomials(Grid const& grid) {
   using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
-  std::size_t const count = Cells(grid, nullptr).cell_count() * Cells::size;
-  if (count * sizeof(T) > device_room().free / 4) return {};
+  std::size_t const cell_count = Cells(grid, nullptr).cell_count(), count = cell_count * Cells::size;
+  if (cell_count > Cells::most_cells || count * sizeof(T) > device_room().free / 4) return {};
   DeviceArray<T> cells(count, "the field's polynomials");
   fill_cells(grid, cells.data());
   return cells;

@@ -14,17 +14,18 @@ inline constexpr int warp_size = 32;
 inline constexpr int dot_warps = dot_threads / warp_size;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
-/// A record in double.
-template <class T>
-__device__ RayRecord<double> widened(RayRecord<T> const& ray) {
-  if constexpr (std::is_same_v<T, double>) {
-    return ray;
-  } else {
-    auto const wide = [](Vec2<T> v) { return Vec2d{v.x, v.y}; };
-    return {wide(ray.place),      wide(ray.pupil), wide(ray.arrival),    wide(ray.reference),
-            wide(ray.flow),       ray.weight,      ray.reference_weight, ray.flow_weight,
-            ray.reference_counts, ray.flow_counts, ray.leaves_medium};
-  }
+/// A record in double, read in pairs of numbers.
+inline __device__ RayRecord<double> widened(RayRecord<double> const& ray) { return ray; }
+inline __device__ RayRecord<double> widened(RayRecord<float> const& ray) {
+  constexpr int pairs = sizeof(ray) / sizeof(uint2);
+  uint2 bits[pairs];
+  for (int k = 0; k < pairs; ++k) bits[k] = reinterpret_cast<uint2 const*>(&ray)[k];
+  RayRecord<float> here;
+  memcpy(&here, bits, sizeof here);
+  auto const wide = [](Vec2<float> v) { return Vec2d{v.x, v.y}; };
+  return {wide(here.place),      wide(here.pupil), wide(here.arrival),    wide(here.reference),
+          wide(here.flow),       here.weight,      here.reference_weight, here.flow_weight,
+          here.reference_counts, here.flow_counts, here.leaves_medium};
 }
 
 /// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up

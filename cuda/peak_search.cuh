@@ -48,16 +48,21 @@ __device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> co
 /// A positive maximum of a plane as whole numbers: heights order as their bits do, shifts in reading order.
 struct RankedPeak {
   unsigned height = 0;  ///< 0: none
-  unsigned shift = ~0u;
+  unsigned order = 0;   ///< the earlier in reading order, the higher
 
-  __device__ int x() const { return static_cast<int>(shift % 256u) - 128; }
-  __device__ int y() const { return static_cast<int>(shift / 256u) - 128; }
+  __device__ int x() const { return static_cast<int>(~order % 256u) - 128; }
+  __device__ int y() const { return static_cast<int>(~order / 256u) - 128; }
   __device__ PlanePeak<float> peak() const { return {x(), y(), __uint_as_float(height)}; }
+  /// Of equal ones the first in reading order is.
+  __device__ bool is_above(RankedPeak const& other) const { return rank() > other.rank(); }
+
+ private:
+  __device__ unsigned long long rank() const { return static_cast<unsigned long long>(height) << 32 | order; }
 };
 
 /// @pre |x|, |y| < 128
 inline __device__ RankedPeak ranked_peak(float height, int x, int y) {
-  return {__float_as_uint(height), static_cast<unsigned>((y + 128) * 256 + x + 128)};
+  return {__float_as_uint(height), ~static_cast<unsigned>((y + 128) * 256 + x + 128)};
 }
 
 /// The two highest maxima that a lane came across.
@@ -65,23 +70,19 @@ struct LanePeaks {
   RankedPeak first, second;
   int count = 0;  ///< all of them
 
-  /// @pre maxima come in reading order
   __device__ void add(RankedPeak const& peak) {
-    if (peak.height > first.height) {
-      second = first;
-      first = peak;
-    } else if (peak.height > second.height) {
-      second = peak;
-    }
+    bool const above_first = peak.is_above(first), above_second = peak.is_above(second);
+    second = above_first ? first : (above_second ? peak : second);
+    first = above_first ? peak : first;
     ++count;
   }
-  /// Takes out the highest of a warp's; of equal ones the first in reading order. Every lane receives it.
+  /// Takes out the highest of a warp's. Every lane receives it.
   __device__ RankedPeak take_highest() {
     constexpr unsigned all_lanes = 0xffffffffu;
     RankedPeak best;
     best.height = __reduce_max_sync(all_lanes, first.height);
-    best.shift = __reduce_min_sync(all_lanes, first.height == best.height ? first.shift : ~0u);
-    if (best.height != 0 && first.shift == best.shift) {
+    best.order = __reduce_max_sync(all_lanes, first.height == best.height ? first.order : 0u);
+    if (best.height != 0 && first.order == best.order) {
       first = second;
       second = RankedPeak();
       ++taken;
@@ -106,6 +107,15 @@ struct HighestPeaks {
   RankedPeak peak[PeakList<float>::capacity];
   int incomplete = 0;  ///< 1: there may be a higher one than the last
 };
+
+/// By one full warp.
+inline __device__ HighestPeaks highest_of_warp(LanePeaks& own) {
+  HighestPeaks highest;
+#pragma unroll
+  for (RankedPeak& peak : highest.peak) peak = own.take_highest();
+  highest.incomplete = __any_sync(0xffffffffu, own.may_miss_one());
+  return highest;
+}
 
 /// Searches rows [begin, end) of the square |x|, |y| <= radius. By one full warp.
 /// @pre four values from (-radius, y) on are aligned, and so are all others four columns apart
@@ -140,11 +150,55 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
       ++y;
     }
   }
-  HighestPeaks highest;
-#pragma unroll
-  for (RankedPeak& peak : highest.peak) peak = own.take_highest();
-  highest.incomplete = __any_sync(0xffffffffu, own.may_miss_one());
-  return highest;
+  return highest_of_warp(own);
+}
+
+/// A value of a plane, those beside it, and the highest of the three.
+struct PlaneTriple {
+  float left, here, right, highest;
+  __device__ explicit PlaneTriple(float const* value)
+      : left(value[-1]), here(value[0]), right(value[1]), highest(fmaxf(fmaxf(left, here), right)) {}
+  /// is_maximum() of a positive value, from those of the rows above and below. @param above their highest
+  __device__ bool is_maximum(float above, float below) const {
+    return static_cast<int>(here > fmaxf(fmaxf(above, left), 0.0f)) & static_cast<int>(here >= fmaxf(below, right));
+  }
+};
+
+/// Searches rows [begin, end) of the square |x|, |y| <= radius, a lane a column, two rows at a time; what is left of
+/// the columns a lane a row. By one full warp.
+/// @pre there may be read up to two rows behind them
+template <int pitch>
+__device__ HighestPeaks search_columns(CentredPlane<pitch> const& plane, int radius, int begin, int end) {
+  int const lane = static_cast<int>(threadIdx.x % 32u);
+  LanePeaks own;
+  int column = -radius;
+  for (; column + 31 <= radius; column += 32) {
+    int const x = column + lane;
+    float const* line = plane.centre + begin * pitch + x;
+    float above = PlaneTriple(line - pitch).highest;
+    PlaneTriple upper(line);
+#pragma unroll 1
+    for (int y = begin; y < end; y += 2) {
+      PlaneTriple const lower(line + pitch);
+      line += 2 * pitch;
+      PlaneTriple const next(line);
+      bool const is_upper = upper.is_maximum(above, lower.highest);
+      bool const is_lower = y + 1 < end && lower.is_maximum(upper.highest, next.highest);
+      if (is_upper || is_lower)  // not both
+        own.add(ranked_peak(is_upper ? upper.here : lower.here, x, is_upper ? y : y + 1));
+      above = lower.highest;
+      upper = next;
+    }
+  }
+  for (; column <= radius; ++column)
+#pragma unroll 1
+    for (int y = begin + lane; y < end; y += 32) {
+      float const* const line = plane.centre + y * pitch + column;
+      PlaneTriple const here(line);
+      if (here.is_maximum(PlaneTriple(line - pitch).highest, PlaneTriple(line + pitch).highest))
+        own.add(ranked_peak(here.here, column, y));
+    }
+  return highest_of_warp(own);
 }
 
 /// The slow way: all maxima in reading order. By one full warp. @param list room for all maxima

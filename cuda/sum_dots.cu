@@ -1,5 +1,6 @@
 #include "cuda/block_sum.cuh"
 #include "cuda/cone_light.cuh"
+#include "cuda/device_array.h"
 #include "cuda/launch.h"
 
 namespace gladstone::cuda {
@@ -16,21 +17,23 @@ struct RaySums {
   }
 };
 
+/// What a dot's rays come to by themselves.
+struct DotRays {
+  RaySums sums;
+  bool moved;  ///< whether the flow did anything to one of them
+};
+
 template <class T>
-__global__ void __launch_bounds__(dot_threads, 5)
-    sum_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
-                    RayRecord<T> const* const records, DotSums* const sums, DotCone* const cones) {
-  __shared__ __align__(16) unsigned char storage[std::max(dot_threads * sizeof(RaySums), sizeof(ConeState))];
-  __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
-  ConeState& state = *reinterpret_cast<ConeState*>(storage);
-  CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
+__global__ void __launch_bounds__(dot_threads, 3)
+    sum_rays_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
+                    RayRecord<T> const* const records, DotRays* const out) {
+  __shared__ __align__(16) unsigned char storage[dot_threads * sizeof(RaySums)];
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
-    std::uint64_t const index = batch.first + i;
-    Vec2d const centre = sources.centre[index];
+    Vec2d const centre = sources.centre[batch.first + i];
     RayRecord<T> const* const rays = records + i * batch.rays;
-    DotPlan const plan = DotPlan::make(model, centre, sources.radiance ? sources.radiance[index] : 1.0);
     RaySums sum;
-    bool moved = false, tabled = model.tabled(centre);
+    bool moved = false;
+    bool const tabled = model.tabled(centre);
     for (std::uint64_t j = threadIdx.x; j < batch.rays; j += dot_threads) {
       RayRecord<double> const ray = widened(rays[j]);
       sum.hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
@@ -40,21 +43,39 @@ __global__ void __launch_bounds__(dot_threads, 5)
     }
     moved = __syncthreads_or(moved);
     sum = block_sum(sum, reinterpret_cast<RaySums*>(storage));
-    tabled = tabled && moved && model.correctable(sum.check, plan.expected_weight);
+    if (threadIdx.x == 0) out[i] = {sum, moved};
+  }
+}
+
+__global__ void __launch_bounds__(dot_threads, 5)
+    sum_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
+                    DotRays const* const all_rays, DotSums* const sums, DotCone* const cones) {
+  __shared__ __align__(16) unsigned char state_storage[sizeof(ConeState)];
+  __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
+  ConeState& state = *reinterpret_cast<ConeState*>(state_storage);
+  CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
+  for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
+    std::uint64_t const index = batch.first + i;
+    Vec2d const centre = sources.centre[index];
+    DotRays const& rays = all_rays[i];
+    DotPlan const plan = DotPlan::make(model, centre, sources.radiance ? sources.radiance[index] : 1.0);
+    CentroidSum<double> hits[frame_count] = {rays.sums.hits[0], rays.sums.hits[1]};
+    bool const moved = rays.moved;
+    bool tabled = model.tabled(centre) && moved && model.correctable(rays.sums.check, plan.expected_weight);
     if (tabled) {
-      if (threadIdx.x == 0) cone = model.corrected(centre, sum.check);
+      if (threadIdx.x == 0) cone = model.corrected(centre, rays.sums.check);
       __syncthreads();
-      tabled = integrate_cone(model, cone, state) && !model.rays_are_better(sum.check, state.simple);
-      if (tabled) sum_cone(model, plan, cone.origin(), state.moments, state.without_medium, sum.hits);
+      tabled = integrate_cone(model, cone, state) && !model.rays_are_better(rays.sums.check, state.simple);
+      if (tabled) sum_cone(model, plan, cone.origin(), state.moments, state.without_medium, hits);
     }
-    if (threadIdx.x == 0) sums[i] = {plan.origin, {sum.hits[0], sum.hits[1]}};
+    if (threadIdx.x == 0) sums[i] = {plan.origin, {hits[0], hits[1]}};
     if (cones) {
       DotKind const kind = model.kind(moved, tabled, tabled && state.narrow);
       if (threadIdx.x == 0) {
         cones[i].kind = kind;
         if (kind == DotKind::narrow || kind == DotKind::wide) {
           cones[i].origin = cone.origin();
-          cones[i].check = sum.check;
+          cones[i].check = rays.sums.check;
         }
       }
       if (kind == DotKind::narrow) {
@@ -74,8 +95,13 @@ __global__ void __launch_bounds__(dot_threads, 5)
 template <class T>
 void sum_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
               RayRecord<T> const* records, DotSums* sums, DotCone* cones) {
-  auto* const kernel = sum_dots_kernel<T>;
-  kernel<<<blocks_for(kernel, dot_threads, 0, batch.dots), dot_threads>>>(model, sources, batch, records, sums, cones);
+  DeviceArray<DotRays> rays(batch.dots, "the sums over a batch's rays");
+  auto* const sum_rays = sum_rays_kernel<T>;
+  sum_rays<<<blocks_for(sum_rays, dot_threads, 0, batch.dots), dot_threads>>>(model, sources, batch, records,
+                                                                              rays.data());
+  check_launch("sum_rays");
+  sum_dots_kernel<<<blocks_for(sum_dots_kernel, dot_threads, 0, batch.dots), dot_threads>>>(model, sources, batch,
+                                                                                            rays.data(), sums, cones);
   check_launch("sum_dots");
 }
 

@@ -12,12 +12,16 @@ inline constexpr int sobol_dimensions = 4;
 
 namespace detail {
 
-GLADSTONE_HD constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+GLADSTONE_HD inline std::uint32_t reverse_bits(std::uint32_t x) {
+#if defined(__CUDA_ARCH__)
+  return __brev(x);
+#else
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
   x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
   return (x >> 16) | (x << 16);
+#endif
 }
 
 /// Direction numbers m_k of the first four dimensions (Joe & Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, new-joe-kuo-6):
@@ -58,9 +62,21 @@ GLADSTONE_HD inline std::uint32_t sobol_bits(std::uint32_t index, int dimension)
   return x;
 }
 
+/// sobol_bits of point `index` in all dimensions, without a branch a bit.
+GLADSTONE_HD inline void sobol_point(std::uint32_t index, std::uint32_t (&x)[sobol_dimensions]) {
+  constexpr detail::SobolDirections directions = detail::make_sobol_directions();
+  x[0] = detail::reverse_bits(index);  // van der Corput's sequence
+  for (int dimension = 1; dimension < sobol_dimensions; ++dimension) x[dimension] = 0;
+  for (int k = 0; k < 32; ++k) {
+    if (k % 8 == 0 && index >> k == 0) return;
+    std::uint32_t const bit = 0u - ((index >> k) & 1u);
+    for (int dimension = 1; dimension < sobol_dimensions; ++dimension) x[dimension] ^= bit & directions.v[dimension][k];
+  }
+}
+
 /// Owen's nested uniform scrambling by hashing (Laine & Karras 2011 as improved by Vegdahl; Burley, JCGT 9(4) (2020)):
 /// every bit is flipped by a hash of the bits above it. Equal seeds give equal scramblings.
-GLADSTONE_HD constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+GLADSTONE_HD inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   x = detail::reverse_bits(x);
   x ^= x * 0x3d20adeau;
   x += seed;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "render/base/host_device.h"
 #include "render/base/random.h"
@@ -63,8 +65,10 @@ GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t 
   std::uint32_t const seeds[sobol_dimensions] = {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(low >> 32),
                                                  static_cast<std::uint32_t>(high),
                                                  static_cast<std::uint32_t>(high >> 32)};
+  std::uint32_t point[sobol_dimensions];
+  sobol_point(static_cast<std::uint32_t>(ray), point);
   for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
-    std::uint32_t const x = owen_scramble(sobol_bits(static_cast<std::uint32_t>(ray), dimension), seeds[dimension]);
+    std::uint32_t const x = owen_scramble(point[dimension], seeds[dimension]);
     if constexpr (sizeof(T) > sizeof(float)) {
       u[dimension] = T((static_cast<double>(x) + 0.5) * 0x1p-32);
     } else {
@@ -73,30 +77,39 @@ GLADSTONE_HD void sample_coordinates(BundleView<T> const& bundle, std::uint64_t 
   }
 }
 
+/// The point of a circle at some share of a turn.
+template <class T>
+GLADSTONE_HD Vec2<T> point_of_circle(T radius, T turn) {
+  using std::cos;
+  using std::sin;
+#if defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<T, float>) {
+    T sine, cosine;
+    sincospif(2.0f * turn, &sine, &cosine);
+    return {radius * cosine, radius * sine};
+  }
+#endif
+  constexpr double two_pi = 6.28318530717958647693;
+  T const angle = T(two_pi) * turn;
+  return {radius * cos(angle), radius * sin(angle)};
+}
+
 /// Sends ray j of source i towards the pupil.
 template <class T>
 GLADSTONE_HD EmittedRay<T> emit(SourcesView<T> const& sources, BundleView<T> const& bundle, std::uint64_t source,
                                 std::uint64_t ray) {
-  using std::cos;
-  using std::sin;
   using std::sqrt;
-  constexpr double two_pi = 6.28318530717958647693;
   T u[sobol_dimensions];
   sample_coordinates(bundle, source, ray, u);
 
   Vec2<T> offset;
   if (sources.shape == SourceShape::disc) {
-    T const radius = sources.half_size * sqrt(u[2]);
-    T const angle = T(two_pi) * u[3];
-    offset = {radius * cos(angle), radius * sin(angle)};
+    offset = point_of_circle(sources.half_size * sqrt(u[2]), u[3]);
   } else {
     offset = {sources.half_size * (T(2) * u[2] - T(1)), sources.half_size * (T(2) * u[3] - T(1))};
   }
-  T const pupil_radius = bundle.pupil_radius * sqrt(u[0]);
-  T const pupil_angle = T(two_pi) * u[1];
-
   EmittedRay<T> emitted;
-  emitted.pupil = {pupil_radius * cos(pupil_angle), pupil_radius * sin(pupil_angle)};
+  emitted.pupil = point_of_circle(bundle.pupil_radius * sqrt(u[0]), u[1]);
   Vec2<T> const start = sources.centre[source] + offset;
   Vec3<T> const way{emitted.pupil.x - start.x, emitted.pupil.y - start.y, bundle.lens_z - sources.plane_z};
   T const far = length(way);

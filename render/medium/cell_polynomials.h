@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "render/medium/ray_equation.h"
 #include "render/medium/refractive_index_volume.h"
@@ -25,13 +26,19 @@ struct CellPolynomials {
   Vec3<T> inverse_spacing{};  ///< [1/m]
   Vec3<T> period{};           ///< of axes that are periodic [m]
   Vec3<T> inverse_period{};   ///< [1/m]
+  Vec3<T> last{};             ///< the last cell along each axis, plus `shift` [1]
   Bounds<T> box{};
 
   static constexpr int support = Basis::support;
   static constexpr int size = support * support * support;  ///< coefficients of a cell
+  /// 1.5 2^52 or 1.5 2^23: added, it pushes a fraction out of the mantissa and leaves a whole number in its low bits.
+  static constexpr T shift = sizeof(T) == sizeof(double) ? T(6755399441055744.0) : T(12582912.0);
+
+  static constexpr std::size_t most_cells = std::size_t{1} << 32;  ///< so that a cell's number is quick to find
 
   CellPolynomials() = default;
   /// The same medium as a grid. @param values room for cell_count() * size coefficients, which fill_cell gives
+  /// @pre cell_count() <= most_cells
   template <class Stored>
   CellPolynomials(GriddedIndex<double, Stored, Basis, 3> const& grid, T const* values)
       : coefficients(values), periodic(grid.periodic) {
@@ -43,6 +50,7 @@ struct CellPolynomials {
       inverse_spacing[axis] = T(grid.inverse_spacing[axis]);
       period[axis] = T(cells[a] / grid.inverse_spacing[axis]);
       inverse_period[axis] = T(grid.inverse_spacing[axis] / cells[a]);
+      last[axis] = shift + T(cells[a] - 1);
       box.low[axis] = T(grid.box.low[axis]);
       box.high[axis] = T(grid.box.high[axis]);
     }
@@ -75,7 +83,7 @@ struct CellPolynomials {
   /// The coefficients of p's cell, and p in it [m].
   GLADSTONE_HD T const* locate(Vec3<T> p, Vec3<T>& local) const {
     using std::floor;
-    std::ptrdiff_t cell = 0;
+    std::uint32_t cell = 0;
     for (int axis = 2; axis >= 0; --axis) {
       auto const a = static_cast<std::size_t>(axis);
       local[axis] = p[axis] - origin[axis];
@@ -84,34 +92,35 @@ struct CellPolynomials {
         if (periodic[a]) local[axis] -= period[axis] * floor(local[axis] * inverse_period[axis]);
       }
       T whole;
-      int const here = cell_below(local[axis], inverse_spacing[axis], cells[a] - 1, whole);
+      int const here = cell_below(local[axis], axis, whole);
       local[axis] -= spacing[axis] * whole;
-      cell = cell * cells[a] + here;
+      cell = cell * static_cast<std::uint32_t>(cells[a]) + static_cast<std::uint32_t>(here);
     }
-    return coefficients + cell * size;
+    return coefficients + static_cast<std::size_t>(cell) * size;
   }
 
-  /// The cell, 0 to last, that x [m] lies in; `whole` is its number.
-  GLADSTONE_HD static int cell_below(T x, T per_metre, int last, T& whole) {
+  /// The cell, from 0 to the last, that x [m] lies in along an axis; `whole` is its number.
+  GLADSTONE_HD int cell_below(T x, int axis, T& whole) const {
+    T const per_metre = inverse_spacing[axis];
 #if defined(__CUDA_ARCH__)
-    // rounded down by an addition that pushes the fraction out of the mantissa: a device converts slowly
+    // rounded down by an addition: a device converts slowly
     int here;
     if constexpr (sizeof(T) == sizeof(double)) {
-      constexpr double shift = 6755399441055744.0;  // 1.5 2^52
-      here = min(max(__double2loint(__fma_rd(x, per_metre, shift)), 0), last);
+      int const end = cells[static_cast<std::size_t>(axis)] - 1;
+      here = min(max(__double2loint(__fma_rd(x, per_metre, shift)), 0), end);
       whole = __hiloint2double(0x43380000, here) - shift;
     } else {
-      constexpr float shift = 12582912.0f;  // 1.5 2^23
-      float const shifted = fminf(fmaxf(__fmaf_rd(x, per_metre, shift), shift), shift + static_cast<float>(last));
+      float const shifted = fminf(fmaxf(__fmaf_rd(x, per_metre, shift), shift), last[axis]);
       here = __float_as_int(shifted) - 0x4b400000;
       whole = shifted - shift;
     }
     return here;
 #else
     using std::floor;
+    T const end = last[axis] - shift;
     whole = floor(x * per_metre);
     whole = whole > T(0) ? whole : T(0);
-    whole = whole < T(last) ? whole : T(last);
+    whole = whole < end ? whole : end;
     return static_cast<int>(whole);
 #endif
   }
@@ -139,19 +148,22 @@ struct CellPolynomials {
   template <int N>
   [[gnu::always_inline]] GLADSTONE_HD static void evaluate(T const* cell, Vec3<T> const (&p)[N],
                                                            IndexSample<T> (&at)[N]) {
-    // row by row along x, then along y and z, for the value and the slopes along the axes before
+    // row by row along x, then along y and z, for the value and the slopes along the axes before; four numbers at a
+    // time
+    constexpr int rows = 4 / support;
+    Lanes<T, 4> fetched;
     Horner<N> along_z, x_along_z, y_along_z;
     GLADSTONE_UNROLL
     for (int c = support - 1; c >= 0; --c) {
       Horner<N> along_y, x_along_y;
       GLADSTONE_UNROLL
       for (int b = support - 1; b >= 0; --b) {
-        Lanes<T, support> const row = Lanes<T, support>::fetch_aligned(cell + (c * support + b) * support);
+        if (b % rows == rows - 1) fetched = Lanes<T, 4>::fetch_aligned(cell + (c * support + b - (rows - 1)) * support);
         GLADSTONE_UNROLL
         for (int n = 0; n < N; ++n) {
           Horner<1> along_x;
           GLADSTONE_UNROLL
-          for (int a = support - 1; a >= 0; --a) along_x.take(a, 0, row.lane(a), p[n].x);
+          for (int a = support - 1; a >= 0; --a) along_x.take(a, 0, fetched.lane(b % rows * support + a), p[n].x);
           along_y.take(b, n, along_x.value[0], p[n].y);
           x_along_y.take_value(b, n, along_x.slope[0], p[n].y);
         }

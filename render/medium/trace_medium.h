@@ -192,12 +192,17 @@ struct Crossing {
 template <class T>
 inline constexpr T landing_margin = T(1) + T(16) * std::numeric_limits<T>::epsilon();
 
+/// Whether a point is within a box, and on none of its faces.
+template <class T>
+GLADSTONE_HD bool lies_inside(Bounds<T> const& box, Vec3<T> p) {
+  return p.x > box.low.x && p.x < box.high.x && p.y > box.low.y && p.y < box.high.y && p.z > box.low.z &&
+         p.z < box.high.z;
+}
+
 /// False where a step dt along a straight line surely ends short of every face: cheaper than way_out, which divides.
 template <class T>
 GLADSTONE_HD bool may_reach_face(Bounds<T> const& box, Vec3<T> R, Vec3<T> direction, T dt) {
-  Vec3<T> const end = R + direction * (dt * T(1 + 1e-9));
-  return !(end.x > box.low.x && end.x < box.high.x && end.y > box.low.y && end.y < box.high.y && end.z > box.low.z &&
-           end.z < box.high.z);
+  return !lies_inside(box, R + direction * (dt * T(1 + 1e-9)));
 }
 
 /// Brings a ray to the face where it enters, and plans its steps.
@@ -393,7 +398,7 @@ GLADSTONE_HD void cross_in_pairs(Medium const& medium, Ray<T> const& start, Cros
     medium.sample_beside(straight_on + (T(0.5) * dt2) * B.d, reached, at);
     Force<T> const C = force_of(at[0]);
     Vec3<T> const turned = (T(1.0 / 6.0) * dt) * (A.d + T(4) * B.d + C.d);
-    if (face_left_by(box, reached, direction + turned) >= 0) break;
+    if (!lies_inside(box, reached) && face_left_by(box, reached, direction + turned) >= 0) break;
     way.shift += way.turn * dt + moved;
     way.turn += turned;
     way.optical_path += (T(1.0 / 6.0) * dt) * (A.n2 + T(4) * B.n2 + C.n2);

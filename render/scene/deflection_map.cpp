@@ -172,8 +172,8 @@ DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
       [&](auto const& medium) {
         for_each_node(table_.straight, [&](Vec2d q, std::size_t at) {
           Deflection const node = deflect(open, medium, plan.table.way, q, {});
-          displacements_[at] = node.displacement;
-          bends_[at] = node.bend;
+          displacements_[at] = KeptVector::of(node.displacement);
+          bends_[at] = KeptVector::of(node.bend);
         });
         for_each_node(table_.sloping, [&](Vec2d q, std::size_t at) {
           Deflection sides[4];

@@ -47,7 +47,7 @@ class DeflectionMap {
 
  private:
   DeflectionTable table_;
-  std::vector<Vec2d> displacements_, bends_;
+  std::vector<KeptVector> displacements_, bends_;
   std::vector<KeptSlopes> displacement_slopes_, bend_slopes_;
 };
 

@@ -66,8 +66,9 @@ GLADSTONE_HD Sum interpolate(SquareLattice::Stencil const& stencil, Node const* 
   Sum sum{};
   for (int j = 0; j < 4; ++j) {
     Node const* const line = nodes + stencil.corner + static_cast<long long>(j) * stencil.columns;
+    Node const node[4] = {line[0], line[1], line[2], line[3]};
     sum += stencil.y[j] *
-           (stencil.x[0] * line[0] + stencil.x[1] * line[1] + stencil.x[2] * line[2] + stencil.x[3] * line[3]);
+           (stencil.x[0] * node[0] + stencil.x[1] * node[1] + stencil.x[2] * node[2] + stencil.x[3] * node[3]);
   }
   return sum;
 }
@@ -86,8 +87,16 @@ struct PupilSlopes {
   GLADSTONE_HD PupilSlopes& operator+=(PupilSlopes const& o) { return *this = *this + o; }
 };
 
-/// The same as a table keeps it: what is a correction does with single precision, and half the memory to read.
-struct KeptSlopes {
+/// A vector as a table keeps it, to be read at once.
+struct alignas(16) KeptVector {
+  double x, y;
+
+  GLADSTONE_HD static KeptVector of(Vec2d v) { return {v.x, v.y}; }
+  GLADSTONE_HD friend Vec2d operator*(double scale, KeptVector const& v) { return {scale * v.x, scale * v.y}; }
+};
+
+/// Slopes as a table keeps them: what is a correction does with single precision, and half the memory to read, at once.
+struct alignas(16) KeptSlopes {
   Vec2<float> by_x, by_y;
 
   GLADSTONE_HD static KeptSlopes of(PupilSlopes const& s) {
@@ -108,15 +117,15 @@ struct DeflectionTable {
   double pupil_step = 0;   ///< for the slopes' differences [m]
 
   /// [rows][columns] of the lattices, as in Deflection; NaN where a ray does not reach the lens; null: no table
-  Vec2d const* displacements = nullptr;
-  Vec2d const* bends = nullptr;
+  KeptVector const* displacements = nullptr;
+  KeptVector const* bends = nullptr;
   KeptSlopes const* displacement_slopes = nullptr;
   KeptSlopes const* bend_slopes = nullptr;
 
   GLADSTONE_HD bool exists() const { return displacements != nullptr; }
   /// Memory that its values take [bytes].
   std::size_t bytes() const {
-    return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(Vec2d) +
+    return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(KeptVector) +
                 static_cast<std::size_t>(sloping.size()) * sizeof(KeptSlopes));
   }
   /// Whether it holds all rays from within `half` of a point of the target to within `pupil` of the axis.

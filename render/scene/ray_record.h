@@ -20,9 +20,10 @@ struct TargetImage {
   GLADSTONE_HD double half_size_px() const { return source_half * px_per_metre; }
 };
 
-/// What one ray tells of its dot's light in both frames.
+/// What one ray tells of its dot's light in both frames. Aligned so that a device writes and reads it in pairs of
+/// numbers.
 template <class T>
-struct RayRecord {
+struct alignas(2 * sizeof(T)) RayRecord {
   Vec2<T> place;      ///< on the source, in units of its half size, as the picture shows it (y downwards)
   Vec2<T> pupil;      ///< where it meets the lens plane in the reference frame [m]
   Vec2<T> arrival;    ///< the same in the flow frame [m]

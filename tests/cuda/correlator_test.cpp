@@ -84,8 +84,9 @@ TEST_F(CudaCorrelation, WithUniformWindowsAndCubicSplinesIsThatOfTheCpu) {
   expect_same(settings, smooth_pair(300, 260));
 }
 
-// Supports of 32 and 64 px go through registers, up to about 160 px through shared memory, larger ones through device
-// memory; 22, 46 and 94 bring the primes 11, 23 and 47. Windows of 8 px need more particles to hold a signal at all.
+// Supports of 32 and 64 px have kernels of their own, up to about 160 px they go through shared memory, larger ones
+// through device memory; 22, 46 and 94 bring the primes 11, 23 and 47. Windows of 8 px need more particles to hold a
+// signal at all.
 TEST_F(CudaCorrelation, OfAnyWindowSizeIsThatOfTheCpu) {
   ParticlePair const sparse = smooth_pair(300, 260), dense = smooth_pair(300, 260, 0.0, 1, 0.1);
   for (int const window : {8, 10, 16, 22, 32, 46, 48, 64, 80, 94}) {

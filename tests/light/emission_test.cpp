@@ -44,6 +44,17 @@ TEST(Sobol, FirstPointsAreJoeAndKuos) {
   }
 }
 
+// A point is its coordinates, whatever bits its index has: bytes full and empty, and single bits.
+TEST(Sobol, PointHasItsCoordinates) {
+  std::vector<std::uint32_t> indices{0u, 255u, 256u, 65535u, 65536u, 0xff00ff00u, 0x12345678u, 0xffffffffu};
+  for (std::uint32_t k = 0; k < 32; ++k) indices.push_back(1u << k);
+  for (std::uint32_t const index : indices) {
+    std::uint32_t point[4];
+    sobol_point(index, point);
+    for (int dimension = 0; dimension < 4; ++dimension) EXPECT_EQ(point[dimension], sobol_bits(index, dimension));
+  }
+}
+
 /// Largest and smallest number of points in the elementary intervals of 2^-bits volume of a pair of dimensions.
 std::pair<int, int> extremes_of_elementary_intervals(int first, int second, int points_log2, int bits,
                                                      std::uint32_t const (&seeds)[2]) {

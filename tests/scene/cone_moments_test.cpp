@@ -21,7 +21,7 @@ constexpr double stop = 4.77e-3, sent = 6.5e-3, distance = 1.0, way = 0.25;  // 
 /// for a medium.
 struct LensTable {
   DeflectionTable table;
-  std::vector<Vec2d> displacements, bends;
+  std::vector<KeptVector> displacements, bends;
   std::vector<KeptSlopes> none;
 
   LensTable(double d, double b) {
@@ -33,8 +33,8 @@ struct LensTable {
     for (int row = 0; row < lattice.rows; ++row) {
       for (int column = 0; column < lattice.columns; ++column) {
         Vec2d const pupil = lattice.node(column, row) / way;
-        displacements.push_back(d * pupil);
-        bends.push_back(b * pupil);
+        displacements.push_back(KeptVector::of(d * pupil));
+        bends.push_back(KeptVector::of(b * pupil));
       }
     }
     none.resize(displacements.size());

@@ -79,10 +79,10 @@ void correlate_windows(benchmark::State& state) {
   cuda::prepare_pair(images.first(), images.second(), keys.data(), contrast.data(), pair);
   cuda::WindowJob const job{pair, contrast.data(), grid, view, view, grid.window_px / 2, results.data()};
   cuda::DeviceTimer timer;
-  cuda::correlate_windows_in_registers(job, peaks.data());
+  cuda::correlate_small_windows(job, peaks.data());
   for (auto _ : state) {
     timer.start();
-    cuda::correlate_windows_in_registers(job, peaks.data());
+    cuda::correlate_small_windows(job, peaks.data());
     state.SetIterationTime(timer.stop());
   }
   set_rate(state, grid.size());

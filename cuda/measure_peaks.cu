@@ -1,0 +1,58 @@
+#include "cuda/correlation_kernels.h"
+#include "cuda/cuda_error.h"
+#include "cuda/peak_search.cuh"
+
+/// From the peaks of every window to shifts between the pixels.
+namespace gladstone::cuda {
+namespace {
+
+/// The five values as a plane.
+struct SampledPlane {
+  PeakSample sample;
+  __device__ float operator()(int x, int y) const {
+    int const dx = x - sample.x, dy = y - sample.y;
+    if (dx != 0) return dx < 0 ? sample.left : sample.right;
+    return dy == 0 ? sample.centre : (dy < 0 ? sample.above : sample.below);
+  }
+};
+
+/// The place of one peak along one axis, thread by thread: axes, then peaks, then windows.
+__global__ void measure_peaks(WindowJob const job, WindowPeaks const* all_peaks) {
+  constexpr int parts = 2 * PeakList<float>::capacity;
+  long long const at = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
+  long long const window = at / parts;
+  if (window >= static_cast<long long>(job.grid.size())) return;
+  int const which = static_cast<int>(at % parts) / 2;
+  Axis const axis = at % 2 == 0 ? Axis::x : Axis::y;
+  int const place =
+      axis == Axis::x ? static_cast<int>(window % job.grid.columns) : static_cast<int>(window / job.grid.columns);
+  WindowPeaks const& peaks = all_peaks[window];
+  WindowCorrelation& result = job.results[window];
+  double shift = 0.0;
+  if (which < peaks.count) {
+    SampledPlane const plane{peaks.peak[which]};
+    shift = refined_shift(plane, {plane.sample.x, plane.sample.y, plane.sample.centre}, axis,
+                          axis == Axis::x ? job.x : job.y, place);
+  }
+  (axis == Axis::x ? result.shift[which].x : result.shift[which].y) = shift;
+  if (at % parts != 0) return;
+  write_outcome(peaks.count, peaks.peak[0].centre, peaks.peak[1].centre, peaks.scale, result);
+  if (peaks.outcome != WindowCorrelation::Outcome::measured) result.outcome = peaks.outcome;
+}
+
+}  // namespace
+
+bool has_own_kernel(int size) { return size == 32 || size == 64; }
+
+void correlate_small_windows(WindowJob const& job, WindowPeaks* peaks) {
+  if (job.x.size == 64)
+    correlate_windows_of_64(job, peaks);
+  else
+    correlate_windows_of_32(job, peaks);
+  constexpr unsigned threads = 192;
+  auto const parts = 2 * PeakList<float>::capacity * job.grid.size();
+  measure_peaks<<<static_cast<unsigned>((parts + threads - 1) / threads), threads>>>(job, peaks);
+  check_launch("measure_peaks");
+}
+
+}  // namespace gladstone::cuda
