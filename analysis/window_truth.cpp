@@ -41,7 +41,7 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
   WindowTruth truth;
   truth.displacement_px.resize(centres_px.size());
   std::atomic<std::size_t> left_out{0};
-  parallel_chunks(centres_px.size(), 1024, [&](std::size_t begin, std::size_t end) {
+  parallel_chunks(centres_px.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Vec2d sum{};
       double total = 0.0;

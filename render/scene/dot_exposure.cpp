@@ -1,5 +1,6 @@
 #include "render/scene/dot_exposure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,33 @@ Footprint footprint(Vec2d p, int half) {
   return {static_cast<int>(std::floor(p.x + 0.5)) - half, static_cast<int>(std::floor(p.y + 0.5)) - half, 2 * half + 1};
 }
 
+/// Adds a series of spots to a patch: the sum over a + b <= order of moment (a, b) times the a-th shares of the columns
+/// times the b-th shares of the rows. Numbers of lanes that the compiler knows keep every loop in vector registers.
+/// @param lanes width or more @param shares [order + 1][width]
+template <int lanes>
+void add_series(double* corner, int side, int width, double weight, DisplacementMoments const& moments,
+                double const* column_shares, double const* row_shares) {
+  constexpr int order = DisplacementMoments::order;
+  double columns[order + 1][lanes] = {}, rows[order + 1][lanes] = {}, of_row[order + 1][lanes] = {};
+  for (int a = 0; a <= order; ++a) {
+    std::copy_n(column_shares + a * width, width, columns[a]);
+    std::copy_n(row_shares + a * width, width, rows[a]);
+  }
+  for (int a = 0; a <= order; ++a) {
+    for (int b = 0; a + b <= order; ++b) {
+      double const moment = weight * moments.of[DisplacementMoments::at(a, b)];
+      for (int j = 0; j < lanes; ++j) of_row[a][j] += moment * rows[b][j];
+    }
+  }
+  for (int j = 0; j < width; ++j) {
+    double line[lanes] = {};
+    for (int a = 0; a <= order; ++a) {
+      for (int i = 0; i < lanes; ++i) line[i] += of_row[a][j] * columns[a][i];
+    }
+    for (int i = 0; i < width; ++i) corner[j * side + i] += line[i];
+  }
+}
+
 }  // namespace
 
 LightPatch::LightPatch(SpotView const& spot)
@@ -18,7 +46,7 @@ LightPatch::LightPatch(SpotView const& spot)
       half_(spot.half_width()),
       side_(2 * half_ + 33),
       light_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0.0),
-      column_shares_(static_cast<std::size_t>((DisplacementMoments::order + 1) * (2 * half_ + 1))),
+      column_shares_(static_cast<std::size_t>(2 * half_ + 1)),
       row_shares_(column_shares_.size()) {}
 
 double* LightPatch::reach(Footprint const& spot, LightImage* image, double light_per_weight) {
@@ -68,28 +96,28 @@ void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light
   }
 }
 
-void LightPatch::deposit(Vec2d p, double weight, DisplacementMoments const& moments, LightImage* image,
-                         double light_per_weight) {
-  using M = DisplacementMoments;
-  if (!(std::abs(p.x) < 1e8 && std::abs(p.y) < 1e8)) return;
-  Footprint const spot = footprint(p, half_);
-  double* const corner = reach(spot, image, light_per_weight);
-  int const width = spot.width;
-  spot_.gaussian.taylor_shares(p.x, spot.column, width, M::order, column_shares_.data());
-  spot_.gaussian.taylor_shares(p.y, spot.row, width, M::order, row_shares_.data());
-  for (int j = 0; j < width; ++j) {
-    double of_row[M::order + 1];
-    for (int a = 0; a <= M::order; ++a) {
-      of_row[a] = 0;
-      for (int b = 0; a + b <= M::order; ++b) {
-        of_row[a] += weight * moments.of[M::at(a, b)] * row_shares_[static_cast<std::size_t>(b * width + j)];
-      }
-    }
-    for (int i = 0; i < width; ++i) {
-      double sum = 0;
-      for (int a = 0; a <= M::order; ++a) sum += of_row[a] * column_shares_[static_cast<std::size_t>(a * width + i)];
-      corner[j * side_ + i] += sum;
-    }
+bool LightPatch::make_series(double p, Series& series) const {
+  if (!(std::abs(p) < 1e8)) return false;
+  int const width = 2 * half_ + 1;
+  series.first = static_cast<int>(std::floor(p + 0.5)) - half_;
+  series.shares.resize(static_cast<std::size_t>((DisplacementMoments::order + 1) * width));
+  spot_.gaussian.taylor_shares(p, series.first, width, DisplacementMoments::order, series.shares.data());
+  return true;
+}
+
+void LightPatch::deposit(Series const& column, Series const& row, double weight, DisplacementMoments const& moments,
+                         LightImage* image, double light_per_weight) {
+  int const width = 2 * half_ + 1;
+  double* const corner = reach({column.first, row.first, width}, image, light_per_weight);
+  auto const add = [&]<int lanes>() {
+    add_series<lanes>(corner, side_, width, weight, moments, column.shares.data(), row.shares.data());
+  };
+  if (width <= 8) {
+    add.operator()<8>();
+  } else if (width <= 12) {
+    add.operator()<12>();
+  } else {
+    add.operator()<48>();  // light_model's by_moments() takes no wider ones
   }
 }
 
@@ -255,26 +283,43 @@ bool DotExposure::deposit_wide(ConeIntegral const& integral) {
     Vec2<int> const box = box_of(light.displacement, 1 / side);
     part_of(box)[i / points].add(light.weight, light.displacement - middle_of(box));
   }
-  for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
-    for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
-      DisplacementMoments* const part = part_of({column, row});
+  lit_.clear();
+  for (int row = 0; row < boxes.rows(); ++row) {
+    for (int column = 0; column < boxes.columns(); ++column) {
+      DisplacementMoments* const part = part_of({boxes.low.x + column, boxes.low.y + row});
       bool empty = true;
       for (int i = 0; i < places; ++i) {
         empty = empty && part[i].of[0] == 0;
         integral.cone.finish(part[i], integral.without_medium[i]);
       }
-      if (!empty) deposit_part(integral.cone.origin() + middle_of({column, row}), part);
+      if (!empty) lit_.push_back({column, row, MomentField::fit(model_.places, part)});
     }
   }
+  deposit_lit(integral.cone.origin(), boxes);
   return true;
 }
 
-void DotExposure::deposit_part(Vec2d moved, DisplacementMoments const* moments) {
-  MomentField const field = MomentField::fit(model_.places, moments);
+void DotExposure::deposit_lit(Vec2d origin, BoxRange const& boxes) {
+  LightPatch& patch = patches_[1];
+  columns_.resize(static_cast<std::size_t>(boxes.columns()));
+  rows_.resize(static_cast<std::size_t>(boxes.rows()));
+  double const side = model_.box_side();
   for (int i = 0; i < model_.source.count; ++i) {
     Deposit const light = reference_light(model_, plan_, i);
-    patches_[1].deposit(light.at + moved, light.weight, field.at(model_.source.points[i]), images_[1],
-                        light_per_weight_);
+    bool seen = true;
+    for (int k = 0; k < boxes.columns(); ++k) {
+      seen = seen && patch.make_series(light.at.x + (origin.x + side * (boxes.low.x + k)),
+                                       columns_[static_cast<std::size_t>(k)]);
+    }
+    for (int k = 0; k < boxes.rows(); ++k) {
+      seen = seen &&
+             patch.make_series(light.at.y + (origin.y + side * (boxes.low.y + k)), rows_[static_cast<std::size_t>(k)]);
+    }
+    if (!seen) continue;
+    for (LitBox const& box : lit_) {
+      patch.deposit(columns_[static_cast<std::size_t>(box.column)], rows_[static_cast<std::size_t>(box.row)],
+                    light.weight, box.field.at(model_.source.points[i]), images_[1], light_per_weight_);
+    }
   }
 }
 
@@ -287,7 +332,8 @@ void DotExposure::finish_light() {
       deposit_source(Frame::flow);
       break;
     case DotKind::narrow:
-      deposit_part(integral->cone.origin(), integral->whole);
+      lit_.assign(1, {0, 0, MomentField::fit(model_.places, integral->whole)});
+      deposit_lit(integral->cone.origin(), {});
       break;
     case DotKind::wide:
       if (!deposit_wide(*integral)) deposit_rays();

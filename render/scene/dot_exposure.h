@@ -49,8 +49,16 @@ class LightPatch {
 
   /// Adds one ray's spot of weight `weight` at p [px]; a spot beyond the patch first sends the patch to the image.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);
-  /// Adds Gaussian spots whose displacements from p have these moments, as a Taylor series.
-  void deposit(Vec2d p, double weight, DisplacementMoments const& moments, LightImage* image, double light_per_weight);
+  /// A Gaussian spot along one axis: its shares of the pixels from `first` on, and their derivatives by its place.
+  struct Series {
+    int first = 0;               ///< pixel [px]
+    std::vector<double> shares;  ///< [order + 1][width] of taylor_shares()
+  };
+  /// Series of a spot at p [px]. @return false beyond any image
+  bool make_series(double p, Series& series) const;
+  /// Adds Gaussian spots whose displacements from where the series stand have these moments.
+  void deposit(Series const& column, Series const& row, double weight, DisplacementMoments const& moments,
+               LightImage* image, double light_per_weight);
   /// Adds what has been gathered to the image (if any) and clears the patch.
   void flush(LightImage* image, double light_per_weight);
 
@@ -71,7 +79,7 @@ class LightPatch {
   int left_ = 0, top_ = 0;                                             // image position of the patch's corner
   int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // touched part
   std::vector<double> light_;
-  std::vector<double> column_shares_, row_shares_;  ///< for taylor_shares()
+  std::vector<double> column_shares_, row_shares_;  ///< for shares()
 
   /// Makes room for a spot and marks it as touched. @return the place of its first pixel
   double* reach(Footprint const& spot, LightImage* image, double light_per_weight);
@@ -114,8 +122,9 @@ class DotExposure {
   std::optional<ConeIntegral> integrate_cone();
   /// Lays down the light in the flow square by square. @return false: there are too many, and nothing was done
   bool deposit_wide(ConeIntegral const& integral);
-  /// Lays down the light of a part of the cone. @param moved where its moments count from [px]
-  void deposit_part(Vec2d moved, DisplacementMoments const* moments);
+  /// Deposits the light of the lit squares of displacement: a spot's series along an axis serves a column or row of
+  /// them. @param origin where the squares count from [px]
+  void deposit_lit(Vec2d origin, BoxRange const& boxes);
   /// Lays down the source's disc as the reference frame shows it.
   void deposit_source(Frame frame);
   FlowFit fit_flow() const;
@@ -135,7 +144,14 @@ class DotExposure {
   TableCheck check_;
   std::vector<ConeLight> cone_points_;      ///< of all places
   std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
-  bool moved_ = false;                      ///< whether the flow did anything to any of its rays
+  /// A square that light falls on: its column and row among them, and its moments over the source.
+  struct LitBox {
+    int column, row;
+    MomentField field;
+  };
+  std::vector<LitBox> lit_;
+  std::vector<LightPatch::Series> columns_, rows_;  ///< of one point of the source, by column and row of squares
+  bool moved_ = false;                              ///< whether the flow did anything to any of its rays
   StatusCounts statuses_{};
   double largest_bend2_ = 0;
 };

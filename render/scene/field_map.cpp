@@ -140,7 +140,8 @@ StrainMap map_strain(Scene const& scene) {
       scene.medium.view);
 
   Image<Vec2d> displacement(columns, rows);
-  for (int row = 0; row < rows; ++row) {
+  parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
+    int const row = static_cast<int>(line);
     for (int column = 0; column < columns; ++column) {
       Vec2d sum{};
       for (DiscNode const& node : disc) {
@@ -149,7 +150,7 @@ StrainMap map_strain(Scene const& scene) {
       displacement(column, row) =
           theory_displacement(sum, 1.0, scene.imaging.magnification, scene.setup.ambient_index(), camera.pixel_pitch);
     }
-  }
+  });
   return strain_of(displacement, spacing_px);
 }
 

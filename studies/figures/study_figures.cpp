@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/base/parallel.h"
 #include "studies/figures/study_drawings.h"
 #include "studies/sweep/study_points.h"
 
@@ -127,25 +128,29 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   bool const repeated = table.repeats() > 1;
   StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
   StudyCells const points(point_table);
-  std::vector<std::string> paths;
-  auto const write = [&](std::unique_ptr<GnuplotFigure> const& figure, std::string const& name) {
+  std::vector<std::unique_ptr<GnuplotFigure>> figures;
+  std::vector<std::string> paths;  // two a figure
+  auto const add = [&](std::unique_ptr<GnuplotFigure> figure, std::string const& name) {
     if (!figure) return;
-    for (char const* ending : {".png", ".svg"}) {
-      paths.push_back(folder + '/' + name + ending);
-      figure->write(paths.back());
-    }
+    figures.push_back(std::move(figure));
+    for (char const* ending : {".png", ".svg"}) paths.push_back(folder + '/' + name + ending);
   };
   std::vector<std::size_t> const& varied = cells.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {
     std::string const name = file_part(cells.key(varied[i]));
-    write(draw_error_curves(cells, varied[i]), "error_against_" + name);
-    write(draw_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
-    if (repeated) write(draw_repeats(points, varied[i]), "repeats_" + name);
+    add(draw_error_curves(cells, varied[i]), "error_against_" + name);
+    add(draw_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
+    if (repeated) add(draw_repeats(points, varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      write(draw_error_map(cells, varied[j], varied[i]),
-            fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
+      add(draw_error_map(cells, varied[j], varied[i]),
+          fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
     }
   }
+  // gnuplot takes most of the time: a process a figure, as many at once as there are threads
+  parallel_for(figures.size(), [&](std::size_t i) {
+    figures[i]->write(paths[2 * i]);
+    figures[i]->write(paths[2 * i + 1]);
+  });
   return paths;
 }
 

@@ -1,11 +1,14 @@
 #include "studies/sweep/results.h"
 
 #include <fcntl.h>
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -31,32 +34,54 @@ double number_of(Json const& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-/// Errors of vectors stand as whole numbers of this many px, u and v by turns.
+/// Errors of vectors stand as whole numbers of this many px, u and v by turns, with spaces between them in one text
+/// (JSON arrays of thousands of numbers take long to read); what is unknown is "-".
 constexpr double vector_unit_px = 1e-6;
+
+std::string numbers_text(std::vector<Vec2d> const& errors_px) {
+  std::string text;
+  for (Vec2d const& error : errors_px) {
+    for (double const one : {error.x, error.y}) {
+      if (!text.empty()) text += ' ';
+      if (std::isfinite(one)) {
+        fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), std::llround(one / vector_unit_px));
+      } else {
+        text += '-';
+      }
+    }
+  }
+  return text;
+}
+
+std::vector<Vec2d> numbers_of(std::string const& text) {
+  std::vector<Vec2d> errors;
+  bool first = true;
+  for (char const *at = text.data(), *const end = at + text.size(); at < end; ++at) {
+    long long whole = 0;
+    auto const [after, error] = std::from_chars(at, end, whole);
+    double const number =
+        error == std::errc() ? static_cast<double>(whole) * vector_unit_px : std::numeric_limits<double>::quiet_NaN();
+    if (first) {
+      errors.push_back({number, number});
+    } else {
+      errors.back().y = number;
+    }
+    first = !first;
+    at = std::find(at, end, ' ');
+  }
+  return errors;
+}
 
 Json vectors_json(std::vector<VectorErrors> const& vectors) {
   Json json = Json::object();
-  auto const whole = [](double error_px) {
-    return std::isfinite(error_px) ? Json(std::llround(error_px / vector_unit_px)) : Json(nullptr);
-  };
-  for (VectorErrors const& one : vectors) {
-    Json& numbers = json[one.name] = Json::array();
-    for (Vec2d const& error : one.errors_px) {
-      numbers.push_back(whole(error.x));
-      numbers.push_back(whole(error.y));
-    }
-  }
+  for (VectorErrors const& one : vectors) json[one.name] = numbers_text(one.errors_px);
   return json;
 }
 
 std::vector<VectorErrors> vectors_of(Json const& json) {
   std::vector<VectorErrors> vectors;
   for (auto const& [name, numbers] : json.items()) {
-    VectorErrors one{name, {}};
-    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
-      one.errors_px.push_back({number_of(numbers[i]) * vector_unit_px, number_of(numbers[i + 1]) * vector_unit_px});
-    }
-    vectors.push_back(std::move(one));
+    vectors.push_back({name, numbers_of(numbers.get_ref<std::string const&>())});
   }
   return vectors;
 }

@@ -82,7 +82,7 @@ TEST_F(Sweeps, FromStudyToTable) {
   EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
   EXPECT_EQ(status("run")["done"], 12);
   auto const collected = json_of({"sweep", "collect", "run"});
-  ASSERT_EQ(collected["figures"].size(), 10u);  // curves and a budget for two axes, a map of both; PNG and SVG
+  ASSERT_EQ(collected["figures"].size(), 14u);  // curves, a budget and repeats for two axes, a map of both; PNG and SVG
   EXPECT_EQ(collected["figures"][0], "run/figures/error_against_lens_f_number.png");
   EXPECT_GT(read_image(in("run/figures/error_against_lens_f_number.png").string()).columns(), 700);
 

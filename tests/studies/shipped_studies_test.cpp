@@ -56,5 +56,12 @@ TEST(ShippedStudies, AreInTheIndexAndTheirPagesShowFiguresThatThereAre) {
   EXPECT_GE(figures, 15);
 }
 
+// docs/benchmarks.md quotes a time for just so many cases.
+TEST(BenchmarkStudies, HaveTheNumberOfCasesOfTheirName) {
+  std::string const folder = shared_folder() + "/data/benchmarks/";
+  EXPECT_EQ(plan_study(read_study(folder + "study_hundred.toml"), "cpu").size(), 100u);
+  EXPECT_EQ(plan_study(read_study(folder + "study_thousand.toml"), "cpu").size(), 1000u);
+}
+
 }  // namespace
 }  // namespace gladstone
