@@ -148,9 +148,9 @@ __device__ inline void fit_moments(LightModel const& model, ConeState& state) {
 /// Lays down the source's disc with the spots that the moments make of it. A warp takes some points of the source at a
 /// time: first its lanes work out all their pixels' edges, then the spots' factors, then a lane a pixel.
 /// @param scratch of the warps @param moved where the moments count from [px]
-__device__ inline void lay_down_part(LightModel const& model, DotPlan const& plan, MomentField const& field,
-                                     Vec2d moved, Patch const& patch, DeviceImages const& images,
-                                     SharesOfGroup* scratch) {
+__device__ inline void lay_down_part(LightModel const& model, CubatureView const& source, DotPlan const& plan,
+                                     MomentField const& field, Vec2d moved, Patch const& patch,
+                                     DeviceImages const& images, SharesOfGroup* scratch) {
   using M = DisplacementMoments;
   using Spot = GaussianSpot<double>;
   constexpr int orders = M::order + 1, most_group = 4;
@@ -162,13 +162,13 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
   int const group = min(most_group, SharesOfGroup::room / room_of_point);
   double* const gathered = patch.of_warp(warp);
   auto const place = [&](int point) {
-    Deposit light = reference_light(model, plan, point);
+    Deposit light = reference_light(model, source, plan, point);
     light.at += moved;
     if (!(fabs(light.at.x) < 1e8 && fabs(light.at.y) < 1e8)) light = {};
     return light;
   };
-  for (int first = warp * group; first < model.source.count; first += dot_warps * group) {
-    int const here = min(group, model.source.count - first);
+  for (int first = warp * group; first < source.count; first += dot_warps * group) {
+    int const here = min(group, source.count - first);
     // factors of a point: [axis][order][edge], then its moments
     auto const factors = [&](int which) { return scratch[warp].of + which * room_of_point; };
     for (int row = lane / 8; row < 2 * here; row += warp_size / 8) {
@@ -187,7 +187,7 @@ __device__ inline void lay_down_part(LightModel const& model, DotPlan const& pla
     for (int which = lane / 16; which < here; which += warp_size / 16) {
       int const moment = lane % 16;
       if (moment >= M::count) continue;
-      factors(which)[2 * orders * edges + moment] = field.value(moment, model.source.points[first + which]);
+      factors(which)[2 * orders * edges + moment] = field.value(moment, source.points[first + which]);
     }
     __syncwarp();
     // from edges to pixels
@@ -261,7 +261,7 @@ __device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan,
       __syncthreads();
       if (!integrate_box(model, cone, state, kept, {column, row}, middle)) continue;
       fit_moments(model, state);
-      lay_down_part(model, plan, state.field, cone.origin() + middle, patch, images, scratch);
+      lay_down_part(model, model.wide_source, plan, state.field, cone.origin() + middle, patch, images, scratch);
     }
   }
   patch.flush(images, Frame::flow);

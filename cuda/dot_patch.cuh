@@ -25,7 +25,7 @@ inline __device__ RayRecord<double> widened(RayRecord<float> const& ray) {
   auto const wide = [](Vec2<float> v) { return Vec2d{v.x, v.y}; };
   return {wide(here.place),      wide(here.pupil), wide(here.arrival),    wide(here.reference),
           wide(here.flow),       here.weight,      here.reference_weight, here.flow_weight,
-          here.reference_counts, here.flow_counts, here.leaves_medium};
+          here.reference_counts, here.flow_counts, here.leaves_medium,    here.moved};
 }
 
 /// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up
@@ -166,7 +166,7 @@ __device__ inline void lay_down_reference(LightModel const& model, DotPlan const
                                           DeviceImages const& images, Frame frame, SharesOfGroup* shares) {
   patch.begin(plan.origin);
   lay_down(model.spot, patch, images, frame, shares, model.source.count,
-           [&](std::uint64_t k) { return reference_light(model, plan, static_cast<int>(k)); });
+           [&](std::uint64_t k) { return reference_light(model, model.source, plan, static_cast<int>(k)); });
   patch.flush(images, frame);
 }
 

@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(dot_threads, 3)
       RayRecord<double> const ray = widened(rays[j]);
       sum.hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
       sum.hits[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
-      moved |= ray.moved();
+      moved |= ray.moved;
       if (tabled) sum.check.add(model.table, centre + model.offset(ray.place), flow_displacement(model, ray), ray);
     }
     moved = __syncthreads_or(moved);

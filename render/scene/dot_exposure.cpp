@@ -168,7 +168,7 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
   RayRecord<double> const ray = make_record(model_.image, centre_, plan_.origin, emitted, reference, flow);
   sums_[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
   sums_[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
-  moved_ |= ray.moved();
+  moved_ |= ray.moved;
   if (tabled_) check_.add(model_.table, centre_ + model_.offset(ray.place), flow_displacement(model_, ray), ray);
   if (!with_images_) return;
   if (model_.controlled) {
@@ -210,7 +210,7 @@ FlowFit DotExposure::fit_flow() const {
 }
 
 void DotExposure::deposit_source(Frame frame) {
-  for (int i = 0; i < model_.source.count; ++i) deposit(frame, reference_light(model_, plan_, i));
+  for (int i = 0; i < model_.source.count; ++i) deposit(frame, reference_light(model_, model_.source, plan_, i));
 }
 
 void DotExposure::deposit_rays() {
@@ -295,17 +295,17 @@ bool DotExposure::deposit_wide(ConeIntegral const& integral) {
       if (!empty) lit_.push_back({column, row, MomentField::fit(model_.places, part)});
     }
   }
-  deposit_lit(integral.cone.origin(), boxes);
+  deposit_lit(integral.cone.origin(), boxes, model_.wide_source);
   return true;
 }
 
-void DotExposure::deposit_lit(Vec2d origin, BoxRange const& boxes) {
+void DotExposure::deposit_lit(Vec2d origin, BoxRange const& boxes, CubatureView const& source) {
   LightPatch& patch = patches_[1];
   columns_.resize(static_cast<std::size_t>(boxes.columns()));
   rows_.resize(static_cast<std::size_t>(boxes.rows()));
   double const side = model_.box_side();
-  for (int i = 0; i < model_.source.count; ++i) {
-    Deposit const light = reference_light(model_, plan_, i);
+  for (int i = 0; i < source.count; ++i) {
+    Deposit const light = reference_light(model_, source, plan_, i);
     bool seen = true;
     for (int k = 0; k < boxes.columns(); ++k) {
       seen = seen && patch.make_series(light.at.x + (origin.x + side * (boxes.low.x + k)),
@@ -318,7 +318,7 @@ void DotExposure::deposit_lit(Vec2d origin, BoxRange const& boxes) {
     if (!seen) continue;
     for (LitBox const& box : lit_) {
       patch.deposit(columns_[static_cast<std::size_t>(box.column)], rows_[static_cast<std::size_t>(box.row)],
-                    light.weight, box.field.at(model_.source.points[i]), images_[1], light_per_weight_);
+                    light.weight, box.field.at(source.points[i]), images_[1], light_per_weight_);
     }
   }
 }
@@ -333,7 +333,7 @@ void DotExposure::finish_light() {
       break;
     case DotKind::narrow:
       lit_.assign(1, {0, 0, MomentField::fit(model_.places, integral->whole)});
-      deposit_lit(integral->cone.origin(), {});
+      deposit_lit(integral->cone.origin(), {}, model_.source);
       break;
     case DotKind::wide:
       if (!deposit_wide(*integral)) deposit_rays();

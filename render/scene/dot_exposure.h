@@ -124,7 +124,7 @@ class DotExposure {
   bool deposit_wide(ConeIntegral const& integral);
   /// Deposits the light of the lit squares of displacement: a spot's series along an axis serves a column or row of
   /// them. @param origin where the squares count from [px]
-  void deposit_lit(Vec2d origin, BoxRange const& boxes);
+  void deposit_lit(Vec2d origin, BoxRange const& boxes, CubatureView const& source);
   /// Lays down the source's disc as the reference frame shows it.
   void deposit_source(Frame frame);
   FlowFit fit_flow() const;

@@ -185,6 +185,8 @@ OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, 
       spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
   source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
   model.source = view_of(source);
+  wide_source = SourceCubature::make(sources.shape, image.half_size_px(), 2 * spot_px);
+  model.wide_source = view_of(wide_source);
   for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
 }
 

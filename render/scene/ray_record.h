@@ -35,12 +35,9 @@ struct alignas(2 * sizeof(T)) RayRecord {
   bool reference_counts = false;  ///< past the stop and on the sensor's plane
   bool flow_counts = false;
   bool leaves_medium = false;  ///< in the flow, to reach the lens plane
+  bool moved = false;          ///< whether the flow did anything to it
 
   GLADSTONE_HD Vec2<T> bend() const { return arrival - pupil; }
-  /// Whether the flow did anything to it.
-  GLADSTONE_HD bool moved() const {
-    return !(flow == reference && arrival == pupil && flow_weight == reference_weight);
-  }
 };
 
 /// @param origin image of the dot's centre [px]
@@ -62,6 +59,8 @@ GLADSTONE_HD RayRecord<T> make_record(TargetImage const& image, Vec2<T> centre, 
   record.reference_counts = reaches_sensor_plane(reference.status);
   record.flow_counts = reaches_sensor_plane(flow.status);
   record.leaves_medium = flow.status <= RayStatus::vignetted;
+  record.moved = !(record.flow == record.reference && record.arrival == record.pupil &&
+                   record.flow_weight == record.reference_weight);
   return record;
 }
 
