@@ -8,6 +8,7 @@
 #include "cuda/cuda_correlator.h"
 #include "cuda/cuda_error.h"
 #include "cuda/cuda_renderer.h"
+#include "cuda/runnable_code.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -38,6 +39,9 @@ DeviceState device_state() {
     return {false, "the NVIDIA driver is absent or older than this CUDA build needs"};
   if (status != cudaSuccess) {
     return {false, fmt::format("no usable CUDA device: {}", cudaGetErrorString(status))};
+  }
+  if (std::string const why = why_code_cannot_run(); !why.empty()) {
+    return {false, fmt::format("{} cannot be used: {}", device.name, why)};
   }
   return {true, fmt::format("{}, {:.0f} GiB", device.name, static_cast<double>(device.totalGlobalMem) / 0x1p30)};
 }

@@ -105,12 +105,10 @@ class ImagePairOnDevice {
   DeviceImages view(double light_per_weight) {
     return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight * fixed_point_one};
   }
-  std::shared_ptr<DeviceLight> to_light() const {
-    auto light = std::make_shared<DeviceLight>(columns_, rows_);
+  void to_light(DeviceLight& light) const {
     for (Frame const frame : {Frame::reference, Frame::flow}) {
-      cuda::to_light(light_[static_cast<int>(frame)].data(), light->light(frame), pixels());
+      cuda::to_light(light_[static_cast<int>(frame)].data(), light.light(frame), pixels());
     }
-    return light;
   }
 
  private:
@@ -144,7 +142,10 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
   double const light_per_ray = scene.light_per_ray(sources);
   TheoryModel const theory_model = scene.theory_model();
   std::optional<ImagePairOnDevice> images;
-  if (spot) images.emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+  if (spot) {
+    images.emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+    light_out = std::make_shared<DeviceLight>(scene.setup.camera.columns, scene.setup.camera.rows);
+  }
   DeviceImages const frames = images ? images->view(light_per_ray) : DeviceImages{};
   if (dots > 0) {
     DeviceArray<TraceTally> tally(1, "counters");
@@ -191,7 +192,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       }
     }
   }
-  if (images) light_out = images->to_light();
+  if (images) images->to_light(*light_out);
   return pass;
 }
 

@@ -15,12 +15,13 @@ void require_room(char const* what_for, std::size_t bytes) {
   if (bytes > device_room().free) throw OutOfDeviceMemory(what_for, bytes);
 }
 
-/// A volume's polynomials, or nothing: they may take a quarter of what is free.
+/// A volume's polynomials, or nothing: they may take a quarter of the device's memory. What is free does not count, so
+/// that results do not depend on what else runs there.
 template <class T, class Grid>
 DeviceArray<T> make_polynomials(Grid const& grid) {
   using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
   std::size_t const cell_count = Cells(grid, nullptr).cell_count(), count = cell_count * Cells::size;
-  if (cell_count > Cells::most_cells || count * sizeof(T) > device_room().free / 4) return {};
+  if (cell_count > Cells::most_cells || count * sizeof(T) > device_room().total / 4) return {};
   DeviceArray<T> cells(count, "the field's polynomials");
   fill_cells(grid, cells.data());
   return cells;

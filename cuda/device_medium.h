@@ -34,9 +34,9 @@ extern template void fill_cells(LinearVolume<double> const&, float*);
 
 /// Owner of a medium's coefficients on the device, which has n - 1 once: a plane as its coefficients in double; a
 /// volume as polynomials in double, 64 numbers a cell (trilinear: 8), or, where these would take more than a quarter of
-/// the free memory, as its coefficients in float, one a node. With single precision a volume is there once in float and
-/// once more: rays cross polynomials in float, while theory and the deflection table, which stay double so that they do
-/// not change with the rays' precision, read the coefficients. That adds a sixty-fourth (an eighth) of what the
+/// the device's memory, as its coefficients in float, one a node. With single precision a volume is there once in float
+/// and once more: rays cross polynomials in float, while theory and the deflection table, which stay double so that
+/// they do not change with the rays' precision, read the coefficients. That adds a sixty-fourth (an eighth) of what the
 /// polynomials take.
 class MirroredMedium {
  public:

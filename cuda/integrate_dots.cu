@@ -20,7 +20,7 @@ template <class Medium>
 __global__ void __launch_bounds__(threads)
     integrate_dots_kernel(LightModel const __grid_constant__ light, TheoryModel const model,
                           SceneView<double> const view, Medium const medium, Batch const batch, DotTheory* const out) {
-  __shared__ unsigned char storage[threads * sizeof(WeightedSum)];
+  __shared__ __align__(16) unsigned char storage[threads * sizeof(WeightedSum)];
   auto* const shared = reinterpret_cast<WeightedSum*>(storage);
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
     std::uint64_t const dot = batch.first + i;

@@ -150,18 +150,29 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
     result = {one.index, one.line_hash, CaseStatus::failed, std::move(error), {}, {}, {}, nan,
               nan,       nan,           device_.name()};
   };
+  CaseResult const fresh = result;
+  auto const short_of_memory = [](std::exception const& error) {
+    return dynamic_cast<std::bad_alloc const*>(&error) ||
+           std::string_view(error.what()).starts_with("out of device memory");
+  };
   QuietLog const quiet;
   try {
-    compute(one, keep, result);
+    try {
+      compute(one, keep, result);
+    } catch (std::exception const& error) {
+      if (!short_of_memory(error)) throw;
+      shared_ = std::make_unique<Shared>();  // once more without what is kept for other cases
+      result = fresh;
+      compute(one, keep, result);
+    }
   } catch (SetupError const& error) {
     fail(error.what());
   } catch (DataError const& error) {
     fail(error.what());
   } catch (std::bad_alloc const&) {
-    shared_ = std::make_unique<Shared>();
     fail("out of memory; reduce the image, the field or the number of dots");
   } catch (DeviceError const& error) {
-    if (!std::string_view(error.what()).starts_with("out of device memory")) throw;
+    if (!short_of_memory(error)) throw;
     fail(error.what());
   }
   return result;

@@ -176,6 +176,26 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   expect_same(expected, rendering);
 }
 
+// A volume whose polynomials would take more than a quarter of the device is traced by its coefficients, to the same
+// numbers.
+TEST_F(SmallDevice, TracesAVolumeByItsCoefficientsWherePolynomialsAreTooLarge) {
+  Scene scene = scene_of(volume(), 6, 64);
+  std::size_t with_polynomials = 0;
+  auto const render_anew = [&](std::size_t bytes, std::size_t& most) {
+    DeviceMemoryLimit const limit(bytes);
+    Rendering rendering = make_renderer()->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    most = limit.most_held();
+    return rendering;
+  };
+  Rendering const expected = render_anew(DeviceMemoryLimit::none, with_polynomials);
+  std::size_t without = 0;
+  Rendering const rendering = render_anew(2 * with_polynomials, without);
+  EXPECT_LT(without, with_polynomials / 4);
+  for (std::size_t i = 0; i < scene.dots.centre.size(); ++i) {
+    EXPECT_LT(length(rendering.truth.displacement_px[i] - expected.truth.displacement_px[i]), 1e-9) << i;
+  }
+}
+
 TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
   Scene before = scene_of(sinusoid(0.1, 6e-3), 3, 64), large = scene_of(volume(), 3, 64);
   {

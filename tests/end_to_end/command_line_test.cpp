@@ -110,7 +110,9 @@ TEST_F(CommandLine, ValidateMeetsEveryOracle) {
 TEST_F(CommandLine, QuietSaysNothingAboutSuccess) {
   Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--quiet"});
   EXPECT_EQ(outcome.err, "");
+  setenv("CUDA_VISIBLE_DEVICES", "", 1);  // hides every GPU from the program, whatever this machine has
   Outcome const loud = gladstone({"render", "setup.toml", "-o", "case"});
+  unsetenv("CUDA_VISIBLE_DEVICES");
   EXPECT_THAT(loud.err, HasSubstr("device: cpu"));
   EXPECT_THAT(loud.err, testing::Not(HasSubstr("\r"))) << "a progress bar without a terminal";
 }

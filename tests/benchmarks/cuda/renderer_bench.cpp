@@ -96,7 +96,7 @@ BENCHMARK(case_p_single_trilinear)
     ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 
-/// Case T: Table 1 on 1024 x 1024 px, the late plane tiled, 20480 dots.
+/// Case T: Table 1 on 1024 x 1024 px, the late plane tiled, 20,449 dots.
 void case_t(benchmark::State& state) {
   Scene scene = plane_scene(143, static_cast<std::uint64_t>(state.range(0)), 1024);
   report(state, scene);
