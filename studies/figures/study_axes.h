@@ -23,7 +23,7 @@ struct FigureAxis {
   std::size_t size() const { return position.size(); }
 };
 
-/// Numbers grow from place to place; categories keep the study's order.
+/// Numbers grow from place to place; categories keep the study's order, as do numbers of which one is not finite.
 /// @param most places; of more numbers, bins of equal count are made; of more categories, the last place takes the rest
 FigureAxis figure_axis(StudyAxis const& axis, std::size_t most);
 

@@ -119,6 +119,13 @@ TEST(FigureAxis, SortsNumbersAndKeepsCategories) {
   EXPECT_THAT(figure_axis(words("a", {"z", "a", "m"}), 2).label, ElementsAre("z", "others"));
 }
 
+TEST(FigureAxis, TakesNumbersWithInfinityAsCategories) {
+  FigureAxis const axis = figure_axis(numbers("a", {8, 16, HUGE_VAL}), 12);
+  EXPECT_FALSE(axis.numeric);
+  EXPECT_THAT(axis.label, ElementsAre("8", "16", "inf"));
+  EXPECT_THAT(axis.position, ElementsAre(0, 1, 2));
+}
+
 TEST(FigureAxis, BinsManyNumbersByEqualCount) {
   FigureAxis const axis = figure_axis(numbers("a", {1, 2, 3, 5, 6, 7}), 2);
   EXPECT_THAT(axis.position, ElementsAre(2, 6));
@@ -201,6 +208,12 @@ TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200, 400})}, 1);
   std::erase_if(table.rows, [](StudyRow const& row) { return row.value[0] != row.value[1]; });
   for (std::string const& name : draw(table)) EXPECT_THAT(name, Not(HasSubstr("map")));
+}
+
+TEST_F(StudyFigures, AreDrawnOfAPinholeToo) {
+  EXPECT_EQ(draw(grid({numbers("lens.f_number", {8, 16, HUGE_VAL}), numbers("geometry.z_d_mm", {100, 200})}, 2)).size(),
+            14u);
+  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(">inf<"));
 }
 
 TEST_F(StudyFigures, ManyValuesAreBinned) {
