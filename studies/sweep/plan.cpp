@@ -28,20 +28,36 @@ std::uint64_t case_seed(StudyFile const& study, std::size_t repeat) {
   return repeat == 0 ? study.seed : repeat_seed(study.seed, repeat) >> 1;
 }
 
-/// The base with the axes' values and the seeds put in.
+/// Whether the axes' values hold something at a path of keys, by itself or in a table above it.
+bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std::vector<std::string> const& path) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    std::vector<std::string> const& above = study.axes[k].path;
+    if (above.size() > path.size() || !std::equal(above.begin(), above.end(), path.begin())) continue;
+    SetupNode const* node = &values[k].node;
+    for (std::size_t i = above.size(); node && i < path.size(); ++i) node = node->find(path[i]);
+    if (node) return true;
+  }
+  return false;
+}
+
+/// The base with the axes' values and, where they give none, the seeds put in.
 SetupDocument compose(StudyFile const& study, std::vector<AxisValue> const& values, std::uint64_t seed) {
   SetupDocument document =
       SetupDocument::from_text(study.base_text, study.base_path, fs::path(study.base_path).parent_path().string());
+  for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
   SetupNode number;
   number.kind = SetupNode::Kind::integer;
   number.integer = static_cast<long long>(seed);
   number.place = study.place;
-  document.set({"target", "seed"}, number);
-  document.set({"render", "seed"}, number);
-  for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
-  auto const is_axis = [](AxisPlan const& axis) { return axis.key == "camera.noise.seed"; };
-  if (document.find({"camera", "noise"}) && std::none_of(study.axes.begin(), study.axes.end(), is_axis)) {
-    document.set({"camera", "noise", "seed"}, number);
+  std::vector<std::vector<std::string>> const seeds{
+      {"target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
+  for (std::vector<std::string> const& path : seeds) {
+    if (axes_give(study, values, path)) continue;
+    SetupNode const* const table = document.find({path.begin(), path.end() - 1});
+    if (!table && path.size() > 2) continue;  // noise that nobody asked for
+    // what should be a table and is none is told when the setup is read
+    if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
+    document.set(path, number);
   }
   return document;
 }

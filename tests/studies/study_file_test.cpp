@@ -173,6 +173,34 @@ TEST_F(Studies, AnAxisMayBeASeed) {
   EXPECT_THAT(cases[1].setup, testing::HasSubstr("seed = 4"));
 }
 
+// The first value of each table has no seed and takes the repeat's, as the two tables beside it do; the second one's
+// own seed stands, in its place.
+TEST_F(Studies, TablesAsValuesTakeTheSeedOfTheRepeatUnlessTheyHaveOne) {
+  write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 3.0\n");
+  auto const count = [](std::string const& text, std::string const& wanted) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1)) ++found;
+    return found;
+  };
+  for (auto const& [key, content] :
+       {std::pair{"target", "dots_per_32px_window = 5.0"}, std::pair{"render", "rays_per_dot = 16"},
+        std::pair{"camera.noise", "read_noise_e = 2.0"},
+        std::pair{"camera", "pixels = [64, 64], noise = { read_noise_e = 1.0 }"}}) {
+    std::string inner = content;
+    std::string seeded =
+        inner.ends_with('}') ? inner.substr(0, inner.size() - 2) + ", seed = 77 }" : inner + ", seed = 77";
+    auto const cases = plan("base = \"base.toml\"\n[axes]\n\"" + std::string(key) + "\" = [{ label = \"a\", " + inner +
+                            " }, { label = \"b\", " + seeded + " }]\n[study]\nrepeats = 2\nseed = 5\n");
+    ASSERT_EQ(cases.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::string const& setup = cases[i].setup;
+      EXPECT_EQ(count(setup, "seed = " + std::to_string(cases[i].seed) + "\n"), i % 2 == 0 ? 3u : 2u) << setup;
+      EXPECT_EQ(count(setup, "seed = 77\n"), i % 2) << setup;
+    }
+    EXPECT_NE(cases[0].seed, cases[2].seed);
+  }
+}
+
 class BadStudies : public StudyFolder {};
 
 TEST_F(BadStudies, UnknownAxisNamesTheNearestKey) {
