@@ -74,6 +74,7 @@ FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
   figure.numeric = axis.numeric && std::all_of(axis.numbers.begin(), axis.numbers.end(),
                                                [](double number) { return std::isfinite(number); });
   figure.binned = figure.numeric && count > most;
+  figure.labelled = figure.numeric && axis.labelled && !figure.binned;
   figure.place_of.resize(count);
   std::size_t const places = std::min(count, most);
   if (!figure.numeric) {

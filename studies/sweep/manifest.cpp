@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -15,20 +16,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity: it is a text there, and a number again when it is read.
+/// A text, a number, or {label, value} for a number that the study gives a label; JSON knows no infinity: it is a text
+/// there.
 Json value_json(ParameterValue const& value) {
-  if (value.number && std::isfinite(*value.number)) return *value.number;
-  return value.label;
+  if (!value.number) return value.label;
+  if (!value.has_own_label() && std::isfinite(*value.number)) return *value.number;
+  Json const number = std::isfinite(*value.number) ? Json(*value.number) : Json(number_label(*value.number));
+  return {{"label", value.label}, {"value", number}};
 }
 
 ParameterValue value_of(Json const& json) {
-  if (json.is_string()) {
-    auto const label = json.get<std::string>();
-    if (label == "inf" || label == "-inf") return {label, label == "inf" ? HUGE_VAL : -HUGE_VAL};
-    return {label, std::nullopt};
-  }
-  double const number = json.get<double>();
-  return {fmt::format("{}", number), number};
+  if (json.is_string()) return {json.get<std::string>(), std::nullopt};
+  if (json.is_number()) return {number_label(json.get<double>()), json.get<double>()};
+  Json const& value = json.at("value");
+  double const number =
+      value.is_string() ? std::strtod(value.get_ref<std::string const&>().c_str(), nullptr) : value.get<double>();
+  return {json.at("label").get<std::string>(), number};
 }
 
 ManifestCase case_of(Json const& json, std::string const& line) {
@@ -45,6 +48,10 @@ ManifestCase case_of(Json const& json, std::string const& line) {
 }
 
 }  // namespace
+
+std::string number_label(double number) { return fmt::format("{}", number); }
+
+bool ParameterValue::has_own_label() const { return number && label != number_label(*number); }
 
 std::string ManifestCase::title() const {
   std::string text;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "render/base/error.h"
@@ -35,7 +36,7 @@ AxisValue number_value(double number, bool whole, SetupPlace const& place) {
   value.node.kind = integer ? Kind::integer : Kind::number;
   value.node.integer = integer ? static_cast<long long>(number) : 0;
   value.node.number = number;
-  value.parameter = {fmt::format("{}", number), number};
+  value.parameter = {number_label(number), number};
   return value;
 }
 
@@ -129,12 +130,22 @@ class StudyReader {
     if (array.elements.empty()) {
       problem(array.place, fmt::format("\"{}\" is empty (a study of no case); give at least one value", axis.key));
     }
+    std::map<std::string, std::string> label_of;  // by what the value is
     std::set<std::string> labels;
     for (SetupNode const& element : array.elements) {
       AxisValue value = read_value(element, axis.key);
-      if (!labels.insert(value.parameter.label).second) {
-        problem(element.place, fmt::format("\"{}\" has the value {} twice; remove one, or give it another label",
-                                           axis.key, value.parameter.label));
+      ParameterValue const& shown = value.parameter;
+      std::string const what = shown.number ? number_label(*shown.number) : toml_text(value.node);
+      auto const [known, fresh] = label_of.try_emplace(what, shown.label);
+      if (!fresh) {
+        std::string const names =
+            known->second == shown.label ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
+        problem(element.place, fmt::format("\"{}\" has the value {} twice{}; remove one (repeats = N gives every case "
+                                           "N times, with other dots)",
+                                           axis.key, what, names));
+      } else if (!labels.insert(shown.label).second) {
+        problem(element.place, fmt::format("\"{}\" has two values with the label {}; give one of them another label",
+                                           axis.key, shown.label));
       }
       axis.list.push_back(std::move(value));
     }
@@ -144,7 +155,7 @@ class StudyReader {
     AxisValue value;
     value.node = element;
     if (element.is_number()) {
-      value.parameter = {fmt::format("{}", element.as_double()), element.as_double()};
+      value.parameter = {number_label(element.as_double()), element.as_double()};
     } else if (element.kind == Kind::text) {
       value.parameter.label = element.text;
     } else if (element.kind != Kind::table) {

@@ -216,6 +216,16 @@ TEST_F(StudyFigures, AreDrawnOfAPinholeToo) {
   EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(">inf<"));
 }
 
+TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
+  StudyAxis axis = numbers("lens.f_number", {4, 8, 9});
+  axis.labels = {"wide open", "the sharpest stop", "one a little smaller"};
+  axis.labelled = true;
+  draw(grid({axis}, 1));
+  for (char const* label : {">wide open<", ">the sharpest stop<", ">one a little smaller<"}) {
+    EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(label));
+  }
+}
+
 TEST_F(StudyFigures, ManyValuesAreBinned) {
   std::vector<double> many;
   for (int i = 0; i < 60; ++i) many.push_back(4.0 + i);

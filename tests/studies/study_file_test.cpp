@@ -201,6 +201,13 @@ TEST_F(Studies, TablesAsValuesTakeTheSeedOfTheRepeatUnlessTheyHaveOne) {
   }
 }
 
+TEST_F(Studies, NumbersKeepTheirLabels) {
+  auto cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"open\", value = 8 }, 16]\n");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("open", "16"));
+  EXPECT_EQ(cases[0].parameters[0].second.number, 8.0);
+  EXPECT_EQ(cases[0].title(), "case 0 (lens.f_number = open)");
+}
+
 class BadStudies : public StudyFolder {};
 
 TEST_F(BadStudies, UnknownAxisNamesTheNearestKey) {
@@ -263,7 +270,20 @@ TEST_F(BadStudies, SettingsThatDoNotFit) {
   expect_refused(axes + "[study]\nrepeat = 2\n", "5:1", {"did you mean \"repeats\"?"});
   expect_refused(axes + "\"lens.focal_length_mm\" = [50]\n[study]\nmode = \"zip\"\n", "4:1",
                  {"has 1 values but \"lens.f_number\" has 2"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23", {"has the value 8 twice"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23",
+                 {"has the value 8 twice; remove one"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"b\", value = "
+      "8.0 }]\n",
+      "4:3", {"\"lens.f_number\" has the value 8 twice (as \"a\" and as \"b\")"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"a\", value = "
+      "9 }]\n",
+      "4:3", {"\"lens.f_number\" has two values with the label a"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ label = \"a\", kind = \"none\" },\n  { label = \"b\", kind "
+      "= \"none\" }]\n",
+      "4:3", {"\"medium.field\" has the value", "twice (as \"a\" and as \"b\")"});
   expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
 }
 
