@@ -231,6 +231,7 @@ class StudyReader {
 
   void check_sizes() {
     if (document_.has_problems() || study_.axes.empty()) return;
+    refuse_axes_within_axes();
     SetupTable table = document_.root().table("study");
     if (study_.mode == StudyMode::sobol && study_.axes.size() > sobol_dimensions) {
       table.problem("mode", fmt::format("\"sobol\" takes up to {} axes (the study has {}); use fewer, or a grid",
@@ -252,11 +253,40 @@ class StudyReader {
     if (study_.mode == StudyMode::grid) {
       for (AxisPlan const& axis : study_.axes) cases *= static_cast<double>(axis.size());
     }
-    if (cases <= static_cast<double>(most_cases)) return;
-    problem(study_.place,
-            fmt::format("the study has {} cases ({} at most); take fewer values or repeats, or mode = "
-                        "\"sobol\" with samples",
-                        cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
+    if (cases > static_cast<double>(most_cases)) {
+      problem(study_.place,
+              fmt::format("the study has {} cases ({} at most); take fewer values or repeats, or mode = "
+                          "\"sobol\" with samples",
+                          cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
+    } else if (study_.mode != StudyMode::sobol) {
+      for (AxisPlan const& axis : study_.axes) refuse_steps_of_nothing(axis);
+    }
+  }
+
+  /// A table and a key in it: the one that stands later would overwrite the other's value.
+  void refuse_axes_within_axes() {
+    for (AxisPlan const& above : study_.axes) {
+      for (AxisPlan const& axis : study_.axes) {
+        if (axis.path.size() <= above.path.size()) continue;
+        if (!std::equal(above.path.begin(), above.path.end(), axis.path.begin())) continue;
+        problem(axis.place, fmt::format("\"{0}\" lies in \"{1}\", which is an axis too (line {2}), and one would "
+                                        "overwrite the other; write its values into the tables of \"{1}\", or take one "
+                                        "of the two out",
+                                        axis.key, above.key, above.place.line));
+      }
+    }
+  }
+
+  /// A range so fine that two of its values are equal.
+  void refuse_steps_of_nothing(AxisPlan const& axis) {
+    for (std::size_t i = 1; axis.range && i < axis.size(); ++i) {
+      ParameterValue const value = axis.value(i).parameter;
+      if (value.number != axis.value(i - 1).parameter.number) continue;
+      problem(axis.place, fmt::format("\"{}\" has the value {} twice (numbers of a range have twelve digits); give a "
+                                      "smaller count",
+                                      axis.key, value.label));
+      return;
+    }
   }
 
   static constexpr long long most = std::numeric_limits<long long>::max();

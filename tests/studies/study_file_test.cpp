@@ -287,6 +287,26 @@ TEST_F(BadStudies, SettingsThatDoNotFit) {
   expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
 }
 
+TEST_F(BadStudies, AnAxisWithinAnother) {
+  for (std::string const mode : {"grid", "zip"}) {
+    expect_refused(
+        "base = \"base.toml\"\n[axes]\n\"medium.field.gradient_kg_m4\" = [[1.0, 0.0, 0.0]]\n\"medium.field\" = [{ "
+        "label "
+        "= \"a\", kind = \"none\" }]\n[study]\nmode = \"" +
+            mode + "\"\n",
+        "3:1", {"\"medium.field.gradient_kg_m4\" lies in \"medium.field\", which is an axis too (line 4)"});
+  }
+  // the same letters are not the same steps
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"target.dot_diameter_px\" = "
+                      "[3.0]\n\"target.dots_per_32px_window\" = [5.0]\n"),
+            "nothing");
+}
+
+TEST_F(BadStudies, ARangeWithStepsOfNothing) {
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 8.00000000001, 30] }\n", "3:1",
+                 {"has the value 8 twice (numbers of a range have twelve digits)"});
+}
+
 TEST_F(BadStudies, MistakesOfTheBaseAreToldAtItsOwnLines) {
   write("base.toml", "schema = 1\n[lens]\nf_numer = 8\n");
   EXPECT_THAT(complaint("base = \"base.toml\"\n[axes]\n\"geometry.z_d_mm\" = [100, 200]\n"),
