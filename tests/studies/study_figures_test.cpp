@@ -99,6 +99,8 @@ TEST(AxisTitle, ComesFromTheKeyWithItsUnit) {
   EXPECT_EQ(axis_title("medium.field.amplitude_kg_m3"), "amplitude [kg/m³]");
   EXPECT_EQ(axis_title("camera.noise.read_noise_e"), "read noise [e⁻]");
   EXPECT_EQ(axis_title("camera.pixel_pitch_um"), "pixel pitch [µm]");
+  EXPECT_EQ(axis_title("camera.offset_dn"), "offset [DN]");
+  EXPECT_EQ(axis_title("medium.gladstone_dale"), "gladstone dale [m³/kg]");
   EXPECT_EQ(axis_title("correlate.overlap"), "overlap");
 }
 
