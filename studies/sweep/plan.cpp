@@ -82,7 +82,7 @@ std::vector<AxisValue> values_at(StudyFile const& study, std::size_t point) {
   return values;
 }
 
-/// The points that between them take every value of every axis (of a sampled range: its ends).
+/// The points that between them take every value of every axis (of a sampled range: its ends and a sample).
 std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
   std::vector<std::vector<AxisValue>> points;
   if (study.mode == StudyMode::zip) {
@@ -99,6 +99,10 @@ std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
       points.push_back(first);
       points.back()[k] = axis.value(i);
     }
+    if (sampled) {
+      points.push_back(first);
+      points.back()[k] = values_at(study, 0)[k];
+    }
   }
   return points;
 }
@@ -107,11 +111,16 @@ std::string where(StudyFile const& study, SetupPlace const& place) {
   return fmt::format("{}:{}:{}", study.path, place.line, place.column);
 }
 
-/// A key that nobody knows is the axis's mistake, not its values'.
+/// A key that nobody knows is the axis's mistake, not its values'; whole numbers are not what a range is sampled by.
 void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
-  if (!problem.message.starts_with("unknown ")) return;
+  bool const unknown = problem.message.starts_with("unknown ");
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (problem.where == where(study, values[k].node.place)) problem.where = where(study, study.axes[k].place);
+    if (problem.where != where(study, values[k].node.place)) continue;
+    if (unknown) problem.where = where(study, study.axes[k].place);
+    if (study.mode == StudyMode::sobol && study.axes[k].range &&
+        problem.message.find("whole number") != std::string::npos) {
+      problem.message += "; \"sobol\" takes any numbers between a range's ends, so write the whole ones as a list";
+    }
   }
 }
 

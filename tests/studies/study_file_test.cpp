@@ -287,6 +287,16 @@ TEST_F(BadStudies, SettingsThatDoNotFit) {
   expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
 }
 
+// 8 and 16 are whole; what lies between them is not.
+TEST_F(BadStudies, SobolSamplesOfAWholeNumber) {
+  std::string const study = "base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = ";
+  std::string const sobol = "\n[study]\nmode = \"sobol\"\nsamples = 4\n";
+  expect_refused(study + "{ linear = [8, 16, 3] }" + sobol, "3:1",
+                 {"camera.bit_depth", "must be a whole number", "so write the whole ones as a list"});
+  EXPECT_EQ(complaint(study + "[8, 12, 16]" + sobol), "nothing");
+  EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }\n"), "nothing");
+}
+
 TEST_F(BadStudies, AnAxisWithinAnother) {
   for (std::string const mode : {"grid", "zip"}) {
     expect_refused(
