@@ -34,6 +34,13 @@ ParameterValue value_of(Json const& json) {
   return {json.at("label").get<std::string>(), number};
 }
 
+/// Nothing where an object is no case of a manifest of ours.
+std::optional<int> version_of(Json const& json) {
+  if (!json.is_object() || !json.contains("manifest") || !json.contains("index")) return std::nullopt;
+  Json const& version = json["manifest"];
+  return version.is_number_integer() ? std::optional(version.get<int>()) : std::nullopt;
+}
+
 ManifestCase case_of(Json const& json, std::string const& line) {
   ManifestCase one;
   one.index = json.at("index").get<std::size_t>();
@@ -84,6 +91,10 @@ std::string manifest_text(std::vector<ManifestCase>& cases) {
   return text;
 }
 
+std::optional<int> version_of_manifest(std::string_view text) {
+  return version_of(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
+}
+
 std::vector<ManifestCase> read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   if (!std::filesystem::exists(path)) {
@@ -101,12 +112,16 @@ std::vector<ManifestCase> read_manifest(std::string const& run) {
     if (end == std::string::npos || !json.is_object()) {
       throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
     }
-    int const version =
-        json.contains("manifest") && json["manifest"].is_number_integer() ? json["manifest"].get<int>() : 0;
+    std::optional<int> const version = version_of(json);
+    if (!version) {
+      throw DataError(place,
+                      "is no line of a gladstone manifest (it says no \"manifest\" version and \"index\"); give the "
+                      "folder of a planned study");
+    }
     if (version != manifest_version) {
       throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
                                          "again or use the gladstone that planned it",
-                                         version, manifest_version));
+                                         *version, manifest_version));
     }
     try {
       cases.push_back(case_of(json, line));

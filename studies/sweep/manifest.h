@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -52,8 +53,12 @@ inline constexpr int manifest_version = 2;
 /// The text of a case's line, without line end. Equal cases give equal text.
 std::string manifest_line(ManifestCase const& one);
 
+/// The version of the manifest that a text's first line begins; nothing where it is no gladstone manifest.
+std::optional<int> version_of_manifest(std::string_view text);
+
 /// Reads RUN/manifest.jsonl.
-/// @throws DataError at manifest.jsonl:LINE for a missing or damaged file, a line cut short or of another version
+/// @throws DataError at manifest.jsonl:LINE for a missing, foreign or damaged file, a line cut short or of another
+/// version
 std::vector<ManifestCase> read_manifest(std::string const& run);
 
 /// Cases as a manifest's text; fills in their line_hash.

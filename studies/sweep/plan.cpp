@@ -199,7 +199,13 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
   std::error_code error;
   Planned planned = Planned::fresh;
   if (fs::exists(manifest, error)) {
-    if (read_text_file(manifest.string()) == text) return Planned::unchanged;
+    std::string const there = read_text_file(manifest.string());
+    if (!version_of_manifest(there)) {
+      throw OutputError(
+          manifest.string(),
+          "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
+    }
+    if (there == text) return Planned::unchanged;
     planned = Planned::replaced;
     auto const lost = [&cases](CaseResult const& result) {
       return result.index >= cases.size() || cases[result.index].line_hash != result.line_hash;

@@ -97,10 +97,15 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   std::size_t const second = whole.find('\n') + 1;
   write("run/manifest.jsonl", whole.substr(second));
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: holds case 1 (case 0 belongs there"));
-  write("run/manifest.jsonl", "{\"manifest\":1}\n");
+  write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is of manifest version 1 (this gladstone reads version 2)"));
   write("run/manifest.jsonl", "{\"manifest\":2,\"index\":\"one\"}\n");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is damaged"));
+  for (char const* foreign :
+       {"{\"name\":\"a package\"}\n", "{\"manifest\":\"yes\",\"index\":0}\n", "{\"manifest\":1}\n"}) {
+    write("run/manifest.jsonl", foreign);
+    EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is no line of a gladstone manifest"));
+  }
   write("run/manifest.jsonl", "");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
 }
@@ -134,6 +139,25 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   auto cases = plan_study(file, "cpu");
   EXPECT_THROW(write_plan(in("thesis"), file, cases), OutputError);
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
+}
+
+TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
+  std::filesystem::create_directory(in("package"));
+  StudyFile const file = study(two_axes);
+  auto cases = plan_study(file, "cpu");
+  for (std::string const foreign : {"{\"name\":\"a package\",\"version\":3}\n", "first line\nsecond line\n", ""}) {
+    write("package/manifest.jsonl", foreign);
+    try {
+      write_plan(in("package"), file, cases);
+      ADD_FAILURE() << "overwritten: " << foreign;
+    } catch (OutputError const& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("package/manifest.jsonl: is no gladstone manifest"));
+    }
+    EXPECT_EQ(content("package/manifest.jsonl"), foreign);
+  }
+  // of another gladstone, and nothing computed: planned anew
+  write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
+  EXPECT_EQ(write_plan(in("package"), file, cases), Planned::replaced);
 }
 
 TEST_F(Runs, AResultIsWholeOrNone) {
