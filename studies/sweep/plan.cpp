@@ -216,7 +216,7 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
                                          "choose another folder, or remove this one",
                                          count, results.size()));
     }
-    if (Claims(run).any_held()) {
+    if (Claims(run, Claims::Use::look).any_held()) {
       throw OutputError(run,
                         "was planned from another study whose cases are being computed; choose another folder, or "
                         "stop them first");
@@ -229,7 +229,7 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');
   OutputFile::write_text((folder / run_file::study).string(), study.text);
-  Claims const made(run);
+  Claims const made(run, Claims::Use::take);
   plan.write(text.data(), text.size());
   plan.commit();
   return planned;

@@ -49,7 +49,7 @@ std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, 
 RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
                   std::vector<std::size_t> const& selected) {
   RunState state;
-  Claims const claims(run);
+  Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
     std::optional<CaseResult> result = read_result(run, cases[index]);
     if (!result) {
@@ -67,7 +67,7 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
 void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index)> const& finished) {
-  Claims claims(run);
+  Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
     std::optional<CaseResult> const result = read_result(run, cases[index]);
     return result && (result->status == CaseStatus::ok || !selection.retry_failed);

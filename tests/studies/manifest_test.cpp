@@ -9,6 +9,7 @@
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
+#include "studies/sweep/run.h"
 #include "studies/sweep/study_table.h"
 #include "tests/studies/support/study_folder.h"
 
@@ -208,11 +209,11 @@ TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
 
 TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   planned();
-  Claims mine(in("run"));
+  Claims mine(in("run"), Claims::Use::take);
   ASSERT_TRUE(mine.take(7));
   EXPECT_FALSE(mine.held(7));  // by another
   {
-    Claims other(in("run"));
+    Claims other(in("run"), Claims::Use::take);
     EXPECT_TRUE(other.held(7));
     EXPECT_FALSE(other.take(7));
     EXPECT_TRUE(other.take(8));
@@ -225,7 +226,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   ASSERT_EQ(::pipe(ready), 0);
   pid_t const child = ::fork();
   if (child == 0) {
-    Claims theirs(in("run"));
+    Claims theirs(in("run"), Claims::Use::take);
     bool const taken = theirs.take(3);
     if (::write(ready[1], &taken, 1) != 1) ::_exit(1);
     ::pause();
@@ -242,6 +243,35 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   EXPECT_TRUE(mine.take(3));
   ::close(ready[0]);
   ::close(ready[1]);
+}
+
+TEST_F(Runs, LookingAtClaimsWritesNothing) {
+  auto const cases = planned();
+  std::filesystem::remove(in("run/claims"));
+  RunState const state = state_of(in("run"), cases, {0, 1});
+  EXPECT_EQ(state.missing.size(), 2u);
+  EXPECT_TRUE(state.running.empty());
+  EXPECT_FALSE(std::filesystem::exists(in("run/claims")));
+}
+
+TEST_F(Runs, AReadOnlyRunSaysThatItIsReadOnly) {
+  planned();
+  std::filesystem::permissions(in("run/claims"), std::filesystem::perms::owner_read);
+  uid_t const me = ::geteuid();
+  if (me == 0) {
+    ASSERT_EQ(::seteuid(65534), 0);  // root may write anything
+  }
+  std::string what = "nothing";
+  try {
+    Claims(in("run"), Claims::Use::take);
+  } catch (OutputError const& error) {
+    what = error.what();
+  }
+  if (me == 0) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+  EXPECT_THAT(what, testing::HasSubstr("run/claims: is read-only (Permission denied)"));
+  EXPECT_THAT(what, testing::HasSubstr("run the study in a copy of it"));
 }
 
 }  // namespace
