@@ -81,7 +81,7 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
                                  "--jobs",      "1",
                                  "--threads",   std::to_string(std::max(1, thread_count() / jobs)),
                                  "--first",     fmt::format("{}", static_cast<double>(k) / jobs)};
-    if (!arguments.selection.only.empty()) one.insert(one.end(), {"--case", arguments.selection.only});
+    if (arguments.selection.only) one.insert(one.end(), {"--case", *arguments.selection.only});
     if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
     if (arguments.selection.retry_failed) one.emplace_back("--retry-failed");
@@ -187,8 +187,11 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
       ->check(CLI::Range(1, 4096));
-  app.add_option("--case", arguments->selection.only, "These cases alone, by their indices: 17, or 0-3,7");
-  app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal pieces of the study");
+  // an empty list is a mistake, and not every case
+  app.add_option_function<std::string>(
+      "--case", [arguments](std::string const& list) { arguments->selection.only = list; },
+      "These cases alone, by their indices: 17, or 0-3,7");
+  app.add_option("--shard", arguments->shard, "I/N: the I-th, from 0, of N equal pieces of the study, or of --case");
   app.add_flag("--keep-images", arguments->selection.keep_images,
                "Leave each case's images and files in RUN/cases/INDEX");
   app.add_flag("--retry-failed", arguments->selection.retry_failed, "Compute failed cases again");

@@ -70,11 +70,14 @@ FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
   std::size_t const count = axis.labels.size();
   FigureAxis figure;
   figure.title = axis_title(axis.key);
-  figure.numeric = axis.numeric;
-  figure.binned = axis.numeric && count > most;
+  // infinity has no place on a scale
+  figure.numeric = axis.numeric && std::all_of(axis.numbers.begin(), axis.numbers.end(),
+                                               [](double number) { return std::isfinite(number); });
+  figure.binned = figure.numeric && count > most;
+  figure.labelled = figure.numeric && axis.labelled && !figure.binned;
   figure.place_of.resize(count);
   std::size_t const places = std::min(count, most);
-  if (!axis.numeric) {
+  if (!figure.numeric) {
     for (std::size_t i = 0; i < count; ++i) figure.place_of[i] = std::min(i, places - 1);
     for (std::size_t i = 0; i < places; ++i) {
       figure.position.push_back(static_cast<double>(i));

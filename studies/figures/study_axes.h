@@ -16,6 +16,7 @@ struct FigureAxis {
   bool numeric = true;                ///< a scale; else a row of categories
   bool logarithmic = false;           ///< the scale: the numbers span more than a decade, or step by a factor
   bool binned = false;                ///< places are bins of values
+  bool labelled = false;              ///< a scale whose places have names of their own
   std::vector<double> position;       ///< of each place: the number (of a bin, the mean), or 0, 1, ... for categories
   std::vector<std::string> label;     ///< of each place
   std::vector<std::size_t> place_of;  ///< for each value of the study's axis
@@ -23,7 +24,7 @@ struct FigureAxis {
   std::size_t size() const { return position.size(); }
 };
 
-/// Numbers grow from place to place; categories keep the study's order.
+/// Numbers grow from place to place; categories keep the study's order, as do numbers of which one is not finite.
 /// @param most places; of more numbers, bins of equal count are made; of more categories, the last place takes the rest
 FigureAxis figure_axis(StudyAxis const& axis, std::size_t most);
 

@@ -56,7 +56,7 @@ void place(GnuplotFigure& plot, double left, double right, double top, double bo
 }
 
 int room_below(FigureAxis const& axis, double width_px) {
-  if (axis.numeric || !crowded(axis, width_px)) return 56;
+  if (axis.numeric ? !axis.labelled || !dense(axis, width_px) : !crowded(axis, width_px)) return 56;
   std::size_t longest = 0;
   for (std::string const& label : axis.label) longest = std::max(longest, label.size());
   return 60 + static_cast<int>(0.5 * letter_px * static_cast<double>(longest));
@@ -69,18 +69,18 @@ void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px) {
   if (axis.numeric && axis.logarithmic) {
     double const margin = std::pow(last / first, 0.06);
     plot.command(fmt::format("set logscale x; set xrange [{:.10g}:{:.10g}]", first / margin, last * margin));
-    if (dense(axis, width_px)) {
+    if (dense(axis, width_px) && !axis.labelled) {
       plot.command("set xtics " + logarithmic_tics(first / margin, last * margin));
       return;
     }
   } else if (axis.numeric) {
     double const margin = 0.06 * (last - first);
     plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", first - margin, last + margin));
-    if (dense(axis, width_px)) return;
+    if (dense(axis, width_px) && !axis.labelled) return;
   } else {
     plot.command(fmt::format("set xrange [-0.5:{:.1f}]", last + 0.5));
-    if (crowded(axis, width_px)) plot.command("set xtics rotate by 28 right");
   }
+  if (axis.numeric ? dense(axis, width_px) : crowded(axis, width_px)) plot.command("set xtics rotate by 28 right");
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
     tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), axis.position[i]);

@@ -32,13 +32,21 @@ struct flock range_of(std::size_t first, std::size_t count, short type) {
 
 }  // namespace
 
-Claims::Claims(std::string const& run) : path_((std::filesystem::path(run) / run_file::claims).string()) {
-  file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0 && (errno == EACCES || errno == EROFS)) file_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);  // to look
-  if (file_ < 0) throw OutputError(path_, fmt::format("cannot be opened ({})", std::strerror(errno)));
+Claims::Claims(std::string const& run, Use use) : path_((std::filesystem::path(run) / run_file::claims).string()) {
+  file_ = ::open(path_.c_str(), (use == Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
+  if (file_ >= 0 || (use == Use::look && errno == ENOENT)) return;
+  if (use == Use::take && (errno == EACCES || errno == EPERM || errno == EROFS)) {
+    throw OutputError(path_,
+                      fmt::format("is read-only ({}), and who computes a case must lock it there; give the right "
+                                  "to write in {}, or run the study in a copy of it",
+                                  std::strerror(errno), run));
+  }
+  throw OutputError(path_, fmt::format("cannot be opened ({})", std::strerror(errno)));
 }
 
-Claims::~Claims() { ::close(file_); }
+Claims::~Claims() {
+  if (file_ >= 0) ::close(file_);
+}
 
 bool Claims::take(std::size_t index) {
   struct flock range = range_of(index, 1, F_WRLCK);
@@ -59,6 +67,7 @@ bool Claims::held(std::size_t index) const { return held_from(index, 1); }
 bool Claims::any_held() const { return held_from(0, 0); }
 
 bool Claims::held_from(std::size_t first, std::size_t count) const {
+  if (file_ < 0) return false;
   struct flock range = range_of(first, count, F_WRLCK);
   while (::fcntl(file_, F_OFD_GETLK, &range) != 0) {
     if (errno != EINTR) no_locks(path_, errno);

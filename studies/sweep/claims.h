@@ -10,13 +10,18 @@ namespace gladstone {
 /// and leave nothing behind that could grow stale.
 class Claims {
  public:
-  /// Opens RUN/claims, making it where it is missing. @throws OutputError
-  explicit Claims(std::string const& run);
+  enum class Use {
+    take,  ///< RUN/claims is made where it is missing
+    look   ///< nothing is written; without RUN/claims no case is held
+  };
+  /// Opens RUN/claims. @throws OutputError, where RUN is read-only and claims are to be taken too
+  Claims(std::string const& run, Use use);
   ~Claims();
   Claims(Claims const&) = delete;
   Claims& operator=(Claims const&) = delete;
 
-  /// Takes a case for this object; false where another has it. @throws OutputError where the file system has no locks
+  /// Takes a case for this object; false where another has it. @pre made to take
+  /// @throws OutputError where the file system has no locks
   bool take(std::size_t index);
   void release(std::size_t index);
 
@@ -28,7 +33,7 @@ class Claims {
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;
-  int file_ = -1;
+  int file_ = -1;  ///< -1: not there, and only looked for
 };
 
 }  // namespace gladstone

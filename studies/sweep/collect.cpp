@@ -81,6 +81,9 @@ std::vector<Column> axis_columns(StudyTable const& table) {
                        },
                        axis.numeric ? std::vector<std::string>{} : axis.labels, "axis: a key of the setup",
                        !axis.numeric});
+    if (!axis.labelled) continue;
+    columns.push_back({axis.key + ".label", [k](StudyRow const& row) { return static_cast<double>(row.value[k]); },
+                       axis.labels, "what the study calls the value of that key", true});
   }
   columns.push_back({"case",
                      [](StudyRow const& row) { return static_cast<double>(row.index); },

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -15,20 +16,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity: it is a text there, and a number again when it is read.
+/// A text, a number, or {label, value} for a number that the study gives a label; JSON knows no infinity: it is a text
+/// there.
 Json value_json(ParameterValue const& value) {
-  if (value.number && std::isfinite(*value.number)) return *value.number;
-  return value.label;
+  if (!value.number) return value.label;
+  if (!value.has_own_label() && std::isfinite(*value.number)) return *value.number;
+  Json const number = std::isfinite(*value.number) ? Json(*value.number) : Json(number_label(*value.number));
+  return {{"label", value.label}, {"value", number}};
 }
 
 ParameterValue value_of(Json const& json) {
-  if (json.is_string()) {
-    auto const label = json.get<std::string>();
-    if (label == "inf" || label == "-inf") return {label, label == "inf" ? HUGE_VAL : -HUGE_VAL};
-    return {label, std::nullopt};
-  }
-  double const number = json.get<double>();
-  return {fmt::format("{}", number), number};
+  if (json.is_string()) return {json.get<std::string>(), std::nullopt};
+  if (json.is_number()) return {number_label(json.get<double>()), json.get<double>()};
+  Json const& value = json.at("value");
+  double const number =
+      value.is_string() ? std::strtod(value.get_ref<std::string const&>().c_str(), nullptr) : value.get<double>();
+  return {json.at("label").get<std::string>(), number};
+}
+
+/// Nothing where an object is no case of a manifest of ours.
+std::optional<int> version_of(Json const& json) {
+  if (!json.is_object() || !json.contains("manifest") || !json.contains("index")) return std::nullopt;
+  Json const& version = json["manifest"];
+  return version.is_number_integer() ? std::optional(version.get<int>()) : std::nullopt;
 }
 
 ManifestCase case_of(Json const& json, std::string const& line) {
@@ -45,6 +55,10 @@ ManifestCase case_of(Json const& json, std::string const& line) {
 }
 
 }  // namespace
+
+std::string number_label(double number) { return fmt::format("{}", number); }
+
+bool ParameterValue::has_own_label() const { return number && label != number_label(*number); }
 
 std::string ManifestCase::title() const {
   std::string text;
@@ -77,6 +91,10 @@ std::string manifest_text(std::vector<ManifestCase>& cases) {
   return text;
 }
 
+std::optional<int> version_of_manifest(std::string_view text) {
+  return version_of(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
+}
+
 std::vector<ManifestCase> read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   if (!std::filesystem::exists(path)) {
@@ -94,12 +112,16 @@ std::vector<ManifestCase> read_manifest(std::string const& run) {
     if (end == std::string::npos || !json.is_object()) {
       throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
     }
-    int const version =
-        json.contains("manifest") && json["manifest"].is_number_integer() ? json["manifest"].get<int>() : 0;
+    std::optional<int> const version = version_of(json);
+    if (!version) {
+      throw DataError(place,
+                      "is no line of a gladstone manifest (it says no \"manifest\" version and \"index\"); give the "
+                      "folder of a planned study");
+    }
     if (version != manifest_version) {
       throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
                                          "again or use the gladstone that planned it",
-                                         version, manifest_version));
+                                         *version, manifest_version));
     }
     try {
       cases.push_back(case_of(json, line));

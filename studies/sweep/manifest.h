@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,9 +12,15 @@ namespace gladstone {
 
 /// What an axis of a study is set to in a case.
 struct ParameterValue {
-  std::string label;             ///< as shown: a number, a text, or the label of a table
+  std::string label;             ///< as shown: a number, a text, or the label that the study gives
   std::optional<double> number;  ///< where the value is a number, in the key's own unit
+
+  /// Whether the study calls a number something else than the number.
+  bool has_own_label() const;
 };
+
+/// How a number is shown that has no label of its own.
+std::string number_label(double number);
 
 /// One case of a study: one line of RUN/manifest.jsonl, on which alone its result depends.
 struct ManifestCase {
@@ -41,13 +48,17 @@ inline constexpr char const* table_text = "study.csv";
 inline constexpr char const* points_text = "study_points.csv";
 }  // namespace run_file
 
-inline constexpr int manifest_version = 1;
+inline constexpr int manifest_version = 2;
 
 /// The text of a case's line, without line end. Equal cases give equal text.
 std::string manifest_line(ManifestCase const& one);
 
+/// The version of the manifest that a text's first line begins; nothing where it is no gladstone manifest.
+std::optional<int> version_of_manifest(std::string_view text);
+
 /// Reads RUN/manifest.jsonl.
-/// @throws DataError at manifest.jsonl:LINE for a missing or damaged file, a line cut short or of another version
+/// @throws DataError at manifest.jsonl:LINE for a missing, foreign or damaged file, a line cut short or of another
+/// version
 std::vector<ManifestCase> read_manifest(std::string const& run);
 
 /// Cases as a manifest's text; fills in their line_hash.

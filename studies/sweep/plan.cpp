@@ -28,20 +28,36 @@ std::uint64_t case_seed(StudyFile const& study, std::size_t repeat) {
   return repeat == 0 ? study.seed : repeat_seed(study.seed, repeat) >> 1;
 }
 
-/// The base with the axes' values and the seeds put in.
+/// Whether the axes' values hold something at a path of keys, by itself or in a table above it.
+bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std::vector<std::string> const& path) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    std::vector<std::string> const& above = study.axes[k].path;
+    if (above.size() > path.size() || !std::equal(above.begin(), above.end(), path.begin())) continue;
+    SetupNode const* node = &values[k].node;
+    for (std::size_t i = above.size(); node && i < path.size(); ++i) node = node->find(path[i]);
+    if (node) return true;
+  }
+  return false;
+}
+
+/// The base with the axes' values and, where they give none, the seeds put in.
 SetupDocument compose(StudyFile const& study, std::vector<AxisValue> const& values, std::uint64_t seed) {
   SetupDocument document =
       SetupDocument::from_text(study.base_text, study.base_path, fs::path(study.base_path).parent_path().string());
+  for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
   SetupNode number;
   number.kind = SetupNode::Kind::integer;
   number.integer = static_cast<long long>(seed);
   number.place = study.place;
-  document.set({"target", "seed"}, number);
-  document.set({"render", "seed"}, number);
-  for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
-  auto const is_axis = [](AxisPlan const& axis) { return axis.key == "camera.noise.seed"; };
-  if (document.find({"camera", "noise"}) && std::none_of(study.axes.begin(), study.axes.end(), is_axis)) {
-    document.set({"camera", "noise", "seed"}, number);
+  std::vector<std::vector<std::string>> const seeds{
+      {"target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
+  for (std::vector<std::string> const& path : seeds) {
+    if (axes_give(study, values, path)) continue;
+    SetupNode const* const table = document.find({path.begin(), path.end() - 1});
+    if (!table && path.size() > 2) continue;  // noise that nobody asked for
+    // what should be a table and is none is told when the setup is read
+    if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
+    document.set(path, number);
   }
   return document;
 }
@@ -66,7 +82,7 @@ std::vector<AxisValue> values_at(StudyFile const& study, std::size_t point) {
   return values;
 }
 
-/// The points that between them take every value of every axis (of a sampled range: its ends).
+/// The points that between them take every value of every axis (of a sampled range: its ends and a sample).
 std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
   std::vector<std::vector<AxisValue>> points;
   if (study.mode == StudyMode::zip) {
@@ -83,6 +99,10 @@ std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
       points.push_back(first);
       points.back()[k] = axis.value(i);
     }
+    if (sampled) {
+      points.push_back(first);
+      points.back()[k] = values_at(study, 0)[k];
+    }
   }
   return points;
 }
@@ -91,11 +111,16 @@ std::string where(StudyFile const& study, SetupPlace const& place) {
   return fmt::format("{}:{}:{}", study.path, place.line, place.column);
 }
 
-/// A key that nobody knows is the axis's mistake, not its values'.
+/// A key that nobody knows is the axis's mistake, not its values'; whole numbers are not what a range is sampled by.
 void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
-  if (!problem.message.starts_with("unknown ")) return;
+  bool const unknown = problem.message.starts_with("unknown ");
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (problem.where == where(study, values[k].node.place)) problem.where = where(study, study.axes[k].place);
+    if (problem.where != where(study, values[k].node.place)) continue;
+    if (unknown) problem.where = where(study, study.axes[k].place);
+    if (study.mode == StudyMode::sobol && study.axes[k].range &&
+        problem.message.find("whole number") != std::string::npos) {
+      problem.message += "; \"sobol\" takes any numbers between a range's ends, so write the whole ones as a list";
+    }
   }
 }
 
@@ -174,7 +199,13 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
   std::error_code error;
   Planned planned = Planned::fresh;
   if (fs::exists(manifest, error)) {
-    if (read_text_file(manifest.string()) == text) return Planned::unchanged;
+    std::string const there = read_text_file(manifest.string());
+    if (!version_of_manifest(there)) {
+      throw OutputError(
+          manifest.string(),
+          "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
+    }
+    if (there == text) return Planned::unchanged;
     planned = Planned::replaced;
     auto const lost = [&cases](CaseResult const& result) {
       return result.index >= cases.size() || cases[result.index].line_hash != result.line_hash;
@@ -185,7 +216,7 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
                                          "choose another folder, or remove this one",
                                          count, results.size()));
     }
-    if (Claims(run).any_held()) {
+    if (Claims(run, Claims::Use::look).any_held()) {
       throw OutputError(run,
                         "was planned from another study whose cases are being computed; choose another folder, or "
                         "stop them first");
@@ -198,7 +229,7 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');
   OutputFile::write_text((folder / run_file::study).string(), study.text);
-  Claims const made(run);
+  Claims const made(run, Claims::Use::take);
   plan.write(text.data(), text.size());
   plan.commit();
   return planned;

@@ -9,9 +9,10 @@
 namespace gladstone {
 
 /// Every case of a study: repeats outermost, of a grid the last axis fastest, so that neighbours share most. Every
-/// value of every axis is tried by loading its setup whole, with the other axes at their first value (zip: every pair);
-/// what goes wrong in other combinations only is left to the run. Seeds of target, pupil and noise derive from the
-/// study's seed and the repeat alone; an axis that names a seed wins.
+/// value of every axis (of a range that sobol samples: its ends and a sample) is tried by loading its setup whole, with
+/// the other axes at their first value (zip: every pair); what goes wrong in other combinations only is left to the
+/// run. Seeds of target, pupil and noise derive from the study's seed and the repeat alone; an axis that names a seed
+/// wins.
 /// @param device "cpu" or "cuda"
 /// @throws SetupError at the study's and the base's own lines; DataError for inputs that cannot be read
 std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& device);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <numeric>
 #include <thread>
 
 #include "render/base/error.h"
@@ -35,19 +36,20 @@ class Claim {
 }  // namespace
 
 std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection) {
-  if (!selection.only.empty()) return parse_case_list(selection.only, cases.size());
+  std::vector<std::size_t> all(selection.only ? 0 : cases.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (selection.only) all = parse_case_list(*selection.only, cases.size());
   // contiguous pieces: neighbours share most
-  std::vector<std::size_t> selected;
-  std::size_t const begin = cases.size() * selection.shard / selection.shards;
-  std::size_t const end = cases.size() * (selection.shard + 1) / selection.shards;
-  for (std::size_t i = begin; i < end; ++i) selected.push_back(i);
-  return selected;
+  auto const end_of = [&](std::size_t pieces) {
+    return all.begin() + static_cast<std::ptrdiff_t>(all.size() * pieces / selection.shards);
+  };
+  return {end_of(selection.shard), end_of(selection.shard + 1)};
 }
 
 RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
                   std::vector<std::size_t> const& selected) {
   RunState state;
-  Claims const claims(run);
+  Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
     std::optional<CaseResult> result = read_result(run, cases[index]);
     if (!result) {
@@ -65,7 +67,7 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
 void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index)> const& finished) {
-  Claims claims(run);
+  Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
     std::optional<CaseResult> const result = read_result(run, cases[index]);
     return result && (result->status == CaseStatus::ok || !selection.retry_failed);

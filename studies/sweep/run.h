@@ -11,8 +11,8 @@ namespace gladstone {
 
 /// Which cases of a study a runner is to see to, and how.
 struct RunSelection {
-  std::string only;                   ///< these cases alone, as parse_case_list reads them; empty: all
-  std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of the manifest
+  std::optional<std::string> only;    ///< these cases alone, as parse_case_list reads them; else all
+  std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of them
   bool retry_failed = false;          ///< failed cases count as missing
   bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "render/base/error.h"
@@ -35,7 +36,7 @@ AxisValue number_value(double number, bool whole, SetupPlace const& place) {
   value.node.kind = integer ? Kind::integer : Kind::number;
   value.node.integer = integer ? static_cast<long long>(number) : 0;
   value.node.number = number;
-  value.parameter = {fmt::format("{}", number), number};
+  value.parameter = {number_label(number), number};
   return value;
 }
 
@@ -129,12 +130,22 @@ class StudyReader {
     if (array.elements.empty()) {
       problem(array.place, fmt::format("\"{}\" is empty (a study of no case); give at least one value", axis.key));
     }
+    std::map<std::string, std::string> label_of;  // by what the value is
     std::set<std::string> labels;
     for (SetupNode const& element : array.elements) {
       AxisValue value = read_value(element, axis.key);
-      if (!labels.insert(value.parameter.label).second) {
-        problem(element.place, fmt::format("\"{}\" has the value {} twice; remove one, or give it another label",
-                                           axis.key, value.parameter.label));
+      ParameterValue const& shown = value.parameter;
+      std::string const what = shown.number ? number_label(*shown.number) : toml_text(value.node);
+      auto const [known, fresh] = label_of.try_emplace(what, shown.label);
+      if (!fresh) {
+        std::string const names =
+            known->second == shown.label ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
+        problem(element.place, fmt::format("\"{}\" has the value {} twice{}; remove one (repeats = N gives every case "
+                                           "N times, with other dots)",
+                                           axis.key, what, names));
+      } else if (!labels.insert(shown.label).second) {
+        problem(element.place, fmt::format("\"{}\" has two values with the label {}; give one of them another label",
+                                           axis.key, shown.label));
       }
       axis.list.push_back(std::move(value));
     }
@@ -144,7 +155,7 @@ class StudyReader {
     AxisValue value;
     value.node = element;
     if (element.is_number()) {
-      value.parameter = {fmt::format("{}", element.as_double()), element.as_double()};
+      value.parameter = {number_label(element.as_double()), element.as_double()};
     } else if (element.kind == Kind::text) {
       value.parameter.label = element.text;
     } else if (element.kind != Kind::table) {
@@ -220,6 +231,7 @@ class StudyReader {
 
   void check_sizes() {
     if (document_.has_problems() || study_.axes.empty()) return;
+    refuse_axes_within_axes();
     SetupTable table = document_.root().table("study");
     if (study_.mode == StudyMode::sobol && study_.axes.size() > sobol_dimensions) {
       table.problem("mode", fmt::format("\"sobol\" takes up to {} axes (the study has {}); use fewer, or a grid",
@@ -241,11 +253,40 @@ class StudyReader {
     if (study_.mode == StudyMode::grid) {
       for (AxisPlan const& axis : study_.axes) cases *= static_cast<double>(axis.size());
     }
-    if (cases <= static_cast<double>(most_cases)) return;
-    problem(study_.place,
-            fmt::format("the study has {} cases ({} at most); take fewer values or repeats, or mode = "
-                        "\"sobol\" with samples",
-                        cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
+    if (cases > static_cast<double>(most_cases)) {
+      problem(study_.place,
+              fmt::format("the study has {} cases ({} at most); take fewer values or repeats, or mode = "
+                          "\"sobol\" with samples",
+                          cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
+    } else if (study_.mode != StudyMode::sobol) {
+      for (AxisPlan const& axis : study_.axes) refuse_steps_of_nothing(axis);
+    }
+  }
+
+  /// A table and a key in it: the one that stands later would overwrite the other's value.
+  void refuse_axes_within_axes() {
+    for (AxisPlan const& above : study_.axes) {
+      for (AxisPlan const& axis : study_.axes) {
+        if (axis.path.size() <= above.path.size()) continue;
+        if (!std::equal(above.path.begin(), above.path.end(), axis.path.begin())) continue;
+        problem(axis.place, fmt::format("\"{0}\" lies in \"{1}\", which is an axis too (line {2}), and one would "
+                                        "overwrite the other; write its values into the tables of \"{1}\", or take one "
+                                        "of the two out",
+                                        axis.key, above.key, above.place.line));
+      }
+    }
+  }
+
+  /// A range so fine that two of its values are equal.
+  void refuse_steps_of_nothing(AxisPlan const& axis) {
+    for (std::size_t i = 1; axis.range && i < axis.size(); ++i) {
+      ParameterValue const value = axis.value(i).parameter;
+      if (value.number != axis.value(i - 1).parameter.number) continue;
+      problem(axis.place, fmt::format("\"{}\" has the value {} twice (numbers of a range have twelve digits); give a "
+                                      "smaller count",
+                                      axis.key, value.label));
+      return;
+    }
   }
 
   static constexpr long long most = std::numeric_limits<long long>::max();

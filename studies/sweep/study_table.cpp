@@ -23,6 +23,8 @@ class AxisCollector {
       axis_.labels.push_back(value.label);
       axis_.numbers.push_back(value.number.value_or(nan));
       axis_.numeric = axis_.numeric && value.number.has_value();
+      any_label_ = any_label_ || value.has_own_label();
+      axis_.labelled = axis_.numeric && any_label_;
     }
     return known->second;
   }
@@ -30,6 +32,7 @@ class AxisCollector {
 
  private:
   StudyAxis axis_;
+  bool any_label_ = false;
   std::unordered_map<std::string, std::size_t> places_;
 };
 

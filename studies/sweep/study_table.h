@@ -17,6 +17,7 @@ struct StudyAxis {
   bool numeric = true;              ///< every value is a number
   std::vector<std::string> labels;  ///< every value as text
   std::vector<double> numbers;      ///< in the key's own unit; NaN for what is no number
+  bool labelled = false;            ///< numeric, and the study gives a number a label of its own
 };
 
 /// One case of a study.

@@ -100,7 +100,7 @@ TEST_F(StudyOnACluster, AnArrayGivesWhatALocalRunGives) {
 // is incomplete and says so; submitted again it computes what is missing, and nothing else.
 TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
   {
-    Claims claims(in("cluster").string());
+    Claims claims(in("cluster").string(), Claims::Use::take);
     ASSERT_TRUE(claims.take(1) && claims.take(3));
     Program program(submit(), folder_);
     std::string const id = job();
@@ -124,7 +124,7 @@ TEST_F(StudyOnACluster, KilledTasksAreMadeUpForByTheNextSubmission) {
 
 // Preempted, or its node rebooted: Slurm starts the task again, which goes on where it was.
 TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
-  Claims claims(in("cluster").string());
+  Claims claims(in("cluster").string(), Claims::Use::take);
   ASSERT_TRUE(claims.take(5));
   Program program(submit(), folder_);
   std::string const id = job();
@@ -140,7 +140,7 @@ TEST_F(StudyOnACluster, ARequeuedTaskGoesOn) {
 
 // Ctrl-C ends the waiting, not the job. The same command then waits for that job and submits nothing.
 TEST_F(StudyOnACluster, OutlivesTheOneWhoWaits) {
-  Claims claims(in("cluster").string());
+  Claims claims(in("cluster").string(), Claims::Use::take);
   ASSERT_TRUE(claims.take(0));
   std::string id;
   {

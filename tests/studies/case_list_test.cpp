@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "render/base/error.h"
+#include "studies/sweep/run.h"
 
 namespace gladstone {
 namespace {
@@ -41,6 +42,16 @@ TEST(CaseList, CasesBeyondTheStudyAreRefusedWithItsSize) {
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), HasSubstr("10 is not in the study, which has cases 0 to 9"));
   }
+}
+
+TEST(CaseSelection, TakesAPieceOfTheListThatIsNamed) {
+  std::vector<ManifestCase> const cases(10);
+  EXPECT_EQ(selected_cases(cases, {}).size(), 10u);
+  EXPECT_THAT(selected_cases(cases, {std::nullopt, 1, 3}), ElementsAre(3, 4, 5));
+  EXPECT_THAT(selected_cases(cases, {"0-3,7"}), ElementsAre(0, 1, 2, 3, 7));
+  EXPECT_THAT(selected_cases(cases, {"0-3,7", 0, 2}), ElementsAre(0, 1));
+  EXPECT_THAT(selected_cases(cases, {"0-3,7", 1, 2}), ElementsAre(2, 3, 7));
+  EXPECT_THROW(selected_cases(cases, {""}), DataError);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "studies/sweep/claims.h"
+#include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
+#include "studies/sweep/run.h"
 #include "studies/sweep/study_table.h"
 #include "tests/studies/support/study_folder.h"
 
@@ -63,6 +65,30 @@ TEST_F(Runs, AManifestReadsBackAsItWasWritten) {
   EXPECT_FALSE(read[2].parameters[1].second.number.has_value());
 }
 
+TEST_F(Runs, LabelsOfNumbersStandInTheManifestAndInTheTables) {
+  auto const written = planned(
+      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"open\", value = 8 }, 16, { "
+      "label = \"pinhole\", value = inf }]\n");
+  auto const read = read_manifest(in("run"));
+  ASSERT_EQ(read.size(), 3u);
+  for (std::size_t i = 0; i < read.size(); ++i) EXPECT_EQ(manifest_line(read[i]), manifest_line(written[i]));
+  EXPECT_EQ(read[0].parameters[0].second.label, "open");
+  EXPECT_EQ(read[0].parameters[0].second.number, 8.0);
+  EXPECT_EQ(read[1].parameters[0].second.label, "16");
+  EXPECT_EQ(read[2].parameters[0].second.label, "pinhole");
+  EXPECT_EQ(read[2].parameters[0].second.number, HUGE_VAL);
+  StudyTable const table = read_study_table(in("run"));
+  EXPECT_TRUE(table.axes[0].labelled);
+  EXPECT_EQ(table.axes[0].labels, (std::vector<std::string>{"open", "16", "pinhole"}));
+  std::string const csv = study_csv(table);
+  EXPECT_THAT(csv, testing::StartsWith("lens.f_number,lens.f_number.label,case,"));
+  EXPECT_THAT(csv, testing::HasSubstr("\n8,open,0,"));
+  EXPECT_THAT(csv, testing::HasSubstr("\n16,16,1,"));
+  EXPECT_THAT(csv, testing::HasSubstr("\ninf,pinhole,2,"));
+  planned();
+  EXPECT_FALSE(read_study_table(in("run")).axes[0].labelled);
+}
+
 TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is no planned study"));
   planned();
@@ -72,10 +98,15 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   std::size_t const second = whole.find('\n') + 1;
   write("run/manifest.jsonl", whole.substr(second));
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: holds case 1 (case 0 belongs there"));
-  write("run/manifest.jsonl", "{\"manifest\":2}\n");
-  EXPECT_THAT(reading_fails(), testing::HasSubstr("is of manifest version 2 (this gladstone reads version 1)"));
-  write("run/manifest.jsonl", "{\"manifest\":1,\"index\":\"one\"}\n");
+  write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("is of manifest version 1 (this gladstone reads version 2)"));
+  write("run/manifest.jsonl", "{\"manifest\":2,\"index\":\"one\"}\n");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is damaged"));
+  for (char const* foreign :
+       {"{\"name\":\"a package\"}\n", "{\"manifest\":\"yes\",\"index\":0}\n", "{\"manifest\":1}\n"}) {
+    write("run/manifest.jsonl", foreign);
+    EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: is no line of a gladstone manifest"));
+  }
   write("run/manifest.jsonl", "");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
 }
@@ -109,6 +140,25 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   auto cases = plan_study(file, "cpu");
   EXPECT_THROW(write_plan(in("thesis"), file, cases), OutputError);
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
+}
+
+TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
+  std::filesystem::create_directory(in("package"));
+  StudyFile const file = study(two_axes);
+  auto cases = plan_study(file, "cpu");
+  for (std::string const foreign : {"{\"name\":\"a package\",\"version\":3}\n", "first line\nsecond line\n", ""}) {
+    write("package/manifest.jsonl", foreign);
+    try {
+      write_plan(in("package"), file, cases);
+      ADD_FAILURE() << "overwritten: " << foreign;
+    } catch (OutputError const& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("package/manifest.jsonl: is no gladstone manifest"));
+    }
+    EXPECT_EQ(content("package/manifest.jsonl"), foreign);
+  }
+  // of another gladstone, and nothing computed: planned anew
+  write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
+  EXPECT_EQ(write_plan(in("package"), file, cases), Planned::replaced);
 }
 
 TEST_F(Runs, AResultIsWholeOrNone) {
@@ -159,11 +209,11 @@ TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
 
 TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   planned();
-  Claims mine(in("run"));
+  Claims mine(in("run"), Claims::Use::take);
   ASSERT_TRUE(mine.take(7));
   EXPECT_FALSE(mine.held(7));  // by another
   {
-    Claims other(in("run"));
+    Claims other(in("run"), Claims::Use::take);
     EXPECT_TRUE(other.held(7));
     EXPECT_FALSE(other.take(7));
     EXPECT_TRUE(other.take(8));
@@ -176,7 +226,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   ASSERT_EQ(::pipe(ready), 0);
   pid_t const child = ::fork();
   if (child == 0) {
-    Claims theirs(in("run"));
+    Claims theirs(in("run"), Claims::Use::take);
     bool const taken = theirs.take(3);
     if (::write(ready[1], &taken, 1) != 1) ::_exit(1);
     ::pause();
@@ -193,6 +243,35 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   EXPECT_TRUE(mine.take(3));
   ::close(ready[0]);
   ::close(ready[1]);
+}
+
+TEST_F(Runs, LookingAtClaimsWritesNothing) {
+  auto const cases = planned();
+  std::filesystem::remove(in("run/claims"));
+  RunState const state = state_of(in("run"), cases, {0, 1});
+  EXPECT_EQ(state.missing.size(), 2u);
+  EXPECT_TRUE(state.running.empty());
+  EXPECT_FALSE(std::filesystem::exists(in("run/claims")));
+}
+
+TEST_F(Runs, AReadOnlyRunSaysThatItIsReadOnly) {
+  planned();
+  std::filesystem::permissions(in("run/claims"), std::filesystem::perms::owner_read);
+  uid_t const me = ::geteuid();
+  if (me == 0) {
+    ASSERT_EQ(::seteuid(65534), 0);  // root may write anything
+  }
+  std::string what = "nothing";
+  try {
+    Claims(in("run"), Claims::Use::take);
+  } catch (OutputError const& error) {
+    what = error.what();
+  }
+  if (me == 0) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+  EXPECT_THAT(what, testing::HasSubstr("run/claims: is read-only (Permission denied)"));
+  EXPECT_THAT(what, testing::HasSubstr("run the study in a copy of it"));
 }
 
 }  // namespace

@@ -99,6 +99,8 @@ TEST(AxisTitle, ComesFromTheKeyWithItsUnit) {
   EXPECT_EQ(axis_title("medium.field.amplitude_kg_m3"), "amplitude [kg/m³]");
   EXPECT_EQ(axis_title("camera.noise.read_noise_e"), "read noise [e⁻]");
   EXPECT_EQ(axis_title("camera.pixel_pitch_um"), "pixel pitch [µm]");
+  EXPECT_EQ(axis_title("camera.offset_dn"), "offset [DN]");
+  EXPECT_EQ(axis_title("medium.gladstone_dale"), "gladstone dale [m³/kg]");
   EXPECT_EQ(axis_title("correlate.overlap"), "overlap");
 }
 
@@ -117,6 +119,13 @@ TEST(FigureAxis, SortsNumbersAndKeepsCategories) {
   FigureAxis const kept = figure_axis(words("a", {"z", "a", "m"}), 12);
   EXPECT_THAT(kept.label, ElementsAre("z", "a", "m"));
   EXPECT_THAT(figure_axis(words("a", {"z", "a", "m"}), 2).label, ElementsAre("z", "others"));
+}
+
+TEST(FigureAxis, TakesNumbersWithInfinityAsCategories) {
+  FigureAxis const axis = figure_axis(numbers("a", {8, 16, HUGE_VAL}), 12);
+  EXPECT_FALSE(axis.numeric);
+  EXPECT_THAT(axis.label, ElementsAre("8", "16", "inf"));
+  EXPECT_THAT(axis.position, ElementsAre(0, 1, 2));
 }
 
 TEST(FigureAxis, BinsManyNumbersByEqualCount) {
@@ -201,6 +210,22 @@ TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200, 400})}, 1);
   std::erase_if(table.rows, [](StudyRow const& row) { return row.value[0] != row.value[1]; });
   for (std::string const& name : draw(table)) EXPECT_THAT(name, Not(HasSubstr("map")));
+}
+
+TEST_F(StudyFigures, AreDrawnOfAPinholeToo) {
+  EXPECT_EQ(draw(grid({numbers("lens.f_number", {8, 16, HUGE_VAL}), numbers("geometry.z_d_mm", {100, 200})}, 2)).size(),
+            14u);
+  EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(">inf<"));
+}
+
+TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
+  StudyAxis axis = numbers("lens.f_number", {4, 8, 9});
+  axis.labels = {"wide open", "the sharpest stop", "one a little smaller"};
+  axis.labelled = true;
+  draw(grid({axis}, 1));
+  for (char const* label : {">wide open<", ">the sharpest stop<", ">one a little smaller<"}) {
+    EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(label));
+  }
 }
 
 TEST_F(StudyFigures, ManyValuesAreBinned) {

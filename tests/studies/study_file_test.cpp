@@ -173,6 +173,41 @@ TEST_F(Studies, AnAxisMayBeASeed) {
   EXPECT_THAT(cases[1].setup, testing::HasSubstr("seed = 4"));
 }
 
+// The first value of each table has no seed and takes the repeat's, as the two tables beside it do; the second one's
+// own seed stands, in its place.
+TEST_F(Studies, TablesAsValuesTakeTheSeedOfTheRepeatUnlessTheyHaveOne) {
+  write("base.toml", std::string(small_base) + "[camera.noise]\nread_noise_e = 3.0\n");
+  auto const count = [](std::string const& text, std::string const& wanted) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1)) ++found;
+    return found;
+  };
+  for (auto const& [key, content] :
+       {std::pair{"target", "dots_per_32px_window = 5.0"}, std::pair{"render", "rays_per_dot = 16"},
+        std::pair{"camera.noise", "read_noise_e = 2.0"},
+        std::pair{"camera", "pixels = [64, 64], noise = { read_noise_e = 1.0 }"}}) {
+    std::string inner = content;
+    std::string seeded =
+        inner.ends_with('}') ? inner.substr(0, inner.size() - 2) + ", seed = 77 }" : inner + ", seed = 77";
+    auto const cases = plan("base = \"base.toml\"\n[axes]\n\"" + std::string(key) + "\" = [{ label = \"a\", " + inner +
+                            " }, { label = \"b\", " + seeded + " }]\n[study]\nrepeats = 2\nseed = 5\n");
+    ASSERT_EQ(cases.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::string const& setup = cases[i].setup;
+      EXPECT_EQ(count(setup, "seed = " + std::to_string(cases[i].seed) + "\n"), i % 2 == 0 ? 3u : 2u) << setup;
+      EXPECT_EQ(count(setup, "seed = 77\n"), i % 2) << setup;
+    }
+    EXPECT_NE(cases[0].seed, cases[2].seed);
+  }
+}
+
+TEST_F(Studies, NumbersKeepTheirLabels) {
+  auto cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"open\", value = 8 }, 16]\n");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("open", "16"));
+  EXPECT_EQ(cases[0].parameters[0].second.number, 8.0);
+  EXPECT_EQ(cases[0].title(), "case 0 (lens.f_number = open)");
+}
+
 class BadStudies : public StudyFolder {};
 
 TEST_F(BadStudies, UnknownAxisNamesTheNearestKey) {
@@ -235,8 +270,51 @@ TEST_F(BadStudies, SettingsThatDoNotFit) {
   expect_refused(axes + "[study]\nrepeat = 2\n", "5:1", {"did you mean \"repeats\"?"});
   expect_refused(axes + "\"lens.focal_length_mm\" = [50]\n[study]\nmode = \"zip\"\n", "4:1",
                  {"has 1 values but \"lens.f_number\" has 2"});
-  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23", {"has the value 8 twice"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 8.0]\n", "3:23",
+                 {"has the value 8 twice; remove one"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"b\", value = "
+      "8.0 }]\n",
+      "4:3", {"\"lens.f_number\" has the value 8 twice (as \"a\" and as \"b\")"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [{ label = \"a\", value = 8 },\n  { label = \"a\", value = "
+      "9 }]\n",
+      "4:3", {"\"lens.f_number\" has two values with the label a"});
+  expect_refused(
+      "base = \"base.toml\"\n[axes]\n\"medium.field\" = [{ label = \"a\", kind = \"none\" },\n  { label = \"b\", kind "
+      "= \"none\" }]\n",
+      "4:3", {"\"medium.field\" has the value", "twice (as \"a\" and as \"b\")"});
   expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
+}
+
+// 8 and 16 are whole; what lies between them is not.
+TEST_F(BadStudies, SobolSamplesOfAWholeNumber) {
+  std::string const study = "base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = ";
+  std::string const sobol = "\n[study]\nmode = \"sobol\"\nsamples = 4\n";
+  expect_refused(study + "{ linear = [8, 16, 3] }" + sobol, "3:1",
+                 {"camera.bit_depth", "must be a whole number", "so write the whole ones as a list"});
+  EXPECT_EQ(complaint(study + "[8, 12, 16]" + sobol), "nothing");
+  EXPECT_EQ(complaint(study + "{ linear = [8, 16, 3] }\n"), "nothing");
+}
+
+TEST_F(BadStudies, AnAxisWithinAnother) {
+  for (std::string const mode : {"grid", "zip"}) {
+    expect_refused(
+        "base = \"base.toml\"\n[axes]\n\"medium.field.gradient_kg_m4\" = [[1.0, 0.0, 0.0]]\n\"medium.field\" = [{ "
+        "label "
+        "= \"a\", kind = \"none\" }]\n[study]\nmode = \"" +
+            mode + "\"\n",
+        "3:1", {"\"medium.field.gradient_kg_m4\" lies in \"medium.field\", which is an axis too (line 4)"});
+  }
+  // the same letters are not the same steps
+  EXPECT_EQ(complaint("base = \"base.toml\"\n[axes]\n\"target.dot_diameter_px\" = "
+                      "[3.0]\n\"target.dots_per_32px_window\" = [5.0]\n"),
+            "nothing");
+}
+
+TEST_F(BadStudies, ARangeWithStepsOfNothing) {
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 8.00000000001, 30] }\n", "3:1",
+                 {"has the value 8 twice (numbers of a range have twelve digits)"});
 }
 
 TEST_F(BadStudies, MistakesOfTheBaseAreToldAtItsOwnLines) {
