@@ -143,14 +143,15 @@ void try_all(StudyFile const& study) {
   if (!problems.empty()) throw SetupError(problems);
 }
 
-/// Results in RUN that are whole, without their numbers.
+/// Results in RUN that are whole, without their numbers. @throws DataError where one is of another version
 std::vector<CaseResult> whole_results(fs::path const& run) {
   std::vector<CaseResult> results;
   std::error_code error;
   for (fs::directory_iterator entry(run / run_file::cases, error), end; !error && entry != end;
        entry.increment(error)) {
     if (entry->path().extension() != ".json" || !entry->is_regular_file()) continue;
-    auto result = parse_result(read_text_file(entry->path().string()));
+    std::string const path = entry->path().string();
+    auto result = parse_result(read_text_file(path), path);
     if (!result) continue;
     result->measures.clear();
     result->vectors.clear();
@@ -205,16 +206,24 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
           manifest.string(),
           "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
     }
+    std::vector<CaseResult> const results = whole_results(folder);
     if (there == text) return Planned::unchanged;
     planned = Planned::replaced;
     auto const lost = [&cases](CaseResult const& result) {
       return result.index >= cases.size() || cases[result.index].line_hash != result.line_hash;
     };
-    std::vector<CaseResult> const results = whole_results(folder);
     if (auto const count = std::count_if(results.begin(), results.end(), lost); count > 0) {
-      throw OutputError(run, fmt::format("was planned from another study, and {} of its {} results would be lost; "
-                                         "choose another folder, or remove this one",
-                                         count, results.size()));
+      int const version = *version_of_manifest(there);
+      std::string const why = version == manifest_version
+                                  ? "from another study"
+                                  : fmt::format(
+                                        "by another gladstone (its manifest is of version {}, this one writes "
+                                        "version {})",
+                                        version, manifest_version);
+      throw OutputError(run,
+                        fmt::format("was planned {}, and {} of its {} results would be lost; choose another folder, "
+                                    "or remove this one",
+                                    why, count, results.size()));
     }
     if (Claims(run, Claims::Use::look).any_held()) {
       throw OutputError(run,

@@ -147,13 +147,19 @@ std::string result_text(CaseResult const& result) {
   return std::string(head) + content_hash(rest) + "\"," + rest;
 }
 
-std::optional<CaseResult> parse_result(std::string const& text) {
+std::optional<CaseResult> parse_result(std::string const& text, std::string const& path) {
   std::size_t const start = head.size() + hash_digits + 2;
   if (text.size() <= start || !text.starts_with(head)) return std::nullopt;
   if (text.substr(head.size(), hash_digits) != content_hash(std::string_view(text).substr(start))) return std::nullopt;
   Json const json = Json::parse(text, nullptr, false);
   try {
-    if (json.at("result").get<int>() != result_version) return std::nullopt;
+    if (int const version = json.at("result").get<int>(); version != result_version) {
+      throw DataError(path,
+                      fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone "
+                                  "that made it, plan the study into another folder, or remove {}/*.json to "
+                                  "compute every case again",
+                                  version, result_version, std::filesystem::path(path).parent_path().string()));
+    }
     return result_of(json);
   } catch (nlohmann::json::exception const&) {
     return std::nullopt;
@@ -161,9 +167,10 @@ std::optional<CaseResult> parse_result(std::string const& text) {
 }
 
 std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one) {
-  std::ifstream file(result_path(run, one.index), std::ios::binary);
+  std::string const path = result_path(run, one.index);
+  std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
-  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}});
+  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}}, path);
   if (!result || result->index != one.index || result->line_hash != one.line_hash) return std::nullopt;
   return result;
 }

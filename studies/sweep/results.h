@@ -33,10 +33,13 @@ std::string result_path(std::string const& run, std::size_t index);
 /// A result's whole file: a JSON object whose first member is the content_hash() of all that follows it.
 std::string result_text(CaseResult const& result);
 
-/// Nothing where the text is not a whole result: cut short, damaged, or of another version.
-std::optional<CaseResult> parse_result(std::string const& text);
+/// Nothing where the text is not a whole result: cut short or damaged.
+/// @param path for messages
+/// @throws DataError where it is a whole one of another version, which is no reason to compute anew unasked
+std::optional<CaseResult> parse_result(std::string const& text, std::string const& path);
 
 /// The result of a case; nothing where there is none, or none that is whole and belongs to this very line.
+/// @throws DataError where it is of another version
 std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one);
 
 /// Puts a result in its place in one move. @pre the caller holds the case's claim, so that nobody else writes it

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "render/base/content_hash.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
@@ -129,6 +131,15 @@ TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   auto others = plan_study(other, "cpu");
   EXPECT_THROW(write_plan(in("run"), other, others), OutputError);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
+
+  // so would planning with another gladstone
+  write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
+  try {
+    write_plan(in("run"), other, others);
+    ADD_FAILURE() << "overwritten";
+  } catch (OutputError const& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("was planned by another gladstone (its manifest is of version 1"));
+  }
   std::filesystem::remove(result_path(in("run"), 1));
   EXPECT_EQ(write_plan(in("run"), other, others), Planned::replaced);
 }
@@ -173,16 +184,45 @@ TEST_F(Runs, AResultIsWholeOrNone) {
   EXPECT_EQ(read->warnings, written.warnings);
 
   std::string const text = result_text(written);
-  ASSERT_TRUE(parse_result(text).has_value());
-  for (std::size_t size = 0; size < text.size(); ++size) EXPECT_FALSE(parse_result(text.substr(0, size)).has_value());
+  ASSERT_TRUE(parse_result(text, "0.json").has_value());
+  for (std::size_t size = 0; size < text.size(); ++size)
+    EXPECT_FALSE(parse_result(text.substr(0, size), "0.json").has_value());
   for (std::size_t at = 0; at < text.size(); ++at) {  // any single damaged byte
     std::string damaged = text;
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
-    EXPECT_FALSE(parse_result(damaged).has_value()) << at;
+    EXPECT_FALSE(parse_result(damaged, "0.json").has_value()) << at;
   }
   ManifestCase other = cases[2];
   other.line_hash = cases[1].line_hash;
   EXPECT_FALSE(read_result(in("run"), other).has_value());
+}
+
+TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
+  auto cases = planned();
+  std::string rest = result_text(result_of(cases[2], 0.5));
+  rest = rest.substr(rest.find("\"result\":"));
+  rest.replace(0, rest.find(','), "\"result\":1");
+  std::string const older = "{\"hash\":\"" + content_hash(rest) + "\"," + rest;
+  write("run/cases/2.json", older);
+  StudyFile const file = study(two_axes);
+  std::vector<std::function<void()>> const uses{[&] { read_result(in("run"), cases[2]); },
+                                                [&] {
+                                                  state_of(in("run"), cases, {0, 1, 2, 3});
+                                                },
+                                                [&] { read_study_table(in("run")); },
+                                                [&] { write_plan(in("run"), file, cases); }};
+  for (std::function<void()> const& use : uses) {
+    try {
+      use();
+      ADD_FAILURE() << "taken for damage";
+    } catch (DataError const& error) {
+      EXPECT_THAT(error.what(),
+                  testing::HasSubstr("run/cases/2.json: is a result of version 1 (this gladstone reads version 2)"));
+      EXPECT_THAT(error.what(),
+                  testing::HasSubstr("remove " + in("run/cases") + "/*.json to compute every case again"));
+    }
+  }
+  EXPECT_EQ(content("run/cases/2.json"), older);
 }
 
 TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
