@@ -176,24 +176,19 @@ SceneView<double> scrambled(Scene const& scene, int scrambling) {
   return view;
 }
 
-/// Scatter between scramblings at the scene's present number of rays.
-struct Scatter {
-  double truth_variance = 0;  ///< mean over dots and components [px^2]
-  double light_variance = 0;  ///< mean over lit pixels of the worse frame
-  double brightest = 0;       ///< pixel of both frames, where dots overlap too
-};
-
-/// Width of a dot's image without diffraction and medium: its disc and its blur out of focus [px].
-double image_width_px(Scene const& scene) {
-  double const sharp = 1 / (1 / scene.setup.lens.focal_length - 1 / scene.setup.z_b());
-  double const blur = scene.imaging.entrance_pupil * std::abs(1 - scene.imaging.image_distance / sharp);
-  return (2 * scene.dots.half_size * scene.imaging.magnification + blur) / scene.setup.camera.pixel_pitch;
-}
-
-/// Displacement of a dot at independent scramblings of its rays.
+/// Displacement of a dot over independent scramblings of its rays.
 struct MeanDisplacement {
   Vec2d mean{};
-  double variance = 0;  ///< of the mean, averaged over both components [px^2]
+  double variance = 0;  ///< between scramblings, averaged over both components [px^2]
+
+  static MeanDisplacement of(Vec2d const (&found)[scramblings]) {
+    MeanDisplacement result;
+    for (Vec2d const one : found) result.mean += one / static_cast<double>(scramblings);
+    for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
+    result.variance /= scramblings - 1;
+    return result;
+  }
+  double variance_of_mean() const { return variance / scramblings; }
 };
 
 double mean_variance(std::vector<MeanDisplacement> const& displacements) {
@@ -210,18 +205,28 @@ MeanDisplacement mean_displacement(Scene const& scene, Medium const& medium, Lig
   LightImage* const no_images[frame_count] = {};
   GroundTruth truth;
   truth.resize(1);
-  MeanDisplacement result;
   for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
     TracePair<double, Medium> const pair{scrambled(scene, scrambling), medium};
     exposure.begin(scene.dots.centre[index], scene.dots.radiance_of(index), no_images, 0);
     trace_dot(pair, index, rays, exposure);
     exposure.finish(truth, 0);
     found[scrambling] = truth.displacement_px[0];
-    result.mean += found[scrambling] / static_cast<double>(scramblings);
   }
-  for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
-  result.variance /= scramblings * (scramblings - 1);
-  return result;
+  return MeanDisplacement::of(found);
+}
+
+/// Scatter between scramblings at the scene's present number of rays.
+struct Scatter {
+  std::vector<MeanDisplacement> displacements;  ///< of the dots
+  double light_variance = 0;                    ///< mean over lit pixels of the worse frame
+  double brightest = 0;                         ///< pixel of both frames, where dots overlap too
+};
+
+/// Width of a dot's image without diffraction and medium: its disc and its blur out of focus [px].
+double image_width_px(Scene const& scene) {
+  double const sharp = 1 / (1 / scene.setup.lens.focal_length - 1 / scene.setup.z_b());
+  double const blur = scene.imaging.entrance_pupil * std::abs(1 - scene.imaging.image_distance / sharp);
+  return (2 * scene.dots.half_size * scene.imaging.magnification + blur) / scene.setup.camera.pixel_pitch;
 }
 
 /// What dots look like on average in one frame: sums over a dot's pixels.
@@ -235,9 +240,10 @@ struct MeanDot {
 Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots, double density, SpotView const& spot,
                         DeflectionTable const& table, double level, double levels_at_peak) {
   struct PerDot {
-    double displacement_variance = 0;
-    std::vector<double> mean, variance;
+    std::vector<double> mean, variance;  // of the light
   };
+  Scatter scatter;
+  scatter.displacements.resize(dots.size());
   std::vector<PerDot> measured(dots.size());
   OwnedLightModel const light(scene, scene.dots, &spot, table);
   int const side = 2 * spot.half_width() + 49 + static_cast<int>(std::min(image_width_px(scene), widest_image_px));
@@ -259,8 +265,9 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
             for (Sampled const& sample : samples) square += (value_of(sample) - mean) * (value_of(sample) - mean);
             return std::pair{mean, square / (scramblings - 1)};
           };
-          result.displacement_variance = 0.5 * (unbiased([](Sampled const& s) { return s.displacement.x; }).second +
-                                                unbiased([](Sampled const& s) { return s.displacement.y; }).second);
+          Vec2d found[scramblings];
+          for (std::size_t k = 0; k < samples.size(); ++k) found[k] = samples[k].displacement;
+          scatter.displacements[index] = MeanDisplacement::of(found);
           for (std::size_t i = 0; i < samples[0].light.size(); ++i) {
             auto const [mean, variance] = unbiased([i](Sampled const& s) { return s.light[i]; });
             result.mean.push_back(mean);
@@ -270,7 +277,6 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
       },
       scene.medium.view);
 
-  Scatter scatter;
   auto const share = 1 / static_cast<double>(dots.size());
   MeanDot frames[frame_count];
   auto const sum_over_frame = [&](int frame, auto const& add) {
@@ -280,7 +286,6 @@ Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots
       for (std::size_t i = first; i < first + area; ++i) add(dot.mean[i], dot.variance[i]);
     }
   };
-  for (PerDot const& dot : measured) scatter.truth_variance += share * dot.displacement_variance;
   for (int frame = 0; frame < frame_count; ++frame) {
     MeanDot& sums = frames[frame];
     sum_over_frame(frame, [&](double mean, double variance) {
@@ -334,11 +339,13 @@ class RayErrors {
     std::vector<std::size_t> const in_view = dots_in_view(scene);
     sample_ = choose_sample(in_view, sample_dots);
     if (deflections_.table().exists()) {
-      checked_ = choose_sample(sample_, checked_dots);
+      std::vector<std::size_t> places(sample_.size());
+      std::iota(places.begin(), places.end(), std::size_t{0});
+      checked_ = choose_sample(places, checked_dots);
       for (std::uint64_t rays = fewest_checking_rays;; rays *= 2) {
-        by_rays_ = mean_displacements(DeflectionTable{}, rays);
-        if (mean_variance(by_rays_) <= 0.1 * truth_tolerance_px * truth_tolerance_px || rays == most_checking_rays)
-          break;
+        by_rays_ = trace_checked(rays);
+        double const variance = mean_variance(by_rays_) / scramblings;  // of their means
+        if (variance <= 0.1 * truth_tolerance_px * truth_tolerance_px || rays == most_checking_rays) break;
       }
     }
     density_ = static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows);
@@ -356,19 +363,20 @@ class RayErrors {
     if (sample_.empty()) return plan;
     Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, deflections_.table(), level_, at_peak_);
     double const light_per_level = level_ > 0 ? level_ : scatter.brightest / at_peak_;
-    plan.truth_error_px = std::sqrt(scatter.truth_variance + table_bias());
+    plan.truth_error_px = std::sqrt(mean_variance(scatter.displacements) + table_bias(scatter.displacements));
     plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
     return plan;
   }
 
  private:
-  std::vector<MeanDisplacement> mean_displacements(DeflectionTable const& table, std::uint64_t rays) const {
+  /// Of the dots that are checked, by their rays alone.
+  std::vector<MeanDisplacement> trace_checked(std::uint64_t rays) const {
     std::vector<MeanDisplacement> means(checked_.size());
-    OwnedLightModel const light(scene_, scene_.dots, nullptr, table);
+    OwnedLightModel const light(scene_, scene_.dots, nullptr, DeflectionTable{});
     std::visit(
         [&](auto const& medium) {
           parallel_for(means.size(), [&](std::size_t i) {
-            means[i] = mean_displacement(scene_, medium, light.model, checked_[i], rays);
+            means[i] = mean_displacement(scene_, medium, light.model, sample_[checked_[i]], rays);
           });
         },
         scene_.medium.view);
@@ -376,25 +384,26 @@ class RayErrors {
   }
 
   /// Mean square by which the table leads displacements from those of rays alone, the scatter of both taken off [px^2].
-  double table_bias() const {
+  /// @param by_table of the sample
+  double table_bias(std::vector<MeanDisplacement> const& by_table) const {
     if (checked_.empty()) return 0;
-    std::vector<MeanDisplacement> const by_table = mean_displacements(deflections_.table(), scene_.rays_per_dot);
     double sum = 0;
-    for (std::size_t i = 0; i < by_table.size(); ++i) {
-      Vec2d const off = by_table[i].mean - by_rays_[i].mean;
-      double const bias = 0.5 * dot(off, off) - by_table[i].variance - by_rays_[i].variance;
+    for (std::size_t i = 0; i < checked_.size(); ++i) {
+      MeanDisplacement const& table = by_table[checked_[i]];
+      Vec2d const off = table.mean - by_rays_[i].mean;
+      double const bias = 0.5 * dot(off, off) - table.variance_of_mean() - by_rays_[i].variance_of_mean();
       if (std::isfinite(bias)) sum += bias;
     }
-    return std::max(0.0, sum / static_cast<double>(by_table.size()));
+    return std::max(0.0, sum / static_cast<double>(checked_.size()));
   }
 
   Scene const& scene_;
   std::optional<AiryTable> airy_;
   SpotView spot_;
   DeflectionMap deflections_;
-  std::vector<std::size_t> sample_, checked_;
-  std::vector<MeanDisplacement> by_rays_;  // of the dots that are checked
-  double density_, level_, at_peak_;       // dots a pixel, light of a grey level or 0, levels of the brightest pixel
+  std::vector<std::size_t> sample_, checked_;  // dots; those among them whose table is checked, by their places here
+  std::vector<MeanDisplacement> by_rays_;
+  double density_, level_, at_peak_;  // dots a pixel, light of a grey level or 0, levels of the brightest pixel
   int bits_;
 };
 

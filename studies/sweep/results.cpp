@@ -34,10 +34,8 @@ double number_of(Json const& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-/// Errors of vectors stand as whole numbers of this many px, u and v by turns, with spaces between them in one text
+/// Errors of vectors stand as whole numbers of vector_unit_px, u and v by turns, with spaces between them in one text
 /// (JSON arrays of thousands of numbers take long to read); what is unknown is "-".
-constexpr double vector_unit_px = 1e-6;
-
 std::string numbers_text(std::vector<Vec2d> const& errors_px) {
   std::string text;
   for (Vec2d const& error : errors_px) {

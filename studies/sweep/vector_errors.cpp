@@ -10,7 +10,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
-double rounded(double error_px) { return std::round(error_px * 1e6) / 1e6; }
+double rounded(double error_px) { return std::round(error_px / vector_unit_px) * vector_unit_px; }
 
 /// Which vectors are kept: a lattice of every step-th row and column, or every step-th of scattered ones.
 std::vector<std::size_t> kept_vectors(DisplacementField const& field) {

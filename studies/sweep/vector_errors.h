@@ -18,6 +18,8 @@ struct VectorErrors {
 /// "ray_truth", "eq9" (measurement less each) and "estimator" (noise-free measurement less truth on the window).
 std::vector<std::string> const& vector_error_names();
 
+/// Errors of vectors are kept as whole multiples of it [px].
+inline constexpr double vector_unit_px = 1e-6;
 /// Most vectors of a case whose errors are kept; of more, every second, third, ... row and column.
 inline constexpr std::size_t most_kept_vectors = 1024;
 
