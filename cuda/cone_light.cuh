@@ -10,8 +10,6 @@ namespace gladstone::cuda {
 struct ConeState {
   DisplacementMoments moments[PlaceRule::most_places];
   double without_medium[PlaceRule::most_places];
-  MomentField field;
-  BoxRange boxes;
   double rims[PlaceRule::most_places][ConeRule::most_directions];
   bool simple, sound, narrow;  ///< the stop's edge; the moments; their spread
 };
@@ -34,40 +32,11 @@ __device__ inline bool find_rims(CorrectedCone const& cone, ConeRule const& rule
   return sound;
 }
 
-/// Calls visit(light) for the warp's points of a cone's cross-section as seen from a place.
-/// @param kept where the points of all places are kept, once they are worked out; null: they are not
-template <class Visit>
-__device__ void visit_cone(LightModel const& model, CorrectedCone const& cone, ConeState const& state, int place,
-                           ConeLight* kept, bool work_out, Visit const& visit) {
-  ConeRule const& rule = model.cone;
-  Vec2d const offset = model.offset(model.places.places[place]);
-  double const* const rims = state.simple ? state.rims[place] : nullptr;
-  int const count = rims ? rule.count : rule.scattered_count;
-  if (kept) kept += static_cast<std::size_t>(place) * count;
-  for (int k = threadIdx.x % warp_size; k < count; k += warp_size) {
-    if (!work_out) {
-      visit(kept[k]);
-      continue;
-    }
-    ConeLight const light = rims ? cone_light(cone, rule, k, offset, rims) : smoothed_light(cone, rule, k, offset);
-    if (kept) kept[k] = light;
-    visit(light);
-  }
-  __syncwarp();
-}
-
-/// Sums a warp's moments for a place of the source into the state.
-__device__ inline void keep_moments(ConeState& state, int place, DisplacementMoments const& moments) {
-  for (int i = 0; i < DisplacementMoments::count; ++i) {
-    double const sum = warp_sum(moments.of[i]);
-    if (threadIdx.x % warp_size == 0) state.moments[place].of[i] = sum;
-  }
-}
-
-/// Moments of the whole cone at every place, and what they say of its light. @return state.sound
+/// Moments of the whole cone at every place, and what they say of its light.
+/// @param kept [place][point] where its points are kept, or null @return state.sound
 __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state,
                                       ConeLight* kept = nullptr) {
-  int const warp = threadIdx.x / warp_size;
+  int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
   if (threadIdx.x == 0) {
     state.simple = state.sound = state.narrow = true;
   }
@@ -76,16 +45,24 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
     if (!find_rims(cone, model.cone, model.offset(model.places.places[place]), state.rims[place])) state.simple = false;
   }
   __syncthreads();
+  int const count = model.cone_points(state.simple);
   for (int place = warp; place < model.places.count; place += dot_warps) {
+    Vec2d const offset = model.offset(model.places.places[place]);
     DisplacementMoments moments;
     double without_medium = 0;
-    visit_cone(model, cone, state, place, kept, true, [&](ConeLight const& light) {
+    for (int k = lane; k < count; k += warp_size) {
+      ConeLight const light = state.simple ? cone_light(cone, model.cone, k, offset, state.rims[place])
+                                           : smoothed_light(cone, model.cone, k, offset);
+      if (kept) kept[place * count + k] = light;
       moments.add(light.weight, light.displacement);
       without_medium += light.without_medium;
-    });
+    }
     without_medium = warp_sum(without_medium);
-    keep_moments(state, place, moments);
-    if (threadIdx.x % warp_size == 0) {
+    for (int i = 0; i < DisplacementMoments::count; ++i) {
+      double const sum = warp_sum(moments.of[i]);
+      if (lane == 0) state.moments[place].of[i] = sum;
+    }
+    if (lane == 0) {
       state.without_medium[place] = without_medium;
       cone.finish(state.moments[place], without_medium);
       if (!isfinite(state.moments[place].square())) state.sound = false;
@@ -96,61 +73,13 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
   return state.sound;
 }
 
-/// Finds the squares that the cone's displacements span.
-__device__ inline void find_boxes(LightModel const& model, CorrectedCone const& cone, ConeState& state,
-                                  ConeLight* kept) {
-  double const per_side = 1 / model.box_side();
-  BoxRange boxes;
-  for (int place = threadIdx.x / warp_size; place < model.places.count; place += dot_warps) {
-    visit_cone(model, cone, state, place, kept, false, [&](ConeLight const& light) { boxes.include(light, per_side); });
-  }
-  if (threadIdx.x == 0) state.boxes = {};
-  __syncthreads();
-  atomicMin(&state.boxes.low.x, boxes.low.x);
-  atomicMin(&state.boxes.low.y, boxes.low.y);
-  atomicMax(&state.boxes.high.x, boxes.high.x);
-  atomicMax(&state.boxes.high.y, boxes.high.y);
-  __syncthreads();
-}
-
-/// Moments of the part of the cone whose displacements lie in one square, about its middle. @return whether there is
-/// any
-__device__ inline bool integrate_box(LightModel const& model, CorrectedCone const& cone, ConeState& state,
-                                     ConeLight* kept, Vec2<int> which, Vec2d middle) {
-  int const warp = threadIdx.x / warp_size;
-  double const per_side = 1 / model.box_side();
-  bool any = false;
-  for (int place = warp; place < model.places.count; place += dot_warps) {
-    DisplacementMoments moments;
-    visit_cone(model, cone, state, place, kept, false, [&](ConeLight const& light) {
-      Vec2<int> const box = box_of(light.displacement, per_side);
-      if (box.x != which.x || box.y != which.y) return;
-      moments.add(light.weight, light.displacement - middle);
-      any = true;
-    });
-    keep_moments(state, place, moments);
-    if (threadIdx.x % warp_size == 0) cone.finish(state.moments[place], state.without_medium[place]);
-  }
-  return __syncthreads_or(any);
-}
-
-/// Makes state.field of state.moments.
-__device__ inline void fit_moments(LightModel const& model, ConeState& state) {
-  constexpr int terms = PlaceRule::terms;
-  __syncthreads();
-  for (int i = threadIdx.x; i < DisplacementMoments::count * terms; i += dot_threads) {
-    state.field.coefficient[i / terms][i % terms] =
-        MomentField::fitted(model.places, state.moments, i / terms, i % terms);
-  }
-  __syncthreads();
-}
-
 /// Lays down the source's disc with the spots that the moments make of it. A warp takes some points of the source at a
 /// time: first its lanes work out all their pixels' edges, then the spots' factors, then a lane a pixel.
 /// @param scratch of the warps @param moved where the moments count from [px]
-__device__ inline void lay_down_part(LightModel const& model, CubatureView const& source, DotPlan const& plan,
-                                     MomentField const& field, Vec2d moved, Patch const& patch,
-                                     DeviceImages const& images, SharesOfGroup* scratch) {
+__device__ inline void lay_down_narrow(LightModel const& model, DotPlan const& plan, MomentField const& field,
+                                       Vec2d moved, Patch const& patch, DeviceImages const& images,
+                                       SharesOfGroup* scratch) {
+  CubatureView const& source = model.source;
   using M = DisplacementMoments;
   using Spot = GaussianSpot<double>;
   constexpr int orders = M::order + 1, most_group = 4;
@@ -244,28 +173,6 @@ __device__ inline void lay_down_part(LightModel const& model, CubatureView const
       __syncwarp();
     }
   }
-}
-
-/// Lays down the light of a cone that integrate_cone() found sound and kept, square by square. @return false: there are
-/// too many, and nothing was done
-__device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
-                                   ConeState& state, ConeLight* kept, Patch& patch, DeviceImages const& images,
-                                   SharesOfGroup* scratch) {
-  find_boxes(model, cone, state, kept);
-  BoxRange const boxes = state.boxes;
-  if (!boxes.few()) return false;
-  patch.begin(plan.origin + cone.origin());
-  for (int row = boxes.low.y; row <= boxes.high.y; ++row) {
-    for (int column = boxes.low.x; column <= boxes.high.x; ++column) {
-      Vec2d const middle{column * model.box_side(), row * model.box_side()};
-      __syncthreads();
-      if (!integrate_box(model, cone, state, kept, {column, row}, middle)) continue;
-      fit_moments(model, state);
-      lay_down_part(model, model.wide_source, plan, state.field, cone.origin() + middle, patch, images, scratch);
-    }
-  }
-  patch.flush(images, Frame::flow);
-  return true;
 }
 
 }  // namespace gladstone::cuda

@@ -60,8 +60,9 @@ class MirroredLightModel {
  public:
   explicit MirroredLightModel(LightModel const& host) : model_(host) {
     model_.source = mirrored(host.source, 0);
-    model_.wide_source = mirrored(host.wide_source, 1);
-    for (int rule = 0; rule < pupil_rules; ++rule) model_.pupil[rule] = mirrored(host.pupil[rule], 2 + rule);
+    for (int rule = 0; rule < pupil_rules; ++rule) model_.pupil[rule] = mirrored(host.pupil[rule], 1 + rule);
+    moment_images_ = DeviceArray<double>(host.moment_images.values, host.moment_images.size(), "the images of moments");
+    model_.moment_images.values = moment_images_.data();
     cone_points_ = DeviceArray<ConePoint>(host.cone.points, static_cast<std::size_t>(host.cone.count), "a cubature");
     cone_directions_ =
         DeviceArray<Vec2d>(host.cone.directions, static_cast<std::size_t>(host.cone.direction_count), "a cubature");
@@ -86,8 +87,9 @@ class MirroredLightModel {
   }
 
   LightModel model_;
-  DeviceArray<Vec2d> points_[2 + pupil_rules];
-  DeviceArray<double> weights_[2 + pupil_rules];
+  DeviceArray<Vec2d> points_[1 + pupil_rules];
+  DeviceArray<double> weights_[1 + pupil_rules];
+  DeviceArray<double> moment_images_;
   DeviceArray<ConePoint> cone_points_;
   DeviceArray<Vec2d> cone_directions_, cone_scattered_;
   DeviceArray<double> airy_;

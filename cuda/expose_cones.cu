@@ -25,7 +25,7 @@ __global__ void __launch_bounds__(dot_threads, 6)
         field.coefficient[k / terms][k % terms] = cones[i].field.coefficient[k / terms][k % terms];
       }
       patch.begin(plan.origin + cones[i].origin);
-      lay_down_part(model, model.source, plan, field, cones[i].origin, patch, images, shares);
+      lay_down_narrow(model, plan, field, cones[i].origin, patch, images, shares);
       patch.flush(images, Frame::flow);
     }
   }

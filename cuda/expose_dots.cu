@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "cuda/block_sum.cuh"
-#include "cuda/cone_light.cuh"
+#include "cuda/box_light.cuh"
 #include "cuda/expose_dots.h"
 #include "cuda/launch.h"
 
@@ -96,31 +96,39 @@ std::size_t shared_bytes(int side) {
 
 /// Points that a wide cone is integrated over, at most.
 std::size_t points_of_a_cone(LightModel const& model) {
-  if (!model.by_moments()) return 0;
+  if (!model.moment_images.exist()) return 0;
   return static_cast<std::size_t>(model.places.count) *
          static_cast<std::size_t>(std::max(model.cone.count, model.cone.scattered_count));
 }
 
 /// Room for one cone's points a block, since a block works on one dot at a time.
-/// @param blocks fewer on return where the device has little left, which only costs time
-DeviceArray<ConeLight> make_room_for_cones(std::size_t points, int& blocks) {
-  for (;; blocks = (blocks + 1) / 2) try {
-      return DeviceArray<ConeLight>(static_cast<std::size_t>(blocks) * points, "the points of wide cones");
-    } catch (OutOfDeviceMemory const&) {
-      if (blocks == 1) throw;
-    }
-}
+struct RoomForCones {
+  DeviceArray<ConeLight> light;
+  DeviceArray<unsigned short> order;
+
+  /// @param blocks fewer on return where the device has little left, which only costs time
+  static RoomForCones make(std::size_t points, int& blocks) {
+    for (;; blocks = (blocks + 1) / 2) try {
+        std::size_t const all = static_cast<std::size_t>(blocks) * points;
+        return {DeviceArray<ConeLight>(all, "the points of wide cones"),
+                DeviceArray<unsigned short>(all, "the points of wide cones")};
+      } catch (OutOfDeviceMemory const&) {
+        if (blocks == 1) throw;
+      }
+  }
+};
 
 template <class T>
 __global__ void __launch_bounds__(threads, 4)
     expose_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
                        RayRecord<T> const* const records, DotSums const* const sums, DotCone const* const cones,
-                       DeviceImages const images, int const side, ConeLight* const points,
+                       DeviceImages const images, int const side, ConeLight* const room, unsigned short* const order,
                        std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
   __shared__ __align__(16) unsigned char state_storage[std::max(sizeof(BlockState), sizeof(ConeState))];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
-  __shared__ SharesOfGroup shares[dot_warps];
+  __shared__ __align__(16) unsigned char scratch[std::max(sizeof(BoxState), dot_warps * sizeof(SharesOfGroup))];
+  SharesOfGroup* const shares = reinterpret_cast<SharesOfGroup*>(scratch);
   BlockState& state = *reinterpret_cast<BlockState*>(state_storage);
   ConeState& cone_state = *reinterpret_cast<ConeState*>(state_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
@@ -139,9 +147,12 @@ __global__ void __launch_bounds__(threads, 4)
     if (kind == DotKind::wide) {
       if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], cones[i].check);
       __syncthreads();
-      ConeLight* const kept = points + blockIdx.x * points_a_block;
+      ConeLight* const kept = room + blockIdx.x * points_a_block;
       integrate_cone(model, cone, cone_state, kept);
-      if (expose_wide(model, plan, cone, cone_state, kept, patch, images, shares)) continue;
+      ConePoints const points{kept, order + blockIdx.x * points_a_block, model.cone_points(cone_state.simple)};
+      if (expose_wide(model, plan, cone, cone_state, points, *reinterpret_cast<BoxState*>(scratch), patch, images)) {
+        continue;
+      }
       __syncthreads();
     }
     if (model.controlled) {
@@ -190,9 +201,9 @@ void expose_dots(LightModel const& model, SourcesView<double> const& sources, Ba
   allow_shared_bytes(kernel, shared);
   int blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
   std::size_t const points_a_block = points_of_a_cone(model);
-  DeviceArray<ConeLight> points = make_room_for_cones(points_a_block, blocks);
-  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, points.data(),
-                                      points_a_block);
+  RoomForCones room = RoomForCones::make(points_a_block, blocks);
+  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, room.light.data(),
+                                      room.order.data(), points_a_block);
   check_launch("expose_dots");
 }
 

@@ -313,33 +313,6 @@ GLADSTONE_HD inline ConeLight smoothed_light(CorrectedCone const& cone, ConeRule
           weight * cone.transmission(pupil, rule.smoothing)};
 }
 
-/// The square of displacements that one belongs to, by its column and row; the middle of square (0, 0) is the origin.
-/// @param per_side one over the squares' side [1/px]
-GLADSTONE_HD inline Vec2<int> box_of(Vec2d displacement, double per_side) {
-  using std::floor;
-  auto const cell = [per_side](double d) {
-    double const at = floor(d * per_side + 0.5);
-    return static_cast<int>(at < -1000 ? -1000 : (at > 1000 ? 1000 : at));
-  };
-  return {cell(displacement.x), cell(displacement.y)};
-}
-
-/// The squares that a distribution of displacements spans.
-struct BoxRange {
-  Vec2<int> low{0, 0}, high{0, 0};
-
-  GLADSTONE_HD void include(ConeLight const& light, double per_side) {
-    if (!(light.weight != 0)) return;
-    Vec2<int> const box = box_of(light.displacement, per_side);
-    low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
-    high = {box.x > high.x ? box.x : high.x, box.y > high.y ? box.y : high.y};
-  }
-  GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
-  GLADSTONE_HD int rows() const { return high.y - low.y + 1; }
-  /// Whether it pays to go through them one by one.
-  GLADSTONE_HD bool few() const { return columns() <= 24 && rows() <= 24; }
-};
-
 /// Adds what one place of a source shows to the sums of truth.
 /// @param at of the place's image [px] @param weight in the reference frame @param moments shares, about `origin`
 GLADSTONE_HD inline void add_place(CentroidSum<double>& reference, CentroidSum<double>& flow, Vec2d at, double weight,

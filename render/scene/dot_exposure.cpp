@@ -41,13 +41,15 @@ void add_series(double* corner, int side, int width, double weight, Displacement
 
 }  // namespace
 
-LightPatch::LightPatch(SpotView const& spot)
+LightPatch::LightPatch(SpotView const& spot, MomentImages const& images)
     : spot_(spot),
+      images_(images),
       half_(spot.half_width()),
-      side_(2 * half_ + 33),
+      side_(2 * std::max(half_, images.half) + 33),
       light_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0.0),
       column_shares_(static_cast<std::size_t>(2 * half_ + 1)),
-      row_shares_(column_shares_.size()) {}
+      row_shares_(column_shares_.size()),
+      of_square_(static_cast<std::size_t>(images.stride)) {}
 
 double* LightPatch::reach(Footprint const& spot, LightImage* image, double light_per_weight) {
   int const width = spot.width;
@@ -121,6 +123,31 @@ void LightPatch::deposit(Series const& column, Series const& row, double weight,
   }
 }
 
+void LightPatch::deposit(Vec2<int> square, double weight, MomentField const& field, LightImage* image,
+                         double light_per_weight) {
+  BoxLattice const& lattice = images_.lattice;
+  int const width = images_.width();
+  double const* const images = images_.of_phase(lattice.phase(square.y) * lattice.per_pixel + lattice.phase(square.x));
+  for (int first = 0; first < images_.stride; first += MomentImages::pad) {
+    double sum[MomentImages::pad] = {};
+    double const* here = images + first;
+    for (int moment = 0; moment < DisplacementMoments::count; ++moment) {
+      for (int term = 0; term < images_.terms; ++term, here += images_.stride) {
+        double const share = weight * field.coefficient[moment][term];
+        for (int i = 0; i < MomentImages::pad; ++i) sum[i] += share * here[i];
+      }
+    }
+    std::copy_n(sum, MomentImages::pad, of_square_.data() + first);
+  }
+  double* const corner = reach({lattice.pixel(square.x) - images_.half, lattice.pixel(square.y) - images_.half, width},
+                               image, light_per_weight);
+  for (int row = 0; row < width; ++row) {
+    for (int column = 0; column < width; ++column) {
+      corner[row * side_ + column] += of_square_[static_cast<std::size_t>(row * width + column)];
+    }
+  }
+}
+
 void LightPatch::flush(LightImage* image, double light_per_weight) {
   for (int row = low_row_; row < high_row_; ++row) {
     double* const line = light_.data() + row * side_;
@@ -133,7 +160,7 @@ void LightPatch::flush(LightImage* image, double light_per_weight) {
 }
 
 DotExposure::DotExposure(LightModel const& model, bool with_images) : model_(model), with_images_(with_images) {
-  if (with_images) patches_.assign(frame_count, LightPatch(model.spot));
+  if (with_images) patches_.assign(frame_count, LightPatch(model.spot, model.moment_images));
 }
 
 void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&images)[frame_count],
@@ -243,7 +270,7 @@ std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
     }
   }
   if (model_.rays_are_better(check_, simple)) return {};
-  int const points = simple ? cross_section.count : cross_section.scattered_count;
+  int const points = model_.cone_points(simple);
   cone_points_.clear();
   for (int i = 0; i < rule.count; ++i) {
     Vec2d const offset = model_.offset(rule.places[i]);
@@ -264,62 +291,39 @@ std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
 }
 
 bool DotExposure::deposit_wide(ConeIntegral const& integral) {
-  double const side = model_.box_side();
   int const places = model_.places.count;
-  BoxRange boxes;
-  for (ConeLight const& light : cone_points_) boxes.include(light, 1 / side);
-  if (!boxes.few()) return false;
-  parts_.assign(static_cast<std::size_t>(boxes.columns() * boxes.rows() * places), {});
-  auto const middle_of = [&](Vec2<int> box) {
-    return side * Vec2d{static_cast<double>(box.x), static_cast<double>(box.y)};
-  };
-  auto const part_of = [&](Vec2<int> box) {
-    return parts_.data() + ((box.y - boxes.low.y) * boxes.columns() + box.x - boxes.low.x) * places;
-  };
   std::size_t const points = cone_points_.size() / static_cast<std::size_t>(places);
+  DotBoxes const boxes(model_.moment_images.lattice, plan_.origin + integral.cone.origin());
+  BoxRange range;
+  for (ConeLight const& light : cone_points_) {
+    if (light.weight != 0) range.include(boxes.box_of(light.displacement));
+  }
+  if (!range.few()) return false;
+  parts_.assign(static_cast<std::size_t>(range.count() * places), {});
   for (std::size_t i = 0; i < cone_points_.size(); ++i) {
     ConeLight const& light = cone_points_[i];
     if (light.weight == 0) continue;
-    Vec2<int> const box = box_of(light.displacement, 1 / side);
-    part_of(box)[i / points].add(light.weight, light.displacement - middle_of(box));
+    Vec2<int> const box = boxes.box_of(light.displacement);
+    parts_[static_cast<std::size_t>(range.index(box) * places) + i / points].add(
+        light.weight, boxes.from_middle(light.displacement, box));
   }
-  lit_.clear();
-  for (int row = 0; row < boxes.rows(); ++row) {
-    for (int column = 0; column < boxes.columns(); ++column) {
-      DisplacementMoments* const part = part_of({boxes.low.x + column, boxes.low.y + row});
-      bool empty = true;
-      for (int i = 0; i < places; ++i) {
-        empty = empty && part[i].of[0] == 0;
-        integral.cone.finish(part[i], integral.without_medium[i]);
-      }
-      if (!empty) lit_.push_back({column, row, MomentField::fit(model_.places, part)});
-    }
+  for (int index = 0; index < range.count(); ++index) {
+    DisplacementMoments* const part = parts_.data() + index * places;
+    if (std::all_of(part, part + places, [](DisplacementMoments const& m) { return m.of[0] == 0; })) continue;
+    for (int i = 0; i < places; ++i) integral.cone.finish(part[i], integral.without_medium[i]);
+    patches_[1].deposit(boxes.first + range.box(index), plan_.expected_weight, MomentField::fit(model_.places, part),
+                        images_[1], light_per_weight_);
   }
-  deposit_lit(integral.cone.origin(), boxes, model_.wide_source);
   return true;
 }
 
-void DotExposure::deposit_lit(Vec2d origin, BoxRange const& boxes, CubatureView const& source) {
-  LightPatch& patch = patches_[1];
-  columns_.resize(static_cast<std::size_t>(boxes.columns()));
-  rows_.resize(static_cast<std::size_t>(boxes.rows()));
-  double const side = model_.box_side();
-  for (int i = 0; i < source.count; ++i) {
-    Deposit const light = reference_light(model_, source, plan_, i);
-    bool seen = true;
-    for (int k = 0; k < boxes.columns(); ++k) {
-      seen = seen && patch.make_series(light.at.x + (origin.x + side * (boxes.low.x + k)),
-                                       columns_[static_cast<std::size_t>(k)]);
-    }
-    for (int k = 0; k < boxes.rows(); ++k) {
-      seen = seen &&
-             patch.make_series(light.at.y + (origin.y + side * (boxes.low.y + k)), rows_[static_cast<std::size_t>(k)]);
-    }
-    if (!seen) continue;
-    for (LitBox const& box : lit_) {
-      patch.deposit(columns_[static_cast<std::size_t>(box.column)], rows_[static_cast<std::size_t>(box.row)],
-                    light.weight, box.field.at(source.points[i]), images_[1], light_per_weight_);
-    }
+void DotExposure::deposit_narrow(ConeIntegral const& integral) {
+  MomentField const field = MomentField::fit(model_.places, integral.whole);
+  for (int i = 0; i < model_.source.count; ++i) {
+    Deposit const light = reference_light(model_, model_.source, plan_, i);
+    Vec2d const at = light.at + integral.cone.origin();
+    if (!patches_[1].make_series(at.x, column_) || !patches_[1].make_series(at.y, row_)) continue;
+    patches_[1].deposit(column_, row_, light.weight, field.at(model_.source.points[i]), images_[1], light_per_weight_);
   }
 }
 
@@ -332,8 +336,7 @@ void DotExposure::finish_light() {
       deposit_source(Frame::flow);
       break;
     case DotKind::narrow:
-      lit_.assign(1, {0, 0, MomentField::fit(model_.places, integral->whole)});
-      deposit_lit(integral->cone.origin(), {}, model_.source);
+      deposit_narrow(*integral);
       break;
     case DotKind::wide:
       if (!deposit_wide(*integral)) deposit_rays();

@@ -45,7 +45,8 @@ class LightImage {
 /// A square piece of a frame in which one dot's rays are gathered in double before they join the image.
 class LightPatch {
  public:
-  explicit LightPatch(SpotView const& spot);
+  /// @param images of the squares of displacement that it is to hold, or none
+  LightPatch(SpotView const& spot, MomentImages const& images);
 
   /// Adds one ray's spot of weight `weight` at p [px]; a spot beyond the patch first sends the patch to the image.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);
@@ -59,6 +60,8 @@ class LightPatch {
   /// Adds Gaussian spots whose displacements from where the series stand have these moments.
   void deposit(Series const& column, Series const& row, double weight, DisplacementMoments const& moments,
                LightImage* image, double light_per_weight);
+  /// Adds the light of one of the sensor's squares of displacement.
+  void deposit(Vec2<int> square, double weight, MomentField const& field, LightImage* image, double light_per_weight);
   /// Adds what has been gathered to the image (if any) and clears the patch.
   void flush(LightImage* image, double light_per_weight);
 
@@ -74,12 +77,14 @@ class LightPatch {
 
  private:
   SpotView spot_;
+  MomentImages images_;
   int half_;
   int side_;
   int left_ = 0, top_ = 0;                                             // image position of the patch's corner
   int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // touched part
   std::vector<double> light_;
   std::vector<double> column_shares_, row_shares_;  ///< for shares()
+  std::vector<double> of_square_;                   ///< light of a square of displacement
 
   /// Makes room for a spot and marks it as touched. @return the place of its first pixel
   double* reach(Footprint const& spot, LightImage* image, double light_per_weight);
@@ -122,9 +127,8 @@ class DotExposure {
   std::optional<ConeIntegral> integrate_cone();
   /// Lays down the light in the flow square by square. @return false: there are too many, and nothing was done
   bool deposit_wide(ConeIntegral const& integral);
-  /// Deposits the light of the lit squares of displacement: a spot's series along an axis serves a column or row of
-  /// them. @param origin where the squares count from [px]
-  void deposit_lit(Vec2d origin, BoxRange const& boxes, CubatureView const& source);
+  /// Lays down the light in the flow by the moments about one displacement.
+  void deposit_narrow(ConeIntegral const& integral);
   /// Lays down the source's disc as the reference frame shows it.
   void deposit_source(Frame frame);
   FlowFit fit_flow() const;
@@ -144,14 +148,8 @@ class DotExposure {
   TableCheck check_;
   std::vector<ConeLight> cone_points_;      ///< of all places
   std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
-  /// A square that light falls on: its column and row among them, and its moments over the source.
-  struct LitBox {
-    int column, row;
-    MomentField field;
-  };
-  std::vector<LitBox> lit_;
-  std::vector<LightPatch::Series> columns_, rows_;  ///< of one point of the source, by column and row of squares
-  bool moved_ = false;                              ///< whether the flow did anything to any of its rays
+  LightPatch::Series column_, row_;         ///< of one point of the source
+  bool moved_ = false;                      ///< whether the flow did anything to any of its rays
   StatusCounts statuses_{};
   double largest_bend2_ = 0;
 };

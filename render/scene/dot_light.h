@@ -3,6 +3,7 @@
 #include "render/optics/lens_setup.h"
 #include "render/scene/cone_moments.h"
 #include "render/scene/flow_fit.h"
+#include "render/scene/moment_images.h"
 #include "render/scene/theory.h"
 #include "render/sensor/diffraction_spot.h"
 
@@ -67,34 +68,35 @@ struct LightModel {
   double mean_pupil2 = 0;      ///< mean |P|^2 over the stop [m^2]
   double distance = 0;         ///< target to lens plane [m]
   CubatureView source;
-  CubatureView wide_source;  ///< does for squares of wide cones, which blur the source's outline among themselves
   CubatureView pupil[pupil_rules];
   DeflectionTable table;  ///< where it exists
   ConeRule cone;
   PlaceRule places;
+  MomentImages moment_images;
   double sent_radius = 0;  ///< of the disc in the lens plane that rays are sent to [m]
 
   /// Whether light is laid down by moments where a dot's cone allows it.
   GLADSTONE_HD bool by_moments() const {
     return controlled && spot.model != SpotModel::airy && spot.model != SpotModel::none && spot.half_width() <= 22;
   }
-  /// Side of the squares into which wide distributions of displacements are sorted [px]: within one, four orders of
-  /// moments give a spot to 1e-3 of its peak for displacements to the corners and to some 1e-5 on average.
-  GLADSTONE_HD double box_side() const {
+  /// Most side of the squares into which wide distributions of displacements are sorted [px]: within one, four orders
+  /// of moments give the images of dots to 2e-5 of their peak (rms over lit pixels; 1e-4 at worst).
+  GLADSTONE_HD double most_box_side() const {
     using std::sqrt;
-    return 0.8 * sqrt(spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12);
+    return sqrt(spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12);
   }
   /// Whether four orders of moments about the mean give a spot to 1e-4 of its peak for all of a distribution.
   GLADSTONE_HD bool narrow(DisplacementMoments const& moments) const {
-    double const allowed = 0.5 * box_side();
-    return moments.square() <= allowed * allowed * moments.of[0];
+    double const blur2 = spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12;
+    return moments.square() <= 0.16 * blur2 * moments.of[0];
   }
   /// How a dot's light is laid down. @param moved the flow did something to some of its rays @param integrated its cone
   /// was, by the table @param narrow_cone narrow() at all places of the source
   GLADSTONE_HD DotKind kind(bool moved, bool integrated, bool narrow_cone) const {
     if (controlled && !moved) return DotKind::still;
     if (!integrated || !by_moments()) return DotKind::rays;
-    return narrow_cone ? DotKind::narrow : DotKind::wide;
+    if (narrow_cone) return DotKind::narrow;
+    return moment_images.exist() ? DotKind::wide : DotKind::rays;
   }
   /// Whether the table knows all rays of a dot.
   GLADSTONE_HD bool tabled(Vec2d centre) const {
@@ -109,6 +111,8 @@ struct LightModel {
   GLADSTONE_HD bool rays_are_better(TableCheck const& check, bool simple_edge) const {
     return !simple_edge && check.rays >= 16 * cone.scattered_count;
   }
+  /// Points that a cone is integrated over at each place. @param simple_edge of the stop, as seen from all of them
+  GLADSTONE_HD int cone_points(bool simple_edge) const { return simple_edge ? cone.count : cone.scattered_count; }
   GLADSTONE_HD CorrectedCone corrected(Vec2d centre, TableCheck const& check) const {
     return {table, image.stop_radius, sent_radius, distance, centre, check};
   }

@@ -185,9 +185,12 @@ OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, 
       spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
   source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
   model.source = view_of(source);
-  wide_source = SourceCubature::make(sources.shape, image.half_size_px(), 2 * spot_px);
-  model.wide_source = view_of(wide_source);
   for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
+  if (table.way > 0 && model.by_moments()) {
+    moment_images = OwnedMomentImages(source.points, source.weights, image.half_size_px(), spot->gaussian,
+                                      model.most_box_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
+    model.moment_images = moment_images.view();
+  }
 }
 
 }  // namespace gladstone

@@ -33,7 +33,8 @@ struct SourceCubature {
 /// A scene's light model with the rules that it integrates by; the spot's Airy table is the caller's.
 struct OwnedLightModel {
   LightModel model;
-  SourceCubature source, wide_source;
+  SourceCubature source;
+  OwnedMomentImages moment_images;
   SourceCubature pupil[pupil_rules];
   std::vector<ConePoint> cone_points;
   std::vector<Vec2d> cone_directions, cone_scattered;

@@ -39,19 +39,19 @@ struct Probe {
   double largest_bend() const { return bend.empty() ? 0.0 : *std::max_element(bend.begin(), bend.end()); }
 };
 
-/// Rays that a dot is probed by.
-enum class ProbeRays { chief = 1, cone = 5 };
+/// A ray that a dot is probed by.
+struct ProbeRay {
+  Vec2d beside;  ///< where it starts, from the dot's centre [m]
+  Vec2d pupil;   ///< where it runs to [m]
+};
 
 template <class Medium>
-Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size_t> const& dots, ProbeRays which,
-                 double step) {
+Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size_t> const& dots,
+                 std::vector<ProbeRay> const& rays, double step) {
   SceneView<double> view = scene.view();
   view.tracing.step = step;
   view.train = {};  // bending matters here, not clipping
   view.train.append(ThinLens<double>{scene.setup.z_a, scene.setup.lens.focal_length});
-  double const rim = scene.imaging.entrance_pupil / 2;
-  Vec2d const pupil[5] = {{0, 0}, {rim, 0}, {0, rim}, {-rim, 0}, {0, -rim}};
-  int const rays = scene.chief_rays_only() ? 1 : static_cast<int>(which);
   Probe probe;
   probe.displacement_px.resize(dots.size());
   probe.bend.resize(dots.size());
@@ -61,15 +61,15 @@ Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size
       Vec2d const centre = scene.dots.centre[dots[i]];
       Vec2d sum{};
       int seen = 0;
-      for (int ray = 0; ray < rays; ++ray) {
-        Vec3d const start{centre.x, centre.y, view.sources.plane_z};
+      for (auto const& [beside, pupil] : rays) {
+        Vec3d const start{centre.x + beside.x, centre.y + beside.y, view.sources.plane_z};
         Ray<double> const straight{
-            start, normalized(Vec3d{pupil[ray].x - start.x, pupil[ray].y - start.y, view.bundle.lens_z - start.z})};
+            start, normalized(Vec3d{pupil.x - start.x, pupil.y - start.y, view.bundle.lens_z - start.z})};
         RayHit<double> const flow = follow(view, medium, straight, 1.0);
         if (!reaches_sensor_plane(flow.status)) continue;
         RayHit<double> const reference = through_camera(view, straight, 1.0);
         sum += flow.pixel - reference.pixel;
-        probe.bend[i] = std::max(probe.bend[i], length(flow.at_lens - pupil[ray]));
+        probe.bend[i] = std::max(probe.bend[i], length(flow.at_lens - pupil));
         ++seen;
       }
       probe.displacement_px[i] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
@@ -90,17 +90,20 @@ std::vector<double> changes(Probe const& coarse, Probe const& fine) {
 /// Probes the dots of a scene at one step after the other.
 class StepProbe {
  public:
-  /// Chooses the dots to be probed: those whose chief rays change most when this step is halved. Those whose chief
-  /// rays are bent most are probed for the bend alone.
-  StepProbe(Scene const& scene, double step) : scene_(scene), dots_(scene.dots.centre.size()) {
+  /// Chooses the dots to be probed: those whose chief rays change most when this step is halved. About those whose
+  /// chief rays are bent most the bend is looked for on a lattice that fills the gaps to their neighbours, which may be
+  /// wider than what bends rays most.
+  StepProbe(Scene const& scene, double step) : scene_(scene), dots_(scene.dots.centre.size()), cone_{{}} {
+    double const rim = scene.imaging.entrance_pupil / 2;
+    if (!scene.chief_rays_only()) cone_ = {{}, {{}, {rim, 0}}, {{}, {0, rim}}, {{}, {-rim, 0}}, {{}, {0, -rim}}};
     std::iota(dots_.begin(), dots_.end(), std::size_t{0});
     if (dots_.size() <= probed_dots) return;
-    Probe const coarse = probe(dots_, ProbeRays::chief, step), fine = probe(dots_, ProbeRays::chief, step / 2);
-    largest_bend_ = probe(most_of(coarse.bend), ProbeRays::cone, step).largest_bend();
+    Probe const coarse = probe(dots_, {{}}, step), fine = probe(dots_, {{}}, step / 2);
+    largest_bend_ = probe(most_of(coarse.bend), about_dot(), step).largest_bend();
     dots_ = most_of(changes(coarse, fine));
   }
 
-  Probe at(double step) const { return probe(dots_, ProbeRays::cone, step); }
+  Probe at(double step) const { return probe(dots_, cone_, step); }
   /// Largest change between two probes, and where; and the largest bend of all rays so far.
   void compare(Probe const& coarse, Probe const& fine, StepPlan& plan) const {
     plan.largest_bend = std::max({largest_bend_, coarse.largest_bend(), fine.largest_bend()});
@@ -112,9 +115,26 @@ class StepProbe {
   }
 
  private:
-  Probe probe(std::vector<std::size_t> const& dots, ProbeRays which, double step) const {
-    return std::visit([&](auto const& medium) { return probe_dots(scene_, medium, dots, which, step); },
+  Probe probe(std::vector<std::size_t> const& dots, std::vector<ProbeRay> const& rays, double step) const {
+    return std::visit([&](auto const& medium) { return probe_dots(scene_, medium, dots, rays, step); },
                       scene_.medium.view);
+  }
+  /// Chief rays from a lattice about a dot, as wide as dots are apart on average.
+  std::vector<ProbeRay> about_dot() const {
+    constexpr int side = 5;
+    Vec2d low = scene_.dots.centre[0], high = low;
+    for (Vec2d const c : scene_.dots.centre) {
+      low = {std::min(low.x, c.x), std::min(low.y, c.y)};
+      high = {std::max(high.x, c.x), std::max(high.y, c.y)};
+    }
+    double const spacing = std::sqrt((high.x - low.x) * (high.y - low.y) / static_cast<double>(dots_.size()));
+    std::vector<ProbeRay> rays;
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        rays.push_back({spacing / side * Vec2d{column - 0.5 * (side - 1), row - 0.5 * (side - 1)}, {}});
+      }
+    }
+    return rays;
   }
   /// The dots with the largest values. @pre more than probed_dots values
   static std::vector<std::size_t> most_of(std::vector<double> const& value) {
@@ -130,6 +150,7 @@ class StepProbe {
 
   Scene const& scene_;
   std::vector<std::size_t> dots_;
+  std::vector<ProbeRay> cone_;  ///< by which these are probed
   double largest_bend_ = 0;
 };
 

@@ -1,0 +1,130 @@
+#include "render/scene/moment_images.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/scene/dot_exposure.h"
+#include "render/scene/light_model.h"
+
+namespace gladstone {
+namespace {
+
+// Squares tile the sensor: wherever they lie, on either side of its edge, pixel and offset give back their middles.
+TEST(BoxLattice, PutsSquaresOnPixels) {
+  for (double const most : {0.23, 0.4, 0.5, 0.99, 1.0, 3.7}) {
+    BoxLattice const lattice = BoxLattice::no_coarser(most);
+    EXPECT_LE(lattice.side(), most);
+    EXPECT_GT(lattice.side(), 0.5 * most);
+    EXPECT_DOUBLE_EQ(lattice.side() * lattice.per_side(), 1);
+    for (int square = -25; square <= 25; ++square) {
+      int const phase = lattice.phase(square);
+      ASSERT_GE(phase, 0);
+      ASSERT_LT(phase, lattice.per_pixel);
+      EXPECT_LE(std::abs(lattice.offset(phase) - BoxLattice::aside), 0.5);
+      EXPECT_NEAR(lattice.pixel(square) + lattice.offset(phase), square * lattice.side() + BoxLattice::aside, 1e-12);
+    }
+  }
+}
+
+TEST(DotBoxes, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
+  BoxLattice const lattice = BoxLattice::no_coarser(0.4);
+  Vec2d const origin{101.87, -3.21};
+  DotBoxes const boxes(lattice, origin);
+  for (Vec2d const displacement : {Vec2d{0, 0}, Vec2d{0.7, -2.3}, Vec2d{-5.01, 4.4}}) {
+    Vec2<int> const box = boxes.box_of(displacement);
+    Vec2d const rest = boxes.from_middle(displacement, box);
+    EXPECT_LE(std::abs(rest.x), 0.5 * lattice.side() + 1e-12);
+    EXPECT_LE(std::abs(rest.y), 0.5 * lattice.side() + 1e-12);
+    Vec2<int> const square = boxes.first + box;
+    EXPECT_NEAR(square.x * lattice.side() + BoxLattice::aside + rest.x, origin.x + displacement.x, 1e-11);
+    EXPECT_NEAR(square.y * lattice.side() + BoxLattice::aside + rest.y, origin.y + displacement.y, 1e-11);
+  }
+}
+
+/// A patch's light at pixels 0 .. 63.
+std::vector<double> light_of(LightPatch const& patch) {
+  std::vector<double> light(64 * 64);
+  patch.for_each_touched([&](int column, int row, double weight) {
+    ASSERT_TRUE(column >= 0 && row >= 0 && column < 64 && row < 64);
+    light[static_cast<std::size_t>(row * 64 + column)] = weight;
+  });
+  return light;
+}
+
+struct Source {
+  char const* name;
+  double half_px, sigma;
+};
+class SpreadSource : public testing::TestWithParam<Source> {};
+
+// A disc whose points are moved, each by its own displacement d = d0 + s (x, -y / 2), a linear function of its place,
+// is the sum of its points' spots where they end up. The series about the middle of d0's square is left with its fifth
+// order: of a point's spot at most (|d| / sigma)^5 / 5! He_5's 5.8, twice for two axes; and with what a quadratic
+// function of the place does not hold of moments of third and fourth order: 3 |d|^2 s^3-like terms over 3! sigma^3.
+TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
+  auto const [name, half_px, sigma] = GetParam();
+  SourceCubature const source = SourceCubature::make(SourceShape::disc, half_px, sigma);
+  SpotView spot;
+  spot.model = SpotModel::gaussian;
+  spot.gaussian.sigma = sigma;
+  double const side = std::sqrt(sigma * sigma + 1.0 / 12);
+  int const terms = half_px > 0 ? PlaceRule::terms : 1;
+  OwnedMomentImages const owned(source.points, source.weights, half_px, spot.gaussian, side, terms);
+  MomentImages const images = owned.view();
+  ASSERT_TRUE(images.exist());
+  double const slope = half_px > 0 ? 0.02 * side : 0;
+  for (Vec2d const at : {Vec2d{30.1, 33.4}, Vec2d{29.51, 31.98}, Vec2d{32.77, 30.26}}) {
+    DotBoxes const boxes(images.lattice, at);
+    Vec2d const d0{0.61, -0.87};
+    Vec2<int> const box = boxes.box_of(d0);
+    Vec2d const rest = boxes.from_middle(d0, box);
+    LightPatch direct(spot, images), by_moments(spot, images);
+    // moments as functions of the place, term by term: (rest.x + s x)^a (rest.y - s y / 2)^b up to second order in s
+    MomentField field{};
+    for (int a = 0; a <= DisplacementMoments::order; ++a) {
+      for (int b = 0; a + b <= DisplacementMoments::order; ++b) {
+        double* const of = field.coefficient[DisplacementMoments::at(a, b)];
+        auto const power = [](double x, int n) { return n < 0 ? 0.0 : std::pow(x, n); };
+        double const sx = slope, sy = -0.5 * slope;
+        of[0] = power(rest.x, a) * power(rest.y, b);
+        of[1] = a * power(rest.x, a - 1) * sx * power(rest.y, b);
+        of[2] = b * power(rest.y, b - 1) * sy * power(rest.x, a);
+        of[3] = 0.5 * a * (a - 1) * power(rest.x, a - 2) * sx * sx * power(rest.y, b);
+        of[4] = a * power(rest.x, a - 1) * sx * b * power(rest.y, b - 1) * sy;
+        of[5] = 0.5 * b * (b - 1) * power(rest.y, b - 2) * sy * sy * power(rest.x, a);
+      }
+    }
+    by_moments.deposit(boxes.first + box, 2.5, field, nullptr, 1);
+    for (std::size_t i = 0; i < source.points.size(); ++i) {
+      Vec2d const p = source.points[i];
+      Vec2d const moved = d0 + slope * Vec2d{p.x, -0.5 * p.y};
+      direct.deposit(at + half_px * p + moved, 2.5 * source.weights[i], nullptr, 1);
+    }
+    std::vector<double> const expected = light_of(direct), found = light_of(by_moments);
+    double const peak = *std::max_element(expected.begin(), expected.end());
+    double sum = 0, worst = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      sum += found[i];
+      worst = std::max(worst, std::abs(found[i] - expected[i]));
+    }
+    double const reach = std::abs(rest.x) + std::abs(rest.y) + slope;
+    double const fifth = std::pow(reach / side, 5) / 120 * 5.8;
+    EXPECT_LT(worst / peak, fifth + 1e-5) << name << " at " << at.x;
+    EXPECT_NEAR(sum, 2.5, 2.5e-4) << name;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Dots, SpreadSource,
+                         testing::Values(Source{"fine", 1.4, 0.28}, Source{"wide_spot", 2.0, 1.3},
+                                         Source{"large", 9.0, 0.6}, Source{"point", 0.0, 0.5}),
+                         [](auto const& instance) { return std::string(instance.param.name); });
+
+// Sources so large that the images would not fit are left to their rays.
+TEST(MomentImages, AreNotMadeWhereTheyWouldTakeTooMuchMemory) {
+  GaussianSpot<double> const spot{0.28};
+  OwnedMomentImages const owned({{0, 0}}, {1.0}, 400, spot, 0.4, PlaceRule::terms);
+  EXPECT_FALSE(owned.view().exist());
+}
+
+}  // namespace
+}  // namespace gladstone
