@@ -57,8 +57,8 @@ struct WindowTransform {
   /// Where the row of its wave number -- and of its mirror -- begins.
   GLADSTONE_HD int row() const { return (thread >> 3) * pitch; }
   GLADSTONE_HD int mirror() const {
-    int const q = thread >> 3 & 3;
-    return warp() > 0 ? place(8 - warp(), 7 - q) : place(0, q > 0 ? 8 - q : 4);
+    int const line = thread >> 3;  // 4 p + q
+    return (warp() > 0 ? 67 - line : 32 + (-line & 3)) * pitch;
   }
 
   // ---- along y: a warp takes 32 columns and as many again
