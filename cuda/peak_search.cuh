@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/window_measurement.h"
+#include "cuda/paired_plane.h"
 
 namespace gladstone::cuda {
 
@@ -153,51 +154,19 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
   return highest_of_warp(own);
 }
 
-/// A value of a plane, those beside it, and the highest of the three.
-struct PlaneTriple {
-  float left, here, right, highest;
-  __device__ explicit PlaneTriple(float const* value)
-      : left(value[-1]), here(value[0]), right(value[1]), highest(fmaxf(fmaxf(left, here), right)) {}
-  /// is_maximum() of a positive value, from those of the rows above and below. @param above their highest
-  __device__ bool is_maximum(float above, float below) const {
-    return static_cast<int>(here > fmaxf(fmaxf(above, left), 0.0f)) & static_cast<int>(here >= fmaxf(below, right));
-  }
-};
-
-/// Searches rows [begin, end) of the square |x|, |y| <= radius, a lane a column, two rows at a time; what is left of
-/// the columns a lane a row. By one full warp.
-/// @pre there may be read up to two rows behind them
+/// Searches the square |x|, |y| <= radius, a lane a block. By one full warp.
 template <int pitch>
-__device__ HighestPeaks search_columns(CentredPlane<pitch> const& plane, int radius, int begin, int end) {
-  int const lane = static_cast<int>(threadIdx.x % 32u);
+__device__ HighestPeaks search_block(PairedPlane<pitch> const& plane, int radius, SearchBlock const& block) {
   LanePeaks own;
-  int column = -radius;
-  for (; column + 31 <= radius; column += 32) {
-    int const x = column + lane;
-    float const* line = plane.centre + begin * pitch + x;
-    float above = PlaneTriple(line - pitch).highest;
-    PlaneTriple upper(line);
-#pragma unroll 1
-    for (int y = begin; y < end; y += 2) {
-      PlaneTriple const lower(line + pitch);
-      line += 2 * pitch;
-      PlaneTriple const next(line);
-      bool const is_upper = upper.is_maximum(above, lower.highest);
-      bool const is_lower = y + 1 < end && lower.is_maximum(upper.highest, next.highest);
-      if (is_upper || is_lower)  // not both
-        own.add(ranked_peak(is_upper ? upper.here : lower.here, x, is_upper ? y : y + 1));
-      above = lower.highest;
-      upper = next;
-    }
+  if (block.x <= radius && block.y <= radius) {
+    PlanePeak<float> found[2];
+    maxima_of_block(plane, radius, block.x, block.y, found);
+    RankedPeak const upper = ranked_peak(found[0].height, found[0].x, found[0].y);
+    RankedPeak const lower = ranked_peak(found[1].height, found[1].x, found[1].y);
+    bool const in_order = upper.height >= lower.height;
+    own.first = in_order ? upper : lower;
+    own.second = in_order ? lower : upper;
   }
-  for (; column <= radius; ++column)
-#pragma unroll 1
-    for (int y = begin + lane; y < end; y += 32) {
-      float const* const line = plane.centre + y * pitch + column;
-      PlaneTriple const here(line);
-      if (here.is_maximum(PlaneTriple(line - pitch).highest, PlaneTriple(line + pitch).highest))
-        own.add(ranked_peak(here.here, column, y));
-    }
   return highest_of_warp(own);
 }
 

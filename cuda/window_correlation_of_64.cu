@@ -3,6 +3,7 @@
 #include "cuda/launch.h"
 #include "cuda/window_peaks.cuh"
 #include "cuda/window_transform.h"
+#include "render/base/contracts.h"
 
 /// Windows with supports of 64 px: a block of 256 threads correlates one by WindowTransform, whose code is short enough
 /// to stay in the instruction cache, and nothing but the result leaves it.
@@ -14,9 +15,9 @@ using Transform = WindowTransform;
 constexpr unsigned all_lanes = 0xffffffffu;
 constexpr int size = Transform::size;
 constexpr int warps = Transform::threads / 32;
-constexpr int searchers = 4;  ///< warps that look for peaks
-constexpr int most_width = 2 * (size / 4) + 1;
+constexpr int most_width = 2 * Transform::largest_radius + 1;
 constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< no two are neighbours
+static_assert(2 * SearchBlock::most_columns > most_width && 4 * SearchBlock::most_rows >= most_width);
 
 __device__ Transform::Roots const roots_of_64 = Transform::make_roots();
 
@@ -27,10 +28,10 @@ struct alignas(16) BlockMemory {
   float sums[warps * 2];
   float known[warps * 4];
   float energy[warps * 4];
-  HighestPeaks highest[searchers];
+  double scale;
+  HighestPeaks highest[SearchBlock::warps];
   PeakList<float> found;
 };
-static_assert(sizeof(float) * size * Transform::plane_pitch <= sizeof(Complex) * Transform::upper);
 static_assert(sizeof(PlanePeak<float>) * most_maxima <= sizeof(Complex) * Transform::upper);
 
 /// Sums `count` values, 2 or 4, over a warp, each value in lanes of its own: slots[k] receives the k-th.
@@ -174,11 +175,14 @@ __global__ void __launch_bounds__(Transform::threads, 4)
     correlate_window_of_64(WindowJob const __grid_constant__ job, int const first_row, WindowPeaks* const all_peaks) {
   extern __shared__ __align__(16) unsigned char memory[];
   BlockMemory& own = *reinterpret_cast<BlockMemory*>(memory);
-  int const thread = static_cast<int>(threadIdx.x), lane = static_cast<int>(threadIdx.x % 32u),
-            warp = static_cast<int>(threadIdx.x / 32u);
+  // Some steps are a few warps' alone. They are other ones, by 5/4 of its number, in every block, and also in blocks a
+  // multiple of four apart, which may well share a processor: none of its four schedulers has them all.
+  unsigned const turned = (threadIdx.x + (40u * blockIdx.x & 224u)) % Transform::threads;
+  int const thread = static_cast<int>(turned), lane = static_cast<int>(turned % 32u),
+            warp = static_cast<int>(turned / 32u);
   int const column = static_cast<int>(blockIdx.x), row = first_row + static_cast<int>(blockIdx.y);
   WindowPeaks& result = all_peaks[static_cast<long long>(row) * job.grid.columns + column];
-  Transform const transform(threadIdx.x, own.values, &own.roots);
+  Transform const transform(turned, own.values, &own.roots);
   constexpr int root_pairs = sizeof(Transform::Roots) / sizeof(Transform::ComplexPair);
   if (thread < root_pairs) own.roots.of[0][thread] = roots_of_64.of[0][thread];
   {
@@ -242,27 +246,33 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   __syncwarp();
   transform.keep_shifts(a);
   __syncthreads();
-  transform.columns_apart_again();
-  __syncthreads();
-  transform.columns_together_again();
+  int const radius = job.search_radius_px;
+  if (transform.has_columns(radius)) {
+    transform.columns_apart_again(radius);
+    __syncwarp();
+    transform.columns_together_again(a);
+    __syncwarp();
+    transform.keep_plane(a);
+  } else if (warp == warps - 1) {
+    double const scale = scale_of(own.energy, job);
+    if (lane == 0) own.scale = scale;
+  }
   __syncthreads();
 
   // the peaks
-  CentredPlane<Transform::plane_pitch> const plane{transform.plane() + size / 2 * (Transform::plane_pitch + 1)};
-  int const radius = job.search_radius_px;
-  if (warp < searchers) {
-    int const share = (2 * radius + searchers) / searchers, first = warp * share - radius;
-    HighestPeaks const highest = search_columns(plane, radius, first, min(radius + 1, first + share));
+  auto const plane = transform.plane(radius);
+  if (warp < SearchBlock::warps) {
+    HighestPeaks const highest = search_block(plane, radius, SearchBlock(thread, radius));
     if (lane == 0) own.highest[warp] = highest;
   }
   __syncthreads();
-  if (warp != 1) return;  // warp 0 had the packed row
-  double const scale = scale_of(own.energy, job);
+  if (warp != 0) return;
+  double const scale = own.scale;
   if (scale == 0.0) {
     if (lane == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
     return;
   }
-  leave_peaks(plane, radius, own.highest, searchers, reinterpret_cast<PlanePeak<float>*>(own.values + Transform::upper),
+  leave_peaks(plane, radius, own.highest, SearchBlock::warps, reinterpret_cast<PlanePeak<float>*>(own.values),
               own.found, scale, result);
 }
 
@@ -270,6 +280,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
 
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks) {
   allow_shared_bytes(correlate_window_of_64, sizeof(BlockMemory));
+  GLADSTONE_EXPECTS(job.search_radius_px <= Transform::largest_radius);
   constexpr int most_rows = 65535;  // of a launch
   for (int first = 0; first < job.grid.rows; first += most_rows) {
     dim3 const blocks(static_cast<unsigned>(job.grid.columns),

@@ -25,8 +25,8 @@ class Block {
     for (unsigned k = 0; k < Transform::threads; ++k) thread_.emplace_back(k, memory_.data(), &roots);
   }
 
-  /// The correlation, shift (dx, dy) at row dy + 32 and column dx + 32.
-  std::vector<float> correlate(std::vector<float> const& a, std::vector<float> const& b) {
+  /// The correlation at shifts up to radius + 1 along either axis, row by row.
+  std::vector<float> correlate(std::vector<float> const& a, std::vector<float> const& b, int radius) {
     warps_do([&](int warp) {
       lanes_do(warp, [&](int k) {
         Complex z[2][8];
@@ -40,12 +40,11 @@ class Block {
     });
     warps_do([&](int warp) { lanes_do(warp, [&](int k) { thread_[k].columns_together(); }); });
     warps_do([&](int warp) { rows(warp); });
-    warps_do([&](int warp) { lanes_do(warp, [&](int k) { thread_[k].columns_apart_again(); }); });
-    warps_do([&](int warp) { lanes_do(warp, [&](int k) { thread_[k].columns_together_again(); }); });
-    float const* const plane = thread_[0].plane();
+    warps_do([&](int warp) { columns(warp, radius); });
+    auto const plane = thread_[0].plane(radius);
     std::vector<float> values;
-    for (int y = 0; y < size; ++y)
-      for (int x = 0; x < size; ++x) values.push_back(plane[y * Transform::plane_pitch + x] / (4 * count));
+    for (int dy = -radius - 1; dy <= radius + 1; ++dy)
+      for (int dx = -radius - 1; dx <= radius + 1; ++dx) values.push_back(plane(dx, dy) / (4 * count));
     return values;
   }
 
@@ -84,6 +83,18 @@ class Block {
     lanes_do(warp, [&](int k) { thread_[k].keep_shifts(of[k].a); });
   }
 
+  /// What a warp does to its columns of the plane.
+  void columns(int warp, int radius) {
+    if (!thread_[32 * warp].has_columns(radius)) return;
+    struct Column {
+      Complex g[8];
+    };
+    std::vector<Column> of(Transform::threads);
+    lanes_do(warp, [&](int k) { thread_[k].columns_apart_again(radius); });
+    lanes_do(warp, [&](int k) { thread_[k].columns_together_again(of[k].g); });
+    lanes_do(warp, [&](int k) { thread_[k].keep_plane(of[k].g); });
+  }
+
   bool falling_;
   std::vector<Complex> memory_;
   std::vector<Transform> thread_;
@@ -103,20 +114,32 @@ double norm(std::vector<float> const& values) {
   return std::sqrt(sum);
 }
 
+constexpr int largest_radius = Transform::largest_radius;
+
 // The correlation at shift d is the sum over p of a(p) b(p + d), p + d modulo 64. Four transforms of twelve levels,
 // each of which rounds by 6e-8 rms, leave an error of 4 sqrt(12) 6e-8 = 8e-7 of the product of the norms, in the norm
 // of the whole plane, hence in no value more.
 TEST(WindowTransform, GivesTheSumsThatDefineACorrelation) {
-  std::vector<float> const a = noise(1), b = noise(2), plane = Block(false).correlate(a, b);
+  std::vector<float> const a = noise(1), b = noise(2);
   double const tolerance = 1e-6 * norm(a) * norm(b);
-  for (int dy = -size / 2; dy < size / 2; ++dy)
-    for (int dx = -size / 2; dx < size / 2; ++dx) {
+  constexpr int most = largest_radius + 1;
+  std::vector<double> sums;
+  for (int dy = -most; dy <= most; ++dy)
+    for (int dx = -most; dx <= most; ++dx) {
       double sum = 0;
       for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x)
           sum += static_cast<double>(a[y * size + x]) * b[((y + dy) & (size - 1)) * size + ((x + dx) & (size - 1))];
-      ASSERT_NEAR(plane[(dy + size / 2) * size + dx + size / 2], sum, tolerance) << dx << ", " << dy;
+      sums.push_back(sum);
     }
+  for (int radius = 1; radius <= largest_radius; ++radius) {
+    std::vector<float> const plane = Block(false).correlate(a, b, radius);
+    int const reach = radius + 1, side = 2 * reach + 1;
+    for (int dy = -reach; dy <= reach; ++dy)
+      for (int dx = -reach; dx <= reach; ++dx)
+        ASSERT_NEAR(plane[(dy + reach) * side + dx + reach], sums[(dy + most) * (2 * most + 1) + dx + most], tolerance)
+            << dx << ", " << dy << " within " << radius;
+  }
 }
 
 // A window moved by (5, -7) correlates with itself as if it had not moved, only there.
@@ -125,16 +148,18 @@ TEST(WindowTransform, HasItsPeakWhereAWindowMoved) {
   std::vector<float> b(count);
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x) b[((y - 7) & (size - 1)) * size + ((x + 5) & (size - 1))] = a[y * size + x];
-  std::vector<float> const plane = Block(false).correlate(a, b);
+  std::vector<float> const plane = Block(false).correlate(a, b, largest_radius);
   auto const highest = std::max_element(plane.begin(), plane.end()) - plane.begin();
-  EXPECT_EQ(highest % size - size / 2, 5);
-  EXPECT_EQ(highest / size - size / 2, -7);
+  constexpr int reach = largest_radius + 1, side = 2 * reach + 1;
+  EXPECT_EQ(highest % side - reach, 5);
+  EXPECT_EQ(highest / side - reach, -7);
   EXPECT_NEAR(*std::max_element(plane.begin(), plane.end()), norm(a) * norm(a), 1e-6 * norm(a) * norm(a));
 }
 
 TEST(WindowTransform, DoesNotDependOnTheOrderOfThreadsBetweenBarriers) {
   std::vector<float> const a = noise(4), b = noise(5);
-  EXPECT_EQ(Block(false).correlate(a, b), Block(true).correlate(a, b));
+  for (int radius = 1; radius <= largest_radius; ++radius)
+    EXPECT_EQ(Block(false).correlate(a, b, radius), Block(true).correlate(a, b, radius)) << radius;
 }
 
 }  // namespace
