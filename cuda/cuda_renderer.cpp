@@ -61,8 +61,9 @@ class MirroredLightModel {
   explicit MirroredLightModel(LightModel const& host) : model_(host) {
     model_.source = mirrored(host.source, 0);
     for (int rule = 0; rule < pupil_rules; ++rule) model_.pupil[rule] = mirrored(host.pupil[rule], 1 + rule);
-    moment_images_ = DeviceArray<double>(host.moment_images.values, host.moment_images.size(), "the images of moments");
+    moment_images_ = DeviceArray<double>(host.moment_images.size(), "the images of moments");
     model_.moment_images.values = moment_images_.data();
+    if (host.moment_images.exist()) make_moment_images(model_, moment_images_.data());
     cone_points_ = DeviceArray<ConePoint>(host.cone.points, static_cast<std::size_t>(host.cone.count), "a cubature");
     cone_directions_ =
         DeviceArray<Vec2d>(host.cone.directions, static_cast<std::size_t>(host.cone.direction_count), "a cubature");
@@ -131,7 +132,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
 
-  OwnedLightModel const host_light(scene, sources, spot, deflections);
+  OwnedLightModel const host_light(scene, sources, spot, deflections, MomentImagesBy::device);
   MirroredLightModel const light(host_light.model);
   SceneView<double> const view = on_device.place(scene.view(sources));
   SceneView<T> const traced = on_device.place([&] {

@@ -40,6 +40,9 @@ extern template void sum_dots(LightModel const&, SourcesView<double> const&, Bat
 extern template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
                               DotSums*, DotCone*);
 
+/// Works out the images of a model's moments, which have a plan. @param out room for them on the device
+void make_moment_images(LightModel const& model, double* out);
+
 /// Lays down the light of still and narrow dots. Images add up in fixed point, in any order.
 void expose_cones(LightModel const& model, SourcesView<double> const& sources, Batch const& batch, DotCone const* cones,
                   DeviceImages const& images);

@@ -141,7 +141,7 @@ CubatureView view_of(SourceCubature const& rule) {
 }  // namespace
 
 OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, SpotView const* spot,
-                                 DeflectionTable const& table)
+                                 DeflectionTable const& table, MomentImagesBy by)
     : pupil{{{{0, 0}}, {1.0}},
             SourceCubature::disc(1, 3, 3),
             SourceCubature::radon(),
@@ -187,9 +187,13 @@ OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, 
   model.source = view_of(source);
   for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
   if (table.way > 0 && model.by_moments()) {
-    moment_images = OwnedMomentImages(source.points, source.weights, image.half_size_px(), spot->gaussian,
-                                      model.most_box_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
-    model.moment_images = moment_images.view();
+    MomentImages& images = model.moment_images;
+    images = MomentImages::plan(image.half_size_px(), spot->gaussian, model.most_box_side(),
+                                sources.half_size > 0 ? PlaceRule::terms : 1);
+    if (by == MomentImagesBy::host) {
+      moment_images = make_moment_images(images, source.points, source.weights, image.half_size_px(), spot->gaussian);
+      images.values = moment_images.data();
+    }
   }
 }
 

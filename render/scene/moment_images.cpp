@@ -7,7 +7,10 @@
 namespace gladstone {
 namespace {
 
-constexpr int orders = DisplacementMoments::order + 1;
+constexpr int orders = DisplacementMoments::order + 1, most_lanes = 48;
+
+/// Numbers in which a spot's row is held: whole vectors, whose ends add zeros beyond its last pixel.
+int lanes_for(int reach) { return reach <= 8 ? 8 : (reach <= 16 ? 16 : most_lanes); }
 
 /// Adds one point of a source to all images of a phase.
 /// @param corner in the first of them, of the spot's pixels @param shares [order][lanes], beyond the spot zero
@@ -58,41 +61,43 @@ void make_images(MomentImages const& images, double* first, Vec2d middle, std::v
 
 }  // namespace
 
-OwnedMomentImages::OwnedMomentImages(std::vector<Vec2d> const& points, std::vector<double> const& weights,
-                                     double half_px, GaussianSpot<double> const& spot, double side, int terms) {
-  images_.lattice = BoxLattice::no_coarser(side);
+MomentImages MomentImages::plan(double half_px, GaussianSpot<double> const& spot, double side, int terms) {
+  constexpr std::size_t most_bytes = std::size_t{64} << 20;
+  MomentImages images;
+  images.lattice = BoxLattice::no_coarser(side);
   // the source's points lie up to half a pixel further out than seen from the pixel's middle, spots about their pixels
-  images_.half = static_cast<int>(std::ceil(half_px + 0.5 + BoxLattice::aside)) + spot.half_width();
-  int const width = images_.width(), reach = 2 * spot.half_width() + 1;
-  // and a spot's rows in whole vectors, whose ends add zeros beyond its last pixel
-  int const lanes = reach <= 8 ? 8 : (reach <= 16 ? 16 : 48);
-  images_.stride = (width * width + lanes - reach + MomentImages::pad - 1) / MomentImages::pad * MomentImages::pad;
-  images_.terms = terms;
-  if (reach > 48 || images_.size() * sizeof(double) > most_bytes) {
-    images_ = {};
-    return;
-  }
-  values_.assign(images_.size(), 0.0);
-  int const per_pixel = images_.lattice.per_pixel;
-  parallel_for(static_cast<std::size_t>(images_.phases()), [&](std::size_t k) {
-    int const phase = static_cast<int>(k);
-    double* const first = values_.data() + (images_.of_phase(phase) - images_.values);
-    Vec2d const middle{images_.lattice.offset(phase % per_pixel), images_.lattice.offset(phase / per_pixel)};
-    auto const make = [&]<int known>() { make_images<known>(images_, first, middle, points, weights, half_px, spot); };
-    if (lanes == 8) {
-      make.operator()<8>();
-    } else if (lanes == 16) {
-      make.operator()<16>();
-    } else {
-      make.operator()<48>();
-    }
-  });
+  images.half = static_cast<int>(std::ceil(half_px + 0.5 + BoxLattice::aside)) + spot.half_width();
+  images.terms = terms;
+  int const reach = 2 * spot.half_width() + 1, area = images.width() * images.width();
+  images.stride = (area + lanes_for(reach) - reach + pad - 1) / pad * pad;
+  bool const fits = reach <= most_lanes && images.size() * sizeof(double) <= most_bytes;
+  return fits ? images : MomentImages{};
 }
 
-MomentImages OwnedMomentImages::view() const {
-  MomentImages images = images_;
-  images.values = values_.data();
-  return images;
+std::vector<double> make_moment_images(MomentImages const& plan, std::vector<Vec2d> const& points,
+                                       std::vector<double> const& weights, double half_px,
+                                       GaussianSpot<double> const& spot) {
+  std::vector<double> values(plan.size());
+  MomentImages images = plan;
+  images.values = values.data();
+  parallel_for(static_cast<std::size_t>(images.phases()), [&](std::size_t k) {
+    auto const phase = static_cast<int>(k);
+    double* const first = values.data() + (images.of_phase(phase) - images.values);
+    auto const make = [&]<int lanes>() {
+      make_images<lanes>(images, first, images.middle(phase), points, weights, half_px, spot);
+    };
+    switch (lanes_for(2 * spot.half_width() + 1)) {
+      case 8:
+        make.operator()<8>();
+        break;
+      case 16:
+        make.operator()<16>();
+        break;
+      default:
+        make.operator()<most_lanes>();
+    }
+  });
+  return values;
 }
 
 }  // namespace gladstone

@@ -17,8 +17,8 @@ namespace gladstone {
 /// where displacements of nothing put the points of regular targets: no two devices round those to different squares.
 struct BoxLattice {
   static constexpr double aside = 0.01;  ///< middle of square 0 [px]
-  int per_pixel = 1;  ///< squares along a pixel's side
-  int pixels = 1;     ///< or pixels along a square's side; one of the two is 1
+  int per_pixel = 1;                     ///< squares along a pixel's side
+  int pixels = 1;                        ///< or pixels along a square's side; one of the two is 1
 
   /// With squares no larger than `side` [px].
   GLADSTONE_HD static BoxLattice no_coarser(double side) {
@@ -38,9 +38,7 @@ struct BoxLattice {
     return rest < 0 ? rest + per_pixel : rest;
   }
   /// From the pixel's middle to the square's [px].
-  GLADSTONE_HD double offset(int phase) const {
-    return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside;
-  }
+  GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
 };
 
 /// A dot's squares of displacement: those of the sensor on which its light falls, counted from the one at its middle.
@@ -101,36 +99,32 @@ struct MomentImages {
   int stride = 0;                  ///< from one image to the next
   double const* values = nullptr;  ///< [phase y][phase x][moment][term][row, column]
 
+  /// Of a source as wide as 2 half_px under a Gaussian spot, values still to be worked out; none where they would take
+  /// too much memory. @param side most of a square [px] @param terms 6, or 1 for a point
+  static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
+
   static constexpr int pad = 16;  ///< stride is a multiple of it
 
   GLADSTONE_HD bool exist() const { return terms > 0; }
   GLADSTONE_HD int width() const { return 2 * half + 1; }
   GLADSTONE_HD int count() const { return DisplacementMoments::count * terms; }
   GLADSTONE_HD int phases() const { return lattice.per_pixel * lattice.per_pixel; }
+  /// Middle of a phase's squares, from their pixel's [px]. @param phase y times per_pixel plus x
+  GLADSTONE_HD Vec2d middle(int phase) const {
+    return {lattice.offset(phase % lattice.per_pixel), lattice.offset(phase / lattice.per_pixel)};
+  }
   std::size_t size() const {
     return static_cast<std::size_t>(phases()) * static_cast<std::size_t>(count()) * static_cast<std::size_t>(stride);
   }
-  /// The first image of a phase (y times per_pixel plus x).
+  /// The first image of a phase.
   GLADSTONE_HD double const* of_phase(int phase) const {
     return values + static_cast<std::size_t>(phase) * count() * stride;
   }
 };
 
-/// The images of a source of points with weights of sum one under a Gaussian spot.
-class OwnedMomentImages {
- public:
-  OwnedMomentImages() = default;
-  /// @param points in units of half_px [px] @param side most of a square [px] @param terms 6, or 1 for a point
-  /// There are none where they would take more than most_bytes.
-  OwnedMomentImages(std::vector<Vec2d> const& points, std::vector<double> const& weights, double half_px,
-                    GaussianSpot<double> const& spot, double side, int terms);
-  MomentImages view() const;
-
-  static constexpr std::size_t most_bytes = std::size_t{64} << 20;
-
- private:
-  MomentImages images_;
-  std::vector<double> values_;
-};
+/// Works out a plan's images, on all cores. @param points in units of half_px @param weights of sum one
+std::vector<double> make_moment_images(MomentImages const& plan, std::vector<Vec2d> const& points,
+                                       std::vector<double> const& weights, double half_px,
+                                       GaussianSpot<double> const& spot);
 
 }  // namespace gladstone

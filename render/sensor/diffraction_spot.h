@@ -61,6 +61,12 @@ struct GaussianSpot {
       }
     }
   }
+  /// Derivative of one pixel's share by p, of the given order, over the order's factorial.
+  GLADSTONE_HD T taylor_share(T p, int pixel, int order) const {
+    T const per_sigma = T(1) / sigma, left = (T(pixel) - T(0.5) - p) * per_sigma, right = left + per_sigma;
+    if (order == 0) return edge_value(right) - edge_value(left);
+    return EdgeTerms(right, per_sigma).of[order] - EdgeTerms(left, per_sigma).of[order];
+  }
   /// The shares, and their derivatives by p over k!, up to the given order.
   /// @param out [order + 1][width]
   GLADSTONE_HD void taylor_shares(T p, int first, int width, int order, T* out) const {
