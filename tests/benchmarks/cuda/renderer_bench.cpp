@@ -38,6 +38,45 @@ void report(benchmark::State& state, Scene& scene, RenderImages images = RenderI
   state.counters["Grays/s"] = 1e-9 * rays_of(scene) / median;
 }
 
+/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot alone: how far
+/// the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to 90 %], both rms.
+void report_accuracy(benchmark::State& state, Scene scene) {
+  constexpr std::size_t parts = 128;  // too few for a table
+  Progress::enable(false);
+  if (!cuda::device_state().usable) {
+    state.SkipWithError(cuda::device_state().text.c_str());
+    return;
+  }
+  auto const renderer = cuda::make_renderer();
+  Scene few = scene;
+  few.rays_per_dot = 65536;
+  few.step /= 2;
+  few.dots.centre.clear();
+  for (std::size_t i = 0; i < parts; ++i) {
+    few.dots.centre.push_back(scene.dots.centre[(2 * i + 1) * scene.dots.centre.size() / (2 * parts)]);
+  }
+  for (auto _ : state) {
+    Rendering const found = renderer->render(scene, few.dots, RenderImages::yes, RenderTheory::no);
+    Rendering const exact = renderer->render(few, few.dots, RenderImages::yes, RenderTheory::no);
+    double square = 0;
+    for (std::size_t i = 0; i < parts; ++i) {
+      Vec2d const off = found.truth.displacement_px[i] - exact.truth.displacement_px[i];
+      square += 0.5 * dot(off, off);
+    }
+    Image<double> const& light = exact.light.flow;
+    double const peak = *std::max_element(light.begin(), light.end()), level = peak / (0.9 * 4095);
+    double light_square = 0;
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      if (light.data()[i] < level) continue;
+      light_square += std::pow((found.light.flow.data()[i] - light.data()[i]) / level, 2);
+      ++lit;
+    }
+    state.counters["truth_px"] = std::sqrt(square / parts);
+    state.counters["image_levels"] = std::sqrt(light_square / static_cast<double>(lit));
+  }
+}
+
 /// Case P: the baseline's first line, its volume by our seeded formula.
 void case_p(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
@@ -48,11 +87,15 @@ BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->Arg(10000)->UseM
 
 /// The same to accuracy: the step that plan_step chooses of two cells and less, and rays for half a grey level of 12
 /// bits.
-void case_p_to_accuracy(benchmark::State& state) {
-  Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
+Scene scene_to_accuracy(std::uint64_t rays) {
+  Scene scene = volume_scene(64, 85, rays);
   scene.setup.medium.step_mm.reset();
   scene.medium.coarsest_step = 2 * scene.medium.finest;
   plan_step(scene);
+  return scene;
+}
+void case_p_to_accuracy(benchmark::State& state) {
+  Scene scene = scene_to_accuracy(static_cast<std::uint64_t>(state.range(0)));
   report(state, scene);
 }
 BENCHMARK(case_p_to_accuracy)
@@ -62,6 +105,11 @@ BENCHMARK(case_p_to_accuracy)
     ->UseManualTime()
     ->Iterations(7)
     ->Unit(benchmark::kMillisecond);
+
+void case_p_accuracy(benchmark::State& state) {
+  report_accuracy(state, scene_to_accuracy(static_cast<std::uint64_t>(state.range(0))));
+}
+BENCHMARK(case_p_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
 void case_p_truth(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
@@ -103,6 +151,11 @@ void case_t(benchmark::State& state) {
 }
 BENCHMARK(case_t)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->Arg(1024)->UseManualTime()->Iterations(5)->Unit(
     benchmark::kMillisecond);
+
+void case_t_accuracy(benchmark::State& state) {
+  report_accuracy(state, plane_scene(143, static_cast<std::uint64_t>(state.range(0)), 1024));
+}
+BENCHMARK(case_t_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
 /// 1e9 rays with no field: 100,000 sources of 10,000 rays.
 void no_field(benchmark::State& state) {
