@@ -30,8 +30,10 @@ Device open_device(std::string const& wanted) {
 
 int gpu_count() { return cuda::device_count(); }
 
+std::string build_text() { return fmt::format("{} ({})", version, git_sha1); }
+
 std::string version_text() {
-  return fmt::format("gladstone {} ({})\nbackends: {}\nCUDA: {}", version, git_sha1,
+  return fmt::format("gladstone {}\nbackends: {}\nCUDA: {}", build_text(),
                      cuda::compiled_in() ? "cpu, cuda" : "cpu", cuda::description());
 }
 

@@ -13,6 +13,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "studies/commands/sweep_slurm.h"
+#include "studies/json_text.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/state_report.h"
 #include "studies/sweep/workers.h"
@@ -84,7 +85,6 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
     if (arguments.selection.only) one.insert(one.end(), {"--case", *arguments.selection.only});
     if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
-    if (arguments.selection.retry_failed) one.emplace_back("--retry-failed");
     words.push_back(std::move(one));
     environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
   }
@@ -119,7 +119,7 @@ int print_state(Arguments const& arguments, GlobalOptions const& options, std::v
   RunState const state = state_of(arguments.run, cases, selected);
   nlohmann::ordered_json json = state_json(arguments.run, cases, state);
   json.update(more_json);
-  print_result(options, json.dump(2), state_text(arguments.run, cases, state) + more_text);
+  print_result(options, json_text(json), state_text(arguments.run, cases, state) + more_text);
   return state.complete() ? ok : incomplete;
 }
 
@@ -150,11 +150,11 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
   std::vector<std::size_t> const selected = selected_cases(cases, arguments.selection);
   if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
   bool const worker = arguments.worker >= 0;
-  RunState state;
-  if (!worker) state = state_of(arguments.run, cases, selected);
-  std::size_t const due =
-      worker ? selected.size()
-             : state.missing.size() + (arguments.selection.retry_failed ? state.failed.size() : std::size_t{0});
+  std::size_t due = selected.size();
+  if (!worker) {  // what is tried again is tried once, and not by each worker
+    forget_failures(arguments.run, cases, selected, arguments.selection);
+    due = state_of(arguments.run, cases, selected).missing.size();
+  }
   int code = ok;
   std::size_t computed = 0;
   if (due > 0) {

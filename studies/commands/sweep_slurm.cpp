@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/json_text.h"
 #include "studies/sweep/case_list.h"
 
 namespace gladstone {
@@ -26,8 +27,8 @@ void remove_done(std::string const& run, std::vector<ManifestCase> const& cases,
     there.insert(entry.path().filename().string());
   std::erase_if(remaining, [&](std::size_t index) {
     if (!there.contains(fs::path(result_path(run, index)).filename().string())) return false;
-    auto const result = read_result(run, cases[index]);
-    return result && (result->status == CaseStatus::ok || !selection.retry_failed);
+    auto const result = read_result(run, cases[index], ResultPart::head);
+    return result && !is_due(*result, selection);
   });
 }
 
@@ -39,7 +40,7 @@ void print_dry_run(JobArray const& array, GlobalOptions const& options) {
                                     {"script", array.script},
                                     {"script_file", array.script_path},
                                     {"command", array.command}};
-  print_result(options, json.dump(2), fmt::format("# {}\n{}\n{}\n", array.script_path, array.script, command));
+  print_result(options, json_text(json), fmt::format("# {}\n{}\n{}\n", array.script_path, array.script, command));
 }
 
 /// What the tasks that left cases undone said last; the first few of them.

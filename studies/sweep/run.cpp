@@ -51,7 +51,7 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
   RunState state;
   Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
-    std::optional<CaseResult> result = read_result(run, cases[index]);
+    std::optional<CaseResult> result = read_result(run, cases[index], ResultPart::head);
     if (!result) {
       state.missing.push_back(index);
       if (claims.held(index)) state.running.push_back(index);
@@ -64,24 +64,37 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
   return state;
 }
 
+bool is_due(CaseResult const& result, RunSelection const& selection) {
+  return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
+}
+
+void forget_failures(std::string const& run, std::vector<ManifestCase> const& cases,
+                     std::vector<std::size_t> const& selected, RunSelection const& selection) {
+  RunState const state = state_of(run, cases, selected);
+  if (std::none_of(state.failed.begin(), state.failed.end(), [&](auto& one) { return is_due(one, selection); })) return;
+  Claims claims(run, Claims::Use::take);
+  for (CaseResult const& failed : state.failed) {
+    Claim const claim(claims, failed.index);
+    if (!claim.taken()) continue;
+    // looked at again, now that nobody else can have changed it
+    auto const result = read_result(run, cases[failed.index], ResultPart::head);
+    if (result && is_due(*result, selection)) remove_result(run, failed.index);
+  }
+}
+
 void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index)> const& finished) {
   Claims claims(run, Claims::Use::take);
-  auto const is_done = [&](std::size_t index) {
-    std::optional<CaseResult> const result = read_result(run, cases[index]);
-    return result && (result->status == CaseStatus::ok || !selection.retry_failed);
-  };
+  auto const is_done = [&](std::size_t index) { return read_result(run, cases[index], ResultPart::head).has_value(); };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
   auto pause = std::chrono::milliseconds(10);
-  for (bool first_round = true; !waiting.empty(); first_round = false) {
+  while (!waiting.empty()) {
     std::vector<std::size_t> with_others;
     for (std::size_t const index : waiting) {
       throw_if_interrupted();
-      // a failed case that another runner has tried meanwhile is not tried again
-      bool const done = first_round ? is_done(index) : read_result(run, cases[index]).has_value();
-      if (!done) {
+      if (!is_done(index)) {
         Claim const claim(claims, index);
         if (!claim.taken()) {
           with_others.push_back(index);

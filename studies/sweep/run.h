@@ -13,7 +13,7 @@ namespace gladstone {
 struct RunSelection {
   std::optional<std::string> only;    ///< these cases alone, as parse_case_list reads them; else all
   std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of them
-  bool retry_failed = false;          ///< failed cases count as missing
+  bool retry_failed = false;          ///< all failed cases are tried again, not only those that lacked memory
   bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/
 };
 
@@ -32,6 +32,15 @@ struct RunState {
 /// Reads results and claims; computes nothing. @throws OutputError where the claims cannot be looked at
 RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
                   std::vector<std::size_t> const& selected);
+
+/// Whether the next run computes a case with this result anew.
+bool is_due(CaseResult const& result, RunSelection const& selection);
+
+/// Takes the failures away that a run is to try again, before it begins: they are missing then, and computed once,
+/// whatever number of workers it has. What another runner has claimed is left to it.
+/// @throws OutputError
+void forget_failures(std::string const& run, std::vector<ManifestCase> const& cases,
+                     std::vector<std::size_t> const& selected, RunSelection const& selection);
 
 /// Computes what is missing of a selection, one case after the other. Each case is claimed while it is computed, and
 /// its result looked for again once it is; what another runner has claimed is waited for, and computed here should that

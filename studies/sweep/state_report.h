@@ -9,7 +9,7 @@
 namespace gladstone {
 
 /// How a study stands, as JSON: run, cases, done, failed, missing, running (counts; running are missing too),
-/// failures [{case, title, error}], missing_cases, running_cases.
+/// failures [{case, title, error, again: whether the next run tries it again}], missing_cases, running_cases.
 nlohmann::ordered_json state_json(std::string const& run, std::vector<ManifestCase> const& cases,
                                   RunState const& state);
 

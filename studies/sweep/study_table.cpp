@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "render/base/error.h"
@@ -61,6 +62,14 @@ std::vector<std::size_t> StudyTable::unfinished() const {
   return places;
 }
 
+std::vector<std::string> StudyTable::builds() const {
+  std::set<std::string> builds;
+  for (StudyRow const& row : rows) {
+    if (!row.build.empty()) builds.insert(row.build);
+  }
+  return {builds.begin(), builds.end()};
+}
+
 std::size_t StudyTable::repeats() const {
   std::size_t most = 0;
   for (StudyPoint const& point : points) most = std::max(most, point.rows.size());
@@ -98,6 +107,7 @@ void fill_row(CaseResult const& result, std::unordered_map<std::string, std::siz
               StudyRow& row) {
   row.status = result.status;
   row.error = result.error;
+  row.build = result.build;
   if (row.status == CaseStatus::ok) {
     row.seconds_render = result.seconds_render;
     row.seconds_correlate = result.seconds_correlate;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "render/base/content_hash.h"
+#include "render/base/hdf5_file.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
@@ -182,15 +183,22 @@ TEST_F(Runs, AResultIsWholeOrNone) {
   EXPECT_EQ(read->measures[0].second, 0.1 + 0.2);
   EXPECT_TRUE(std::isnan(read->measures[1].second));
   EXPECT_EQ(read->warnings, written.warnings);
+  auto const head = read_result(in("run"), cases[2], ResultPart::head);
+  ASSERT_TRUE(head.has_value());
+  EXPECT_EQ(head->warnings, written.warnings);
+  EXPECT_TRUE(head->measures.empty());
 
+  written.warnings = {"one that quotes \",\"measures\":{ itself"};
   std::string const text = result_text(written);
   ASSERT_TRUE(parse_result(text, "0.json").has_value());
+  EXPECT_EQ(parse_result(text, "0.json", ResultPart::head).value().warnings, written.warnings);
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_FALSE(parse_result(text.substr(0, size), "0.json").has_value());
   for (std::size_t at = 0; at < text.size(); ++at) {  // any single damaged byte
     std::string damaged = text;
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
     EXPECT_FALSE(parse_result(damaged, "0.json").has_value()) << at;
+    EXPECT_FALSE(parse_result(damaged, "0.json", ResultPart::head).has_value()) << at;
   }
   ManifestCase other = cases[2];
   other.line_hash = cases[1].line_hash;
@@ -245,6 +253,43 @@ TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
   EXPECT_EQ(table.rows[1].status, CaseStatus::missing);
   EXPECT_EQ(table.rows[3].error, "no such thing");
   EXPECT_EQ(table.unfinished(), (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST_F(Runs, ATableSaysWhichBuildsComputedIt) {
+  auto const cases = planned();
+  for (std::size_t const index : {3, 1, 0}) {
+    CaseResult result = result_of(cases[index], 0.25);
+    result.build = index == 1 ? "0.2.0 (beef)" : "0.1.0 (cafe)";
+    write_result(in("run"), result);
+  }
+  StudyTable const table = collect_study(in("run"));
+  EXPECT_EQ(table.builds(), (std::vector<std::string>{"0.1.0 (cafe)", "0.2.0 (beef)"}));
+  Hdf5Reader const file(in("run/study.h5"));
+  EXPECT_EQ(file.attribute("computed_by"), "[\"0.1.0 (cafe)\",\"0.2.0 (beef)\"]");
+}
+
+TEST_F(Runs, OnlyFailuresThatAreDueAreForgottenAndNotThoseThatOthersCompute) {
+  auto const cases = planned();
+  for (std::size_t index = 0; index < 4; ++index) {
+    CaseResult result = result_of(cases[index], 0.5);
+    if (index > 0) result.status = CaseStatus::failed;
+    result.again = index >= 2;  // lacked memory
+    write_result(in("run"), result);
+  }
+  auto const there = [&](std::size_t index) { return read_result(in("run"), cases[index]).has_value(); };
+  std::vector<std::size_t> const all{0, 1, 2, 3};
+  {
+    Claims other(in("run"), Claims::Use::take);
+    ASSERT_TRUE(other.take(3));
+    forget_failures(in("run"), cases, all, {});
+  }
+  EXPECT_TRUE(there(0) && there(1) && !there(2) && there(3));
+  forget_failures(in("run"), cases, all, {});
+  EXPECT_TRUE(there(0) && there(1) && !there(3));
+  RunSelection retry;
+  retry.retry_failed = true;
+  forget_failures(in("run"), cases, all, retry);
+  EXPECT_TRUE(there(0) && !there(1));
 }
 
 TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
