@@ -61,7 +61,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-std::vector<std::size_t> all_of(std::vector<ManifestCase> const& cases) {
+std::vector<std::size_t> all_of(Manifest const& cases) {
   std::vector<std::size_t> all(cases.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
@@ -71,7 +71,7 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
   auto run = std::make_shared<std::string>();
   app.add_option("run", *run, "RUN folder")->required();
   return [run, &options] {
-    std::vector<ManifestCase> const cases = read_manifest(*run);
+    Manifest const cases = read_manifest(*run);
     RunState const state = state_of(*run, cases, all_of(cases));
     print_result(options, json_text(state_json(*run, cases, state)), state_text(*run, cases, state));
     return ok;
@@ -103,7 +103,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
       spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,
                    builds.size(), fmt::join(builds, ", "));
     }
-    std::vector<ManifestCase> const cases = read_manifest(run);
+    Manifest const cases = read_manifest(run);
     RunState const state = state_of(run, cases, all_of(cases));
     std::vector<std::string> figures;
     if (!arguments->no_figures) figures = draw_figures(run, table);

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Takes out the cases that need nothing more.
-void remove_done(std::string const& run, std::vector<ManifestCase> const& cases, RunSelection const& selection,
+void remove_done(std::string const& run, Manifest const& cases, RunSelection const& selection,
                  std::vector<std::size_t>& remaining) {
   // one look at the folder instead of one at every file that is not there
   std::set<std::string> there;
@@ -27,7 +27,7 @@ void remove_done(std::string const& run, std::vector<ManifestCase> const& cases,
     there.insert(entry.path().filename().string());
   std::erase_if(remaining, [&](std::size_t index) {
     if (!there.contains(fs::path(result_path(run, index)).filename().string())) return false;
-    auto const result = read_result(run, cases[index], ResultPart::head);
+    auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
     return result && !is_due(*result, selection);
   });
 }
@@ -86,7 +86,7 @@ void add_slurm_options(CLI::App& app, SlurmArguments& arguments) {
   only_with_slurm(app.add_flag("--dry-run", arguments.dry_run, "Print the job script and the command; submit nothing"));
 }
 
-std::optional<JobReport> run_on_cluster(std::string const& run, std::vector<ManifestCase> const& cases,
+std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& cases,
                                         std::vector<std::size_t> const& selected, RunSelection const& selection,
                                         SlurmArguments const& arguments, GlobalOptions const& options) {
   std::vector<std::size_t> due = selected;

@@ -174,12 +174,13 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
   }
 }
 
-std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one, ResultPart part) {
-  std::string const path = result_path(run, one.index);
+std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
+                                      ResultPart part) {
+  std::string const path = result_path(run, index);
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
   std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}}, path, part);
-  if (!result || result->index != one.index || result->line_hash != one.line_hash) return std::nullopt;
+  if (!result || result->index != index || result->line_hash != line_hash) return std::nullopt;
   return result;
 }
 

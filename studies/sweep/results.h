@@ -46,8 +46,9 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
                                        ResultPart part = ResultPart::all);
 
 /// The result of a case; nothing where there is none, or none that is whole and belongs to this very line.
+/// @param line_hash of the case's line in the manifest
 /// @throws DataError where it is of another version
-std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one,
+std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
                                       ResultPart part = ResultPart::all);
 
 /// Removes a case's result. @pre the caller holds the case's claim @throws OutputError

@@ -16,8 +16,7 @@ std::string and_more(std::size_t count) {
 
 }  // namespace
 
-nlohmann::ordered_json state_json(std::string const& run, std::vector<ManifestCase> const& cases,
-                                  RunState const& state) {
+nlohmann::ordered_json state_json(std::string const& run, Manifest const& cases, RunState const& state) {
   nlohmann::ordered_json json{{"run", run},
                               {"cases", state.ok + state.failed.size() + state.missing.size()},
                               {"done", state.ok},
@@ -36,7 +35,7 @@ nlohmann::ordered_json state_json(std::string const& run, std::vector<ManifestCa
   return json;
 }
 
-std::string state_text(std::string const& run, std::vector<ManifestCase> const& cases, RunState const& state) {
+std::string state_text(std::string const& run, Manifest const& cases, RunState const& state) {
   std::string text = fmt::format("{}: {} cases, {} done, {} failed, {} missing", run,
                                  state.ok + state.failed.size() + state.missing.size(), state.ok, state.failed.size(),
                                  state.missing.size());

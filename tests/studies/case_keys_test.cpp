@@ -112,5 +112,29 @@ TEST_F(CaseKeysOf, FilesCountByTheirContent) {
   EXPECT_NE(keys_of(cases[0]).scene, before.scene);
 }
 
+// A large volume is not built anew for other dots in front of it.
+TEST_F(CaseKeysOf, AMediumCountsByItsOwnFile) {
+  std::string volume =
+      "NRRD0004\ntype: float\ndimension: 3\nsizes: 4 4 4\nendian: little\nencoding: raw\nspacings: 8 8 2\n\n";
+  write("volume.nrrd", volume + std::string(64 * sizeof(float), '\0'));
+  write("a.csv", "x_mm,y_mm\n0,0\n");
+  write("b.csv", "x_mm,y_mm\n1,1\n");
+  write("base.toml", R"(schema = 1
+[medium.field]
+kind = "file"
+file = "volume.nrrd"
+[target]
+kind = "points"
+file = "a.csv"
+)");
+  auto cases = plan("base = \"base.toml\"\n[axes]\n\"target.file\" = [\"a.csv\", \"b.csv\"]\n");
+  CaseKeys const one = keys_of(cases[0]), other = keys_of(cases[1]);
+  EXPECT_EQ(one.medium, other.medium);
+  EXPECT_NE(one.scene, other.scene);
+  ASSERT_EQ(cases[0].inputs.count(in("volume.nrrd")), 1u);
+  cases[0].inputs[in("volume.nrrd")] = "another content";
+  EXPECT_NE(keys_of(cases[0]).medium, one.medium);
+}
+
 }  // namespace
 }  // namespace gladstone
