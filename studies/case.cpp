@@ -13,6 +13,7 @@
 #include "render/base/output_file.h"
 #include "render/base/units.h"
 #include "render/sensor/detector.h"
+#include "studies/json_text.h"
 #include "studies/truth_file.h"
 
 namespace gladstone {
@@ -80,6 +81,12 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   loaded.setup = read_setup(root);
   loaded.correlate = read_correlation_settings(root.table("correlate"));
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
+  for (std::string const& name : loaded.document.file_names()) {
+    if (is_utf8(name)) continue;
+    loaded.document.add_problem(name,
+                                "holds bytes that are no UTF-8, the only text that setups may hold; "
+                                "rename the file or the folder");
+  }
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
     cross_check_windows(loaded);
@@ -267,7 +274,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
                             {"bits", prepared.rays.bits},
                             {"extrapolated", prepared.rays.extrapolated}};
   }
-  std::string const text = summary.dump(2) + "\n";
+  std::string const text = json_text(summary) + "\n";
   OutputFile::write_text(place(case_file::summary), text);
   return text;
 }

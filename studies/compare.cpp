@@ -16,6 +16,7 @@
 #include "studies/correlate.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
+#include "studies/json_text.h"
 #include "studies/truth_file.h"
 
 namespace gladstone {
@@ -271,7 +272,7 @@ std::string errors_json(Comparison const& comparison) {
   json["vectors"] = {{"total", comparison.measured.size()},
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 VectorMask gentle_mask(Comparison const& comparison, Scene const& scene, int window_px, double limit) {

@@ -30,9 +30,11 @@ Device open_device(std::string const& wanted) {
 
 int gpu_count() { return cuda::device_count(); }
 
+std::string build_text() { return fmt::format("{} ({})", version, git_sha1); }
+
 std::string version_text() {
-  return fmt::format("gladstone {} ({})\nbackends: {}\nCUDA: {}", version, git_sha1,
-                     cuda::compiled_in() ? "cpu, cuda" : "cpu", cuda::description());
+  return fmt::format("gladstone {}\nbackends: {}\nCUDA: {}", build_text(), cuda::compiled_in() ? "cpu, cuda" : "cpu",
+                     cuda::description());
 }
 
 std::string version_json() {

@@ -12,6 +12,7 @@
 #include "render/base/image_file.h"
 #include "studies/case.h"
 #include "studies/commands/command.h"
+#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {
@@ -86,7 +87,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                               {"invalid", counts[3]},
                               {"device", device.name()},
                               {"seconds_correlate", measurement.seconds}};
-    print_result(options, json.dump(2),
+    print_result(options, json_text(json),
                  fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, measurement.field.size(),
                              counts[1], counts[3], measurement.seconds));
     return ok;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/commands/command.h"
+#include "studies/json_text.h"
 
 namespace gladstone {
 
@@ -12,7 +13,7 @@ CommandBody attach_demo(CLI::App& app, GlobalOptions const& options) {
   app.add_option("-o,--output", *folder, "Folder for the cases, figure4.png and summary.md")->capture_default_str();
   return [folder, &options] {
     std::string const summary = run_demo(*folder, options.open_device());
-    print_result(options, nlohmann::json{{"folder", *folder}, {"summary", summary}}.dump(2), summary);
+    print_result(options, json_text(nlohmann::json{{"folder", *folder}, {"summary", summary}}), summary);
     return ok;
   };
 }

@@ -10,6 +10,7 @@
 #include "render/medium/density_field.h"
 #include "studies/commands/command.h"
 #include "studies/image_statistics.h"
+#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {
@@ -44,7 +45,7 @@ int describe_field(std::string const& path, std::string const& dataset, GlobalOp
                             {"steepest_gradient", {steepest[0], steepest[1], steepest[2]}},
                             {"units", "as in the file; lengths are taken as mm unless spacing_mm is given"}};
   print_result(
-      options, json.dump(2),
+      options, json_text(json),
       fmt::format(
           "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
           "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z",
@@ -75,7 +76,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
                             {"noise", known(seen.noise)},
                             {"snr", known(seen.snr())}};
   print_result(
-      options, json.dump(2),
+      options, json_text(json),
       fmt::format("{}: {} x {} px, {} bits{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
                   path, image.columns(), image.rows(), metadata.bit_depth,
                   metadata.channels >= 3 ? ", colour turned to luminance" : "", *least, *most, seen.mean,

@@ -10,6 +10,7 @@
 #include "studies/commands/command.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/study_figures.h"
+#include "studies/json_text.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/plan.h"
 #include "studies/sweep/state_report.h"
@@ -53,14 +54,14 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
       json["axes"].push_back({{"key", axis.key}, {"values", values}});
       axes += fmt::format("  {}: {} values\n", axis.key, values);
     }
-    print_result(options, json.dump(2),
+    print_result(options, json_text(json),
                  fmt::format("{}: {} cases for {}{}\n{}", arguments->run, cases.size(), device,
                              planned == Planned::unchanged ? ", planned already" : "", axes));
     return ok;
   };
 }
 
-std::vector<std::size_t> all_of(std::vector<ManifestCase> const& cases) {
+std::vector<std::size_t> all_of(Manifest const& cases) {
   std::vector<std::size_t> all(cases.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
@@ -70,9 +71,9 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
   auto run = std::make_shared<std::string>();
   app.add_option("run", *run, "RUN folder")->required();
   return [run, &options] {
-    std::vector<ManifestCase> const cases = read_manifest(*run);
+    Manifest const cases = read_manifest(*run);
     RunState const state = state_of(*run, cases, all_of(cases));
-    print_result(options, state_json(*run, cases, state).dump(2), state_text(*run, cases, state));
+    print_result(options, json_text(state_json(*run, cases, state)), state_text(*run, cases, state));
     return ok;
   };
 }
@@ -98,7 +99,11 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
   return [arguments, &options] {
     std::string const& run = arguments->run;
     StudyTable const table = collect_study(run);
-    std::vector<ManifestCase> const cases = read_manifest(run);
+    if (std::vector<std::string> const builds = table.builds(); builds.size() > 1) {
+      spdlog::warn("{}: the cases were computed by {} builds of gladstone ({}), whose numbers may differ", run,
+                   builds.size(), fmt::join(builds, ", "));
+    }
+    Manifest const cases = read_manifest(run);
     RunState const state = state_of(run, cases, all_of(cases));
     std::vector<std::string> figures;
     if (!arguments->no_figures) figures = draw_figures(run, table);
@@ -111,7 +116,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     json["figures"] = figures;
     std::string const drawn =
         figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
-    print_result(options, json.dump(2),
+    print_result(options, json_text(json),
                  state_text(run, cases, state) + fmt::format("wrote {}\n{}", fmt::join(files, ", "), drawn));
     return table.unfinished().empty() ? ok : incomplete;
   };

@@ -13,6 +13,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "studies/commands/sweep_slurm.h"
+#include "studies/json_text.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/state_report.h"
 #include "studies/sweep/workers.h"
@@ -45,8 +46,8 @@ void read_shard(Arguments& arguments) {
 }
 
 /// The device that the manifest asks for. @throws DeviceError where the command line asks for another
-std::string device_of(std::vector<ManifestCase> const& cases, std::string const& wanted) {
-  std::string const& planned = cases.front().device;
+std::string device_of(Manifest const& cases, std::string const& wanted) {
+  std::string const planned = cases[0].device;
   if (wanted != "auto" && wanted != planned) {
     throw DeviceError(
         fmt::format("--device {}: the study was planned for {} (results are equal bit by bit on one kind "
@@ -84,7 +85,6 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
     if (arguments.selection.only) one.insert(one.end(), {"--case", *arguments.selection.only});
     if (!arguments.shard.empty()) one.insert(one.end(), {"--shard", arguments.shard});
     if (arguments.selection.keep_images) one.emplace_back("--keep-images");
-    if (arguments.selection.retry_failed) one.emplace_back("--retry-failed");
     words.push_back(std::move(one));
     environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
   }
@@ -99,9 +99,8 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
   return code;
 }
 
-void run_here(Arguments const& arguments, std::vector<ManifestCase> const& cases,
-              std::vector<std::size_t> const& selected, std::string const& device,
-              std::function<void()> const& finished) {
+void run_here(Arguments const& arguments, Manifest const& cases, std::vector<std::size_t> const& selected,
+              std::string const& device, std::function<void()> const& finished) {
   CaseRunner runner(open_device(device));
   auto const first = static_cast<std::size_t>(arguments.first * static_cast<double>(selected.size()));
   run_cases(arguments.run, cases, selected, arguments.selection, runner, first, [&](std::size_t index) {
@@ -113,18 +112,18 @@ void run_here(Arguments const& arguments, std::vector<ManifestCase> const& cases
 }
 
 /// Prints how the selected cases stand, with more of JSON and text after it. @return ok, or incomplete
-int print_state(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+int print_state(Arguments const& arguments, GlobalOptions const& options, Manifest const& cases,
                 std::vector<std::size_t> const& selected, nlohmann::ordered_json const& more_json,
                 std::string const& more_text) {
   RunState const state = state_of(arguments.run, cases, selected);
   nlohmann::ordered_json json = state_json(arguments.run, cases, state);
   json.update(more_json);
-  print_result(options, json.dump(2), state_text(arguments.run, cases, state) + more_text);
+  print_result(options, json_text(json), state_text(arguments.run, cases, state) + more_text);
   return state.complete() ? ok : incomplete;
 }
 
 /// --slurm: the cases are computed by a cluster.
-int submit_study(Arguments const& arguments, GlobalOptions const& options, std::vector<ManifestCase> const& cases,
+int submit_study(Arguments const& arguments, GlobalOptions const& options, Manifest const& cases,
                  std::vector<std::size_t> const& selected, std::string const& device) {
   SlurmArguments slurm = arguments.slurm;
   SlurmOptions& given = slurm.options;
@@ -145,16 +144,15 @@ int submit_study(Arguments const& arguments, GlobalOptions const& options, std::
 
 int run_study(Arguments const& arguments, GlobalOptions const& options) {
   auto const start = std::chrono::steady_clock::now();
-  std::vector<ManifestCase> const cases = read_manifest(arguments.run);
+  Manifest const cases = read_manifest(arguments.run);
   std::string const device = device_of(cases, options.device);
-  std::vector<std::size_t> const selected = selected_cases(cases, arguments.selection);
+  std::vector<std::size_t> const selected = selected_cases(cases.size(), arguments.selection);
   if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
   bool const worker = arguments.worker >= 0;
-  RunState state;
-  if (!worker) state = state_of(arguments.run, cases, selected);
-  std::size_t const due =
-      worker ? selected.size()
-             : state.missing.size() + (arguments.selection.retry_failed ? state.failed.size() : std::size_t{0});
+  std::size_t due = selected.size();
+  if (!worker) {  // what is tried again is tried once, and not by each worker
+    due = forget_failures(arguments.run, cases, selected, arguments.selection).missing.size();
+  }
   int code = ok;
   std::size_t computed = 0;
   if (due > 0) {

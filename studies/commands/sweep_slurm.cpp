@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/json_text.h"
 #include "studies/sweep/case_list.h"
 
 namespace gladstone {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Takes out the cases that need nothing more.
-void remove_done(std::string const& run, std::vector<ManifestCase> const& cases, RunSelection const& selection,
+void remove_done(std::string const& run, Manifest const& cases, RunSelection const& selection,
                  std::vector<std::size_t>& remaining) {
   // one look at the folder instead of one at every file that is not there
   std::set<std::string> there;
@@ -26,8 +27,8 @@ void remove_done(std::string const& run, std::vector<ManifestCase> const& cases,
     there.insert(entry.path().filename().string());
   std::erase_if(remaining, [&](std::size_t index) {
     if (!there.contains(fs::path(result_path(run, index)).filename().string())) return false;
-    auto const result = read_result(run, cases[index]);
-    return result && (result->status == CaseStatus::ok || !selection.retry_failed);
+    auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+    return result && !is_due(*result, selection);
   });
 }
 
@@ -39,7 +40,7 @@ void print_dry_run(JobArray const& array, GlobalOptions const& options) {
                                     {"script", array.script},
                                     {"script_file", array.script_path},
                                     {"command", array.command}};
-  print_result(options, json.dump(2), fmt::format("# {}\n{}\n{}\n", array.script_path, array.script, command));
+  print_result(options, json_text(json), fmt::format("# {}\n{}\n{}\n", array.script_path, array.script, command));
 }
 
 /// What the tasks that left cases undone said last; the first few of them.
@@ -85,7 +86,7 @@ void add_slurm_options(CLI::App& app, SlurmArguments& arguments) {
   only_with_slurm(app.add_flag("--dry-run", arguments.dry_run, "Print the job script and the command; submit nothing"));
 }
 
-std::optional<JobReport> run_on_cluster(std::string const& run, std::vector<ManifestCase> const& cases,
+std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& cases,
                                         std::vector<std::size_t> const& selected, RunSelection const& selection,
                                         SlurmArguments const& arguments, GlobalOptions const& options) {
   std::vector<std::size_t> due = selected;

@@ -31,7 +31,7 @@ struct JobReport {
 /// With --dry-run prints the script and the command that submits it instead.
 /// @return nothing where no case is due
 /// @throws as run_job_array and make_job_array
-std::optional<JobReport> run_on_cluster(std::string const& run, std::vector<ManifestCase> const& cases,
+std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& cases,
                                         std::vector<std::size_t> const& selected, RunSelection const& selection,
                                         SlurmArguments const& arguments, GlobalOptions const& options);
 

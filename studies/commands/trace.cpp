@@ -7,6 +7,7 @@
 #include "render/base/output_file.h"
 #include "studies/case.h"
 #include "studies/commands/command.h"
+#include "studies/json_text.h"
 #include "studies/ray_file.h"
 
 namespace gladstone {
@@ -44,7 +45,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
       json["status"][word] = counts[status];
       if (counts[status] > 0) text += fmt::format(", {} {}", counts[status], word);
     }
-    print_result(options, json.dump(2), text);
+    print_result(options, json_text(json), text);
     return ok;
   };
 }

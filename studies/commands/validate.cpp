@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "studies/commands/command.h"
+#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {
@@ -50,7 +51,7 @@ CommandBody attach_validate(CLI::App&, GlobalOptions const& options) {
     std::vector<OracleResult> const results = run_oracles(*renderer);
     auto const missed = static_cast<std::size_t>(
         std::count_if(results.begin(), results.end(), [](OracleResult const& result) { return !result.passed(); }));
-    print_result(options, to_json(results, missed).dump(2), to_text(results, missed, renderer->device()));
+    print_result(options, json_text(to_json(results, missed)), to_text(results, missed, renderer->device()));
     return missed == 0 ? ok : check_missed;
   };
 }

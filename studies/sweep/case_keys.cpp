@@ -31,7 +31,8 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   CaseKeys keys;
   SetupNode medium = table_of(setup, "medium");
   for (char const* key : {"step_mm", "integrator", "faces"}) remove(medium, key);
-  keys.medium = toml_text(medium) + files;
+  auto const field = inputs.find(loaded.setup.medium.field.file);
+  keys.medium = toml_text(medium) + '\n' + (field == inputs.end() ? "" : field->second);
 
   // The camera's electronics come after the light; the first window counts by the extent of the target only.
   SetupNode& camera = table_of(setup, "camera");

@@ -18,6 +18,7 @@
 #include "render/base/setup_node.h"
 #include "studies/correlate.h"
 #include "studies/sweep/case_keys.h"
+#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {
@@ -135,6 +136,18 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
   }
 }
 
+namespace {
+
+/// Whether an error tells of a lack of memory, which is no property of the case: another moment or machine has more.
+bool lacks_memory(std::exception const& error) {
+  std::string_view const text = error.what();
+  return dynamic_cast<std::bad_alloc const*>(&error) || text.starts_with("out of device memory") ||
+         text.find("GB of memory (") != text.npos ||          // as check_memory refuses, before anything is allocated
+         text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
+}
+
+}  // namespace
+
 CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   check_inputs(one);
   if (sharing_ == Sharing::no) {
@@ -146,34 +159,28 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   result.index = one.index;
   result.line_hash = one.line_hash;
   result.device = device_.name();
-  auto const fail = [&](std::string error) {
-    result = {one.index, one.line_hash, CaseStatus::failed, std::move(error), {}, {}, {}, nan,
-              nan,       nan,           device_.name()};
-  };
+  result.build = build_text();
   CaseResult const fresh = result;
-  auto const short_of_memory = [](std::exception const& error) {
-    return dynamic_cast<std::bad_alloc const*>(&error) ||
-           std::string_view(error.what()).starts_with("out of device memory");
-  };
   QuietLog const quiet;
   try {
     try {
       compute(one, keep, result);
     } catch (std::exception const& error) {
-      if (!short_of_memory(error)) throw;
+      if (!lacks_memory(error)) throw;
       shared_ = std::make_unique<Shared>();  // once more without what is kept for other cases
       result = fresh;
       compute(one, keep, result);
     }
-  } catch (SetupError const& error) {
-    fail(error.what());
-  } catch (DataError const& error) {
-    fail(error.what());
-  } catch (std::bad_alloc const&) {
-    fail("out of memory; reduce the image, the field or the number of dots");
-  } catch (DeviceError const& error) {
-    if (!short_of_memory(error)) throw;
-    fail(error.what());
+  } catch (std::exception const& error) {
+    bool const no_memory = lacks_memory(error);
+    if (!no_memory && !dynamic_cast<SetupError const*>(&error) && !dynamic_cast<DataError const*>(&error)) throw;
+    result = fresh;
+    result.status = CaseStatus::failed;
+    result.error = dynamic_cast<std::bad_alloc const*>(&error)
+                       ? "out of memory; reduce the image, the field or the number of dots"
+                       : error.what();
+    result.again = no_memory;
+    result.seconds_render = result.seconds_correlate = result.seconds_compare = nan;
   }
   return result;
 }

@@ -204,6 +204,7 @@ void write_study_h5(std::string const& path, StudyTable const& table, std::strin
   nlohmann::json keys = nlohmann::json::array();
   for (StudyAxis const& axis : table.axes) keys.push_back(axis.key);
   file.attribute("/", "study_axes", keys.dump());
+  file.attribute("/", "computed_by", nlohmann::json(table.builds()).dump());
   file.close();
 }
 

@@ -15,7 +15,8 @@ std::string points_csv(StudyTable const& points);
 
 /// Writes study.h5: a dataset a column, of one value a case; of a study with repeats also its points, in the group
 /// /points. What is a text in study.csv is a whole number here, the
-/// place in the dataset's attribute `labels`, a JSON array.
+/// place in the dataset's attribute `labels`, a JSON array. The root attribute `computed_by` names the builds of
+/// gladstone that computed the cases, no dataset: the same study has the same data.
 /// @param setup text of the study file, for the root attribute of that name
 void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup);
 

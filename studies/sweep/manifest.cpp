@@ -41,7 +41,7 @@ std::optional<int> version_of(Json const& json) {
   return version.is_number_integer() ? std::optional(version.get<int>()) : std::nullopt;
 }
 
-ManifestCase case_of(Json const& json, std::string const& line) {
+ManifestCase case_of(Json const& json, std::string_view line) {
   ManifestCase one;
   one.index = json.at("index").get<std::size_t>();
   one.repeat = json.at("repeat").get<std::size_t>();
@@ -51,6 +51,46 @@ ManifestCase case_of(Json const& json, std::string const& line) {
   one.setup = json.at("setup").get<std::string>();
   one.inputs = json.at("inputs").get<std::map<std::string, std::string>>();
   one.line_hash = content_hash(line);
+  return one;
+}
+
+/// What the line of a case begins with as manifest_line writes it.
+std::string line_start(std::size_t index) {
+  return fmt::format("{{\"manifest\":{},\"index\":{},", manifest_version, index);
+}
+
+std::string place_of(std::string const& path, std::size_t index) { return fmt::format("{}:{}", path, index + 1); }
+
+[[noreturn]] void damaged(std::string const& place) {
+  throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
+}
+
+/// @param place for messages
+ManifestCase parse_line(std::string_view line, std::size_t index, std::string const& place) {
+  Json const json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) damaged(place);
+  std::optional<int> const version = version_of(json);
+  if (!version) {
+    throw DataError(place,
+                    "is no line of a gladstone manifest (it says no \"manifest\" version and \"index\"); give the "
+                    "folder of a planned study");
+  }
+  if (version != manifest_version) {
+    throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
+                                       "again or use the gladstone that planned it",
+                                       *version, manifest_version));
+  }
+  ManifestCase one;
+  try {
+    one = case_of(json, line);
+  } catch (nlohmann::json::exception const& error) {
+    throw DataError(place, fmt::format("is damaged ({}); plan the study again", error.what()));
+  }
+  if (one.index != index) {
+    throw DataError(place, fmt::format("holds case {} (case {} belongs there: lines are missing or out of order); "
+                                       "plan the study again",
+                                       one.index, index));
+  }
   return one;
 }
 
@@ -95,48 +135,37 @@ std::optional<int> version_of_manifest(std::string_view text) {
   return version_of(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
 }
 
-std::vector<ManifestCase> read_manifest(std::string const& run) {
+Manifest::Manifest(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
+  for (std::size_t begin = 0; begin < text_.size(); begin = ends_.back() + 1) {
+    std::size_t const end = text_.find('\n', begin), index = ends_.size();
+    std::string_view const line = std::string_view(text_).substr(begin, end - begin);
+    ends_.push_back(end);
+    bool const as_written = line.starts_with(line_start(index)) && line.ends_with('}');
+    if (end == std::string::npos) damaged(place_of(path_, index));
+    if (!as_written) parse_line(line, index, place_of(path_, index));
+  }
+  if (ends_.empty()) throw DataError(path_, "is empty; plan the study again");
+}
+
+std::string_view Manifest::line(std::size_t index) const {
+  std::size_t const begin = index == 0 ? 0 : ends_[index - 1] + 1;
+  return std::string_view(text_).substr(begin, ends_[index] - begin);
+}
+
+ManifestCase Manifest::operator[](std::size_t index) const {
+  return parse_line(line(index), index, place_of(path_, index));
+}
+
+std::string Manifest::line_hash(std::size_t index) const { return content_hash(line(index)); }
+
+Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
   if (!std::filesystem::exists(path)) {
     throw DataError(run, fmt::format("is no planned study (it holds no {}); make one with: gladstone sweep plan "
                                      "STUDY.toml -o {}",
                                      run_file::manifest, run));
   }
-  std::string const text = read_text_file(path);
-  std::vector<ManifestCase> cases;
-  for (std::size_t begin = 0; begin < text.size();) {
-    std::string const place = fmt::format("{}:{}", path, cases.size() + 1);
-    std::size_t const end = text.find('\n', begin);
-    std::string const line = text.substr(begin, end - begin);
-    Json const json = Json::parse(line, nullptr, false);
-    if (end == std::string::npos || !json.is_object()) {
-      throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
-    }
-    std::optional<int> const version = version_of(json);
-    if (!version) {
-      throw DataError(place,
-                      "is no line of a gladstone manifest (it says no \"manifest\" version and \"index\"); give the "
-                      "folder of a planned study");
-    }
-    if (version != manifest_version) {
-      throw DataError(place, fmt::format("is of manifest version {} (this gladstone reads version {}); plan the study "
-                                         "again or use the gladstone that planned it",
-                                         *version, manifest_version));
-    }
-    try {
-      cases.push_back(case_of(json, line));
-    } catch (nlohmann::json::exception const& error) {
-      throw DataError(place, fmt::format("is damaged ({}); plan the study again", error.what()));
-    }
-    if (cases.back().index + 1 != cases.size()) {
-      throw DataError(place, fmt::format("holds case {} (case {} belongs there: lines are missing or out of order); "
-                                         "plan the study again",
-                                         cases.back().index, cases.size() - 1));
-    }
-    begin = end + 1;
-  }
-  if (cases.empty()) throw DataError(path, "is empty; plan the study again");
-  return cases;
+  return {path, read_text_file(path)};
 }
 
 }  // namespace gladstone

@@ -56,10 +56,29 @@ std::string manifest_line(ManifestCase const& one);
 /// The version of the manifest that a text's first line begins; nothing where it is no gladstone manifest.
 std::optional<int> version_of_manifest(std::string_view text);
 
-/// Reads RUN/manifest.jsonl.
-/// @throws DataError at manifest.jsonl:LINE for a missing, foreign or damaged file, a line cut short or of another
-/// version
-std::vector<ManifestCase> read_manifest(std::string const& run);
+/// RUN/manifest.jsonl as it was read. A case is parsed when it is asked for: of many workers each needs some cases
+/// only, and who looks at results needs no more than the hashes of their lines.
+class Manifest {
+ public:
+  /// @param path for messages
+  /// @throws DataError at manifest.jsonl:LINE for a foreign or damaged file, a line cut short, out of order or of
+  /// another version
+  Manifest(std::string path, std::string text);
+
+  std::size_t size() const { return ends_.size(); }
+  /// @throws DataError where the line is damaged beyond its beginning
+  ManifestCase operator[](std::size_t index) const;
+  std::string line_hash(std::size_t index) const;
+
+ private:
+  std::string_view line(std::size_t index) const;
+
+  std::string path_, text_;
+  std::vector<std::size_t> ends_;  ///< of every line, before its line end
+};
+
+/// Reads RUN/manifest.jsonl. @throws DataError as Manifest, and where there is none
+Manifest read_manifest(std::string const& run);
 
 /// Cases as a manifest's text; fills in their line_hash.
 std::string manifest_text(std::vector<ManifestCase>& cases);

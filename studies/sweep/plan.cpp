@@ -151,11 +151,7 @@ std::vector<CaseResult> whole_results(fs::path const& run) {
        entry.increment(error)) {
     if (entry->path().extension() != ".json" || !entry->is_regular_file()) continue;
     std::string const path = entry->path().string();
-    auto result = parse_result(read_text_file(path), path);
-    if (!result) continue;
-    result->measures.clear();
-    result->vectors.clear();
-    results.push_back(std::move(*result));
+    if (auto result = parse_result(read_text_file(path), path, ResultPart::head)) results.push_back(std::move(*result));
   }
   return results;
 }

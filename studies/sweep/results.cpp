@@ -84,19 +84,25 @@ std::vector<VectorErrors> vectors_of(Json const& json) {
   return vectors;
 }
 
-CaseResult result_of(Json const& json) {
+constexpr std::string_view numbers = ",\"measures\":";  // where a result's numbers begin; quotes in texts are escaped
+
+/// @param json a result, or its head
+CaseResult result_of(Json const& json, ResultPart part) {
   CaseResult result;
   result.index = json.at("index").get<std::size_t>();
   result.line_hash = json.at("line").get<std::string>();
   result.status = json.at("status").get<std::string>() == "ok" ? CaseStatus::ok : CaseStatus::failed;
   result.error = json.at("error").get<std::string>();
-  for (auto const& [name, value] : json.at("measures").items()) result.measures.emplace_back(name, number_of(value));
-  result.vectors = vectors_of(json.at("vectors"));
+  result.again = json.value("again", false);
   result.warnings = json.at("warnings").get<std::vector<std::string>>();
   result.seconds_render = number_of(json.at("seconds_render"));
   result.seconds_correlate = number_of(json.at("seconds_correlate"));
   result.seconds_compare = number_of(json.at("seconds_compare"));
   result.device = json.at("device").get<std::string>();
+  result.build = json.value("build", "");
+  if (part == ResultPart::head) return result;
+  for (auto const& [name, value] : json.at("measures").items()) result.measures.emplace_back(name, number_of(value));
+  result.vectors = vectors_of(json.at("vectors"));
   return result;
 }
 
@@ -131,7 +137,9 @@ std::string result_text(CaseResult const& result) {
   json["line"] = result.line_hash;
   json["status"] = to_string(result.status);
   json["error"] = result.error;
+  if (result.again) json["again"] = true;
   json["device"] = result.device;
+  json["build"] = result.build;
   json["seconds_render"] = number(result.seconds_render);
   json["seconds_correlate"] = number(result.seconds_correlate);
   json["seconds_compare"] = number(result.seconds_compare);
@@ -145,11 +153,13 @@ std::string result_text(CaseResult const& result) {
   return std::string(head) + content_hash(rest) + "\"," + rest;
 }
 
-std::optional<CaseResult> parse_result(std::string const& text, std::string const& path) {
+std::optional<CaseResult> parse_result(std::string const& text, std::string const& path, ResultPart part) {
   std::size_t const start = head.size() + hash_digits + 2;
   if (text.size() <= start || !text.starts_with(head)) return std::nullopt;
   if (text.substr(head.size(), hash_digits) != content_hash(std::string_view(text).substr(start))) return std::nullopt;
-  Json const json = Json::parse(text, nullptr, false);
+  std::size_t const head_size = part == ResultPart::head ? text.find(numbers) : std::string::npos;
+  Json const json =
+      Json::parse(head_size == std::string::npos ? text : text.substr(0, head_size) + '}', nullptr, false);
   try {
     if (int const version = json.at("result").get<int>(); version != result_version) {
       throw DataError(path,
@@ -158,19 +168,29 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
                                   "compute every case again",
                                   version, result_version, std::filesystem::path(path).parent_path().string()));
     }
-    return result_of(json);
+    return result_of(json, part);
   } catch (nlohmann::json::exception const&) {
     return std::nullopt;
   }
 }
 
-std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one) {
-  std::string const path = result_path(run, one.index);
+std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
+                                      ResultPart part) {
+  std::string const path = result_path(run, index);
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
-  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}}, path);
-  if (!result || result->index != one.index || result->line_hash != one.line_hash) return std::nullopt;
+  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}}, path, part);
+  if (!result || result->index != index || result->line_hash != line_hash) return std::nullopt;
   return result;
+}
+
+void remove_result(std::string const& run, std::size_t index) {
+  std::string const path = result_path(run, index);
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
+    throw OutputError(path, fmt::format("cannot be removed ({}), and its case is to be computed again; give the right "
+                                        "to write in {}",
+                                        std::strerror(errno), std::filesystem::path(path).parent_path().string()));
+  }
 }
 
 void write_result(std::string const& run, CaseResult const& result) {

@@ -20,11 +20,13 @@ struct CaseResult {
   std::string line_hash;                                 ///< of the manifest line that it belongs to
   CaseStatus status = CaseStatus::ok;                    ///< ok or failed
   std::string error;                                     ///< of a failed case
+  bool again = false;                                    ///< it failed for lack of memory: the next run tries again
   std::vector<std::pair<std::string, double>> measures;  ///< errors.json flattened with dots, and more; NaN: unknown
   std::vector<VectorErrors> vectors;                     ///< by vector_error_names(); what repeats are compared by
   std::vector<std::string> warnings;
   double seconds_render = 0, seconds_correlate = 0, seconds_compare = 0;
   std::string device;
+  std::string build;  ///< build_text() of the gladstone that computed it; empty: unknown
 };
 
 /// RUN/cases/INDEX.json
@@ -33,14 +35,24 @@ std::string result_path(std::string const& run, std::size_t index);
 /// A result's whole file: a JSON object whose first member is the content_hash() of all that follows it.
 std::string result_text(CaseResult const& result);
 
+/// How much of a result is wanted: what became of the case, or its numbers too, which take long to read.
+enum class ResultPart { head, all };
+
 /// Nothing where the text is not a whole result: cut short or damaged.
 /// @param path for messages
+/// @param part of it that is parsed; that it is whole is checked for all of it
 /// @throws DataError where it is a whole one of another version, which is no reason to compute anew unasked
-std::optional<CaseResult> parse_result(std::string const& text, std::string const& path);
+std::optional<CaseResult> parse_result(std::string const& text, std::string const& path,
+                                       ResultPart part = ResultPart::all);
 
 /// The result of a case; nothing where there is none, or none that is whole and belongs to this very line.
+/// @param line_hash of the case's line in the manifest
 /// @throws DataError where it is of another version
-std::optional<CaseResult> read_result(std::string const& run, ManifestCase const& one);
+std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
+                                      ResultPart part = ResultPart::all);
+
+/// Removes a case's result. @pre the caller holds the case's claim @throws OutputError
+void remove_result(std::string const& run, std::size_t index);
 
 /// Puts a result in its place in one move. @pre the caller holds the case's claim, so that nobody else writes it
 /// @throws OutputError (full disk, ...), with nothing left behind

@@ -35,10 +35,10 @@ class Claim {
 
 }  // namespace
 
-std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection) {
-  std::vector<std::size_t> all(selection.only ? 0 : cases.size());
+std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& selection) {
+  std::vector<std::size_t> all(selection.only ? 0 : count);
   std::iota(all.begin(), all.end(), std::size_t{0});
-  if (selection.only) all = parse_case_list(*selection.only, cases.size());
+  if (selection.only) all = parse_case_list(*selection.only, count);
   // contiguous pieces: neighbours share most
   auto const end_of = [&](std::size_t pieces) {
     return all.begin() + static_cast<std::ptrdiff_t>(all.size() * pieces / selection.shards);
@@ -46,12 +46,11 @@ std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, 
   return {end_of(selection.shard), end_of(selection.shard + 1)};
 }
 
-RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
-                  std::vector<std::size_t> const& selected) {
+RunState state_of(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected) {
   RunState state;
   Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
-    std::optional<CaseResult> result = read_result(run, cases[index]);
+    std::optional<CaseResult> result = read_result(run, index, cases.line_hash(index), ResultPart::head);
     if (!result) {
       state.missing.push_back(index);
       if (claims.held(index)) state.running.push_back(index);
@@ -64,24 +63,44 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
   return state;
 }
 
-void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
+bool is_due(CaseResult const& result, RunSelection const& selection) {
+  return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
+}
+
+RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
+                         RunSelection const& selection) {
+  RunState state = state_of(run, cases, selected);
+  auto const due = [&](CaseResult const& one) { return is_due(one, selection); };
+  if (std::none_of(state.failed.begin(), state.failed.end(), due)) return state;
+  Claims claims(run, Claims::Use::take);
+  std::erase_if(state.failed, [&](CaseResult const& failed) {
+    Claim const claim(claims, failed.index);
+    if (!claim.taken()) return false;
+    // looked at again, now that nobody else can change it
+    auto const result = read_result(run, failed.index, failed.line_hash, ResultPart::head);
+    if (!result || !due(*result)) return false;
+    remove_result(run, failed.index);
+    state.missing.push_back(failed.index);
+    return true;
+  });
+  return state;
+}
+
+void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index)> const& finished) {
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
-    std::optional<CaseResult> const result = read_result(run, cases[index]);
-    return result && (result->status == CaseStatus::ok || !selection.retry_failed);
+    return read_result(run, index, cases.line_hash(index), ResultPart::head).has_value();
   };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
   auto pause = std::chrono::milliseconds(10);
-  for (bool first_round = true; !waiting.empty(); first_round = false) {
+  while (!waiting.empty()) {
     std::vector<std::size_t> with_others;
     for (std::size_t const index : waiting) {
       throw_if_interrupted();
-      // a failed case that another runner has tried meanwhile is not tried again
-      bool const done = first_round ? is_done(index) : read_result(run, cases[index]).has_value();
-      if (!done) {
+      if (!is_done(index)) {
         Claim const claim(claims, index);
         if (!claim.taken()) {
           with_others.push_back(index);

@@ -13,12 +13,13 @@ namespace gladstone {
 struct RunSelection {
   std::optional<std::string> only;    ///< these cases alone, as parse_case_list reads them; else all
   std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of them
-  bool retry_failed = false;          ///< failed cases count as missing
+  bool retry_failed = false;          ///< all failed cases are tried again, not only those that lacked memory
   bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/
 };
 
-/// The cases of a selection, in the manifest's order. @throws DataError where it selects what is not there
-std::vector<std::size_t> selected_cases(std::vector<ManifestCase> const& cases, RunSelection const& selection);
+/// The cases of a selection of a study of so many, in the manifest's order. @throws DataError where it selects what is
+/// not there
+std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& selection);
 
 /// How a selection stands.
 struct RunState {
@@ -30,8 +31,17 @@ struct RunState {
 };
 
 /// Reads results and claims; computes nothing. @throws OutputError where the claims cannot be looked at
-RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases,
-                  std::vector<std::size_t> const& selected);
+RunState state_of(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected);
+
+/// Whether the next run computes a case with this result anew.
+bool is_due(CaseResult const& result, RunSelection const& selection);
+
+/// Takes the failures away that a run is to try again, before it begins: they are missing then, and computed once,
+/// whatever number of workers it has. What another runner has claimed is left to it.
+/// @return how the selection stands then
+/// @throws OutputError
+RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
+                         RunSelection const& selection);
 
 /// Computes what is missing of a selection, one case after the other. Each case is claimed while it is computed, and
 /// its result looked for again once it is; what another runner has claimed is waited for, and computed here should that
@@ -39,7 +49,7 @@ RunState state_of(std::string const& run, std::vector<ManifestCase> const& cases
 /// @param first    position in `selected` to begin at, so that runners side by side meet late
 /// @param finished called after every case that was computed here
 /// @throws as CaseRunner::run; what is finished stays
-void run_cases(std::string const& run, std::vector<ManifestCase> const& cases, std::vector<std::size_t> const& selected,
+void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index)> const& finished);
 

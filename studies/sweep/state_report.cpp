@@ -16,8 +16,7 @@ std::string and_more(std::size_t count) {
 
 }  // namespace
 
-nlohmann::ordered_json state_json(std::string const& run, std::vector<ManifestCase> const& cases,
-                                  RunState const& state) {
+nlohmann::ordered_json state_json(std::string const& run, Manifest const& cases, RunState const& state) {
   nlohmann::ordered_json json{{"run", run},
                               {"cases", state.ok + state.failed.size() + state.missing.size()},
                               {"done", state.ok},
@@ -26,22 +25,25 @@ nlohmann::ordered_json state_json(std::string const& run, std::vector<ManifestCa
                               {"running", state.running.size()}};
   json["failures"] = nlohmann::ordered_json::array();
   for (CaseResult const& failed : state.failed) {
-    json["failures"].push_back(
-        {{"case", failed.index}, {"title", cases[failed.index].title()}, {"error", failed.error}});
+    json["failures"].push_back({{"case", failed.index},
+                                {"title", cases[failed.index].title()},
+                                {"error", failed.error},
+                                {"again", failed.again}});
   }
   json["missing_cases"] = state.missing;
   json["running_cases"] = state.running;
   return json;
 }
 
-std::string state_text(std::string const& run, std::vector<ManifestCase> const& cases, RunState const& state) {
+std::string state_text(std::string const& run, Manifest const& cases, RunState const& state) {
   std::string text = fmt::format("{}: {} cases, {} done, {} failed, {} missing", run,
                                  state.ok + state.failed.size() + state.missing.size(), state.ok, state.failed.size(),
                                  state.missing.size());
   text += state.running.empty() ? "\n" : fmt::format(" ({} of them being computed)\n", state.running.size());
   for (std::size_t i = 0; i < std::min(most_named, state.failed.size()); ++i) {
     CaseResult const& failed = state.failed[i];
-    text += fmt::format("failed: {}: {}\n", cases[failed.index].title(), failed.error);
+    text += fmt::format("failed: {}: {}{}\n", cases[failed.index].title(), failed.error,
+                        failed.again ? " (the next run tries it again; fewer --jobs leave more memory to each)" : "");
   }
   text += and_more(state.failed.size());
   for (std::size_t i = 0; i < std::min(most_named, state.missing.size()); ++i) {

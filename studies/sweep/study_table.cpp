@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "render/base/error.h"
@@ -61,6 +62,14 @@ std::vector<std::size_t> StudyTable::unfinished() const {
   return places;
 }
 
+std::vector<std::string> StudyTable::builds() const {
+  std::set<std::string> builds;
+  for (StudyRow const& row : rows) {
+    if (!row.build.empty()) builds.insert(row.build);
+  }
+  return {builds.begin(), builds.end()};
+}
+
 std::size_t StudyTable::repeats() const {
   std::size_t most = 0;
   for (StudyPoint const& point : points) most = std::max(most, point.rows.size());
@@ -70,11 +79,13 @@ std::size_t StudyTable::repeats() const {
 namespace {
 
 /// Rows of the manifest without what they came to, and the points that they are repeats of.
-void add_rows(std::vector<ManifestCase> const& cases, std::string const& manifest, StudyTable& table) {
+void add_rows(Manifest const& cases, std::string const& manifest, StudyTable& table) {
   std::vector<AxisCollector> axes;
-  for (auto const& parameter : cases.front().parameters) axes.emplace_back(parameter.first);
+  ManifestCase const first = cases[0];
+  for (auto const& parameter : first.parameters) axes.emplace_back(parameter.first);
   std::map<std::vector<std::size_t>, std::size_t> points;
-  for (ManifestCase const& one : cases) {
+  for (std::size_t index = 0; index < cases.size(); ++index) {
+    ManifestCase const one = cases[index];
     StudyRow row;
     row.index = one.index;
     row.repeat = one.repeat;
@@ -98,6 +109,7 @@ void fill_row(CaseResult const& result, std::unordered_map<std::string, std::siz
               StudyRow& row) {
   row.status = result.status;
   row.error = result.error;
+  row.build = result.build;
   if (row.status == CaseStatus::ok) {
     row.seconds_render = result.seconds_render;
     row.seconds_correlate = result.seconds_correlate;
@@ -114,7 +126,7 @@ void fill_row(CaseResult const& result, std::unordered_map<std::string, std::siz
 }  // namespace
 
 StudyTable read_study_table(std::string const& run) {
-  std::vector<ManifestCase> const cases = read_manifest(run);
+  Manifest const cases = read_manifest(run);
   StudyTable table;
   std::filesystem::path const folder = std::filesystem::absolute(run).lexically_normal();
   table.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
@@ -124,7 +136,7 @@ StudyTable read_study_table(std::string const& run) {
   for (StudyPoint& point : table.points) {
     std::vector<std::vector<std::vector<Vec2d>>> errors(vector_error_names().size());  // of each kind, repeat, vector
     for (std::size_t const index : point.rows) {
-      std::optional<CaseResult> result = read_result(run, cases[index]);
+      std::optional<CaseResult> result = read_result(run, index, cases.line_hash(index));
       if (!result) continue;
       fill_row(*result, columns, table, table.rows[index]);
       for (std::size_t k = 0; k < std::min(errors.size(), result->vectors.size()); ++k) {

@@ -33,6 +33,7 @@ struct StudyRow {
   double seconds_correlate = std::numeric_limits<double>::quiet_NaN();
   double seconds_compare = std::numeric_limits<double>::quiet_NaN();
   std::string device;
+  std::string build;  ///< of gladstone that computed it; empty: not done, or unknown
 };
 
 /// All repeats of one point of a study.
@@ -55,6 +56,8 @@ struct StudyTable {
   std::optional<std::size_t> find_axis(std::string_view key) const;
   /// Most repeats of a point.
   std::size_t repeats() const;
+  /// The builds of gladstone that computed the rows, each once, sorted.
+  std::vector<std::string> builds() const;
   /// The rows that are not ok.
   std::vector<std::size_t> unfinished() const;
 };

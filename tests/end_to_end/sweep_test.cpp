@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -45,6 +46,11 @@ class Sweeps : public Workplace {
     plan(run, study);
     succeed({"sweep", "run", run, "--quiet"});
     succeed({"sweep", "collect", run, "--no-figures", "--quiet"});
+  }
+  /// Waits for it, at most 10 s.
+  static bool comes_true(std::function<bool()> const& condition) {
+    for (int wait = 0; wait < 10000 && !condition(); ++wait) std::this_thread::sleep_for(1ms);
+    return condition();
   }
   nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
 
@@ -106,6 +112,9 @@ TEST_F(Sweeps, FromStudyToTable) {
   EXPECT_EQ(file.attribute("filetype"), "gladstone study");
   EXPECT_EQ(file.attribute("setup"), small_study);
   EXPECT_EQ(file.attribute("seed"), "3");
+  auto const version = json_of({"--version"});
+  std::string const build = version["version"].get<std::string>() + " (" + version["commit"].get<std::string>() + ')';
+  EXPECT_EQ(file.attribute("computed_by"), nlohmann::json({build}).dump());
 }
 
 // A sweep's case is the case that render, correlate and compare make.
@@ -155,23 +164,32 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   expect_same_study("whole", "apart");
 }
 
+// The moments count from the first claim and end within one and a half times what a case takes of the undisturbed run:
+// ten of them, each of which loses what is under way, leave cases to be computed.
 TEST_F(Sweeps, KilledAtAnyMomentTheNextRunFinishesTheSameStudy) {
-  write("slow.toml", slow_study);
-  finish("whole", "slow.toml");
+  write("slow.toml", with(slow_study, "1000, 1200, 1400", "250, 260, 270, 280, 290, 300"));
+  plan("whole", "slow.toml");
+  auto const whole = json_of({"sweep", "run", "whole"});
+  ASSERT_EQ(whole["computed"], 12);
+  succeed({"sweep", "collect", "whole", "--no-figures", "--quiet"});
+  double const case_takes = whole["seconds"].get<double>() / 12;
   plan("run", "slow.toml");
   std::mt19937 random(4);
-  std::size_t interrupted = 0;
+  std::uniform_real_distribution<double> moment(0, 1.5 * case_takes);
+  Claims const claims(in("run").string(), Claims::Use::look);
+  int interrupted = 0;
   for (int kill = 0; kill < 10; ++kill) {
     // now one process, now two
     Program program({"sweep", "run", "run", "--quiet", "--jobs", kill % 2 == 0 ? "1" : "2"}, folder_);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100 + random() % 300));
+    EXPECT_TRUE(comes_true([&] { return claims.any_held(); }));
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    bool const at_work = claims.any_held();
     program.send(SIGKILL);
-    program.finish(10s);
-    auto const left = status("run");
-    EXPECT_EQ(left["running"], 0);  // no claim outlives its process
-    interrupted += left["done"] < 6;
+    interrupted += program.finish(10s).signal == SIGKILL && at_work;
+    EXPECT_TRUE(comes_true([&] { return !claims.any_held(); }));  // no claim outlives its process
   }
-  EXPECT_GT(interrupted, 0u);
+  EXPECT_GE(interrupted, 8);
+  EXPECT_LT(status("run")["done"], 12);
   succeed({"sweep", "run", "run", "--quiet"});
   succeed({"sweep", "collect", "run", "--no-figures", "--quiet"});
   expect_same_study("whole", "run");
@@ -237,6 +255,100 @@ TEST_F(Sweeps, AFailingCaseIsRecordedAndDoesNotStopTheOthers) {
   Outcome const retried = gladstone({"sweep", "run", "run", "--retry-failed", "--json"});
   EXPECT_EQ(retried.exit_code, 3);
   EXPECT_EQ(nlohmann::json::parse(retried.out)["computed"], 1);
+}
+
+TEST_F(Sweeps, FailedCasesAreRetriedOnceARunWhateverItsJobs) {
+  write("study.toml", R"(base = "setup.toml"
+[axes]
+"camera.pixels" = [[64, 64], [48, 48]]
+"correlate.window_px" = [[16], [64, 16]]
+"lens.f_number" = [8, 11, 16]
+)");
+  plan("run");
+  auto const again = [this](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"sweep", "run", "run", "--json"});
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    auto const ran = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(ran["failed"], 3);
+    EXPECT_EQ(ran["failures"][0]["again"], false);
+    return ran["computed"].get<int>();
+  };
+  EXPECT_EQ(again({}), 12);
+  EXPECT_EQ(again({"--jobs", "3"}), 0);
+  EXPECT_EQ(again({"--jobs", "3", "--retry-failed"}), 3);
+  EXPECT_EQ(again({"--retry-failed"}), 3);
+}
+
+// A limit on a process's memory stands for a machine that has no more: the program takes some 130 MB of it, a picture
+// of 2048 x 2048 px by itself more than 36 bytes x 4 Mpx = 150 MB.
+TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
+  write("setup.toml",
+        with(with(small_setup, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.1"), "[32, 16]", "[256]"));
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[256, 256], [2048, 2048]]\n");
+  plan("run");
+  auto const limited = [] {
+    rlimit const limit{200'000'000, 200'000'000};
+    return ::setrlimit(RLIMIT_DATA, &limit) == 0;
+  };
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    std::string const jobs = attempt == 0 ? "2" : "1";
+    Outcome const outcome = run({"sweep", "run", "run", "--json", "--threads", jobs, "--jobs", jobs}, folder_, limited);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
+    ASSERT_TRUE(ran.is_object()) << outcome.out;
+    EXPECT_EQ(ran["computed"], attempt == 0 ? 2 : 1);
+    EXPECT_EQ(ran["done"], 1);
+    ASSERT_EQ(ran["failed"], 1);
+    EXPECT_EQ(ran["failures"][0]["case"], 1);
+    EXPECT_EQ(ran["failures"][0]["again"], true);
+  }
+  Outcome const collected = gladstone({"sweep", "collect", "run", "--no-figures"});
+  EXPECT_EQ(collected.exit_code, 3);
+  EXPECT_THAT(collected.out, testing::AllOf(HasSubstr("failed: case 1 (camera.pixels = [2048, 2048]): out of memory"),
+                                            HasSubstr("the next run tries it again")));
+  EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 1);
+  EXPECT_EQ(json_of({"sweep", "run", "run"})["computed"], 0);
+}
+
+// What check_memory refuses before it is allocated lacks memory too: 10^11 px take 3.6 TB.
+TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
+  plan("run");
+  std::string manifest = read("run/manifest.jsonl");  // planning would have refused it on this machine
+  write("run/manifest.jsonl", with(manifest, "pixels = [64, 64]", "pixels = [400000, 250000]"));
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    Outcome const outcome = gladstone({"sweep", "run", "run", "--json"});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
+    EXPECT_EQ(ran["computed"], attempt == 0 ? 2 : 1);
+    EXPECT_EQ(ran["done"], 1);
+    EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("GB of memory"));
+    EXPECT_EQ(ran["failures"][0]["again"], true);
+  }
+}
+
+// A name in Latin-1, as old disks have them. JSON and TOML hold UTF-8 alone, so that a manifest cannot name a file so;
+// the folders of a study, of its base and of a RUN may be called anything.
+TEST_F(Sweeps, FoldersWhoseNamesAreNoUtf8Work) {
+  std::string const folder = "caf\xe9";
+  std::filesystem::create_directory(in(folder));
+  write(folder + "/setup.toml", small_setup);
+  write(folder + "/study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
+  std::string const run = folder + "/run", shown = "caf\xef\xbf\xbd/run";
+  EXPECT_EQ(json_of({"sweep", "plan", folder + "/study.toml", "-o", run, "--device", "cpu"})["run"], shown);
+  EXPECT_EQ(json_of({"sweep", "run", run, "--jobs", "2"})["done"], 2);
+  EXPECT_EQ(json_of({"sweep", "status", run})["run"], shown);
+  EXPECT_EQ(json_of({"sweep", "collect", run})["figures"].size(), 4u);
+  EXPECT_THAT(succeed({"sweep", "status", run}), HasSubstr(run + ": 2 cases, 2 done"));
+  Hdf5Reader const table(in(run + "/study.h5").string());
+  EXPECT_EQ(table.read("lens.f_number")[1], 16);
+
+  write(folder + "/dots.csv", "x_mm,y_mm\n0,0\n");
+  write(folder + "/setup.toml",
+        with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  expect_refused({"sweep", "plan", folder + "/study.toml", "-o", "other", "--device", "cpu"}, 2,
+                 {folder + "/dots.csv: holds bytes that are no UTF-8", "rename the file or the folder"});
 }
 
 TEST_F(Sweeps, AnInputThatHasChangedStopsTheRun) {

@@ -5,8 +5,14 @@
 # anybody else. Keys, sockets, states and logs lie in a temporary folder; whatever happens, everything that the cluster started is stopped and the folder
 # removed. The command finds the cluster by SLURM_CONF, its logs in the folder of that file.
 # Exit status: the command's; 77 where there is no Slurm to start, or where only root could start it; 1 where it does not
-# come up for root either. Its logs then go to stderr.
+# come up for root either, and with GLADSTONE_SLURM=required in the environment instead of 77. Its logs then go to stderr.
 set -eu
+
+skip() {  # REASON
+  [ "${GLADSTONE_SLURM:-}" != required ] || { echo "not skipped, since GLADSTONE_SLURM=required: $1" >&2; exit 1; }
+  echo "skipped: $1" >&2
+  exit 77
+}
 
 # Ends all that runs on the cluster in this folder: daemons, steps and jobs carry its SLURM_CONF in their environment.
 end_cluster() {
@@ -24,15 +30,10 @@ fi
 
 PATH=$PATH:/usr/sbin:/sbin
 for program in munged slurmctld slurmd sbatch; do
-  command -v $program >/dev/null || {
-    echo "skipped: no $program here; install Debian's packages munge, slurmctld, slurmd and slurm-client" >&2
-    exit 77
-  }
+  command -v $program >/dev/null || skip "no $program here; install Debian's packages munge, slurmctld, slurmd and slurm-client"
 done
-user=$(id -un 2>/dev/null) || {  # root or anybody, but jobs are started by name
-  echo "skipped: user $(id -u) has no name, and Slurm starts no jobs then; run as root" >&2
-  exit 77
-}
+# root or anybody, but jobs are started by name
+user=$(id -un 2>/dev/null) || skip "user $(id -u) has no name, and Slurm starts no jobs then; run as root"
 
 folder=$(mktemp -d /tmp/gladstone_slurm_XXXXXX)
 log=$folder/log
@@ -120,7 +121,6 @@ start || { kill $controller $node 2>/dev/null; start; } || {
   echo "the Slurm cluster did not come up; what it said:" >&2
   tail -n 20 "$log"/* >&2
   [ "$user" = root ] && exit 1
-  echo "skipped: run as root" >&2
-  exit 77
+  skip "run as root"
 }
 on_cluster "$@"

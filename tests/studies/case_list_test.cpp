@@ -46,12 +46,12 @@ TEST(CaseList, CasesBeyondTheStudyAreRefusedWithItsSize) {
 
 TEST(CaseSelection, TakesAPieceOfTheListThatIsNamed) {
   std::vector<ManifestCase> const cases(10);
-  EXPECT_EQ(selected_cases(cases, {}).size(), 10u);
-  EXPECT_THAT(selected_cases(cases, {std::nullopt, 1, 3}), ElementsAre(3, 4, 5));
-  EXPECT_THAT(selected_cases(cases, {"0-3,7"}), ElementsAre(0, 1, 2, 3, 7));
-  EXPECT_THAT(selected_cases(cases, {"0-3,7", 0, 2}), ElementsAre(0, 1));
-  EXPECT_THAT(selected_cases(cases, {"0-3,7", 1, 2}), ElementsAre(2, 3, 7));
-  EXPECT_THROW(selected_cases(cases, {""}), DataError);
+  EXPECT_EQ(selected_cases(cases.size(), {}).size(), 10u);
+  EXPECT_THAT(selected_cases(cases.size(), {std::nullopt, 1, 3}), ElementsAre(3, 4, 5));
+  EXPECT_THAT(selected_cases(cases.size(), {"0-3,7"}), ElementsAre(0, 1, 2, 3, 7));
+  EXPECT_THAT(selected_cases(cases.size(), {"0-3,7", 0, 2}), ElementsAre(0, 1));
+  EXPECT_THAT(selected_cases(cases.size(), {"0-3,7", 1, 2}), ElementsAre(2, 3, 7));
+  EXPECT_THROW(selected_cases(cases.size(), {""}), DataError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "render/base/content_hash.h"
+#include "render/base/hdf5_file.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
@@ -56,11 +57,13 @@ class Runs : public StudyFolder {
 };
 
 TEST_F(Runs, AManifestReadsBackAsItWasWritten) {
-  auto const written = planned(), read = read_manifest(in("run"));
+  auto const written = planned();
+  auto const read = read_manifest(in("run"));
   ASSERT_EQ(read.size(), 4u);
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_EQ(manifest_line(read[i]), manifest_line(written[i]));
     EXPECT_EQ(read[i].line_hash, written[i].line_hash);
+    EXPECT_EQ(read.line_hash(i), written[i].line_hash);
     EXPECT_EQ(read[i].index, i);
   }
   EXPECT_TRUE(std::isinf(read[2].parameters[0].second.number.value()));
@@ -111,6 +114,19 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   }
   write("run/manifest.jsonl", "");
   EXPECT_THAT(reading_fails(), testing::HasSubstr("is empty"));
+
+  // damage within a line is met where its case is asked for, and not before
+  std::string damaged = whole;
+  damaged[damaged.find("\"seed\"", second)] = ' ';
+  write("run/manifest.jsonl", damaged);
+  Manifest const manifest = read_manifest(in("run"));
+  EXPECT_EQ(manifest[0].index, 0u);
+  try {
+    manifest[1];
+    ADD_FAILURE() << "read";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("manifest.jsonl:2: is damaged"));
+  }
 }
 
 TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
@@ -124,7 +140,7 @@ TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   auto more = plan_study(longer, "cpu");
   EXPECT_EQ(write_plan(in("run"), longer, more), Planned::replaced);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
-  EXPECT_TRUE(read_result(in("run"), more[1]).has_value());
+  EXPECT_TRUE(read_result(in("run"), 1, more[1].line_hash).has_value());
 
   // another study would lose the result
   StudyFile const other = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
@@ -177,24 +193,29 @@ TEST_F(Runs, AResultIsWholeOrNone) {
   CaseResult written = result_of(cases[2], 0.1 + 0.2);
   written.warnings = {"a \"quoted\" warning"};
   write_result(in("run"), written);
-  auto const read = read_result(in("run"), cases[2]);
+  auto const read = read_result(in("run"), 2, cases[2].line_hash);
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->measures[0].second, 0.1 + 0.2);
   EXPECT_TRUE(std::isnan(read->measures[1].second));
   EXPECT_EQ(read->warnings, written.warnings);
+  auto const head = read_result(in("run"), 2, cases[2].line_hash, ResultPart::head);
+  ASSERT_TRUE(head.has_value());
+  EXPECT_EQ(head->warnings, written.warnings);
+  EXPECT_TRUE(head->measures.empty());
 
+  written.warnings = {"one that quotes \",\"measures\":{ itself"};
   std::string const text = result_text(written);
   ASSERT_TRUE(parse_result(text, "0.json").has_value());
+  EXPECT_EQ(parse_result(text, "0.json", ResultPart::head).value().warnings, written.warnings);
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_FALSE(parse_result(text.substr(0, size), "0.json").has_value());
   for (std::size_t at = 0; at < text.size(); ++at) {  // any single damaged byte
     std::string damaged = text;
     damaged[at] = static_cast<char>(damaged[at] ^ 1);
     EXPECT_FALSE(parse_result(damaged, "0.json").has_value()) << at;
+    EXPECT_FALSE(parse_result(damaged, "0.json", ResultPart::head).has_value()) << at;
   }
-  ManifestCase other = cases[2];
-  other.line_hash = cases[1].line_hash;
-  EXPECT_FALSE(read_result(in("run"), other).has_value());
+  EXPECT_FALSE(read_result(in("run"), 2, cases[1].line_hash).has_value());
 }
 
 TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
@@ -205,9 +226,9 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   std::string const older = "{\"hash\":\"" + content_hash(rest) + "\"," + rest;
   write("run/cases/2.json", older);
   StudyFile const file = study(two_axes);
-  std::vector<std::function<void()>> const uses{[&] { read_result(in("run"), cases[2]); },
+  std::vector<std::function<void()>> const uses{[&] { read_result(in("run"), 2, cases[2].line_hash); },
                                                 [&] {
-                                                  state_of(in("run"), cases, {0, 1, 2, 3});
+                                                  state_of(in("run"), read_manifest(in("run")), {0, 1, 2, 3});
                                                 },
                                                 [&] { read_study_table(in("run")); },
                                                 [&] { write_plan(in("run"), file, cases); }};
@@ -245,6 +266,45 @@ TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
   EXPECT_EQ(table.rows[1].status, CaseStatus::missing);
   EXPECT_EQ(table.rows[3].error, "no such thing");
   EXPECT_EQ(table.unfinished(), (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST_F(Runs, ATableSaysWhichBuildsComputedIt) {
+  auto const cases = planned();
+  for (std::size_t const index : {3, 1, 0}) {
+    CaseResult result = result_of(cases[index], 0.25);
+    result.build = index == 1 ? "0.2.0 (beef)" : "0.1.0 (cafe)";
+    write_result(in("run"), result);
+  }
+  StudyTable const table = collect_study(in("run"));
+  EXPECT_EQ(table.builds(), (std::vector<std::string>{"0.1.0 (cafe)", "0.2.0 (beef)"}));
+  Hdf5Reader const file(in("run/study.h5"));
+  EXPECT_EQ(file.attribute("computed_by"), "[\"0.1.0 (cafe)\",\"0.2.0 (beef)\"]");
+}
+
+TEST_F(Runs, OnlyFailuresThatAreDueAreForgottenAndNotThoseThatOthersCompute) {
+  auto const cases = planned();
+  for (std::size_t index = 0; index < 4; ++index) {
+    CaseResult result = result_of(cases[index], 0.5);
+    if (index > 0) result.status = CaseStatus::failed;
+    result.again = index >= 2;  // lacked memory
+    write_result(in("run"), result);
+  }
+  auto const there = [&](std::size_t index) {
+    return read_result(in("run"), index, cases[index].line_hash).has_value();
+  };
+  std::vector<std::size_t> const all{0, 1, 2, 3};
+  {
+    Claims other(in("run"), Claims::Use::take);
+    ASSERT_TRUE(other.take(3));
+    forget_failures(in("run"), read_manifest(in("run")), all, {});
+  }
+  EXPECT_TRUE(there(0) && there(1) && !there(2) && there(3));
+  forget_failures(in("run"), read_manifest(in("run")), all, {});
+  EXPECT_TRUE(there(0) && there(1) && !there(3));
+  RunSelection retry;
+  retry.retry_failed = true;
+  forget_failures(in("run"), read_manifest(in("run")), all, retry);
+  EXPECT_TRUE(there(0) && !there(1));
 }
 
 TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
@@ -288,7 +348,7 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
 TEST_F(Runs, LookingAtClaimsWritesNothing) {
   auto const cases = planned();
   std::filesystem::remove(in("run/claims"));
-  RunState const state = state_of(in("run"), cases, {0, 1});
+  RunState const state = state_of(in("run"), read_manifest(in("run")), {0, 1});
   EXPECT_EQ(state.missing.size(), 2u);
   EXPECT_TRUE(state.running.empty());
   EXPECT_FALSE(std::filesystem::exists(in("run/claims")));

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace gladstone {
+
+/// A JSON value as text, indented to be read. Bytes that are no UTF-8, which names of files may have and JSON may not,
+/// are shown as U+FFFD.
+template <class Json>
+std::string json_text(Json const& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Whether a text is UTF-8: JSON and TOML hold no other.
+inline bool is_utf8(std::string const& text) {
+  nlohmann::json const json = text;
+  return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) == json;
+}
+
+}  // namespace gladstone
