@@ -45,7 +45,7 @@ BENCHMARK(spread_over_pixels);
 void deposit_spot(benchmark::State& state) {
   Scene const scene = table1_scene(2, 64);
   std::optional<AiryTable> airy;
-  LightPatch patch(make_spot(scene, airy));
+  LightPatch patch(make_spot(scene, airy), {});
   double p = 99.0;
   for (auto _ : state) {
     patch.deposit({p, 101.0 - 0.01 * p}, 1.0, nullptr, 1.0);
