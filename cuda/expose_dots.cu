@@ -19,15 +19,6 @@ struct BlockState {
   double sums[FlowFit::most_sums];
 };
 
-struct FitScatter {
-  double unexplained = 0, square = 0;
-  __device__ FitScatter& operator+=(FitScatter const& o) {
-    unexplained += o.unexplained;
-    square += o.square;
-    return *this;
-  }
-};
-
 /// FlowFit over a dot's rays by a whole block. @param tile tile_rays rows of factors and weight
 template <class T>
 __device__ void fit_flow(LightModel const& model, RayRecord<T> const* rays, std::uint64_t count, BlockState& state,
@@ -76,16 +67,13 @@ __device__ void fit_flow(LightModel const& model, RayRecord<T> const* rays, std:
   __syncthreads();
   if (threadIdx.x < warp_size) fit.solve(state.sums, threadIdx.x, warp_size, [] { __syncwarp(); });
   __syncthreads();
-  FitScatter scatter;
+  FlowScatter scatter;
   for (std::uint64_t i = threadIdx.x; i < count; i += threads) {
     RayRecord<double> const ray = widened(rays[i]);
-    if (!(ray.flow_weight > 0)) continue;
-    Vec2d const hit = flow_displacement(model, ray), rest = hit - fit.displacement(ray.place, ray.pupil);
-    scatter.square += ray.flow_weight * dot(hit - mean, hit - mean);
-    scatter.unexplained += ray.flow_weight * dot(rest, rest);
+    if (ray.flow_weight > 0) scatter += fit.scatter(ray, flow_displacement(model, ray), mean);
   }
-  scatter = block_sum(scatter, static_cast<FitScatter*>(reduction));
-  if (threadIdx.x == 0) fit.settle(mean, scatter.unexplained, scatter.square);
+  scatter = block_sum(scatter, static_cast<FlowScatter*>(reduction));
+  if (threadIdx.x == 0) fit.settle(mean, scatter);
   __syncthreads();
 }
 

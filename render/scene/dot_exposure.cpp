@@ -225,14 +225,11 @@ FlowFit DotExposure::fit_flow() const {
   int const first_target = terms * (terms + 1) / 2;
   Vec2d const mean = Vec2d{sums[first_target], sums[first_target + terms]} / sums[0];
   fit.solve(sums, 0, 1, [] {});
-  double unexplained = 0, square = 0;
+  FlowScatter scatter;
   for (RayRecord<double> const& ray : rays_) {
-    if (!(ray.flow_weight > 0)) continue;
-    Vec2d const hit = flow_displacement(model_, ray), rest = hit - fit.displacement(ray.place, ray.pupil);
-    square += ray.flow_weight * dot(hit - mean, hit - mean);
-    unexplained += ray.flow_weight * dot(rest, rest);
+    if (ray.flow_weight > 0) scatter += fit.scatter(ray, flow_displacement(model_, ray), mean);
   }
-  fit.settle(mean, unexplained, square);
+  fit.settle(mean, scatter);
   return fit;
 }
 

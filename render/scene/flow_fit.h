@@ -6,6 +6,18 @@
 
 namespace gladstone {
 
+/// How rays' displacements scatter: weighted sums of squares.
+struct FlowScatter {
+  double unexplained = 0;  ///< of |hit - fit|^2
+  double square = 0;       ///< of |hit - mean|^2
+
+  GLADSTONE_HD FlowScatter& operator+=(FlowScatter const& o) {
+    unexplained += o.unexplained;
+    square += o.square;
+    return *this;
+  }
+};
+
 /// A smooth model of a dot's light in the flow: displacement as a polynomial of the place on the source (cubic) and of
 /// the pupil point (quadratic), arrival on the lens plane as a linear function of both. Where the rays are few, or the
 /// source is a point, the model is simpler. By least squares over a dot's rays: prepare, sum products of factors over
@@ -78,10 +90,15 @@ class FlowFit {
     sync();
   }
 
+  /// A ray's part in the scatter about the fit and about the mean. @param hit its displacement
+  GLADSTONE_HD FlowScatter scatter(RayRecord<double> const& ray, Vec2d hit, Vec2d mean) const {
+    Vec2d const rest = hit - displacement(ray.place, ray.pupil);
+    return {ray.flow_weight * dot(rest, rest), ray.flow_weight * dot(hit - mean, hit - mean)};
+  }
   /// Where the field is finer than a polynomial can follow, the mean serves as well and is cheaper to integrate.
-  /// @param unexplained,square weighted sums of |hit - displacement()|^2 and of |hit - mean|^2 over the rays
-  GLADSTONE_HD void settle(Vec2d mean, double unexplained, double square) {
-    if (unexplained <= 0.1 * square) return;
+  /// @param scatter of all rays
+  GLADSTONE_HD void settle(Vec2d mean, FlowScatter const& scatter) {
+    if (scatter.unexplained <= 0.1 * scatter.square) return;
     terms_ = 1;
     displacement_[0] = mean;
   }

@@ -125,6 +125,9 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
         differ += recorded.levels->flow().data()[i] != on_host.levels->flow().data()[i];
       }
       EXPECT_LE(differ, 2 * recorded.levels->flow().size() / 10000);
+      // where light that differs in its last bits rounds, or counts electrons, to the other side
+      EXPECT_LE(largest_difference(recorded.levels->reference(), on_host.levels->reference()), 1);
+      EXPECT_LE(largest_difference(recorded.levels->flow(), on_host.levels->flow()), 1);
       EXPECT_TRUE(same_bits(recorded.levels->flow(), kept.kept->record(detector).levels->flow()));
 
       // and correlated where they are, as if they had been brought to the host and back
