@@ -50,12 +50,14 @@ struct DotBoxes {
   /// @param origin image of the dot displaced by zero [px]
   GLADSTONE_HD DotBoxes(BoxLattice const& of_sensor, Vec2d origin) : lattice(of_sensor) {
     using std::floor;
-    double const per_side = lattice.per_side(), side = lattice.side();
+    auto const nearest = [per_side = lattice.per_side()](double p) {
+      double const at = floor(p * per_side + 0.5);
+      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // beyond, displacements are too far from it to be sorted
+    };
     origin = origin - Vec2d{BoxLattice::aside, BoxLattice::aside};
-    Vec2d const at{floor(origin.x * per_side + 0.5), floor(origin.y * per_side + 0.5)};
-    if (!(at.x > -1e8 && at.x < 1e8 && at.y > -1e8 && at.y < 1e8)) return;
+    Vec2d const at{nearest(origin.x), nearest(origin.y)};
     first = {static_cast<int>(at.x), static_cast<int>(at.y)};
-    shift = origin - side * at;
+    shift = origin - lattice.side() * at;
   }
   GLADSTONE_HD Vec2<int> box_of(Vec2d displacement) const {
     using std::floor;
