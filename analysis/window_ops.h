@@ -6,8 +6,9 @@
 #include "render/base/units.h"
 #include "render/base/vec.h"
 
-/// What happens to one interrogation window before and after its Fourier transform, row by row, without allocation:
-/// the same functions serve the CPU and a CUDA kernel (one row per lane).
+/// What happens to one interrogation window before and after its Fourier transform, row by row, without allocation. The
+/// CPU runs it so; CUDA's kernels share the cross spectrum, the order and the refinement of peaks and their ratio, and
+/// take the sums over a window's pixels by the threads that hold them: tests compare the two window by window.
 namespace gladstone {
 
 /// How the pixels of a window count.

@@ -9,7 +9,7 @@ namespace gladstone::cuda {
 /// What the block's threads have in common while they do.
 struct BoxState {
   static constexpr int group = 4;  ///< squares whose light is worked out together
-  static constexpr int most = BoxRange::most * BoxRange::most;
+  static constexpr int most = BoxRange::most;
   BoxRange range;
   int listed;                                         ///< squares of a phase that light falls on
   unsigned short list[most];                          ///< their indices
@@ -93,7 +93,7 @@ __device__ inline void list_boxes(LightModel const& model, DotBoxes const& boxes
   __syncthreads();
   int const count = state.range.count();
   for (int box = threadIdx.x; box < count; box += dot_threads) {
-    Vec2<int> const square = boxes.first + state.range.box(box);
+    Vec2<int> const square = boxes.square(state.range.box(box));
     if (boxes.lattice.phase(square.y) * boxes.lattice.per_pixel + boxes.lattice.phase(square.x) != phase) continue;
     bool lit = false;
     for (int place = 0; place < model.places.count; ++place) {
@@ -115,11 +115,11 @@ __device__ inline void sum_boxes(LightModel const& model, CorrectedCone const& c
     int const task = first + static_cast<int>(threadIdx.x) / team;
     int const which = min(task / model.places.count, here - 1), place = task % model.places.count;
     int const box = list[which], end = task < tasks ? state.ends[place][box] : 0;
-    Vec2<int> const square = state.range.box(box);
+    Vec2<int> const place_of_box = state.range.box(box);
     DisplacementMoments moments;
     for (int i = state.begin(place, box) + member; i < end; i += team) {
       ConeLight const& light = points.light[place * points.count + points.order[place * points.count + i]];
-      moments.add(light.weight, boxes.from_middle(light.displacement, square));
+      moments.add(light.weight, boxes.from_middle(light.displacement, place_of_box));
     }
 #pragma unroll
     for (double& moment : moments.of) {
@@ -164,7 +164,7 @@ __device__ inline void add_boxes(MomentImages const& of_moments, DotBoxes const&
 #pragma unroll
     for (int which = 0; which < BoxState::group; ++which) {
       if (pixel < pixels && which < here) {
-        Vec2<int> const square = boxes.first + state.range.box(list[which]);
+        Vec2<int> const square = boxes.square(state.range.box(list[which]));
         int const column = boxes.lattice.pixel(square.x) - of_moments.half + pixel % width;
         int const row = boxes.lattice.pixel(square.y) - of_moments.half + pixel / width;
         double const share = whole_units(light[which]);
@@ -187,8 +187,13 @@ __device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan,
                                    DeviceImages const& images) {
   MomentImages const& of_moments = model.moment_images;
   int const places = model.places.count;
-  DotBoxes const boxes(of_moments.lattice, plan.origin + cone.origin());
+  DotBoxes boxes(of_moments.lattice, plan.origin + cone.origin(), 1);
   find_boxes(model, boxes, points, state);
+  while (!state.range.few() && boxes.step < DotBoxes::most_step) {
+    __syncthreads();  // before the range is found anew
+    boxes = DotBoxes(of_moments.lattice, plan.origin + cone.origin(), 2 * boxes.step);
+    find_boxes(model, boxes, points, state);
+  }
   if (!state.range.few()) return false;
   for (int place = threadIdx.x / warp_size; place < places; place += dot_warps) {
     sort_points(boxes, state.range, points.light + place * points.count, points.count,

@@ -136,9 +136,10 @@ __global__ void __launch_bounds__(threads, 4)
       if (threadIdx.x == 0) cone = model.corrected(sources.centre[index], cones[i].check);
       __syncthreads();
       ConeLight* const kept = room + blockIdx.x * points_a_block;
-      integrate_cone(model, cone, cone_state, kept);
+      bool const sound = integrate_cone(model, cone, cone_state, kept);
       ConePoints const points{kept, order + blockIdx.x * points_a_block, model.cone_points(cone_state.simple)};
-      if (expose_wide(model, plan, cone, cone_state, points, *reinterpret_cast<BoxState*>(scratch), patch, images)) {
+      if (sound &&
+          expose_wide(model, plan, cone, cone_state, points, *reinterpret_cast<BoxState*>(scratch), patch, images)) {
         continue;
       }
       __syncthreads();
@@ -187,8 +188,9 @@ void expose_dots(LightModel const& model, SourcesView<double> const& sources, Ba
   int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = shared_bytes(side);
   allow_shared_bytes(kernel, shared);
-  int blocks = blocks_for(kernel, threads, shared, std::min<std::uint64_t>(batch.dots, most_blocks));
   std::size_t const points_a_block = points_of_a_cone(model);
+  std::uint64_t const wanted = points_a_block > 0 ? std::min<std::uint64_t>(batch.dots, most_blocks) : batch.dots;
+  int blocks = blocks_for(kernel, threads, shared, wanted);
   RoomForCones room = RoomForCones::make(points_a_block, blocks);
   kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, room.light.data(),
                                       room.order.data(), points_a_block);

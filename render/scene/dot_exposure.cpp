@@ -290,10 +290,20 @@ std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
 bool DotExposure::deposit_wide(ConeIntegral const& integral) {
   int const places = model_.places.count;
   std::size_t const points = cone_points_.size() / static_cast<std::size_t>(places);
-  DotBoxes const boxes(model_.moment_images.lattice, plan_.origin + integral.cone.origin());
-  BoxRange range;
-  for (ConeLight const& light : cone_points_) {
-    if (light.weight != 0) range.include(boxes.box_of(light.displacement));
+  BoxLattice const& lattice = model_.moment_images.lattice;
+  Vec2d const origin = plan_.origin + integral.cone.origin();
+  auto const span_of = [&](DotBoxes const& boxes) {
+    BoxRange span;
+    for (ConeLight const& light : cone_points_) {
+      if (light.weight != 0) span.include(boxes.box_of(light.displacement));
+    }
+    return span;
+  };
+  DotBoxes boxes(lattice, origin, 1);
+  BoxRange range = span_of(boxes);
+  while (!range.few() && boxes.step < DotBoxes::most_step) {
+    boxes = DotBoxes(lattice, origin, 2 * boxes.step);
+    range = span_of(boxes);
   }
   if (!range.few()) return false;
   parts_.assign(static_cast<std::size_t>(range.count() * places), {});
@@ -308,7 +318,7 @@ bool DotExposure::deposit_wide(ConeIntegral const& integral) {
     DisplacementMoments* const part = parts_.data() + index * places;
     if (std::all_of(part, part + places, [](DisplacementMoments const& m) { return m.of[0] == 0; })) continue;
     for (int i = 0; i < places; ++i) integral.cone.finish(part[i], integral.without_medium[i]);
-    patches_[1].deposit(boxes.first + range.box(index), plan_.expected_weight, MomentField::fit(model_.places, part),
+    patches_[1].deposit(boxes.square(range.box(index)), plan_.expected_weight, MomentField::fit(model_.places, part),
                         images_[1], light_per_weight_);
   }
   return true;

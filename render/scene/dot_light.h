@@ -79,16 +79,21 @@ struct LightModel {
   GLADSTONE_HD bool by_moments() const {
     return controlled && spot.model != SpotModel::airy && spot.model != SpotModel::none && spot.half_width() <= 22;
   }
-  /// Most side of the squares into which wide distributions of displacements are sorted [px]: within one, four orders
-  /// of moments give the images of dots to 2e-5 of their peak (rms over lit pixels; 1e-4 at worst).
+  /// Most side of the squares into which wide distributions of displacements are sorted [px], within which four orders
+  /// of moments do. The series runs in displacements over sigma; a pixel blurs what it leaves but does not shorten it,
+  /// and a disc, of which a spot is but the rim's blur, allows more than a point. Table 1: 2e-5 of the peak, rms over
+  /// lit pixels, 1e-4 at worst.
   GLADSTONE_HD double most_box_side() const {
     using std::sqrt;
-    return sqrt(spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12);
+    double const sigma = spot.gaussian.sigma, blur = sqrt(sigma * sigma + 1.0 / 12);
+    double const allowed = (image.source_half > 0 ? 1.5 : 1.0) * sigma;
+    return blur < allowed ? blur : allowed;
   }
   /// Whether four orders of moments about the mean give a spot to 1e-4 of its peak for all of a distribution.
   GLADSTONE_HD bool narrow(DisplacementMoments const& moments) const {
-    double const blur2 = spot.gaussian.sigma * spot.gaussian.sigma + 1.0 / 12;
-    return moments.square() <= 0.16 * blur2 * moments.of[0];
+    double const sigma2 = spot.gaussian.sigma * spot.gaussian.sigma, blur2 = 0.16 * (sigma2 + 1.0 / 12);
+    double const allowed = (image.source_half > 0 ? 0.33 : 0.15) * sigma2;
+    return moments.square() <= (blur2 < allowed ? blur2 : allowed) * moments.of[0];
   }
   /// How a dot's light is laid down. @param moved the flow did something to some of its rays @param integrated its cone
   /// was, by the table @param narrow_cone narrow() at all places of the source

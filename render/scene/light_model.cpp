@@ -190,7 +190,7 @@ OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, 
     MomentImages& images = model.moment_images;
     images = MomentImages::plan(image.half_size_px(), spot->gaussian, model.most_box_side(),
                                 sources.half_size > 0 ? PlaceRule::terms : 1);
-    if (by == MomentImagesBy::host) {
+    if (by == MomentImagesBy::host && images.exist()) {
       moment_images = make_moment_images(images, source.points, source.weights, image.half_size_px(), spot->gaussian);
       images.values = moment_images.data();
     }

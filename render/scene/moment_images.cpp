@@ -68,10 +68,10 @@ MomentImages MomentImages::plan(double half_px, GaussianSpot<double> const& spot
   // the source's points lie up to half a pixel further out than seen from the pixel's middle, spots about their pixels
   images.half = static_cast<int>(std::ceil(half_px + 0.5 + BoxLattice::aside)) + spot.half_width();
   images.terms = terms;
-  int const reach = 2 * spot.half_width() + 1, area = images.width() * images.width();
-  images.stride = (area + lanes_for(reach) - reach + pad - 1) / pad * pad;
-  bool const fits = reach <= most_lanes && images.size() * sizeof(double) <= most_bytes;
-  return fits ? images : MomentImages{};
+  int const reach = 2 * spot.half_width() + 1;
+  if (reach > most_lanes || !(half_px < 1000)) return {};
+  images.stride = (images.width() * images.width() + lanes_for(reach) - reach + pad - 1) / pad * pad;
+  return images.size() * sizeof(double) <= most_bytes ? images : MomentImages{};
 }
 
 std::vector<double> make_moment_images(MomentImages const& plan, std::vector<Vec2d> const& points,

@@ -41,14 +41,18 @@ struct BoxLattice {
   GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
 };
 
-/// A dot's squares of displacement: those of the sensor on which its light falls, counted from the one at its middle.
+/// A dot's squares of displacement, counted from the one at its middle: those of the sensor or, where they would be too
+/// many, larger ones about every second or fourth of these along either axis.
 struct DotBoxes {
+  static constexpr int most_step = 4;
   BoxLattice lattice;
+  int step = 1;           ///< squares of the sensor from one to the next
   Vec2<int> first{0, 0};  ///< of the sensor's squares: the dot's square (0, 0)
   Vec2d shift{};          ///< of displacement zero from that square's middle [px]
 
   /// @param origin image of the dot displaced by zero [px]
-  GLADSTONE_HD DotBoxes(BoxLattice const& of_sensor, Vec2d origin) : lattice(of_sensor) {
+  GLADSTONE_HD DotBoxes(BoxLattice const& of_sensor, Vec2d origin, int squares_apart)
+      : lattice(of_sensor), step(squares_apart) {
     using std::floor;
     auto const nearest = [per_side = lattice.per_side()](double p) {
       double const at = floor(p * per_side + 0.5);
@@ -61,7 +65,7 @@ struct DotBoxes {
   }
   GLADSTONE_HD Vec2<int> box_of(Vec2d displacement) const {
     using std::floor;
-    auto const cell = [per_side = lattice.per_side()](double d) {
+    auto const cell = [per_side = lattice.per_side() / step](double d) {
       double const at = floor(d * per_side + 0.5);
       return static_cast<int>(at < -1000 ? -1000 : (at > 1000 ? 1000 : at));
     };
@@ -69,16 +73,18 @@ struct DotBoxes {
   }
   /// A displacement counted from a square's middle [px].
   GLADSTONE_HD Vec2d from_middle(Vec2d displacement, Vec2<int> box) const {
-    double const side = lattice.side();
+    double const side = step * lattice.side();
     return displacement + shift - Vec2d{side * box.x, side * box.y};
   }
+  /// The sensor's square at the middle of a box.
+  GLADSTONE_HD Vec2<int> square(Vec2<int> box) const { return first + step * box; }
 };
 
 /// The squares that a distribution of displacements spans.
 struct BoxRange {
   Vec2<int> low{0, 0}, high{0, 0};
 
-  static constexpr int most = 24;  ///< columns or rows that it pays to go through one by one
+  static constexpr int most = 576;  ///< that it pays to go through one by one
 
   GLADSTONE_HD void include(Vec2<int> box) {
     low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
@@ -87,7 +93,7 @@ struct BoxRange {
   GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
   GLADSTONE_HD int rows() const { return high.y - low.y + 1; }
   GLADSTONE_HD int count() const { return columns() * rows(); }
-  GLADSTONE_HD bool few() const { return columns() <= most && rows() <= most; }
+  GLADSTONE_HD bool few() const { return count() <= most; }
   GLADSTONE_HD int index(Vec2<int> box) const { return (box.y - low.y) * columns() + box.x - low.x; }
   GLADSTONE_HD Vec2<int> box(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
 };

@@ -28,20 +28,21 @@ inline double smooth_refractivity(Vec3d p, unsigned seed) {
 }
 
 /// Table 1 with no medium yet and `per_side`^2 dots of 3 px on a square lattice whose rays all cross the volume from
-/// face to face; a fixed number of rays per dot.
+/// face to face, or 0: its own random dots, 20 a window of 32 px; a fixed number of rays per dot.
 inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 512) {
   Setup setup;
   setup.camera.columns = setup.camera.rows = pixels;
   setup.target.kind = TargetKind::dots;
-  setup.target.dots_per_32px_window = 1;
+  setup.target.dots_per_32px_window = per_side > 0 ? 1 : 20;
   Scene scene = build_scene(setup);
+  scene.rays_per_dot = rays_per_dot;
+  if (per_side == 0) return scene;
   double const edge = 36.0, pitch = (setup.camera.columns - 1 - 2 * edge) / (per_side - 1);
   scene.dots.centre.clear();
   for (int j = 0; j < per_side; ++j) {
     for (int i = 0; i < per_side; ++i)
       scene.dots.centre.push_back(scene.to_target({edge + i * pitch, edge + j * pitch}));
   }
-  scene.rays_per_dot = rays_per_dot;
   return scene;
 }
 
