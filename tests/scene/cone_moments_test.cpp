@@ -235,7 +235,7 @@ class TableUnderFineSpots : public testing::TestWithParam<FineSpot> {};
 
 // Spots much finer than a pixel show what the series leaves: on the decayed plane a table with 256 rays gives the
 // images of four dots, rms over lit pixels, to 1.5 grey levels of 12 bits of what 65,536 rays each give alone, which
-// scatter by 0.3.
+// scatter by as much.
 TEST_P(TableUnderFineSpots, GivesTheirLight) {
   auto setup = table1_setup(96);
   setup.medium.field = dns_plane("late");
