@@ -188,9 +188,15 @@ class StudyReader {
       std::string const found = table.members.empty() ? "nothing" : '"' + table.members[0].key + '"';
       std::string hint;
       if (!table.members.empty()) {
-        auto const nearest = nearest_name(table.members[0].key, {"linear", "log"});
-        hint = nearest ? fmt::format("; did you mean \"{}\"?", *nearest)
-                       : fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, table.members[0].key);
+        std::string const& key = table.members[0].key;
+        auto nearest = nearest_name(key, {"linear", "log"});
+        if (key.starts_with("lin")) nearest = "linear";
+        if (key.starts_with("log")) nearest = "log";
+        if (nearest) {
+          hint = fmt::format("; did you mean \"{}\"?", *nearest);
+        } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was taken for the axis
+          hint = fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, key);
+        }
       }
       problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
       return;

@@ -244,7 +244,9 @@ TEST_F(BadStudies, AnAxisOfTheWrongType) {
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = 8\n", "3:1",
                  {"\"lens.f_number\" must be a list of values (it is a whole number); write [8]"});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { lin = [1, 2, 3] }\n", "3:1",
-                 {"{ linear = [first, last, count] }", "it is a table with \"lin\""});
+                 {"{ linear = [first, last, count] }", "it is a table with \"lin\"); did you mean \"linear\"?"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { logarithmic = [1, 2, 3] }\n", "3:1",
+                 {"did you mean \"log\"?"});
   expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
                  {"a key path stands in quotes: \"lens.f_number\""});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
