@@ -246,6 +246,23 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   EXPECT_EQ(content("run/cases/2.json"), older);
 }
 
+// Linux opens a folder like a file and fails at reading it; so it does with the memory of a process at address 0.
+TEST_F(Runs, AResultThatCannotBeReadIsMissingAndAFolderInItsPlaceIsNamed) {
+  auto const cases = planned();
+  std::filesystem::create_symlink("/proc/self/mem", in("run/cases/2.json"));
+  EXPECT_EQ(state_of(in("run"), read_manifest(in("run")), {2}).missing, std::vector<std::size_t>{2});
+  write_result(in("run"), result_of(cases[2], 0.5));
+  EXPECT_TRUE(read_result(in("run"), 2, cases[2].line_hash).has_value());
+
+  std::filesystem::create_directory(in("run/cases/3.json"));
+  try {
+    state_of(in("run"), read_manifest(in("run")), {3});
+    ADD_FAILURE() << "taken for a result";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(in("run/cases/3.json") + ": is a folder"));
+  }
+}
+
 TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {
   auto const cases = planned();
   write_result(in("run"), result_of(cases[0], 0.25));
