@@ -169,6 +169,27 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
 }
 
+// No process has the number 999999999: Linux ends at 2^22.
+TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
+  StudyFile const file = study(two_axes);
+  auto cases = plan_study(file, "cpu");
+  std::filesystem::create_directories(in("cut"));
+  write("cut/.manifest.jsonl.partial-999999999", "{\"mani");
+  write("cut/study.toml", "of somebody else");
+  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+  EXPECT_EQ(content("cut/study.toml"), "of somebody else");
+
+  std::filesystem::create_directories(in("cut/cases"));
+  write("cut/claims", "");
+  write("cut/cases/notes.txt", "precious");
+  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+
+  std::filesystem::remove(in("cut/cases/notes.txt"));
+  EXPECT_EQ(write_plan(in("cut"), file, cases), Planned::fresh);
+  EXPECT_EQ(read_manifest(in("cut")).size(), 4u);
+  EXPECT_FALSE(std::filesystem::exists(in("cut/.manifest.jsonl.partial-999999999")));
+}
+
 TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   std::filesystem::create_directory(in("package"));
   StudyFile const file = study(two_axes);
