@@ -83,7 +83,7 @@ void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px) {
   if (axis.numeric ? dense(axis, width_px) : crowded(axis, width_px)) plot.command("set xtics rotate by 28 right");
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), axis.position[i]);
+    tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted_tic(axis.label[i]), axis.position[i]);
   }
   plot.command("set xtics (" + tics + ')');
 }

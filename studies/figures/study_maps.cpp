@@ -23,7 +23,7 @@ struct ErrorMap {
 std::string cell_tics(FigureAxis const& axis) {
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), i);
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", GnuplotFigure::quoted_tic(axis.label[i]), i);
   }
   return '(' + tics + ')';
 }

@@ -228,6 +228,17 @@ TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
   }
 }
 
+// gnuplot reads tics, and no other texts, as formats of numbers.
+TEST_F(StudyFigures, ShowPercentSignsInLabels) {
+  draw(grid({words("lens.psf", {"50 % stop", "100 %", "5 %% of it"}), words("medium.field", {"9 % up", "9 % down"})},
+            1));
+  for (char const* figure : {"error_against_lens_psf", "budget_lens_psf", "error_map_lens_psf_medium_field"}) {
+    for (char const* label : {">50 % stop<", ">100 %<", ">5 %% of it<", ">9 % up<", ">9 % down<"}) {
+      EXPECT_THAT(text(std::string(figure) + ".svg"), HasSubstr(label));
+    }
+  }
+}
+
 TEST_F(StudyFigures, ManyValuesAreBinned) {
   std::vector<double> many;
   for (int i = 0; i < 60; ++i) many.push_back(4.0 + i);
