@@ -49,19 +49,27 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
     command = command->get_subcommands().front();
     path += command->get_name() + ' ';
   }
+  bool chooses = !command;  // a command of several is what is missing
+  if (command) {
+    known.clear();
+    for (CLI::App const* one : command->get_subcommands([](CLI::App const*) { return true; })) {
+      known.push_back(one->get_name());
+    }
+    chooses = !known.empty();
+  }
   bool const is_option = name.starts_with("-");
   std::string message = "no command is named";
   if (!unknown.empty())
-    message = fmt::format("unknown {} \"{}\"", is_option ? "option" : command ? "argument" : "command", name);
+    message = fmt::format("unknown {} \"{}\"", is_option ? "option" : chooses ? "command" : "argument", name);
   if (is_option) {
     known = {"--help", "--version", "--json", "--quiet", "--threads", "--device"};
     for (CLI::Option const* option : (command ? command : &app)->get_options()) {
       for (std::string const& longer : option->get_lnames()) known.push_back("--" + longer);
     }
   }
-  if (auto const nearest = nearest_name(name, known); nearest && (is_option || !command)) {
+  if (auto const nearest = nearest_name(name, known); nearest && (is_option || chooses)) {
     message += "; did you mean \"" + *nearest + "\"?";
-  } else if (!command && !is_option) {
+  } else if (chooses && !is_option) {
     message += "; commands are " + quoted_list(known);
   }
   fmt::print(stderr, "gladstone: {} See gladstone {}--help\n", message.ends_with('?') ? message : message + '.', path);

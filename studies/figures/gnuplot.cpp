@@ -172,6 +172,12 @@ std::string GnuplotFigure::quoted(std::string_view text) {
   return result + "'";
 }
 
+std::string GnuplotFigure::quoted_tic(std::string_view text) {
+  std::string format;
+  for (char const c : text) format.append(c == '%' ? 2 : 1, c);
+  return quoted(format);
+}
+
 std::string_view house_colour(std::size_t index) {
   constexpr std::array<std::string_view, 7> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                     "#e69f00", "#56b4e9", "#404040"};

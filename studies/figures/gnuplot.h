@@ -47,6 +47,8 @@ class GnuplotFigure {
 
   /// Text as a gnuplot string.
   static std::string quoted(std::string_view text);
+  /// Text of a tic as a gnuplot string: gnuplot takes it for a format of the tic's number.
+  static std::string quoted_tic(std::string_view text);
 
  private:
   std::string store(std::span<double const> values);

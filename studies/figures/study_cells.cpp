@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace gladstone {
 namespace {
-
-/// Most places of an axis in a figure.
-constexpr std::size_t most_places = 12;
 
 /// "Z_D 250 mm" for the place of an axis titled "Z_D [mm]"; a category names itself.
 std::string place_name(FigureAxis const& axis, std::size_t place) {
@@ -22,9 +20,16 @@ std::string place_name(FigureAxis const& axis, std::size_t place) {
 
 }  // namespace
 
-StudyCells::StudyCells(StudyTable const& table) : table_(&table) {
+std::size_t sampled_places_in_maps(std::size_t points) {
+  if (points < 8) return most_places;
+  return std::min(most_places, static_cast<std::size_t>(std::sqrt(static_cast<double>(points) / 2.0)));
+}
+
+StudyCells::StudyCells(StudyTable const& table, std::size_t sampled_places) : table_(&table) {
   for (std::size_t k = 0; k < table.axes.size(); ++k) {
-    axes_.push_back(figure_axis(table.axes[k], most_places));
+    StudyAxis const& axis = table.axes[k];
+    axes_.push_back(figure_axis(axis, most_places));
+    if (axes_[k].numeric && axis.labels.size() == table.points.size()) axes_[k] = figure_axis(axis, sampled_places);
     if (axes_[k].size() > 1) varied_.push_back(k);
   }
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

@@ -9,10 +9,19 @@
 
 namespace gladstone {
 
+/// Most places of an axis in a figure.
+inline constexpr std::size_t most_places = 12;
+
+/// Places of sampled axes in maps, so that a cell has two of the study's points on average: sqrt(points / 2), 12 at
+/// most; for fewer than 8 points, of which no map can be made, as many as elsewhere.
+std::size_t sampled_places_in_maps(std::size_t points);
+
 /// The finished cases of a study, sorted by the places of its axes: what every figure of it is drawn from.
 class StudyCells {
  public:
-  explicit StudyCells(StudyTable const& table);
+  /// @param sampled_places most places of an axis of numbers that every point of the study has another one of, as
+  ///                       "sobol" samples them
+  explicit StudyCells(StudyTable const& table, std::size_t sampled_places = most_places);
 
   /// Axes that have more than one value.
   std::vector<std::size_t> const& varied() const { return varied_; }

@@ -83,7 +83,7 @@ void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px) {
   if (axis.numeric ? dense(axis, width_px) : crowded(axis, width_px)) plot.command("set xtics rotate by 28 right");
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), axis.position[i]);
+    tics += fmt::format("{}{} {:.10g}", i > 0 ? ", " : "", GnuplotFigure::quoted_tic(axis.label[i]), axis.position[i]);
   }
   plot.command("set xtics (" + tics + ')');
 }
@@ -124,7 +124,7 @@ std::string file_part(std::string key) {
 }  // namespace
 
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table) {
-  StudyCells const cells(table);
+  StudyCells const cells(table), map_cells(table, sampled_places_in_maps(table.points.size()));
   bool const repeated = table.repeats() > 1;
   StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
   StudyCells const points(point_table);
@@ -142,7 +142,7 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
     add(draw_budget(cells, varied[i], repeated ? &points : nullptr), "budget_" + name);
     if (repeated) add(draw_repeats(points, varied[i]), "repeats_" + name);
     for (std::size_t j = i + 1; j < varied.size(); ++j) {
-      add(draw_error_map(cells, varied[j], varied[i]),
+      add(draw_error_map(map_cells, varied[j], varied[i]),
           fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
     }
   }

@@ -23,7 +23,7 @@ struct ErrorMap {
 std::string cell_tics(FigureAxis const& axis) {
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
-    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", GnuplotFigure::quoted(axis.label[i]), i);
+    tics += fmt::format("{}{} {}", i > 0 ? ", " : "", GnuplotFigure::quoted_tic(axis.label[i]), i);
   }
   return '(' + tics + ')';
 }
@@ -42,9 +42,10 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
   std::vector<ErrorMap> maps{{"ray_truth.rms_px", "measured − ray truth [px]"},
                              {"eq9.rms_px", "measured − Eq. 9 [px]"}};
   bool repeats_alone = true;
-  std::size_t repeats = 0, filled = 0;
+  std::size_t repeats = 0, most_filled = 0;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (ErrorMap& map : maps) {
+    std::size_t filled = 0;
     for (std::size_t j = 0; j < y.size(); ++j) {
       for (std::size_t i = 0; i < x.size(); ++i) {
         std::vector<std::size_t> const rows = cells.rows_at({{x_axis, i}, {y_axis, j}});
@@ -61,8 +62,9 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
         high = std::max(high, error);
       }
     }
+    most_filled = std::max(most_filled, filled);
   }
-  if (!(high > 0) || filled < x.size() * y.size()) return nullptr;  // less than half of both: the axes go together
+  if (!(high > 0) || 2 * most_filled <= x.size() * y.size()) return nullptr;  // no more than half: the axes go together
 
   bool const logarithmic = high > 10 * low;
   double const cell = x.size() > 8 ? 50.0 : 62.0;

@@ -156,6 +156,21 @@ std::vector<CaseResult> whole_results(fs::path const& run) {
   return results;
 }
 
+/// Whether a folder holds nothing but what write_plan() leaves when it is cut short: by a full disk, or killed.
+bool left_by_a_cut_plan(fs::path const& folder) {
+  std::error_code error;
+  // study.toml is written after cases/ was made: alone it is somebody else's
+  bool const ours = fs::is_directory(folder / run_file::cases, error) && fs::is_empty(folder / run_file::cases, error);
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::string const name = entry->path().filename().string();
+    bool const partial = name.starts_with(fmt::format(".{}.partial-", run_file::manifest)) ||
+                         name.starts_with(fmt::format(".{}.partial-", run_file::study));
+    bool const written = name == run_file::cases || name == run_file::study || name == run_file::claims;
+    if (!partial && !(ours && written)) return false;
+  }
+  return !error;
+}
+
 }  // namespace
 
 std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& device) {
@@ -226,7 +241,7 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
                         "was planned from another study whose cases are being computed; choose another folder, or "
                         "stop them first");
     }
-  } else if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder, error))) {
+  } else if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !left_by_a_cut_plan(folder))) {
     throw OutputError(run, fmt::format("is there and holds no planned study (no {}); choose another folder or empty it",
                                        run_file::manifest));
   }

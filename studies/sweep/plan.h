@@ -22,7 +22,8 @@ enum class Planned { fresh, unchanged, replaced };
 
 /// Writes RUN/manifest.jsonl, with a copy of the study beside it. A RUN that is planned already stays as it is where
 /// the manifest is the same, and is planned anew where no result would be lost: each that is there belongs to the same
-/// line of the new manifest (more repeats come at the end).
+/// line of the new manifest (more repeats come at the end). What a plan that was cut short has left does not stand in
+/// the way.
 /// @throws OutputError where results would be lost, cases are being computed, or RUN holds something else;
 ///         DataError where RUN's results are of another version
 Planned write_plan(std::string const& run, StudyFile const& study, std::vector<ManifestCase>& cases);

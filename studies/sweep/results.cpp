@@ -17,6 +17,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
@@ -179,7 +180,14 @@ std::optional<CaseResult> read_result(std::string const& run, std::size_t index,
   std::string const path = result_path(run, index);
   std::ifstream file(path, std::ios::binary);
   if (!file) return std::nullopt;
-  std::optional<CaseResult> result = parse_result({std::istreambuf_iterator<char>(file), {}}, path, part);
+  std::ostringstream text;
+  text << file.rdbuf();  // up to where it can be read: what cannot is no whole result, and the next run's takes its
+                         // place
+  std::optional<CaseResult> result = parse_result(std::move(text).str(), path, part);
+  std::error_code error;
+  if (!result && std::filesystem::is_directory(path, error)) {
+    throw DataError(path, "is a folder, and stands where the result of a case belongs; remove it or move it elsewhere");
+  }
   if (!result || result->index != index || result->line_hash != line_hash) return std::nullopt;
   return result;
 }

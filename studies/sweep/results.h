@@ -45,9 +45,9 @@ enum class ResultPart { head, all };
 std::optional<CaseResult> parse_result(std::string const& text, std::string const& path,
                                        ResultPart part = ResultPart::all);
 
-/// The result of a case; nothing where there is none, or none that is whole and belongs to this very line.
+/// The result of a case; nothing where there is none, or none that can be read, is whole and belongs to this very line.
 /// @param line_hash of the case's line in the manifest
-/// @throws DataError where it is of another version
+/// @throws DataError where it is of another version, or a folder stands in its place
 std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
                                       ResultPart part = ResultPart::all);
 

@@ -67,8 +67,8 @@ class StudyReader {
                                          error.what()));
       }
     }
+    read_settings(root.table("study"));  // first: what a list may hold depends on the mode
     read_axes(root);
-    read_settings(root.table("study"));
     check_sizes();
     document_.finish();
     return std::move(study_);
@@ -137,13 +137,14 @@ class StudyReader {
       ParameterValue const& shown = value.parameter;
       std::string const what = shown.number ? number_label(*shown.number) : toml_text(value.node);
       auto const [known, fresh] = label_of.try_emplace(what, shown.label);
-      if (!fresh) {
-        std::string const names =
-            known->second == shown.label ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
+      bool const renamed = known->second != shown.label;
+      // of a zip the points must differ, not the values of one axis: see refuse_points_twice()
+      if (!fresh && (renamed || study_.mode != StudyMode::zip)) {
+        std::string const names = !renamed ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
         problem(element.place, fmt::format("\"{}\" has the value {} twice{}; remove one (repeats = N gives every case "
                                            "N times, with other dots)",
                                            axis.key, what, names));
-      } else if (!labels.insert(shown.label).second) {
+      } else if (fresh && !labels.insert(shown.label).second) {
         problem(element.place, fmt::format("\"{}\" has two values with the label {}; give one of them another label",
                                            axis.key, shown.label));
       }
@@ -187,9 +188,15 @@ class StudyReader {
       std::string const found = table.members.empty() ? "nothing" : '"' + table.members[0].key + '"';
       std::string hint;
       if (!table.members.empty()) {
-        auto const nearest = nearest_name(table.members[0].key, {"linear", "log"});
-        hint = nearest ? fmt::format("; did you mean \"{}\"?", *nearest)
-                       : fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, table.members[0].key);
+        std::string const& key = table.members[0].key;
+        auto nearest = nearest_name(key, {"linear", "log"});
+        if (key.starts_with("lin")) nearest = "linear";
+        if (key.starts_with("log")) nearest = "log";
+        if (nearest) {
+          hint = fmt::format("; did you mean \"{}\"?", *nearest);
+        } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was taken for the axis
+          hint = fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, key);
+        }
       }
       problem(table.place, fmt::format("\"{}\" {} (it is a table with {}){}", axis.key, forms, found, hint));
       return;
@@ -260,6 +267,26 @@ class StudyReader {
                           cases < 1e15 ? fmt::format("{:.0f}", cases) : fmt::format("{:.3g}", cases), most_cases));
     } else if (study_.mode != StudyMode::sobol) {
       for (AxisPlan const& axis : study_.axes) refuse_steps_of_nothing(axis);
+      if (study_.mode == StudyMode::zip && !document_.has_problems()) refuse_points_twice();
+    }
+  }
+
+  /// The same values of all axes of a zip: they would be counted as repeats of one point.
+  void refuse_points_twice() {
+    std::map<std::vector<std::string>, std::size_t> points;
+    for (std::size_t i = 0; i < study_.points(); ++i) {
+      std::vector<std::string> labels;
+      std::string named;
+      for (AxisPlan const& axis : study_.axes) {
+        labels.push_back(axis.value(i).parameter.label);
+        named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", axis.key, labels.back());
+      }
+      auto const [known, fresh] = points.try_emplace(std::move(labels), i);
+      if (fresh) continue;
+      problem(study_.axes.front().value(i).node.place,
+              fmt::format("the values {} and {} of the axes are the same ({}); remove one (repeats = N gives every "
+                          "case N times, with other dots)",
+                          known->second + 1, i + 1, named));
     }
   }
 

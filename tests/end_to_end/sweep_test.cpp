@@ -447,6 +447,7 @@ TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
 TEST_F(Sweeps, BadCommandLinesAreRefused) {
   plan("run");
   expect_refused({"sweep"}, 2, {"sweep needs one of plan, run, status, collect"});
+  expect_refused({"sweep", "runn", "other"}, 2, {"unknown command \"runn\"; did you mean \"run\"?"});
   expect_refused({"sweep", "run", "run", "--shard", "3/3"}, 2, {"--shard: 3/3 is not I/N"});
   expect_refused({"sweep", "run", "run", "--case", "12"}, 2,
                  {"--case: 12 is not in the study, which has cases 0 to 11"});

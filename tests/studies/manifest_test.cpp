@@ -169,6 +169,27 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
 }
 
+// No process has the number 999999999: Linux ends at 2^22.
+TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
+  StudyFile const file = study(two_axes);
+  auto cases = plan_study(file, "cpu");
+  std::filesystem::create_directories(in("cut"));
+  write("cut/.manifest.jsonl.partial-999999999", "{\"mani");
+  write("cut/study.toml", "of somebody else");
+  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+  EXPECT_EQ(content("cut/study.toml"), "of somebody else");
+
+  std::filesystem::create_directories(in("cut/cases"));
+  write("cut/claims", "");
+  write("cut/cases/notes.txt", "precious");
+  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+
+  std::filesystem::remove(in("cut/cases/notes.txt"));
+  EXPECT_EQ(write_plan(in("cut"), file, cases), Planned::fresh);
+  EXPECT_EQ(read_manifest(in("cut")).size(), 4u);
+  EXPECT_FALSE(std::filesystem::exists(in("cut/.manifest.jsonl.partial-999999999")));
+}
+
 TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   std::filesystem::create_directory(in("package"));
   StudyFile const file = study(two_axes);
@@ -244,6 +265,23 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
     }
   }
   EXPECT_EQ(content("run/cases/2.json"), older);
+}
+
+// Linux opens a folder like a file and fails at reading it; so it does with the memory of a process at address 0.
+TEST_F(Runs, AResultThatCannotBeReadIsMissingAndAFolderInItsPlaceIsNamed) {
+  auto const cases = planned();
+  std::filesystem::create_symlink("/proc/self/mem", in("run/cases/2.json"));
+  EXPECT_EQ(state_of(in("run"), read_manifest(in("run")), {2}).missing, std::vector<std::size_t>{2});
+  write_result(in("run"), result_of(cases[2], 0.5));
+  EXPECT_TRUE(read_result(in("run"), 2, cases[2].line_hash).has_value());
+
+  std::filesystem::create_directory(in("run/cases/3.json"));
+  try {
+    state_of(in("run"), read_manifest(in("run")), {3});
+    ADD_FAILURE() << "taken for a result";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith(in("run/cases/3.json") + ": is a folder"));
+  }
 }
 
 TEST_F(Runs, ATableHasARowForEveryCaseDoneOrNot) {

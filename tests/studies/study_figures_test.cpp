@@ -66,6 +66,19 @@ StudyTable grid(std::vector<StudyAxis> axes, std::size_t repeats) {
   return table;
 }
 
+/// A study of so many points, the i-th of them with f-number 4 + i and a Z_D by step i mod count.
+StudyTable one_value_a_point(std::size_t count, std::size_t step) {
+  std::vector<double> stops, distances;
+  for (std::size_t i = 0; i < count; ++i) {
+    stops.push_back(4.0 + static_cast<double>(i));
+    distances.push_back(100.0 + static_cast<double>(i));
+  }
+  StudyTable table = grid({numbers("lens.f_number", stops)}, 1);
+  table.axes.push_back(numbers("geometry.z_d_mm", distances));
+  for (StudyRow& row : table.rows) row.value.push_back(step * row.index % count);
+  return table;
+}
+
 class StudyFigures : public ::testing::Test {
  protected:
   StudyFigures()
@@ -210,6 +223,20 @@ TEST_F(StudyFigures, AxesThatGoTogetherHaveNoMap) {
   StudyTable table = grid({numbers("lens.f_number", {4, 8, 16}), numbers("geometry.z_d_mm", {100, 200, 400})}, 1);
   std::erase_if(table.rows, [](StudyRow const& row) { return row.value[0] != row.value[1]; });
   for (std::string const& name : draw(table)) EXPECT_THAT(name, Not(HasSubstr("map")));
+  // of 8 points in 2 x 2 bins two cells of four, of 24 in 3 x 3 bins three of nine
+  for (std::size_t const count : {8, 24}) {
+    for (std::string const& name : draw(one_value_a_point(count, 1))) EXPECT_THAT(name, Not(HasSubstr("map")));
+  }
+}
+
+// 24 points in sqrt(24 / 2) = 3.5 bins an axis, so 3, of 8 points each. Of the first eight, whose places along the
+// other axis are 0, 7, 14, 21, 4, 11, 18, 1, the lowest cell has points 0, 1, 4, 7 with errors 0.01, 0.02, 0.05, 0.08:
+// median 0.035.
+TEST_F(StudyFigures, SampledAxesHaveAMap) {
+  draw(one_value_a_point(24, 7));
+  EXPECT_THAT(text("error_map_lens_f_number_geometry_z_d_mm.svg"), HasSubstr(">0.035<"));
+  EXPECT_EQ(StudyCells(one_value_a_point(24, 7)).axis(0).size(), 12u);  // along one axis
+  EXPECT_EQ(sampled_places_in_maps(1000), 12u);
 }
 
 TEST_F(StudyFigures, AreDrawnOfAPinholeToo) {
@@ -225,6 +252,17 @@ TEST_F(StudyFigures, ShowTheLabelsOfNumbers) {
   draw(grid({axis}, 1));
   for (char const* label : {">wide open<", ">the sharpest stop<", ">one a little smaller<"}) {
     EXPECT_THAT(text("error_against_lens_f_number.svg"), HasSubstr(label));
+  }
+}
+
+// gnuplot reads tics, and no other texts, as formats of numbers.
+TEST_F(StudyFigures, ShowPercentSignsInLabels) {
+  draw(grid({words("lens.psf", {"50 % stop", "100 %", "5 %% of it"}), words("medium.field", {"9 % up", "9 % down"})},
+            1));
+  for (char const* figure : {"error_against_lens_psf", "budget_lens_psf", "error_map_lens_psf_medium_field"}) {
+    for (char const* label : {">50 % stop<", ">100 %<", ">5 %% of it<", ">9 % up<", ">9 % down<"}) {
+      EXPECT_THAT(text(std::string(figure) + ".svg"), HasSubstr(label));
+    }
   }
 }
 

@@ -65,6 +65,18 @@ repeats = 2
   EXPECT_THAT(labels(cases, 1), ElementsAre("8", "12", "8", "12"));
 }
 
+TEST_F(Studies, AZipMayHaveAValueOfAnAxisAgainWithAnotherOne) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"lens.f_number" = [{ label = "open", value = 4 }, 8, { label = "open", value = 4 }]
+"camera.bit_depth" = [8, 8, 12]
+[study]
+mode = "zip"
+)");
+  EXPECT_THAT(labels(cases, 0), ElementsAre("open", "8", "open"));
+  EXPECT_THAT(labels(cases, 1), ElementsAre("8", "8", "12"));
+}
+
 // Of 16 points of a scrambled Sobol sequence each sixteenth of each axis holds exactly one (a (0, 4, s)-net), and each
 // of two list values half of them.
 TEST_F(Studies, SobolSamplesFillRangesEvenly) {
@@ -232,7 +244,9 @@ TEST_F(BadStudies, AnAxisOfTheWrongType) {
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = 8\n", "3:1",
                  {"\"lens.f_number\" must be a list of values (it is a whole number); write [8]"});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { lin = [1, 2, 3] }\n", "3:1",
-                 {"{ linear = [first, last, count] }", "it is a table with \"lin\""});
+                 {"{ linear = [first, last, count] }", "it is a table with \"lin\"); did you mean \"linear\"?"});
+  expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { logarithmic = [1, 2, 3] }\n", "3:1",
+                 {"did you mean \"log\"?"});
   expect_refused("base = \"base.toml\"\n[axes]\nlens.f_number = [1, 2]\n", "3:1",
                  {"a key path stands in quotes: \"lens.f_number\""});
   expect_refused("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { log = [0, 8, 3] }\n", "3:21",
@@ -285,6 +299,17 @@ TEST_F(BadStudies, SettingsThatDoNotFit) {
       "= \"none\" }]\n",
       "4:3", {"\"medium.field\" has the value", "twice (as \"a\" and as \"b\")"});
   expect_refused("base = \"bas.toml\"\n[axes]\n\"lens.f_number\" = [8]\n", "1:1", {"bas.toml", "cannot be read"});
+}
+
+TEST_F(BadStudies, AZipWithAPointTwice) {
+  std::string const axes = "base = \"base.toml\"\n[axes]\n\"lens.f_number\" = ";
+  std::string const zip = "\n\"camera.bit_depth\" = [8, 12, 8]\n[study]\nmode = \"zip\"\n";
+  expect_refused(axes + "[4, 8, 4]" + zip, "3:26",
+                 {"the values 1 and 3 of the axes are the same (lens.f_number = 4, camera.bit_depth = 8)"});
+  expect_refused(axes + "[4, 8, { label = \"open\", value = 4 }]" + zip, "3:26",
+                 {"\"lens.f_number\" has the value 4 twice (as \"4\" and as \"open\")"});
+  expect_refused(axes + "[{ label = \"a\", value = 4 }, 8, { label = \"a\", value = 5 }]" + zip, "3:51",
+                 {"\"lens.f_number\" has two values with the label a"});
 }
 
 // 8 and 16 are whole; what lies between them is not.
