@@ -146,6 +146,12 @@ bool lacks_memory(std::exception const& error) {
          text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
 }
 
+/// Whether the next case would meet the same.
+bool stops_the_run(std::exception const& error) {
+  return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
+         dynamic_cast<Interrupted const*>(&error);
+}
+
 }  // namespace
 
 CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
@@ -173,7 +179,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
     }
   } catch (std::exception const& error) {
     bool const no_memory = lacks_memory(error);
-    if (!no_memory && !dynamic_cast<SetupError const*>(&error) && !dynamic_cast<DataError const*>(&error)) throw;
+    if (!no_memory && stops_the_run(error)) throw;
     result = fresh;
     result.status = CaseStatus::failed;
     result.error = dynamic_cast<std::bad_alloc const*>(&error)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <thread>
 
@@ -12,6 +13,7 @@
 #include "render/base/interrupt.h"
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
+#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {
@@ -86,9 +88,27 @@ RunState forget_failures(std::string const& run, Manifest const& cases, std::vec
   return state;
 }
 
+bool record_failure(std::string const& run, Manifest const& cases, std::size_t index, std::string const& error,
+                    bool again) {
+  Claims claims(run, Claims::Use::take);
+  Claim const claim(claims, index);
+  if (!claim.taken() || read_result(run, index, cases.line_hash(index), ResultPart::head)) return false;
+  CaseResult result;
+  result.index = index;
+  result.line_hash = cases.line_hash(index);
+  result.device = cases[index].device;
+  result.build = build_text();
+  result.status = CaseStatus::failed;
+  result.error = error;
+  result.again = again;
+  result.seconds_render = result.seconds_correlate = result.seconds_compare = std::numeric_limits<double>::quiet_NaN();
+  write_result(run, result);
+  return true;
+}
+
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
-               std::function<void(std::size_t index)> const& finished) {
+               std::function<void(std::size_t index, CaseEvent event)> const& tell) {
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
     return read_result(run, index, cases.line_hash(index), ResultPart::head).has_value();
@@ -109,8 +129,9 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         // between the look and the claim another runner may have finished it
         if (!is_done(index)) {
           std::string const folder = (std::filesystem::path(run) / run_file::cases / std::to_string(index)).string();
+          tell(index, CaseEvent::begun);
           write_result(run, runner.run(cases[index], selection.keep_images ? folder : ""));
-          finished(index);
+          tell(index, CaseEvent::finished);
         }
       }
     }

@@ -280,6 +280,29 @@ TEST_F(Sweeps, FailedCasesAreRetriedOnceARunWhateverItsJobs) {
   EXPECT_EQ(again({"--retry-failed"}), 3);
 }
 
+// A limit of one second on a process's time ends it by SIGXCPU, as a crash would by SIGSEGV; the other cases take some
+// milliseconds, a million rays of each of 40 dots many seconds.
+TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"render.rays_per_dot\" = [16, 1000000, 32, 64]\n");
+  plan("run");
+  auto const limited = [] {
+    rlimit const time{1, 10}, core{0, 0};
+    return ::setrlimit(RLIMIT_CPU, &time) == 0 && ::setrlimit(RLIMIT_CORE, &core) == 0;
+  };
+  Outcome const outcome = run({"sweep", "run", "run", "--json", "--threads", "2", "--jobs", "2"}, folder_, limited);
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("at work on case 1; another one tries it once more"),
+                                          HasSubstr("at work on case 1; the case has failed")));
+  auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(ran.is_object()) << outcome.out;
+  EXPECT_EQ(ran["computed"], 4);
+  EXPECT_EQ(ran["done"], 3);
+  ASSERT_EQ(ran["failed"], 1);
+  EXPECT_EQ(ran["failures"][0]["case"], 1);
+  EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("its process was ended by signal"));
+  EXPECT_EQ(json_of({"sweep", "status", "run"})["failed"], 1);
+}
+
 // A limit on a process's memory stands for a machine that has no more: the program takes some 130 MB of it, a picture
 // of 2048 x 2048 px by itself more than 36 bytes x 4 Mpx = 150 MB.
 TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {

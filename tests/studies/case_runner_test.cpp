@@ -85,6 +85,29 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   EXPECT_THROW(one.run(with_file[0]), DataError);
 }
 
+// Whatever a library throws is the case's; what the next case would meet as well stops the run.
+TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  std::function<void()> fail;
+  Device device = open_device("cpu");
+  device.correlator = [&fail](CorrelationSettings const&) -> std::unique_ptr<Correlator> {
+    fail();
+    return nullptr;
+  };
+  CaseRunner one(std::move(device));
+  fail = [] { throw std::runtime_error("something odd"); };
+  CaseResult const odd = one.run(cases[0]);
+  EXPECT_EQ(odd.status, CaseStatus::failed);
+  EXPECT_EQ(odd.error, "something odd");
+  EXPECT_FALSE(odd.again);
+  fail = [] { throw DeviceError("the device is gone"); };
+  EXPECT_THROW(one.run(cases[0]), DeviceError);
+  fail = [] { throw Interrupted(); };
+  EXPECT_THROW(one.run(cases[0]), Interrupted);
+  fail = [] { throw OutputError("case", "cannot be written"); };
+  EXPECT_THROW(one.run(cases[0]), OutputError);
+}
+
 TEST_F(CaseRunners, FlatMeasuresAreTheNumbersByTheirPath) {
   auto const measures = flat_measures(R"({"a": {"b": 1.5, "c": null, "d": [1, 2], "e": "text"}, "f": 3})");
   ASSERT_EQ(measures.size(), 3u);
