@@ -18,6 +18,12 @@
 namespace gladstone {
 namespace {
 
+namespace fs = std::filesystem;
+
+std::string images_folder(std::string const& run, std::size_t index) {
+  return (fs::path(run) / run_file::cases / std::to_string(index)).string();
+}
+
 /// Holds a claim while it lives.
 class Claim {
  public:
@@ -69,9 +75,21 @@ bool is_due(CaseResult const& result, RunSelection const& selection) {
   return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
 }
 
+bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection) {
+  return selection.keep_images && result.status == CaseStatus::ok && !fs::exists(images_folder(run, result.index));
+}
+
 RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                          RunSelection const& selection) {
   RunState state = state_of(run, cases, selected);
+  if (selection.keep_images) {
+    for (std::size_t const index : selected) {
+      auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+      if (!result || !lacks_images(run, *result, selection)) continue;
+      state.missing.push_back(index);
+      --state.ok;
+    }
+  }
   auto const due = [&](CaseResult const& one) { return is_due(one, selection); };
   if (std::none_of(state.failed.begin(), state.failed.end(), due)) return state;
   Claims claims(run, Claims::Use::take);
@@ -109,9 +127,14 @@ bool record_failure(std::string const& run, Manifest const& cases, std::size_t i
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index, CaseEvent event)> const& tell) {
+  fs::path const results = fs::path(run) / run_file::cases;
+  std::error_code error;
+  fs::create_directories(results, error);
+  if (error) throw OutputError(results.string(), "cannot be made (" + error.message() + ')');
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
-    return read_result(run, index, cases.line_hash(index), ResultPart::head).has_value();
+    auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+    return result && !lacks_images(run, *result, selection);
   };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
@@ -128,9 +151,8 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         }
         // between the look and the claim another runner may have finished it
         if (!is_done(index)) {
-          std::string const folder = (std::filesystem::path(run) / run_file::cases / std::to_string(index)).string();
           tell(index, CaseEvent::begun);
-          write_result(run, runner.run(cases[index], selection.keep_images ? folder : ""));
+          write_result(run, runner.run(cases[index], selection.keep_images ? images_folder(run, index) : ""));
           tell(index, CaseEvent::finished);
         }
       }

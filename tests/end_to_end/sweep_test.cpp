@@ -136,6 +136,27 @@ TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
             nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
 }
 
+// The result that comes with the images is the one that was there, times excepted.
+TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
+  plan("run");
+  auto const numbers = [this] {
+    auto const result = nlohmann::json::parse(read("run/cases/7.json"));
+    return result["measures"].dump() + result["vectors"].dump();
+  };
+  succeed({"sweep", "run", "run", "--quiet", "--case", "7"});
+  std::string const before = numbers();
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 1);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
+  EXPECT_EQ(numbers(), before);
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 0);
+}
+
+TEST_F(Sweeps, ResultsThatWereRemovedWithTheirFolderAreComputedAgain) {
+  plan("run");
+  std::filesystem::remove_all(in("run/cases"));
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "0"})["done"], 1);
+}
+
 TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   finish("whole");
   plan("jobs");
