@@ -121,6 +121,10 @@ CaseRunner::CaseRunner(Device device, Sharing sharing)
 CaseRunner::~CaseRunner() = default;
 
 void CaseRunner::check_inputs(ManifestCase const& one) {
+  if (one.device != device_.name()) {
+    throw DeviceError(fmt::format("{} was planned for {} and not for {}; plan the study again", one.title(), one.device,
+                                  device_.name()));
+  }
   for (auto const& [path, hash] : one.inputs) {
     HashedFile& known = shared_->files[path];
     std::error_code error;

@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "render/base/content_hash.h"
 #include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 
@@ -51,6 +52,17 @@ class Sweeps : public Workplace {
   static bool comes_true(std::function<bool()> const& condition) {
     for (int wait = 0; wait < 10000 && !condition(); ++wait) std::this_thread::sleep_for(1ms);
     return condition();
+  }
+  /// Every line's first `old` becomes `replacement`, with a hash that says so: as if it had been planned.
+  void plan_otherwise(std::string const& run, std::string const& old, std::string const& replacement) const {
+    std::istringstream lines(read(run + "/manifest.jsonl"));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      line = line.substr(0, line.size() - std::string_view(",\"hash\":\"0123456789abcdef\"}").size()) + '}';
+      if (std::size_t const at = line.find(old); at != std::string::npos) line.replace(at, old.size(), replacement);
+      text += line.substr(0, line.size() - 1) + ",\"hash\":\"" + content_hash(line) + "\"}\n";
+    }
+    write(run + "/manifest.jsonl", text);
   }
   nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
 
@@ -359,8 +371,8 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
 TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
   plan("run");
-  std::string manifest = read("run/manifest.jsonl");  // planning would have refused it on this machine
-  write("run/manifest.jsonl", with(manifest, "pixels = [64, 64]", "pixels = [400000, 250000]"));
+  // planning would have refused it on this machine
+  plan_otherwise("run", "pixels = [64, 64]", "pixels = [400000, 250000]");
   for (int attempt = 0; attempt < 2; ++attempt) {
     Outcome const outcome = gladstone({"sweep", "run", "run", "--json"});
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
@@ -475,11 +487,7 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
 TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
   plan("run");
   expect_refused({"sweep", "run", "run", "--device", "cuda"}, 5, {"the study was planned for cpu"});
-  std::string manifest = read("run/manifest.jsonl");
-  for (std::size_t at; (at = manifest.find("\"device\":\"cpu\"")) != std::string::npos;) {
-    manifest.replace(at, 14, "\"device\":\"cuda\"");
-  }
-  write("run/manifest.jsonl", manifest);
+  plan_otherwise("run", "\"device\":\"cpu\"", "\"device\":\"cuda\"");
   auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
   for (std::string const jobs : {"1", "2"}) {
     Outcome const outcome = run({"sweep", "run", "run", "--jobs", jobs}, folder_, without_gpu);

@@ -100,6 +100,9 @@ TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
   EXPECT_EQ(odd.status, CaseStatus::failed);
   EXPECT_EQ(odd.error, "something odd");
   EXPECT_FALSE(odd.again);
+  ManifestCase elsewhere = cases[0];
+  elsewhere.device = "cuda";
+  EXPECT_THROW(one.run(elsewhere), DeviceError);
   fail = [] { throw DeviceError("the device is gone"); };
   EXPECT_THROW(one.run(cases[0]), DeviceError);
   fail = [] { throw Interrupted(); };
