@@ -131,6 +131,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
   std::error_code error;
   fs::create_directories(results, error);
   if (error) throw OutputError(results.string(), "cannot be made (" + error.message() + ')');
+  remove_left_partials(run);
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
     auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);

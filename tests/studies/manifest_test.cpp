@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -377,6 +378,35 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   EXPECT_TRUE(mine.take(3));
   ::close(ready[0]);
   ::close(ready[1]);
+}
+
+TEST_F(Runs, ClaimsThatWereReplacedAreTakenInTheNewFile) {
+  planned();
+  Claims mine(in("run"), Claims::Use::take);
+  ASSERT_TRUE(mine.take(1));
+  std::filesystem::remove(in("run/claims"));
+  Claims other(in("run"), Claims::Use::take);
+  ASSERT_TRUE(other.take(2));
+  EXPECT_FALSE(mine.take(2));
+  EXPECT_TRUE(mine.take(3));
+  EXPECT_FALSE(other.take(3));
+}
+
+TEST_F(Runs, APartialResultIsWrittenByOneProcessAloneAndRemovedOnceItIsOld) {
+  auto const cases = planned();
+  std::vector<std::string> const others{"run/cases/.1.json.partial", "run/cases/.1.json.elsewhere-17.partial"};
+  for (std::string const& name : others) write(name, "{\"hash\":\"half");
+  write_result(in("run"), result_of(cases[1], 0.5));
+  remove_left_partials(in("run"));
+  for (std::string const& name : others) EXPECT_EQ(content(name), "{\"hash\":\"half") << name;
+  EXPECT_EQ(collect_study(in("run")).unfinished(), (std::vector<std::size_t>{0, 2, 3}));
+
+  for (std::string const& name : others) {
+    std::filesystem::last_write_time(in(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  }
+  remove_left_partials(in("run"));
+  for (std::string const& name : others) EXPECT_FALSE(std::filesystem::exists(in(name))) << name;
+  EXPECT_TRUE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
 
 TEST_F(Runs, LookingAtClaimsWritesNothing) {
