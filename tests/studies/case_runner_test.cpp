@@ -6,6 +6,7 @@
 
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
+#include "studies/sweep/recent.h"
 #include "studies/sweep/run.h"
 #include "tests/studies/support/study_folder.h"
 
@@ -83,6 +84,33 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   EXPECT_THAT(blank.error, testing::HasSubstr("no vector that can be compared"));
   write("dots.csv", "x_mm,y_mm\n0,0\n0.2,0.2\n1,1\n");
   EXPECT_THROW(one.run(with_file[0]), DataError);
+  std::filesystem::remove(in("dots.csv"));
+  std::string what = "nothing";
+  try {
+    one.run(with_file[0]);
+  } catch (DataError const& error) {
+    what = error.what();
+  }
+  EXPECT_THAT(what, testing::HasSubstr("dots.csv: cannot be read any more"));
+  EXPECT_THAT(what, testing::HasSubstr("case 0 (lens.f_number = 8)"));
+}
+
+// What went for want of places does not count any more: 50 + 10 bytes are kept of 100, and 40 more fit.
+TEST(RecentValues, AreCountedWhileTheyAreKept) {
+  Recent<int> recent(2);
+  recent.keep("a", 1, 50);
+  recent.keep("b", 2, 30);
+  ASSERT_NE(recent.find("a"), nullptr);
+  recent.keep("c", 3, 10);  // "b" is the one used longest ago
+  EXPECT_EQ(recent.find("b"), nullptr);
+  recent.make_room(40, 100);
+  EXPECT_NE(recent.find("c"), nullptr);
+  EXPECT_NE(recent.find("a"), nullptr);
+  recent.make_room(50, 100);
+  EXPECT_EQ(recent.find("c"), nullptr);
+  EXPECT_NE(recent.find("a"), nullptr);
+  recent.make_room(200, 100);
+  EXPECT_EQ(recent.find("a"), nullptr);
 }
 
 // Whatever a library throws is the case's; what the next case would meet as well stops the run.
