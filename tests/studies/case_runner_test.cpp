@@ -1,13 +1,15 @@
 #include "studies/sweep/case_runner.h"
 
-#include <bit>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <thread>
 
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/recent.h"
 #include "studies/sweep/run.h"
+#include "tests/studies/support/same_results.h"
 #include "tests/studies/support/study_folder.h"
 
 namespace gladstone {
@@ -16,19 +18,6 @@ namespace {
 class CaseRunners : public StudyFolder {
  protected:
   static CaseRunner runner(Sharing sharing) { return CaseRunner(open_device("cpu"), sharing); }
-  /// Equal to the last bit, NaN included.
-  static void expect_same(CaseResult const& one, CaseResult const& other) {
-    EXPECT_EQ(one.status, other.status);
-    EXPECT_EQ(one.error, other.error);
-    EXPECT_EQ(one.warnings, other.warnings);
-    ASSERT_EQ(one.measures.size(), other.measures.size());
-    for (std::size_t i = 0; i < one.measures.size(); ++i) {
-      EXPECT_EQ(one.measures[i].first, other.measures[i].first);
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(one.measures[i].second),
-                std::bit_cast<std::uint64_t>(other.measures[i].second))
-          << one.measures[i].first << " of case " << one.index;
-    }
-  }
 };
 
 // Every axis touches another part of what is shared: field, geometry, rays, camera electronics and correlation alone.
