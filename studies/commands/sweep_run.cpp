@@ -5,7 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -70,8 +73,10 @@ std::string visible_device(std::string const& device, std::size_t worker) {
   return names.empty() ? "" : "CUDA_VISIBLE_DEVICES=" + names[worker % names.size()];
 }
 
-/// Runs the cases in processes of their own. @return ok, or what went wrong in one that others cannot make up for
-int run_in_workers(Arguments const& arguments, std::string const& device, int jobs,
+/// Runs the cases in processes of their own. A case whose process a signal ends (a crash, the system short of memory)
+/// is tried once more, and then recorded as failed.
+/// @return ok, or what went wrong in one that others cannot make up for
+int run_in_workers(Arguments const& arguments, Manifest const& cases, std::string const& device, int jobs,
                    std::function<void()> const& finished) {
   std::vector<std::vector<std::string>> words;
   std::vector<std::string> environment;
@@ -89,10 +94,25 @@ int run_in_workers(Arguments const& arguments, std::string const& device, int jo
     environment.push_back(visible_device(device, static_cast<std::size_t>(k)));
   }
   spdlog::info("{} workers on {}, {} threads each", jobs, device, std::max(1, thread_count() / jobs));
+  std::map<std::size_t, int> deaths;
+  auto const restart = [&](WorkerEnd const& end) {
+    std::string const signal = fmt::format("ended by signal {} ({})", end.signal, ::strsignal(end.signal));
+    if (!end.at) {
+      spdlog::warn("a worker was {} between two cases and is not started again", signal);
+      return false;
+    }
+    bool const twice = ++deaths[*end.at] >= 2;
+    spdlog::warn("a worker was {} at work on case {}; {}", signal, *end.at,
+                 twice ? "the case has failed" : "another one tries it once more");
+    // the system ends by SIGKILL what takes too much of its memory
+    if (twice &&
+        record_failure(arguments.run, cases, *end.at, "its process was " + signal + ", twice", end.signal == SIGKILL)) {
+      finished();
+    }
+    return true;
+  };
   int code = ok;
-  for (WorkerEnd const& end : run_workers(words, environment, finished)) {
-    if (end.signal != 0)
-      spdlog::warn("a worker was ended by signal {}; the others have taken over its case", end.signal);
+  for (WorkerEnd const& end : run_workers(words, environment, finished, restart)) {
     if (end.exit_code == device_error || (end.exit_code == bad_input && code == ok)) code = end.exit_code;
     if (end.exit_code == interrupted_by_user) throw Interrupted();
   }
@@ -103,12 +123,13 @@ void run_here(Arguments const& arguments, Manifest const& cases, std::vector<std
               std::string const& device, std::function<void()> const& finished) {
   CaseRunner runner(open_device(device));
   auto const first = static_cast<std::size_t>(arguments.first * static_cast<double>(selected.size()));
-  run_cases(arguments.run, cases, selected, arguments.selection, runner, first, [&](std::size_t index) {
-    std::string const line = std::to_string(index) + '\n';
+  auto const tell = [&](std::size_t index, CaseEvent event) {
+    WorkerReport const report{index, event == CaseEvent::finished};
     // a parent that does not listen any more is no reason to stop
-    if (arguments.worker >= 0 && ::write(arguments.worker, line.data(), line.size()) < 0) spdlog::debug("not heard");
-    finished();
-  });
+    if (arguments.worker >= 0 && ::write(arguments.worker, &report, sizeof report) < 0) spdlog::debug("not heard");
+    if (event == CaseEvent::finished) finished();
+  };
+  run_cases(arguments.run, cases, selected, arguments.selection, runner, first, tell);
 }
 
 /// Prints how the selected cases stand, with more of JSON and text after it. @return ok, or incomplete
@@ -164,8 +185,8 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
     };
     int jobs = arguments.jobs > 0 ? arguments.jobs : device == "cuda" ? std::max(1, gpu_count()) : 1;
     jobs = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(jobs), due));
-    if (jobs > 1) {
-      code = run_in_workers(arguments, device, jobs, finished);
+    if (jobs > 1 || arguments.jobs > 1) {  // who asks for several processes is not ended by what ends one of them
+      code = run_in_workers(arguments, cases, device, jobs, finished);
     } else {
       run_here(arguments, cases, selected, device, finished);
     }

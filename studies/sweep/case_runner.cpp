@@ -18,6 +18,7 @@
 #include "render/base/setup_node.h"
 #include "studies/correlate.h"
 #include "studies/sweep/case_keys.h"
+#include "studies/sweep/recent.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -25,31 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// The last few values by the text that they depend on.
-template <class Value>
-class Recent {
- public:
-  explicit Recent(std::size_t most) : most_(most) {}
-  Value* find(std::string const& key) {
-    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
-      if (entry->first != key) continue;
-      entries_.splice(entries_.begin(), entries_, entry);
-      return &entries_.front().second;
-    }
-    return nullptr;
-  }
-  Value& keep(std::string const& key, Value value) {
-    entries_.emplace_front(key, std::move(value));
-    if (entries_.size() > most_) entries_.pop_back();
-    return entries_.front().second;
-  }
-  void clear() { entries_.clear(); }
-
- private:
-  std::size_t most_;
-  std::list<std::pair<std::string, Value>> entries_;
-};
 
 /// Media that together take more than this are not kept beside a new one [bytes].
 constexpr std::size_t kept_media_bytes = std::size_t{1} << 30;
@@ -103,7 +79,6 @@ struct CaseRunner::Shared {
   };
   std::map<std::string, HashedFile> files;
   Recent<BuiltMedium> media{8};
-  std::size_t media_bytes = 0;
   Recent<Plan> plans{64};
   Recent<RaysPlan> rays{64};
   Recent<RenderedCase> renderings{2};
@@ -120,14 +95,32 @@ CaseRunner::CaseRunner(Device device, Sharing sharing)
     : device_(std::move(device)), sharing_(sharing), shared_(std::make_unique<Shared>()) {}
 CaseRunner::~CaseRunner() = default;
 
+namespace {
+
+std::string hash_of_input(std::string const& path, ManifestCase const& one) {
+  try {
+    return file_hash(path);
+  } catch (DataError const&) {
+    throw DataError(path, fmt::format("cannot be read any more, as it was when the study was planned ({}); bring it "
+                                      "back, or plan the study again into another folder",
+                                      one.title()));
+  }
+}
+
+}  // namespace
+
 void CaseRunner::check_inputs(ManifestCase const& one) {
+  if (one.device != device_.name()) {
+    throw DeviceError(fmt::format("{} was planned for {} and not for {}; plan the study again", one.title(), one.device,
+                                  device_.name()));
+  }
   for (auto const& [path, hash] : one.inputs) {
     HashedFile& known = shared_->files[path];
     std::error_code error;
     auto const time = fs::last_write_time(path, error);
     auto const size = error ? 0 : fs::file_size(path, error);
     if (error || known.hash.empty() || known.time != time || known.size != size) {
-      known = {time, size, file_hash(path)};
+      known = {time, size, hash_of_input(path, one)};
     }
     if (known.hash == hash) continue;
     throw DataError(path, fmt::format("has changed since the study was planned ({}); bring the old file back, or plan "
@@ -144,6 +137,12 @@ bool lacks_memory(std::exception const& error) {
   return dynamic_cast<std::bad_alloc const*>(&error) || text.starts_with("out of device memory") ||
          text.find("GB of memory (") != text.npos ||          // as check_memory refuses, before anything is allocated
          text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
+}
+
+/// Whether the next case would meet the same.
+bool stops_the_run(std::exception const& error) {
+  return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
+         dynamic_cast<Interrupted const*>(&error);
 }
 
 }  // namespace
@@ -173,7 +172,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
     }
   } catch (std::exception const& error) {
     bool const no_memory = lacks_memory(error);
-    if (!no_memory && !dynamic_cast<SetupError const*>(&error) && !dynamic_cast<DataError const*>(&error)) throw;
+    if (!no_memory && stops_the_run(error)) throw;
     result = fresh;
     result.status = CaseStatus::failed;
     result.error = dynamic_cast<std::bad_alloc const*>(&error)
@@ -196,13 +195,9 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   BuiltMedium* medium = shared.media.find(keys.medium);
   if (!medium) {
     std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
-    if (shared.media_bytes + bytes > kept_media_bytes) {
-      shared.media.clear();
-      shared.media_bytes = 0;
-    }
+    shared.media.make_room(bytes, kept_media_bytes);
     check_memory(loaded.setup);
-    medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium));
-    shared.media_bytes += bytes;
+    medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;
   Shared::Plan const* const plan = shared.plans.find(keys.scene);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <list>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +23,7 @@ class CaseRunner {
   explicit CaseRunner(Device device, Sharing sharing = Sharing::yes);
   ~CaseRunner();
 
-  /// Computes a case. What is wrong with the case itself is its result (`failed`).
+  /// Computes a case. What goes wrong in computing it is its result (`failed`).
   /// @param keep folder to write the whole CASE to, as render, correlate and compare would, without figures; empty:
   /// nothing is written
   /// @throws DataError where an input is not what it was when the study was planned; Interrupted, OutputError,

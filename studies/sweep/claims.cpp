@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "render/base/error.h"
 #include "studies/sweep/manifest.h"
@@ -30,18 +32,25 @@ struct flock range_of(std::size_t first, std::size_t count, short type) {
                                       std::strerror(error)));
 }
 
+/// @return -1 with errno where it cannot be opened
+int open_claims(std::string const& path, Claims::Use use) {
+  return ::open(path.c_str(), (use == Claims::Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
+}
+
+[[noreturn]] void not_opened(std::string const& path, Claims::Use use, int error) {
+  if (use == Claims::Use::take && (error == EACCES || error == EPERM || error == EROFS)) {
+    throw OutputError(path, fmt::format("is read-only ({}), and who computes a case must lock it there; give the right "
+                                        "to write in {}, or run the study in a copy of it",
+                                        std::strerror(error), std::filesystem::path(path).parent_path().string()));
+  }
+  throw OutputError(path, fmt::format("cannot be opened ({})", std::strerror(error)));
+}
+
 }  // namespace
 
 Claims::Claims(std::string const& run, Use use) : path_((std::filesystem::path(run) / run_file::claims).string()) {
-  file_ = ::open(path_.c_str(), (use == Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
-  if (file_ >= 0 || (use == Use::look && errno == ENOENT)) return;
-  if (use == Use::take && (errno == EACCES || errno == EPERM || errno == EROFS)) {
-    throw OutputError(path_,
-                      fmt::format("is read-only ({}), and who computes a case must lock it there; give the right "
-                                  "to write in {}, or run the study in a copy of it",
-                                  std::strerror(errno), run));
-  }
-  throw OutputError(path_, fmt::format("cannot be opened ({})", std::strerror(errno)));
+  file_ = open_claims(path_, use);
+  if (file_ < 0 && (use == Use::take || errno != ENOENT)) not_opened(path_, use, errno);
 }
 
 Claims::~Claims() {
@@ -49,12 +58,31 @@ Claims::~Claims() {
 }
 
 bool Claims::take(std::size_t index) {
+  bool taken = lock(index);
+  // not for ever: some file systems number their files anew at every look
+  for (int attempt = 0; attempt < 5 && is_replaced(); ++attempt) {
+    int const fresh = open_claims(path_, Use::take);
+    if (fresh < 0) not_opened(path_, Use::take, errno);
+    ::close(std::exchange(file_, fresh));
+    taken = lock(index);
+  }
+  return taken;
+}
+
+bool Claims::lock(std::size_t index) {
   struct flock range = range_of(index, 1, F_WRLCK);
   while (::fcntl(file_, F_OFD_SETLK, &range) != 0) {
     if (errno == EAGAIN || errno == EACCES) return false;
     if (errno != EINTR) no_locks(path_, errno);
   }
   return true;
+}
+
+bool Claims::is_replaced() const {
+  struct stat mine {};
+  struct stat there {};
+  if (::fstat(file_, &mine) != 0 || ::stat(path_.c_str(), &there) != 0) return true;
+  return mine.st_dev != there.st_dev || mine.st_ino != there.st_ino;
 }
 
 void Claims::release(std::size_t index) {

@@ -20,7 +20,8 @@ class Claims {
   Claims(Claims const&) = delete;
   Claims& operator=(Claims const&) = delete;
 
-  /// Takes a case for this object; false where another has it. @pre made to take
+  /// Takes a case for this object; false where another has it. Where RUN/claims has been replaced or removed since, the
+  /// new one is locked, which others look at too. @pre made to take
   /// @throws OutputError where the file system has no locks
   bool take(std::size_t index);
   void release(std::size_t index);
@@ -30,6 +31,8 @@ class Claims {
   bool any_held() const;
 
  private:
+  bool lock(std::size_t index);
+  bool is_replaced() const;  ///< RUN/claims is another file than the one that was opened
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;

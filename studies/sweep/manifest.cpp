@@ -34,6 +34,19 @@ ParameterValue value_of(Json const& json) {
   return {json.at("label").get<std::string>(), number};
 }
 
+constexpr std::string_view hash_start = ",\"hash\":\"";  // then 16 digits and `"}`: the end of every line
+constexpr std::size_t hash_end_size = hash_start.size() + 16 + 2;
+
+bool has_hash(std::string_view line) {
+  return line.size() > hash_end_size && line.substr(line.size() - hash_end_size).starts_with(hash_start);
+}
+
+/// Of a line without its own hash.
+std::string hash_of_line(std::string_view line) {
+  return has_hash(line) ? content_hash(std::string(line.substr(0, line.size() - hash_end_size)) + '}')
+                        : content_hash(line);
+}
+
 /// Nothing where an object is no case of a manifest of ours.
 std::optional<int> version_of(Json const& json) {
   if (!json.is_object() || !json.contains("manifest") || !json.contains("index")) return std::nullopt;
@@ -50,7 +63,7 @@ ManifestCase case_of(Json const& json, std::string_view line) {
   for (auto const& [key, value] : json.at("parameters").items()) one.parameters.emplace_back(key, value_of(value));
   one.setup = json.at("setup").get<std::string>();
   one.inputs = json.at("inputs").get<std::map<std::string, std::string>>();
-  one.line_hash = content_hash(line);
+  one.line_hash = hash_of_line(line);
   return one;
 }
 
@@ -86,6 +99,16 @@ ManifestCase parse_line(std::string_view line, std::size_t index, std::string co
   } catch (nlohmann::json::exception const& error) {
     throw DataError(place, fmt::format("is damaged ({}); plan the study again", error.what()));
   }
+  if (!has_hash(line)) {
+    throw DataError(place,
+                    "holds no hash of itself (an older gladstone has planned it); plan the study again: results "
+                    "that still belong to it are kept");
+  }
+  if (std::string_view const hash = line.substr(line.size() - 18, 16); hash != one.line_hash) {
+    throw DataError(place, fmt::format("is not as it was planned (its hash is {}, not {}); plan the study again, and "
+                                       "change values in the study itself",
+                                       one.line_hash, hash));
+  }
   if (one.index != index) {
     throw DataError(place, fmt::format("holds case {} (case {} belongs there: lines are missing or out of order); "
                                        "plan the study again",
@@ -118,14 +141,15 @@ std::string manifest_line(ManifestCase const& one) {
   for (auto const& [key, value] : one.parameters) json["parameters"][key] = value_json(value);
   json["setup"] = one.setup;
   json["inputs"] = one.inputs;
-  return json.dump();
+  std::string const body = json.dump();
+  return fmt::format("{}{}{}\"}}", std::string_view(body).substr(0, body.size() - 1), hash_start, content_hash(body));
 }
 
 std::string manifest_text(std::vector<ManifestCase>& cases) {
   std::string text;
   for (ManifestCase& one : cases) {
     std::string const line = manifest_line(one);
-    one.line_hash = content_hash(line);
+    one.line_hash = hash_of_line(line);
     text += line + '\n';
   }
   return text;
@@ -156,7 +180,7 @@ ManifestCase Manifest::operator[](std::size_t index) const {
   return parse_line(line(index), index, place_of(path_, index));
 }
 
-std::string Manifest::line_hash(std::size_t index) const { return content_hash(line(index)); }
+std::string Manifest::line_hash(std::size_t index) const { return hash_of_line(line(index)); }
 
 Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();

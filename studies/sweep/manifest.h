@@ -31,7 +31,7 @@ struct ManifestCase {
   std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< by axis key path, in the study's order
   std::string setup;                          ///< full setup (TOML), file names absolute, every "auto" still one
   std::map<std::string, std::string> inputs;  ///< absolute name of every file that the setup names, and its file_hash()
-  std::string line_hash;                      ///< content_hash() of the line
+  std::string line_hash;                      ///< content_hash() of the line without its last member, which it is
 
   /// "case 17 (lens.f_number = 8, geometry.z_d_mm = 250)"
   std::string title() const;
@@ -50,7 +50,7 @@ inline constexpr char const* points_text = "study_points.csv";
 
 inline constexpr int manifest_version = 2;
 
-/// The text of a case's line, without line end. Equal cases give equal text.
+/// The text of a case's line, without line end. Equal cases give equal text. Its last member is the line_hash.
 std::string manifest_line(ManifestCase const& one);
 
 /// The version of the manifest that a text's first line begins; nothing where it is no gladstone manifest.
@@ -66,8 +66,9 @@ class Manifest {
   Manifest(std::string path, std::string text);
 
   std::size_t size() const { return ends_.size(); }
-  /// @throws DataError where the line is damaged beyond its beginning
+  /// @throws DataError where the line is not what was planned, by its hash, or has none
   ManifestCase operator[](std::size_t index) const;
+  /// Of the line as it stands, whatever hash it holds.
   std::string line_hash(std::size_t index) const;
 
  private:

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -28,7 +29,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int result_version = 2;
 constexpr std::size_t hash_digits = 16;
-constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
+constexpr char const* partial_ending = ".partial";  // of .INDEX.json.HOST-PROCESS.partial
+constexpr std::string_view head = "{\"hash\":\"";   // then the digits, then `",` and what is hashed
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_of(Json const& json) {
@@ -201,12 +203,27 @@ void remove_result(std::string const& run, std::size_t index) {
   }
 }
 
+void remove_left_partials(std::string const& run) {
+  namespace fs = std::filesystem;
+  auto const long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  std::error_code error;
+  for (fs::directory_iterator entry(fs::path(run) / run_file::cases, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!entry->path().filename().string().starts_with('.') || entry->path().extension() != partial_ending) continue;
+    std::error_code gone;
+    if (entry->last_write_time(gone) < long_ago && !gone) fs::remove(entry->path(), gone);
+  }
+}
+
 void write_result(std::string const& run, CaseResult const& result) {
-  // The claim makes this process the only writer, so that one name serves for what is not whole yet: a killed run's is
-  // written over. There is no fsync: a result that a power cut spoils is found by its hash and computed again.
+  // Writers never meet in a partial file, even where locks do not keep them apart.
+  // There is no fsync: a result that a power cut spoils is found by its hash and computed again.
   std::string const path = result_path(run, result.index);
-  std::string const partial =
-      (std::filesystem::path(path).parent_path() / ('.' + std::to_string(result.index) + ".json.partial")).string();
+  char host[256] = {};
+  ::gethostname(host, sizeof host - 1);
+  std::string const partial = (std::filesystem::path(path).parent_path() /
+                               fmt::format(".{}.json.{}-{}{}", result.index, host, ::getpid(), partial_ending))
+                                  .string();
   std::string const text = result_text(result);
   int const file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) cannot_be_written(path, errno);

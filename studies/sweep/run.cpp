@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <thread>
 
@@ -12,9 +13,16 @@
 #include "render/base/interrupt.h"
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
+#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {
+
+namespace fs = std::filesystem;
+
+std::string images_folder(std::string const& run, std::size_t index) {
+  return (fs::path(run) / run_file::cases / std::to_string(index)).string();
+}
 
 /// Holds a claim while it lives.
 class Claim {
@@ -67,9 +75,21 @@ bool is_due(CaseResult const& result, RunSelection const& selection) {
   return result.status == CaseStatus::failed && (result.again || selection.retry_failed);
 }
 
+bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection) {
+  return selection.keep_images && result.status == CaseStatus::ok && !fs::exists(images_folder(run, result.index));
+}
+
 RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                          RunSelection const& selection) {
   RunState state = state_of(run, cases, selected);
+  if (selection.keep_images) {
+    for (std::size_t const index : selected) {
+      auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+      if (!result || !lacks_images(run, *result, selection)) continue;
+      state.missing.push_back(index);
+      --state.ok;
+    }
+  }
   auto const due = [&](CaseResult const& one) { return is_due(one, selection); };
   if (std::none_of(state.failed.begin(), state.failed.end(), due)) return state;
   Claims claims(run, Claims::Use::take);
@@ -86,12 +106,36 @@ RunState forget_failures(std::string const& run, Manifest const& cases, std::vec
   return state;
 }
 
+bool record_failure(std::string const& run, Manifest const& cases, std::size_t index, std::string const& error,
+                    bool again) {
+  Claims claims(run, Claims::Use::take);
+  Claim const claim(claims, index);
+  if (!claim.taken() || read_result(run, index, cases.line_hash(index), ResultPart::head)) return false;
+  CaseResult result;
+  result.index = index;
+  result.line_hash = cases.line_hash(index);
+  result.device = cases[index].device;
+  result.build = build_text();
+  result.status = CaseStatus::failed;
+  result.error = error;
+  result.again = again;
+  result.seconds_render = result.seconds_correlate = result.seconds_compare = std::numeric_limits<double>::quiet_NaN();
+  write_result(run, result);
+  return true;
+}
+
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
-               std::function<void(std::size_t index)> const& finished) {
+               std::function<void(std::size_t index, CaseEvent event)> const& tell) {
+  fs::path const results = fs::path(run) / run_file::cases;
+  std::error_code error;
+  fs::create_directories(results, error);
+  if (error) throw OutputError(results.string(), "cannot be made (" + error.message() + ')');
+  remove_left_partials(run);
   Claims claims(run, Claims::Use::take);
   auto const is_done = [&](std::size_t index) {
-    return read_result(run, index, cases.line_hash(index), ResultPart::head).has_value();
+    auto const result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+    return result && !lacks_images(run, *result, selection);
   };
   std::vector<std::size_t> waiting = selected;
   if (!waiting.empty()) std::rotate(waiting.begin(), waiting.begin() + (first % waiting.size()), waiting.end());
@@ -108,9 +152,9 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         }
         // between the look and the claim another runner may have finished it
         if (!is_done(index)) {
-          std::string const folder = (std::filesystem::path(run) / run_file::cases / std::to_string(index)).string();
-          write_result(run, runner.run(cases[index], selection.keep_images ? folder : ""));
-          finished(index);
+          tell(index, CaseEvent::begun);
+          write_result(run, runner.run(cases[index], selection.keep_images ? images_folder(run, index) : ""));
+          tell(index, CaseEvent::finished);
         }
       }
     }

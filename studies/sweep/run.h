@@ -36,21 +36,32 @@ RunState state_of(std::string const& run, Manifest const& cases, std::vector<std
 /// Whether the next run computes a case with this result anew.
 bool is_due(CaseResult const& result, RunSelection const& selection);
 
+/// Whether images are wanted of a finished case and not there: it is computed again for them.
+bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
+
 /// Takes the failures away that a run is to try again, before it begins: they are missing then, and computed once,
 /// whatever number of workers it has. What another runner has claimed is left to it.
-/// @return how the selection stands then
+/// @return how the selection stands then; cases that lack images count as missing
 /// @throws OutputError
 RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                          RunSelection const& selection);
 
-/// Computes what is missing of a selection, one case after the other. Each case is claimed while it is computed, and
-/// its result looked for again once it is; what another runner has claimed is waited for, and computed here should that
-/// runner die.
+/// Records that a case could not be computed, unless another runner has computed it or does so now.
+/// @return whether it was recorded
+/// @throws OutputError
+bool record_failure(std::string const& run, Manifest const& cases, std::size_t index, std::string const& error,
+                    bool again);
+
+enum class CaseEvent { begun, finished };
+
+/// Computes what is missing of a selection, or lacks its images, one case after the other. Each case is claimed while
+/// it is computed, and its result looked for again once it is; what another runner has claimed is waited for, and
+/// computed here should that runner die.
 /// @param first    position in `selected` to begin at, so that runners side by side meet late
-/// @param finished called after every case that was computed here
+/// @param tell     called before and after every case that is computed here
 /// @throws as CaseRunner::run; what is finished stays
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
-               std::function<void(std::size_t index)> const& finished);
+               std::function<void(std::size_t index, CaseEvent event)> const& tell);
 
 }  // namespace gladstone

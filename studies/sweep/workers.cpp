@@ -33,65 +33,107 @@ constexpr char const* executable = "/proc/self/exe";
   ::_exit(126);
 }
 
+struct Worker {
+  pid_t process = -1;
+  int reports = -1;  ///< -1: it has ended
+  WorkerEnd end;
+};
+
+Worker start_worker(std::vector<std::string> words, std::string const& variable) {
+  int pipe[2];
+  if (::pipe2(pipe, O_CLOEXEC) != 0) throw OutputError("workers", std::strerror(errno));
+  words.insert(words.begin(), "gladstone");
+  words.insert(words.end(), {"--worker", std::to_string(pipe[1])});
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  pid_t const parent = ::getpid(), child = ::fork();
+  if (child == 0) become_worker(argv, variable, pipe[1], parent);
+  int const error = errno;
+  ::close(pipe[1]);
+  if (child > 0) return {child, pipe[0], {}};
+  ::close(pipe[0]);
+  throw OutputError("workers", fmt::format("a process cannot be started ({}); use fewer --jobs", std::strerror(error)));
+}
+
+/// Reads what a worker reports. Reports are written whole, so that they are read whole.
+void hear(Worker& worker, std::function<void()> const& finished) {
+  WorkerReport reports[256];
+  ssize_t const size = ::read(worker.reports, reports, sizeof reports);
+  if (size < 0 && errno == EINTR) return;
+  for (ssize_t i = 0; i < size / static_cast<ssize_t>(sizeof *reports); ++i) {
+    worker.end.at.reset();
+    if (reports[i].finished != 0) {
+      finished();
+    } else {
+      worker.end.at = reports[i].index;
+    }
+  }
+  if (size > 0) return;
+  ::close(worker.reports);  // the pipe ends with the worker
+  worker.reports = -1;
+  int status = 0;
+  while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
+  }
+  worker.end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  worker.end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+/// Processes side by side, which do not outlive this object.
+class Workers {
+ public:
+  Workers() = default;
+  Workers(Workers const&) = delete;
+  Workers& operator=(Workers const&) = delete;
+  ~Workers() {
+    stop();
+    for (Worker& worker : all) {
+      while (worker.reports >= 0) hear(worker, [] {});
+    }
+  }
+  void stop() const {
+    for (Worker const& worker : all) {
+      if (worker.reports >= 0) ::kill(worker.process, SIGTERM);
+    }
+  }
+  bool any() const {
+    return std::any_of(all.begin(), all.end(), [](Worker const& worker) { return worker.reports >= 0; });
+  }
+
+  std::vector<Worker> all;
+};
+
 }  // namespace
 
 std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& arguments,
-                                   std::vector<std::string> const& environment, std::function<void()> const& finished) {
-  int pipe[2];
-  if (::pipe2(pipe, O_CLOEXEC) != 0) throw OutputError("workers", std::strerror(errno));
-  std::vector<pid_t> workers;
-  auto const stop_all = [&workers](int signal) {
-    for (pid_t const worker : workers) ::kill(worker, signal);
-  };
-  pid_t const parent = ::getpid();
+                                   std::vector<std::string> const& environment, std::function<void()> const& finished,
+                                   std::function<bool(WorkerEnd const&)> const& restart) {
+  Workers workers;
   for (std::size_t k = 0; k < arguments.size(); ++k) {
-    std::vector<std::string> words = arguments[k];
-    words.insert(words.begin(), "gladstone");
-    words.insert(words.end(), {"--worker", std::to_string(pipe[1])});
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    pid_t const child = ::fork();
-    if (child == 0) become_worker(argv, environment[k], pipe[1], parent);
-    if (child < 0) {
-      int const error = errno;
-      stop_all(SIGTERM);
-      for (pid_t const worker : workers) ::waitpid(worker, nullptr, 0);
-      ::close(pipe[0]);
-      ::close(pipe[1]);
-      throw OutputError("workers",
-                        fmt::format("a process cannot be started ({}); use fewer --jobs", std::strerror(error)));
-    }
-    workers.push_back(child);
+    workers.all.push_back(start_worker(arguments[k], environment[k]));
   }
-  ::close(pipe[1]);
-
-  // The pipe ends when the last worker does.
   bool stopped = false;
-  for (bool open = true; open;) {
+  while (workers.any()) {
     try {
       throw_if_interrupted();
     } catch (Interrupted const&) {
-      if (!stopped) stop_all(SIGTERM);
+      if (!stopped) workers.stop();
       stopped = true;
     }
-    pollfd wait{pipe[0], POLLIN, 0};
-    if (::poll(&wait, 1, 100) <= 0) continue;
-    char lines[4096];
-    ssize_t const size = ::read(pipe[0], lines, sizeof lines);
-    if (size < 0 && errno == EINTR) continue;
-    open = size > 0;
-    for (auto count = std::count(lines, lines + std::max<ssize_t>(size, 0), '\n'); count > 0; --count) finished();
-  }
-  ::close(pipe[0]);
-  std::vector<WorkerEnd> ends;
-  for (pid_t const worker : workers) {
-    int status = 0;
-    while (::waitpid(worker, &status, 0) < 0 && errno == EINTR) {
+    std::vector<pollfd> wait;
+    for (Worker const& worker : workers.all) wait.push_back({worker.reports, POLLIN, 0});
+    if (::poll(wait.data(), wait.size(), 100) <= 0) continue;
+    for (std::size_t k = 0; k < wait.size(); ++k) {
+      if (wait[k].revents == 0) continue;  // so it is for those that have ended
+      Worker& worker = workers.all[k];
+      hear(worker, finished);
+      if (worker.reports >= 0 || worker.end.signal == 0 || stopped || !restart(worker.end)) continue;
+      worker = start_worker(arguments[k], environment[k]);
     }
-    ends.push_back({WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0});
   }
   if (stopped) throw Interrupted();
+  std::vector<WorkerEnd> ends;
+  for (Worker const& worker : workers.all) ends.push_back(worker.end);
   return ends;
 }
 

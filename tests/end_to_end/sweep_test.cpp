@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "render/base/content_hash.h"
 #include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 
@@ -51,6 +52,17 @@ class Sweeps : public Workplace {
   static bool comes_true(std::function<bool()> const& condition) {
     for (int wait = 0; wait < 10000 && !condition(); ++wait) std::this_thread::sleep_for(1ms);
     return condition();
+  }
+  /// Every line's first `old` becomes `replacement`, with a hash that says so: as if it had been planned.
+  void plan_otherwise(std::string const& run, std::string const& old, std::string const& replacement) const {
+    std::istringstream lines(read(run + "/manifest.jsonl"));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      line = line.substr(0, line.size() - std::string_view(",\"hash\":\"0123456789abcdef\"}").size()) + '}';
+      if (std::size_t const at = line.find(old); at != std::string::npos) line.replace(at, old.size(), replacement);
+      text += line.substr(0, line.size() - 1) + ",\"hash\":\"" + content_hash(line) + "\"}\n";
+    }
+    write(run + "/manifest.jsonl", text);
   }
   nlohmann::json status(std::string const& run) const { return json_of({"sweep", "status", run}); }
 
@@ -134,6 +146,27 @@ TEST_F(Sweeps, ACaseIsWhatTheSingleCommandsMake) {
   EXPECT_EQ(read("by_hand/errors.json"), read("run/cases/7/errors.json"));
   EXPECT_EQ(nlohmann::json::parse(read("run/cases/7.json"))["measures"]["ray_truth.rms_px"],
             nlohmann::json::parse(read("by_hand/errors.json"))["ray_truth"]["rms_px"]);
+}
+
+// The result that comes with the images is the one that was there, times excepted.
+TEST_F(Sweeps, ImagesOfAFinishedCaseAreMadeWhenTheyAreWanted) {
+  plan("run");
+  auto const numbers = [this] {
+    auto const result = nlohmann::json::parse(read("run/cases/7.json"));
+    return result["measures"].dump() + result["vectors"].dump();
+  };
+  succeed({"sweep", "run", "run", "--quiet", "--case", "7"});
+  std::string const before = numbers();
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 1);
+  EXPECT_TRUE(std::filesystem::exists(in("run/cases/7/flow.tif")));
+  EXPECT_EQ(numbers(), before);
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "7", "--keep-images"})["computed"], 0);
+}
+
+TEST_F(Sweeps, ResultsThatWereRemovedWithTheirFolderAreComputedAgain) {
+  plan("run");
+  std::filesystem::remove_all(in("run/cases"));
+  EXPECT_EQ(json_of({"sweep", "run", "run", "--case", "0"})["done"], 1);
 }
 
 TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
@@ -280,6 +313,29 @@ TEST_F(Sweeps, FailedCasesAreRetriedOnceARunWhateverItsJobs) {
   EXPECT_EQ(again({"--retry-failed"}), 3);
 }
 
+// A limit of one second on a process's time ends it by SIGXCPU, as a crash would by SIGSEGV; the other cases take some
+// milliseconds, a million rays of each of 40 dots many seconds.
+TEST_F(Sweeps, ACaseThatKillsItsProcessIsRecordedAndDoesNotStopTheOthers) {
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"render.rays_per_dot\" = [16, 1000000, 32, 64]\n");
+  plan("run");
+  auto const limited = [] {
+    rlimit const time{1, 10}, core{0, 0};
+    return ::setrlimit(RLIMIT_CPU, &time) == 0 && ::setrlimit(RLIMIT_CORE, &core) == 0;
+  };
+  Outcome const outcome = run({"sweep", "run", "run", "--json", "--threads", "2", "--jobs", "2"}, folder_, limited);
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("at work on case 1; another one tries it once more"),
+                                          HasSubstr("at work on case 1; the case has failed")));
+  auto const ran = nlohmann::json::parse(outcome.out, nullptr, false);
+  ASSERT_TRUE(ran.is_object()) << outcome.out;
+  EXPECT_EQ(ran["computed"], 4);
+  EXPECT_EQ(ran["done"], 3);
+  ASSERT_EQ(ran["failed"], 1);
+  EXPECT_EQ(ran["failures"][0]["case"], 1);
+  EXPECT_THAT(ran["failures"][0]["error"].get<std::string>(), HasSubstr("its process was ended by signal"));
+  EXPECT_EQ(json_of({"sweep", "status", "run"})["failed"], 1);
+}
+
 // A limit on a process's memory stands for a machine that has no more: the program takes some 130 MB of it, a picture
 // of 2048 x 2048 px by itself more than 36 bytes x 4 Mpx = 150 MB.
 TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
@@ -315,8 +371,8 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
 TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
   plan("run");
-  std::string manifest = read("run/manifest.jsonl");  // planning would have refused it on this machine
-  write("run/manifest.jsonl", with(manifest, "pixels = [64, 64]", "pixels = [400000, 250000]"));
+  // planning would have refused it on this machine
+  plan_otherwise("run", "pixels = [64, 64]", "pixels = [400000, 250000]");
   for (int attempt = 0; attempt < 2; ++attempt) {
     Outcome const outcome = gladstone({"sweep", "run", "run", "--json"});
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
@@ -431,11 +487,7 @@ TEST_F(Sweeps, AFullDiskStopsTheRunAndTheNextOneGoesOn) {
 TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
   plan("run");
   expect_refused({"sweep", "run", "run", "--device", "cuda"}, 5, {"the study was planned for cpu"});
-  std::string manifest = read("run/manifest.jsonl");
-  for (std::size_t at; (at = manifest.find("\"device\":\"cpu\"")) != std::string::npos;) {
-    manifest.replace(at, 14, "\"device\":\"cuda\"");
-  }
-  write("run/manifest.jsonl", manifest);
+  plan_otherwise("run", "\"device\":\"cpu\"", "\"device\":\"cuda\"");
   auto const without_gpu = [] { return ::setenv("CUDA_VISIBLE_DEVICES", "", 1) == 0; };
   for (std::string const jobs : {"1", "2"}) {
     Outcome const outcome = run({"sweep", "run", "run", "--jobs", jobs}, folder_, without_gpu);

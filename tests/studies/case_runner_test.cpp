@@ -1,12 +1,15 @@
 #include "studies/sweep/case_runner.h"
 
-#include <bit>
 #include <chrono>
+#include <functional>
+#include <memory>
 #include <thread>
 
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
+#include "studies/sweep/recent.h"
 #include "studies/sweep/run.h"
+#include "tests/studies/support/same_results.h"
 #include "tests/studies/support/study_folder.h"
 
 namespace gladstone {
@@ -15,19 +18,6 @@ namespace {
 class CaseRunners : public StudyFolder {
  protected:
   static CaseRunner runner(Sharing sharing) { return CaseRunner(open_device("cpu"), sharing); }
-  /// Equal to the last bit, NaN included.
-  static void expect_same(CaseResult const& one, CaseResult const& other) {
-    EXPECT_EQ(one.status, other.status);
-    EXPECT_EQ(one.error, other.error);
-    EXPECT_EQ(one.warnings, other.warnings);
-    ASSERT_EQ(one.measures.size(), other.measures.size());
-    for (std::size_t i = 0; i < one.measures.size(); ++i) {
-      EXPECT_EQ(one.measures[i].first, other.measures[i].first);
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(one.measures[i].second),
-                std::bit_cast<std::uint64_t>(other.measures[i].second))
-          << one.measures[i].first << " of case " << one.index;
-    }
-  }
 };
 
 // Every axis touches another part of what is shared: field, geometry, rays, camera electronics and correlation alone.
@@ -83,6 +73,59 @@ TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {
   EXPECT_THAT(blank.error, testing::HasSubstr("no vector that can be compared"));
   write("dots.csv", "x_mm,y_mm\n0,0\n0.2,0.2\n1,1\n");
   EXPECT_THROW(one.run(with_file[0]), DataError);
+  std::filesystem::remove(in("dots.csv"));
+  std::string what = "nothing";
+  try {
+    one.run(with_file[0]);
+  } catch (DataError const& error) {
+    what = error.what();
+  }
+  EXPECT_THAT(what, testing::HasSubstr("dots.csv: cannot be read any more"));
+  EXPECT_THAT(what, testing::HasSubstr("case 0 (lens.f_number = 8)"));
+}
+
+// What went for want of places does not count any more: 50 + 10 bytes are kept of 100, and 40 more fit.
+TEST(RecentValues, AreCountedWhileTheyAreKept) {
+  Recent<int> recent(2);
+  recent.keep("a", 1, 50);
+  recent.keep("b", 2, 30);
+  ASSERT_NE(recent.find("a"), nullptr);
+  recent.keep("c", 3, 10);  // "b" is the one used longest ago
+  EXPECT_EQ(recent.find("b"), nullptr);
+  recent.make_room(40, 100);
+  EXPECT_NE(recent.find("c"), nullptr);
+  EXPECT_NE(recent.find("a"), nullptr);
+  recent.make_room(50, 100);
+  EXPECT_EQ(recent.find("c"), nullptr);
+  EXPECT_NE(recent.find("a"), nullptr);
+  recent.make_room(200, 100);
+  EXPECT_EQ(recent.find("a"), nullptr);
+}
+
+// Whatever a library throws is the case's; what the next case would meet as well stops the run.
+TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  std::function<void()> fail;
+  Device device = open_device("cpu");
+  device.correlator = [&fail](CorrelationSettings const&) -> std::unique_ptr<Correlator> {
+    fail();
+    return nullptr;
+  };
+  CaseRunner one(std::move(device));
+  fail = [] { throw std::runtime_error("something odd"); };
+  CaseResult const odd = one.run(cases[0]);
+  EXPECT_EQ(odd.status, CaseStatus::failed);
+  EXPECT_EQ(odd.error, "something odd");
+  EXPECT_FALSE(odd.again);
+  ManifestCase elsewhere = cases[0];
+  elsewhere.device = "cuda";
+  EXPECT_THROW(one.run(elsewhere), DeviceError);
+  fail = [] { throw DeviceError("the device is gone"); };
+  EXPECT_THROW(one.run(cases[0]), DeviceError);
+  fail = [] { throw Interrupted(); };
+  EXPECT_THROW(one.run(cases[0]), Interrupted);
+  fail = [] { throw OutputError("case", "cannot be written"); };
+  EXPECT_THROW(one.run(cases[0]), OutputError);
 }
 
 TEST_F(CaseRunners, FlatMeasuresAreTheNumbersByTheirPath) {

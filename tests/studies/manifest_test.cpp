@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -127,6 +128,40 @@ TEST_F(Runs, ManifestsThatAreNotWholeAreRefusedByLine) {
   } catch (DataError const& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("manifest.jsonl:2: is damaged"));
   }
+}
+
+// Any changed digit is seen, in a parameter as in the setup's text, though the line is JSON as before.
+TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
+  auto const cases = planned();
+  std::string const whole = content("run/manifest.jsonl");
+  std::size_t const second = whole.find('\n') + 1;
+  auto const complaint_about = [&](std::string const& text, std::size_t index) -> std::string {
+    write("run/manifest.jsonl", text);
+    try {
+      read_manifest(in("run"))[index];
+    } catch (DataError const& error) {
+      return error.what();
+    }
+    return "nothing";
+  };
+  EXPECT_EQ(complaint_about(whole, 1), "nothing");
+  for (std::string const piece : {"\"repeat\":0", "f_number = 8", "\"lens.f_number\":8"}) {
+    std::string changed = whole;
+    changed[changed.find(piece, second) + piece.size() - 1] = '9';
+    EXPECT_EQ(complaint_about(changed, 0), "nothing");
+    EXPECT_THAT(complaint_about(changed, 1), testing::HasSubstr("manifest.jsonl:2: is not as it was planned")) << piece;
+    EXPECT_NE(read_manifest(in("run")).line_hash(1), cases[1].line_hash);
+  }
+  // as lines were before they held their hash: planned again, what was computed is kept
+  std::string older = whole;
+  for (std::size_t at; (at = older.find(",\"hash\":")) != std::string::npos;) older.erase(at, 26);
+  EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: holds no hash of itself"));
+  write_result(in("run"), result_of(cases[1], 0.5));
+  StudyFile const same = study(two_axes);
+  auto again = plan_study(same, "cpu");
+  EXPECT_EQ(write_plan(in("run"), same, again), Planned::replaced);
+  EXPECT_EQ(content("run/manifest.jsonl"), whole);
+  EXPECT_TRUE(read_result(in("run"), 1, again[1].line_hash).has_value());
 }
 
 TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
@@ -381,6 +416,35 @@ TEST_F(Runs, AClaimKeepsOthersOffUntilItsProcessIsGone) {
   EXPECT_TRUE(mine.take(3));
   ::close(ready[0]);
   ::close(ready[1]);
+}
+
+TEST_F(Runs, ClaimsThatWereReplacedAreTakenInTheNewFile) {
+  planned();
+  Claims mine(in("run"), Claims::Use::take);
+  ASSERT_TRUE(mine.take(1));
+  std::filesystem::remove(in("run/claims"));
+  Claims other(in("run"), Claims::Use::take);
+  ASSERT_TRUE(other.take(2));
+  EXPECT_FALSE(mine.take(2));
+  EXPECT_TRUE(mine.take(3));
+  EXPECT_FALSE(other.take(3));
+}
+
+TEST_F(Runs, APartialResultIsWrittenByOneProcessAloneAndRemovedOnceItIsOld) {
+  auto const cases = planned();
+  std::vector<std::string> const others{"run/cases/.1.json.partial", "run/cases/.1.json.elsewhere-17.partial"};
+  for (std::string const& name : others) write(name, "{\"hash\":\"half");
+  write_result(in("run"), result_of(cases[1], 0.5));
+  remove_left_partials(in("run"));
+  for (std::string const& name : others) EXPECT_EQ(content(name), "{\"hash\":\"half") << name;
+  EXPECT_EQ(collect_study(in("run")).unfinished(), (std::vector<std::size_t>{0, 2, 3}));
+
+  for (std::string const& name : others) {
+    std::filesystem::last_write_time(in(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
+  }
+  remove_left_partials(in("run"));
+  for (std::string const& name : others) EXPECT_FALSE(std::filesystem::exists(in(name))) << name;
+  EXPECT_TRUE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
 
 TEST_F(Runs, LookingAtClaimsWritesNothing) {
