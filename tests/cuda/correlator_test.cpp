@@ -87,13 +87,13 @@ TEST_F(CudaCorrelation, WithUniformWindowsAndCubicSplinesIsThatOfTheCpu) {
 // Supports of 32 and 64 px have kernels of their own, up to about 160 px they go through shared memory, larger ones
 // through device memory; 22, 46 and 94 bring the primes 11, 23 and 47. Windows of 8 px need more particles to hold a
 // signal at all.
-TEST_F(CudaCorrelation, OfAnyWindowSizeIsThatOfTheCpu) {
-  ParticlePair const sparse = smooth_pair(300, 260), dense = smooth_pair(300, 260, 0.0, 1, 0.1);
-  for (int const window : {8, 10, 16, 22, 32, 46, 48, 64, 80, 94}) {
-    SCOPED_TRACE(window);
-    expect_same(with_windows({window}), window < 16 ? dense : sparse);
-  }
+class CudaWindowSize : public CudaCorrelation, public ::testing::WithParamInterface<int> {};
+TEST_P(CudaWindowSize, GivesTheVectorsOfTheCpu) {
+  int const window = GetParam();
+  expect_same(with_windows({window}), window < 16 ? smooth_pair(300, 260, 0.0, 1, 0.1) : smooth_pair(300, 260));
 }
+INSTANTIATE_TEST_SUITE_P(Px, CudaWindowSize, ::testing::Values(8, 10, 16, 22, 32, 46, 48, 64, 80, 94),
+                         ::testing::PrintToStringParamName());
 
 // A twentieth of the vectors is off by several pixels or has no agreeing neighbours: every branch of the validation.
 TEST_F(CudaCorrelation, ReplacesSpuriousVectorsAsTheCpuDoes) {
