@@ -70,6 +70,30 @@ class QuietLog {
   spdlog::level::level_enum level_;
 };
 
+std::string hash_of_input(std::string const& path, ManifestCase const& one) {
+  try {
+    return file_hash(path);
+  } catch (DataError const&) {
+    throw DataError(path, fmt::format("cannot be read any more, as it was when the study was planned ({}); bring it "
+                                      "back, or plan the study again into another folder",
+                                      one.title()));
+  }
+}
+
+/// Whether an error tells of a lack of memory, which is no property of the case: another moment or machine has more.
+bool lacks_memory(std::exception const& error) {
+  std::string_view const text = error.what();
+  return dynamic_cast<std::bad_alloc const*>(&error) || text.starts_with("out of device memory") ||
+         text.find("GB of memory (") != text.npos ||          // as check_memory refuses, before anything is allocated
+         text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
+}
+
+/// Whether the next case would meet the same.
+bool stops_the_run(std::exception const& error) {
+  return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
+         dynamic_cast<Interrupted const*>(&error);
+}
+
 }  // namespace
 
 struct CaseRunner::Shared {
@@ -95,20 +119,6 @@ CaseRunner::CaseRunner(Device device, Sharing sharing)
     : device_(std::move(device)), sharing_(sharing), shared_(std::make_unique<Shared>()) {}
 CaseRunner::~CaseRunner() = default;
 
-namespace {
-
-std::string hash_of_input(std::string const& path, ManifestCase const& one) {
-  try {
-    return file_hash(path);
-  } catch (DataError const&) {
-    throw DataError(path, fmt::format("cannot be read any more, as it was when the study was planned ({}); bring it "
-                                      "back, or plan the study again into another folder",
-                                      one.title()));
-  }
-}
-
-}  // namespace
-
 void CaseRunner::check_inputs(ManifestCase const& one) {
   if (one.device != device_.name()) {
     throw DeviceError(fmt::format("{} was planned for {} and not for {}; plan the study again", one.title(), one.device,
@@ -128,24 +138,6 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
                                       one.title()));
   }
 }
-
-namespace {
-
-/// Whether an error tells of a lack of memory, which is no property of the case: another moment or machine has more.
-bool lacks_memory(std::exception const& error) {
-  std::string_view const text = error.what();
-  return dynamic_cast<std::bad_alloc const*>(&error) || text.starts_with("out of device memory") ||
-         text.find("GB of memory (") != text.npos ||          // as check_memory refuses, before anything is allocated
-         text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
-}
-
-/// Whether the next case would meet the same.
-bool stops_the_run(std::exception const& error) {
-  return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
-         dynamic_cast<Interrupted const*>(&error);
-}
-
-}  // namespace
 
 CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   check_inputs(one);
@@ -173,13 +165,10 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   } catch (std::exception const& error) {
     bool const no_memory = lacks_memory(error);
     if (!no_memory && stops_the_run(error)) throw;
-    result = fresh;
-    result.status = CaseStatus::failed;
-    result.error = dynamic_cast<std::bad_alloc const*>(&error)
-                       ? "out of memory; reduce the image, the field or the number of dots"
-                       : error.what();
-    result.again = no_memory;
-    result.seconds_render = result.seconds_correlate = result.seconds_compare = nan;
+    std::string const text = dynamic_cast<std::bad_alloc const*>(&error)
+                                 ? "out of memory; reduce the image, the field or the number of dots"
+                                 : error.what();
+    return failed_case(one.index, one.line_hash, device_.name(), text, no_memory);
   }
   return result;
 }

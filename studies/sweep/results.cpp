@@ -22,6 +22,7 @@
 
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
+#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {
@@ -127,6 +128,19 @@ char const* to_string(CaseStatus status) {
       break;
   }
   return "missing";
+}
+
+CaseResult failed_case(std::size_t index, std::string line_hash, std::string device, std::string error, bool again) {
+  CaseResult result;
+  result.index = index;
+  result.line_hash = std::move(line_hash);
+  result.status = CaseStatus::failed;
+  result.error = std::move(error);
+  result.again = again;
+  result.seconds_render = result.seconds_correlate = result.seconds_compare = std::numeric_limits<double>::quiet_NaN();
+  result.device = std::move(device);
+  result.build = build_text();
+  return result;
 }
 
 std::string result_path(std::string const& run, std::size_t index) {

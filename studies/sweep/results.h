@@ -29,6 +29,9 @@ struct CaseResult {
   std::string build;  ///< build_text() of the gladstone that computed it; empty: unknown
 };
 
+/// What is recorded of a case that this gladstone could not compute.
+CaseResult failed_case(std::size_t index, std::string line_hash, std::string device, std::string error, bool again);
+
 /// RUN/cases/INDEX.json
 std::string result_path(std::string const& run, std::size_t index);
 

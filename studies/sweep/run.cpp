@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <limits>
 #include <numeric>
 #include <thread>
 
@@ -13,7 +12,6 @@
 #include "render/base/interrupt.h"
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
-#include "studies/version_text.h"
 
 namespace gladstone {
 namespace {
@@ -111,16 +109,7 @@ bool record_failure(std::string const& run, Manifest const& cases, std::size_t i
   Claims claims(run, Claims::Use::take);
   Claim const claim(claims, index);
   if (!claim.taken() || read_result(run, index, cases.line_hash(index), ResultPart::head)) return false;
-  CaseResult result;
-  result.index = index;
-  result.line_hash = cases.line_hash(index);
-  result.device = cases[index].device;
-  result.build = build_text();
-  result.status = CaseStatus::failed;
-  result.error = error;
-  result.again = again;
-  result.seconds_render = result.seconds_correlate = result.seconds_compare = std::numeric_limits<double>::quiet_NaN();
-  write_result(run, result);
+  write_result(run, failed_case(index, cases.line_hash(index), cases[index].device, error, again));
   return true;
 }
 

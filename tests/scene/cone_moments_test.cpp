@@ -10,6 +10,7 @@
 #include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
 #include "render/scene/light_model.h"
+#include "tests/scene/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -253,15 +254,7 @@ TEST_P(TableUnderFineSpots, GivesTheirLight) {
   ASSERT_FALSE(DeflectionPlan(by_rays, by_rays.dots).wanted);
   ASSERT_TRUE(DeflectionPlan(by_table, by_table.dots).wanted);
   Image<double> const exact = render_all(by_rays).light.flow, found = render_all(by_table).light.flow;
-  double const level = *std::max_element(exact.begin(), exact.end()) / (0.9 * 4095);
-  double square = 0;
-  int lit = 0;
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    if (exact.data()[i] < level) continue;
-    square += std::pow((found.data()[i] - exact.data()[i]) / level, 2);
-    ++lit;
-  }
-  EXPECT_LT(std::sqrt(square / lit), 1.5);
+  EXPECT_LT(picture_error(found, exact).rms_levels, 1.5);
 }
 INSTANTIATE_TEST_SUITE_P(DnsPlane, TableUnderFineSpots,
                          testing::Values(FineSpot{8, 0}, FineSpot{8, 3}, FineSpot{5.6, 0}, FineSpot{5.6, 3}));

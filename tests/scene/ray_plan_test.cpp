@@ -7,6 +7,7 @@
 
 #include "render/base/random.h"
 #include "render/scene/deflection_map.h"
+#include "tests/scene/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -134,17 +135,9 @@ TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
   }
   EXPECT_LT(std::sqrt(square), 1e-3);
 
-  Image<double> const &a = chosen.light.flow, &b = reference.light.flow;
-  double const level = *std::max_element(b.begin(), b.end()) / (0.9 * 4095);
-  double error = 0;
-  int lit = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (b.data()[i] < level) continue;
-    error += std::pow((a.data()[i] - b.data()[i]) / level, 2);
-    ++lit;
-  }
-  ASSERT_GT(lit, 100);
-  EXPECT_LT(std::sqrt(error / lit), 0.5);
+  PictureError const error = picture_error(chosen.light.flow, reference.light.flow);
+  ASSERT_GT(error.lit, 100);
+  EXPECT_LT(error.rms_levels, 0.5);
 }
 
 /// rms over lit pixels of the scatter of one picture, from two of other seeds, in grey levels of 12 bits when the

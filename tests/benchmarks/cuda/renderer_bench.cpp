@@ -8,6 +8,7 @@
 #include "cuda/backend.h"
 #include "render/base/progress.h"
 #include "tests/benchmarks/bench_scenes.h"
+#include "tests/scene/picture_error.h"
 
 namespace gladstone::bench {
 namespace {
@@ -63,17 +64,8 @@ void report_accuracy(benchmark::State& state, Scene scene) {
       Vec2d const off = found.truth.displacement_px[i] - exact.truth.displacement_px[i];
       square += 0.5 * dot(off, off);
     }
-    Image<double> const& light = exact.light.flow;
-    double const peak = *std::max_element(light.begin(), light.end()), level = peak / (0.9 * 4095);
-    double light_square = 0;
-    std::size_t lit = 0;
-    for (std::size_t i = 0; i < light.size(); ++i) {
-      if (light.data()[i] < level) continue;
-      light_square += std::pow((found.light.flow.data()[i] - light.data()[i]) / level, 2);
-      ++lit;
-    }
     state.counters["truth_px"] = std::sqrt(square / parts);
-    state.counters["image_levels"] = std::sqrt(light_square / static_cast<double>(lit));
+    state.counters["image_levels"] = picture_error(found.light.flow, exact.light.flow).rms_levels;
   }
 }
 
