@@ -110,7 +110,10 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
       fmt::format_to(std::back_inserter(text), "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", p.x, p.y,
                      d.x, d.y, s.x, s.y, ratio(i), status(i));
     }
-    OutputFile::write_text(path, text);
+    OutputFile file(path);
+    file.write(text.data(), text.size());
+    origin.sources.check();
+    file.commit();
     return;
   }
   if (!path.ends_with(".h5")) {

@@ -12,3 +12,5 @@ find_package(OpenCVModules REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(TomlPlusPlus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
+# of OpenSSL, the library of hashes alone
+pkg_check_modules(OpenSSLCrypto REQUIRED IMPORTED_TARGET libcrypto)

@@ -11,6 +11,7 @@
 
 #include "render/base/image_file.h"
 #include "render/base/output_file.h"
+#include "render/base/output_folder.h"
 #include "render/base/units.h"
 #include "render/sensor/detector.h"
 #include "studies/json_text.h"
@@ -163,6 +164,13 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
   return picture;
 }
 
+/// Path to SHA-256 of the bytes, as JSON.
+std::string hashes_of(std::vector<std::string> const& files) {
+  nlohmann::json hashes = nlohmann::json::object();
+  for (std::string const& file : files) hashes[file] = byte_sha256(file);
+  return hashes.dump();
+}
+
 /// The preview is the GPU's alone; the CPU gives better than was asked for.
 bool single_precision(Setup const& setup, Renderer const& renderer) {
   return setup.render.precision == Precision::single && renderer.device() == "cuda";
@@ -191,13 +199,14 @@ RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& r
 }
 
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
-  OutputFolder output(folder, case_file::setup, {case_file::derived.begin(), case_file::derived.end()});
+  OutputFolder output(folder, case_content());
   FinishedCase finished;
   finished.prepared = prepare_case(loaded);
   finished.rendered = render_case(finished.prepared, renderer, RenderTheory::yes);
   finished.frames = record_frames(finished.prepared, finished.rendered);
-  finished.summary =
-      write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, output.temporary_path());
+  output.fill([&](std::string const& place) {
+    finished.summary = write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
+  });
   output.commit();
   return finished;
 }
@@ -227,9 +236,15 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   }
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  write_tiff(place(case_file::reference), picture_of(levels->reference()), metadata);
-  write_tiff(place(case_file::flow), picture_of(levels->flow()), metadata);
   FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
+  auto const write_frame = [&](char const* name, char const* file, Image<double> const& frame) {
+    Image<std::uint16_t> const picture = picture_of(frame);
+    write_tiff(place(file), picture, metadata);
+    origin.sources.add_known(name, pixel_sha256(picture));
+  };
+  write_frame("reference", case_file::reference, levels->reference());
+  write_frame("flow", case_file::flow, levels->flow());
+  origin.sources.add_known("inputs", hashes_of(loaded.document.file_names()));
   write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, map_field(scene, map_spacing_px),
               origin);
   OutputFile::write_text(place(case_file::setup), resolved);
@@ -264,6 +279,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
       {"pupil_margin_mm", scene.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", saturated_reference}, {"flow", saturated_flow}}},
+      {"reference_sha256", origin.sources.sha256("reference")},
+      {"flow_sha256", origin.sources.sha256("flow")},
       {"photons_fully_lit", rendered.exposure_e / camera.noise.quantum_efficiency},
       {"warnings", warnings},
       {"seconds_render", rendered.seconds},
@@ -279,9 +296,36 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   return text;
 }
 
+FolderContent case_content() {
+  return {case_file::setup, {case_file::derived.begin(), case_file::derived.end()}};
+}
+
+namespace {
+
+template <class Names>
+std::vector<std::string> in_folder(std::string const& folder, Names const& names) {
+  std::vector<std::string> paths;
+  for (char const* name : names) paths.push_back((std::filesystem::path(folder) / name).string());
+  return paths;
+}
+
+}  // namespace
+
+std::vector<std::string> rendered_files(std::string const& folder) {
+  return in_folder(folder, std::array{case_file::reference, case_file::flow, case_file::truth, case_file::setup,
+                                      case_file::summary});
+}
+
+std::vector<std::string> derived_files(std::string const& folder) { return in_folder(folder, case_file::derived); }
+
+void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs) {
+  refuse_inputs_as_outputs(rendered_files(folder), inputs);
+  refuse_inputs_as_outputs(derived_files(folder), inputs);
+}
+
 std::string in_case(std::string const& folder, std::string const& name) {
   namespace fs = std::filesystem;
-  if (!fs::exists(fs::path(folder) / case_file::setup)) {
+  if (!is_complete(folder, case_content())) {
     throw DataError(folder,
                     "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/correlation_settings.h"
+#include "render/base/folder_replacement.h"
 #include "render/base/setup_table.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ray_plan.h"
@@ -100,7 +101,19 @@ inline constexpr std::array derived{vectors,
                                     "error_budget.png"};
 }  // namespace case_file
 
-/// "folder/name"; @throws DataError where the folder is no CASE (has no setup.toml)
+/// What makes a folder a CASE, and what goes when it is rendered again.
+FolderContent case_content();
+
+/// Paths of the files of a CASE that render writes.
+std::vector<std::string> rendered_files(std::string const& folder);
+/// Paths of those derived from them.
+std::vector<std::string> derived_files(std::string const& folder);
+
+/// Makes sure that rendering into a CASE replaces or removes nothing that is read for it. @throws OutputError
+void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs);
+
+/// "folder/name"; completes a replacement of the case's files that was broken off.
+/// @throws DataError where the folder is no CASE (has no setup.toml)
 std::string in_case(std::string const& folder, std::string const& name);
 
 }  // namespace gladstone

@@ -1,5 +1,6 @@
 #include "studies/compare.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "analysis/correlator.h"
 #include "analysis/scattered_grid.h"
+#include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/sensor/detector.h"
 #include "studies/correlate.h"
@@ -140,6 +142,58 @@ std::string vectors_path(std::string const& folder, std::string const& given) {
 
 }  // namespace
 
+namespace {
+
+/// The files that the setup names are read again: they must be those that the truth was traced through.
+void refuse_changed_inputs(std::string const& truth, std::string const& folder) {
+  nlohmann::json const inputs = nlohmann::json::parse(Hdf5Reader(truth).attribute("inputs_sha256"), nullptr, false);
+  if (!inputs.is_object()) return;
+  for (auto const& [path, hash] : inputs.items()) {
+    if (!std::filesystem::exists(path) || hash == byte_sha256(path)) continue;  // its reader says what is missing
+    throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); bring "
+                                      "the old file back, or render the case again",
+                                      folder));
+  }
+}
+
+}  // namespace
+
+ComparedFiles compared_files(std::string const& folder, std::string const& vectors) {
+  ComparedFiles files;
+  files.setup = in_case(folder, case_file::setup);
+  files.truth = made_file(folder, case_file::truth, "gladstone render SETUP.toml -o " + folder);
+  files.vectors = vectors_path(folder, vectors);
+  bool const hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
+  SourceFiles& sources = files.sources;
+  sources.on_change("compare again, after gladstone correlate " + folder + " where the case was rendered anew");
+  sources.add("", files.setup, SourceFiles::Holds::bytes);
+  sources.add("truth", files.truth, SourceFiles::Holds::datasets);
+  sources.add("vectors", files.vectors, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+  refuse_changed_inputs(files.truth, folder);
+  if (!hdf5) files.unverified = files.vectors;
+  if (!hdf5) return files;
+  Hdf5Reader const truth(files.truth), measured(files.vectors);
+  for (std::string const frame : {"reference", "flow"}) {
+    std::string const mine = truth.attribute(frame + "_sha256"), theirs = measured.attribute(frame + "_sha256");
+    if (mine.empty() || theirs.empty()) {
+      files.unverified = theirs.empty() ? files.vectors : files.truth;
+    } else if (mine != theirs) {
+      throw DataError(files.vectors,
+                      fmt::format("was measured on other frames than {} belongs to (the SHA-256 of its {} frame's "
+                                  "pixels is {:.12}..., not {:.12}...); run gladstone correlate {} again, or give "
+                                  "vectors of frames that were changed on purpose as .csv",
+                                  files.truth, frame, theirs, mine, folder));
+    }
+    if (!theirs.empty()) sources.add_known(frame, theirs);
+  }
+  return files;
+}
+
+void name_sources(Comparison& comparison, ComparedFiles files) {
+  comparison.verified = files.unverified.empty();
+  comparison.sources = std::move(files.sources);
+}
+
 GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory) {
   DotPattern virtual_dots;
@@ -186,18 +240,22 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 }
 
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options) {
-  std::string const setup = in_case(folder, case_file::setup);
-  std::string const truth = made_file(folder, case_file::truth, "gladstone render " + setup + " -o " + folder);
-  std::string const path = vectors_path(folder, options.vectors);
-  CaseSetup loaded = load_case_setup(setup, {});
-  GroundTruth const dots = read_truth(truth);
-  MeasuredVectors vectors = load_vectors(path, loaded, dots, options);
+  ComparedFiles files = compared_files(folder, options.vectors);
+  if (!files.unverified.empty()) {
+    spdlog::warn("unverified: {} carries no SHA-256 of its frames, so nothing tells whether {} was measured on this case",
+                 files.unverified, files.vectors);
+  }
+  CaseSetup loaded = load_case_setup(files.setup, {});
+  GroundTruth const dots = read_truth(files.truth);
+  MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
   PreparedCase const prepared = prepare_case(loaded);
   std::optional<RenderedCase> rendered;
   if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
   PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
-  return compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors), std::move(point), device,
-                         options.truth_at);
+  Comparison comparison = compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors),
+                                          std::move(point), device, options.truth_at);
+  name_sources(comparison, std::move(files));
+  return comparison;
 }
 
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
@@ -272,6 +330,14 @@ std::string errors_json(Comparison const& comparison) {
   json["vectors"] = {{"total", comparison.measured.size()},
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
+  if (!comparison.sources.all().empty()) {
+    nlohmann::ordered_json made_from;
+    for (SourceFiles::Source const& source : comparison.sources.all()) {
+      if (!source.name.empty()) made_from[source.name + "_sha256"] = source.sha256;
+    }
+    made_from["frames"] = comparison.verified ? "verified" : "unverified";
+    json["made_from"] = made_from;
+  }
   return json_text(json) + "\n";
 }
 

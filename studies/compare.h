@@ -33,6 +33,8 @@ struct Comparison {
   ErrorBudget budget;
   std::string report;  ///< what was detected about a foreign file; empty for ours
   bool foreign = false;
+  SourceFiles sources;    ///< what the files held that were compared; nothing for vectors that never were in files
+  bool verified = false;  ///< the vectors were measured on the very frames that the truth belongs to
 };
 
 /// Virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`: two rounds of
@@ -70,6 +72,19 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
                            MeasuredVectors vectors, PointTruth truth, Device const& device,
                            TruthAt at = TruthAt::mid_position);
+
+/// The files that a comparison reads: setup, truth and vectors of a CASE, as they are now.
+struct ComparedFiles {
+  std::string setup, truth, vectors;
+  SourceFiles sources;
+  std::string unverified;  ///< which of them does not tell its frames; empty: both do, and they are the same
+};
+/// @param vectors a file; empty: those of the case
+/// @throws DataError where one is not there, or the vectors were measured on other frames than the truth belongs to
+ComparedFiles compared_files(std::string const& folder, std::string const& vectors);
+
+/// Lets a comparison's errors.json name those files by what they hold.
+void name_sources(Comparison& comparison, ComparedFiles files);
 
 /// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);

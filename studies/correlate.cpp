@@ -1,6 +1,7 @@
 #include "studies/correlate.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -73,15 +74,35 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
   return read_document(SetupDocument::from_text("", "defaults"), overrides);
 }
 
+Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources) {
+  ImageMetadata metadata;
+  Image<double> frame = read_image(path, &metadata);
+  if (metadata.channels >= 3) {
+    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
+                 path);
+  }
+  sources.add(name, path, SourceFiles::Holds::pixels, pixel_sha256(frame, metadata.sample_bits));
+  return frame;
+}
+
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Device const& device) {
   std::string const reference = in_case(folder, case_file::reference), flow = in_case(folder, case_file::flow);
-  CaseSetup loaded = load_case_setup(in_case(folder, case_file::setup), {});
+  std::string const setup = in_case(folder, case_file::setup);
+  SourceFiles sources;
+  sources.on_change("run gladstone correlate " + folder + " again");
+  sources.add("", setup, SourceFiles::Holds::bytes);
+  CaseSetup loaded = load_case_setup(setup, {});
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
-  Measurement measurement =
-      correlate_frames(reference, read_image(reference), flow, read_image(flow), settings, device);
-  FileOrigin origin{"gladstone vectors", 1, other ? other->resolved : loaded.document.resolved(),
-                    loaded.setup.render.seed, device.name()};
+  Image<double> const reference_frame = read_frame(reference, "reference", sources);
+  Image<double> const flow_frame = read_frame(flow, "flow", sources);
+  Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
+  FileOrigin origin{"gladstone vectors",
+                    1,
+                    other ? other->resolved : loaded.document.resolved(),
+                    loaded.setup.render.seed,
+                    device.name(),
+                    sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

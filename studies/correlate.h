@@ -5,6 +5,7 @@
 #include "analysis/correlation_settings.h"
 #include "render/base/displacement_field.h"
 #include "render/base/image.h"
+#include "render/base/source_files.h"
 #include "studies/device.h"
 
 namespace gladstone {
@@ -31,7 +32,12 @@ struct CorrelationFile {
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides);
 CorrelationFile default_correlation(std::vector<std::string> const& overrides);
 
-/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv).
+/// Reads a frame and enters it, by what it holds, among the sources of the vectors. A colour picture is warned of.
+/// @param name "reference" or "flow"
+Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources);
+
+/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by what
+/// they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Device const& device);
 

@@ -10,6 +10,7 @@
 #include "analysis/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/output_file.h"
+#include "render/base/output_folder.h"
 #include "studies/case.h"
 #include "studies/compare.h"
 #include "studies/correlate.h"
@@ -112,21 +113,25 @@ std::string run_demo(std::string const& folder, Device const& device) {
   std::string rows, reports;
   std::vector<SeedFigure4Instant> panels;
   MapAxes axes;  // of both: one camera
+  OutputFile const tried((fs::path(folder) / "summary.md").string());
+  for (Instant const& instant : instants) OutputFolder((fs::path(folder) / instant.name).string(), case_content());
   for (Instant const& instant : instants) {
     spdlog::info("{}: {}", instant.name, instant.heading);
     std::string const place = (fs::path(folder) / instant.name).string();
     CaseSetup loaded = load_case_setup(shared + "/studies/cases/table1.toml",
                                        {fmt::format("medium.field.file=\"{}/data/fields/{}\"", shared, instant.file),
                                         fmt::format("render.rays_per_dot={}", instant.rays)});
+    refuse_case_over_inputs(place, loaded.document.file_names());
     FinishedCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
     Measurement const measured = correlate_case(place, "", nullptr, device);
     spdlog::info("{}: {} vectors in {:.1f} s; comparing with truth and theory", instant.name, measured.field.size(),
                  measured.seconds);
     GroundTruth const& dots = made.rendered.rendering->truth;
-    Comparison const comparison = compare_vectors(
+    Comparison comparison = compare_vectors(
         made.prepared, dots, &made.rendered, {measured.field, loaded.correlate, false, "", place},
         truth_of_vectors(made.prepared, *device.renderer, measured.field.position_px, TruthAt::mid_position), device);
+    name_sources(comparison, compared_files(place, ""));
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
     rows += table_row(fmt::format("{}, all vectors", instant.name), comparison, comparison.mask);
     VectorMask const gentle =

@@ -31,7 +31,13 @@ class DataError : public std::runtime_error {
 /// An output that cannot be written (read-only folder, full disk). Exit code 2.
 class OutputError : public std::runtime_error {
  public:
-  OutputError(std::string const& path, std::string const& message) : std::runtime_error(path + ": " + message) {}
+  OutputError(std::string const& path, std::string const& message)
+      : std::runtime_error(path + ": " + message), path_(path), message_(message) {}
+  std::string const& path() const { return path_; }
+  std::string const& message() const { return message_; }
+
+ private:
+  std::string path_, message_;
 };
 
 /// An accelerator that is absent, out of memory or failing. Exit code 5.

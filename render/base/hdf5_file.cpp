@@ -223,6 +223,20 @@ std::vector<std::string> Hdf5Reader::dataset_names() const {
   return names;
 }
 
+std::vector<std::string> Hdf5Reader::number_datasets() const {
+  Lock const lock(library_lock());
+  std::vector<std::string> names;
+  for (std::string const& name : all_datasets(handle_->file)) {
+    Id const opened(H5Dopen2(handle_->file, name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!opened.valid()) throw DataError(path_, "dataset \"" + name + "\" cannot be opened (the file is damaged)");
+    Id const type(H5Dget_type(opened), H5Tclose);
+    H5T_class_t const kind = H5Tget_class(type);
+    if (kind == H5T_INTEGER || kind == H5T_FLOAT) names.push_back('/' + name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 std::vector<std::size_t> Hdf5Reader::shape(std::string const& dataset) const {
   Lock const lock(library_lock());
   return shape_of(handle_->open(path_, dataset));
@@ -313,6 +327,7 @@ std::string Hdf5Reader::attribute(std::string const& name) const {
 struct Hdf5Writer::Handle {
   OutputFile output;
   Id file;
+  SourceFiles sources;
 };
 
 namespace {
@@ -409,7 +424,8 @@ Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin) : path
   H5Pset_fapl_core(access, chunk_bytes, false);
   Id const properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(properties, false);
-  handle_.reset(new Handle{OutputFile(path), Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties, access), H5Fclose)});
+  handle_.reset(new Handle{OutputFile(path), Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties, access), H5Fclose),
+                           origin.sources});
   check(handle_->file.valid(), path, "the HDF5 structure");
   hid_t const root = handle_->file;
   std::int64_t const format_version = origin.version;
@@ -421,6 +437,9 @@ Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin) : path
   write_attribute(root, path, "setup", origin.setup);
   write_attribute(root, path, "seed", H5T_NATIVE_UINT64, &origin.seed);
   write_attribute(root, path, "device", origin.device);
+  for (SourceFiles::Source const& source : origin.sources.all()) {
+    if (!source.name.empty()) write_attribute(root, path, source.name + "_sha256", source.sha256);
+  }
 }
 
 Hdf5Writer::~Hdf5Writer() {
@@ -479,6 +498,7 @@ void Hdf5Writer::close() {
   check(H5Fget_file_image(handle_->file, image.data(), image.size()) == size, path_, "the HDF5 structure");
   handle_->file.reset();
   handle_->output.write(image.data(), image.size());
+  handle_->sources.check();
   handle_->output.commit();
   handle_.reset();
 }

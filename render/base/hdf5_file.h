@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "render/base/source_files.h"
+
 namespace gladstone {
 
 /// What every HDF5 file of ours says about itself, as root attributes.
@@ -16,6 +18,8 @@ struct FileOrigin {
   std::string setup;  ///< full text of the resolved setup
   std::uint64_t seed = 0;
   std::string device = "cpu";
+  /// What the file is made from: root attributes NAME_sha256, and looked at again before it is put in its place.
+  SourceFiles sources = {};
 };
 
 /// The one place where the HDF5 C library is called. Errors are DataError (reading) and OutputError (writing), with
@@ -29,6 +33,8 @@ class Hdf5Reader {
   bool has(std::string const& dataset) const;
   /// Names of the datasets in the root group, for messages.
   std::vector<std::string> dataset_names() const;
+  /// Paths of all datasets of numbers, in every group, in alphabetical order: "/dots/flux".
+  std::vector<std::string> number_datasets() const;
   std::vector<std::size_t> shape(std::string const& dataset) const;
   /// Bits of precision of the stored numbers: 24 for float, 53 for double, an integer's width.
   int significant_bits(std::string const& dataset) const;

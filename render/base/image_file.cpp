@@ -127,6 +127,7 @@ Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
   if (metadata) {
     *metadata = metadata_of(spec);
     metadata->channels = spec.nchannels;
+    metadata->sample_bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
   }
   return image;
 }

@@ -14,6 +14,7 @@ struct ImageMetadata {
   double pixel_pitch_m = 0.0;  ///< also as X/YResolution
   std::string description;     ///< e.g. the resolved setup, as ImageDescription
   int channels = 1;            ///< as read: of three or more read_image made grey values
+  int sample_bits = 16;        ///< as read: of a sample in the file, significant or not
 };
 
 /// Reads any picture that OpenImageIO knows (TIFF, PNG, EXR; 8, 16 bit, float) as raw values in double:

@@ -1,5 +1,7 @@
 #include "render/base/interrupt.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 
@@ -11,13 +13,24 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void remember_interrupt(int) { interrupted.store(true, std::memory_order_relaxed); }
+std::atomic<bool> pressed{false};  // Ctrl-C
+
+constexpr int exit_code = 130;
+
+extern "C" void remember_interrupt(int signal) {
+  // A worker gets Ctrl-C from the terminal and SIGTERM from its parent, and others send SIGTERM twice: only the user
+  // who presses again wants no more waiting.
+  if (signal == SIGINT && pressed.exchange(true, std::memory_order_relaxed)) ::_exit(exit_code);
+  interrupted.store(true, std::memory_order_relaxed);
+}
 
 }  // namespace
 
 void catch_interrupts() {
   std::signal(SIGINT, remember_interrupt);
   std::signal(SIGTERM, remember_interrupt);
+  // nohup has it ignored, and so it stays
+  if (std::signal(SIGHUP, remember_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is a failed write, reported like a full disk
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "render/base/output_file.h"
+#include "render/base/partial.h"
 #include "studies/commands/command.h"
 #include "studies/error_report.h"
 #include "studies/figures/gnuplot.h"
@@ -19,29 +20,36 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Writes errors.json and the figures: all of them or, where one cannot be made, none.
-/// @return what was written
-std::vector<fs::path> write_results(fs::path const& place, Comparison const& comparison, std::string const& json,
+/// @return what was drawn
+std::vector<fs::path> write_results(std::string const& place, Comparison const& comparison, std::string const& json,
                                     bool figures) {
-  OutputFolder const staging((place / ".comparison").string(), case_file::errors);
-  fs::path const made = staging.temporary_path();
+  Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
+  fs::path const made = fs::path(staging.path()) / "figures";
+  fs::create_directory(made);
   try {
-    if (figures) draw_comparison(made.string(), comparison);
+    if (figures) name_final_place(made.string(), place, [&] { draw_comparison(made.string(), comparison); });
   } catch (GnuplotMissing const& missing) {
     spdlog::warn("{}", missing.what());
-  } catch (OutputError const& error) {  // named by its final place
-    std::string const text = error.what(), start = made.string() + '/';
-    if (!text.starts_with(start)) throw;
-    auto const end = text.find(": ", start.size());
-    throw OutputError((place / text.substr(start.size(), end - start.size())).string(), text.substr(end + 2));
   }
   std::vector<fs::path> written;
   for (auto const& entry : fs::directory_iterator(made)) written.push_back(place / entry.path().filename());
   std::sort(written.begin(), written.end());
-  OutputFile errors((place / case_file::errors).string());
+  OutputFile errors((fs::path(place) / case_file::errors).string());
   errors.write(json.data(), json.size());
+  comparison.sources.check();
   for (auto const& path : written) fs::rename(made / path.filename(), path);
   errors.commit();
   return written;
+}
+
+/// What write_results() may write over.
+std::vector<std::string> results_of_comparison(std::string const& folder) {
+  std::vector<std::string> paths = derived_files(folder);
+  std::erase_if(paths, [](std::string const& path) {
+    std::string const name = fs::path(path).filename().string();
+    return name == case_file::vectors || name == case_file::vectors_text;
+  });
+  return paths;
 }
 
 }  // namespace
@@ -67,9 +75,14 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     CompareOptions compare = arguments->compare;
     if (arguments->truth_at == "reference") compare.truth_at = TruthAt::reference;
     if (!arguments->conventions.empty()) compare.conventions = arguments->conventions;
-    Comparison const comparison = compare_case(arguments->folder, device, compare);
+    std::string const& folder = arguments->folder;
+    std::vector<std::string> inputs = rendered_files(folder);
+    inputs.push_back(compare.vectors.empty() ? in_case(folder, case_file::vectors) : compare.vectors);
+    refuse_inputs_as_outputs(results_of_comparison(folder), inputs);
+    OutputFile const tried(in_case(folder, case_file::errors));
+    Comparison const comparison = compare_case(folder, device, compare);
     std::string const json = errors_json(comparison);
-    auto const figures = write_results(arguments->folder, comparison, json, !arguments->no_figures);
+    auto const figures = write_results(folder, comparison, json, !arguments->no_figures);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
     for (auto const& path : figures) spdlog::info("drew {}", path.string());
     print_result(options, json, error_report(comparison));

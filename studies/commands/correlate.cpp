@@ -9,25 +9,12 @@
 
 #include "analysis/vector_file.h"
 #include "render/base/error.h"
-#include "render/base/image_file.h"
+#include "render/base/output_file.h"
 #include "studies/case.h"
 #include "studies/commands/command.h"
 #include "studies/json_text.h"
 
 namespace gladstone {
-namespace {
-
-Image<double> read_frame(std::string const& path) {
-  ImageMetadata metadata;
-  Image<double> image = read_image(path, &metadata);
-  if (metadata.channels >= 3) {
-    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
-                 path);
-  }
-  return image;
-}
-
-}  // namespace
 
 CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
@@ -59,19 +46,31 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                                                   : default_correlation(arguments->overrides);
     Measurement measurement;
     std::string written = output;
-    if (arguments->inputs.size() == 1) {
+    std::vector<std::string> inputs = arguments->inputs;
+    bool const is_case = inputs.size() == 1;
+    if (is_case) {
       std::string const& folder = arguments->inputs[0];
       if (!std::filesystem::is_directory(folder)) {
         throw DataError(
             folder, "is not a case folder (give one, or two images: gladstone correlate A.tif B.tif -o vectors.csv)");
       }
-      measurement = correlate_case(folder, output, configured ? &other : nullptr, device);
       if (written.empty()) written = in_case(folder, case_file::vectors);
+      inputs = rendered_files(folder);
+    } else if (output.empty()) {
+      throw OutputError("correlate", "two images need -o FILE.h5 or FILE.csv");
+    }
+    if (!config.empty()) inputs.push_back(config);
+    refuse_inputs_as_outputs({written}, inputs);
+    OutputFile const tried(written);
+    if (is_case) {
+      measurement = correlate_case(arguments->inputs[0], written, configured ? &other : nullptr, device);
     } else {
-      if (output.empty()) throw OutputError("correlate", "two images need -o FILE.h5 or FILE.csv");
-      std::string const &a = arguments->inputs[0], &b = arguments->inputs[1];
-      measurement = correlate_frames(a, read_frame(a), b, read_frame(b), other.settings, device);
-      write_vectors(output, measurement.field, {"gladstone vectors", 1, other.resolved, 0, device.name()});
+      std::string const &a = inputs[0], &b = inputs[1];
+      SourceFiles sources;
+      Image<double> const reference = read_frame(a, "reference", sources), flow = read_frame(b, "flow", sources);
+      measurement = correlate_frames(a, reference, b, flow, other.settings, device);
+      write_vectors(written, measurement.field,
+                    {"gladstone vectors", 1, other.resolved, 0, device.name(), std::move(sources)});
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];

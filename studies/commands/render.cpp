@@ -22,6 +22,9 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->trigger_on_parse(false);
   return [arguments, &options] {
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
+    std::vector<std::string> inputs = loaded.document.file_names();
+    inputs.push_back(arguments->setup);
+    refuse_case_over_inputs(arguments->folder, inputs);
     auto const renderer = options.open_device().renderer;
     std::string const summary = render_to_folder(loaded, *renderer, arguments->folder).summary;
     auto const json = nlohmann::json::parse(summary);

@@ -39,6 +39,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
   app.add_option("-o,--output", arguments->run, "RUN folder to make")->required();
   return [arguments, &options] {
     StudyFile const study = read_study(arguments->study);
+    try_plan_place(arguments->run, study);
     std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
     std::vector<ManifestCase> cases = plan_study(study, device);
     Planned const planned = write_plan(arguments->run, study, cases);

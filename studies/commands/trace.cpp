@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/output_file.h"
+#include "render/base/source_files.h"
 #include "studies/case.h"
 #include "studies/commands/command.h"
 #include "studies/json_text.h"
@@ -25,7 +26,14 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
       ->check(CLI::IsMember({"medium", "optics", "all"}));
   app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")->expected(1)->take_all();
   return [arguments, &options] {
+    SourceFiles sources;
+    sources.add("", arguments->setup, SourceFiles::Holds::bytes);
+    sources.add("", arguments->rays, SourceFiles::Holds::bytes);
     CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
+    std::vector<std::string> inputs = loaded.document.file_names();
+    inputs.insert(inputs.end(), {arguments->setup, arguments->rays});
+    refuse_inputs_as_outputs({arguments->output}, inputs);
+    OutputFile output(arguments->output);
     std::vector<Ray<double>> const rays = read_rays(arguments->rays);
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
@@ -35,7 +43,10 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
                             : arguments->through == "optics" ? Through::optics
                                                              : Through::all;
     std::vector<TracedRay> const traced = trace_rays(scene, rays, through);
-    OutputFile::write_text(arguments->output, traced_rays_csv(traced));
+    std::string const text_of_rays = traced_rays_csv(traced);
+    output.write(text_of_rays.data(), text_of_rays.size());
+    sources.check();
+    output.commit();
     std::size_t counts[ray_status_count] = {};
     for (TracedRay const& ray : traced) ++counts[static_cast<int>(ray.status)];
     nlohmann::json json{{"file", arguments->output}, {"rays", traced.size()}, {"step_mm", scene.step * 1e3}};

@@ -15,6 +15,7 @@
 #include "analysis/vector_file.h"
 #include "render/base/content_hash.h"
 #include "render/base/output_file.h"
+#include "render/base/output_folder.h"
 #include "render/base/setup_node.h"
 #include "studies/correlate.h"
 #include "studies/sweep/case_keys.h"
@@ -94,6 +95,18 @@ bool stops_the_run(std::exception const& error) {
          dynamic_cast<Interrupted const*>(&error);
 }
 
+/// Vectors and errors of a case whose other files stand in the folder already.
+void write_kept_results(std::string const& folder, DisplacementField const& vectors, Comparison comparison,
+                        FileOrigin origin) {
+  Hdf5Reader const truth((fs::path(folder) / case_file::truth).string());
+  for (std::string const frame : {"reference", "flow"}) {
+    origin.sources.add_known(frame, truth.attribute(frame + "_sha256"));
+  }
+  write_vectors((fs::path(folder) / case_file::vectors).string(), vectors, origin);
+  name_sources(comparison, compared_files(folder, ""));
+  OutputFile::write_text((fs::path(folder) / case_file::errors).string(), errors_json(comparison));
+}
+
 }  // namespace
 
 struct CaseRunner::Shared {
@@ -170,6 +183,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
                                  : error.what();
     return failed_case(one.index, one.line_hash, device_.name(), text, no_memory);
   }
+  check_inputs(one);  // nor while it was computed
   return result;
 }
 
@@ -179,6 +193,11 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   CaseSetup loaded =
       load_case_setup(SetupDocument::from_text(one.setup, fmt::format("case {}", one.index)), FieldMemory::taken);
   CaseKeys const keys = case_keys(loaded, one.inputs);
+  std::optional<OutputFolder> folder;
+  if (!keep.empty()) {
+    refuse_case_over_inputs(keep, loaded.document.file_names());
+    folder.emplace(keep, case_content());
+  }
 
   KnownParts known;
   BuiltMedium* medium = shared.media.find(keys.medium);
@@ -209,12 +228,11 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 
-  std::optional<OutputFolder> folder;
-  if (!keep.empty()) {
-    folder.emplace(keep, case_file::setup,
-                   std::vector<std::string>(case_file::derived.begin(), case_file::derived.end()));
+  if (folder) {
     rendered.seconds = result.seconds_render;
-    write_case(loaded, prepared, rendered, frames, *device_.renderer, folder->temporary_path());
+    folder->fill([&](std::string const& place) {
+      write_case(loaded, prepared, rendered, frames, *device_.renderer, place);
+    });
   }
 
   std::string const name = fmt::format("case {}", one.index);
@@ -231,7 +249,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
     truth =
         &shared.truths.keep(truth_key, truth_of_vectors(prepared, *device_.renderer, places, TruthAt::mid_position));
   }
-  Comparison const comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
+  Comparison comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
                                                 {measured.field, loaded.correlate, false, "", name}, *truth, device_);
   std::string const errors = errors_json(comparison);
   result.measures = flat_measures(errors);
@@ -254,10 +272,10 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.seconds_compare = seconds_since(start);
 
   if (!folder) return;
-  fs::path const place = folder->temporary_path();
-  FileOrigin const origin{"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, device_.name()};
-  write_vectors((place / case_file::vectors).string(), measured.field, origin);
-  OutputFile::write_text((place / case_file::errors).string(), errors);
+  folder->fill([&](std::string const& place) {
+    write_kept_results(place, measured.field, std::move(comparison),
+                       {"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, device_.name()});
+  });
   folder->commit();
 }
 

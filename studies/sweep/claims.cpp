@@ -11,20 +11,11 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/base/file_lock.h"
 #include "studies/sweep/manifest.h"
 
 namespace gladstone {
 namespace {
-
-/// @param count 0: to the end
-struct flock range_of(std::size_t first, std::size_t count, short type) {
-  struct flock range {};
-  range.l_type = type;
-  range.l_whence = SEEK_SET;
-  range.l_start = static_cast<off_t>(first);
-  range.l_len = static_cast<off_t>(count);
-  return range;
-}
 
 [[noreturn]] void no_locks(std::string const& path, int error) {
   throw OutputError(path, fmt::format("cannot be locked ({}); put the run on a file system with locks, such as a local "
@@ -70,12 +61,9 @@ bool Claims::take(std::size_t index) {
 }
 
 bool Claims::lock(std::size_t index) {
-  struct flock range = range_of(index, 1, F_WRLCK);
-  while (::fcntl(file_, F_OFD_SETLK, &range) != 0) {
-    if (errno == EAGAIN || errno == EACCES) return false;
-    if (errno != EINTR) no_locks(path_, errno);
-  }
-  return true;
+  int const error = lock_bytes(file_, index, 1);
+  if (error != 0 && error != EAGAIN) no_locks(path_, error);
+  return error == 0;
 }
 
 bool Claims::is_replaced() const {
@@ -85,22 +73,16 @@ bool Claims::is_replaced() const {
   return mine.st_dev != there.st_dev || mine.st_ino != there.st_ino;
 }
 
-void Claims::release(std::size_t index) {
-  struct flock range = range_of(index, 1, F_UNLCK);
-  while (::fcntl(file_, F_OFD_SETLK, &range) != 0 && errno == EINTR) {
-  }
-}
+void Claims::release(std::size_t index) { unlock_bytes(file_, index, 1); }
 
 bool Claims::held(std::size_t index) const { return held_from(index, 1); }
 bool Claims::any_held() const { return held_from(0, 0); }
 
 bool Claims::held_from(std::size_t first, std::size_t count) const {
   if (file_ < 0) return false;
-  struct flock range = range_of(first, count, F_WRLCK);
-  while (::fcntl(file_, F_OFD_GETLK, &range) != 0) {
-    if (errno != EINTR) no_locks(path_, errno);
-  }
-  return range.l_type != F_UNLCK;
+  int const error = find_lock(file_, first, count);
+  if (error != 0 && error != EAGAIN) no_locks(path_, error);
+  return error == EAGAIN;
 }
 
 }  // namespace gladstone

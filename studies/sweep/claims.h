@@ -5,9 +5,8 @@
 
 namespace gladstone {
 
-/// Who computes which case: byte INDEX of the file RUN/claims is locked while a process works on case INDEX. The locks
-/// belong to the open file (F_OFD_SETLK): they go with the process, however it ends, hold between machines over NFS,
-/// and leave nothing behind that could grow stale.
+/// Who computes which case: byte INDEX of the file RUN/claims is locked (file_lock.h) while a process works on case
+/// INDEX.
 class Claims {
  public:
   enum class Use {

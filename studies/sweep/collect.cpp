@@ -193,8 +193,9 @@ std::string study_csv(StudyTable const& table) { return csv_of(table, columns_of
 
 std::string points_csv(StudyTable const& points) { return csv_of(points, point_columns(points)); }
 
-void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup) {
-  FileOrigin const origin{"gladstone study", 2, setup, table.rows.front().seed, table.rows.front().device};
+void write_study_h5(std::string const& path, StudyTable const& table, std::string const& setup,
+                    SourceFiles const& sources) {
+  FileOrigin const origin{"gladstone study", 2, setup, table.rows.front().seed, table.rows.front().device, sources};
   Hdf5Writer file(path, origin);
   write_columns(file, "/", "case", table, columns_of(table));
   if (table.repeats() > 1) {
@@ -210,15 +211,20 @@ void write_study_h5(std::string const& path, StudyTable const& table, std::strin
 
 StudyTable collect_study(std::string const& run) {
   namespace fs = std::filesystem;
-  StudyTable table = read_study_table(run);
+  auto const in_run = [&run](char const* name) { return (fs::path(run) / name).string(); };
+  std::string const study = in_run(run_file::study), manifest = in_run(run_file::manifest);
+  std::string const points = in_run(run_file::points_text);
   std::error_code error;
-  std::string const study = (fs::path(run) / run_file::study).string();
-  write_study_h5((fs::path(run) / run_file::table).string(), table,
-                 fs::exists(study, error) ? read_text_file(study) : "");
-  OutputFile::write_text((fs::path(run) / run_file::table_text).string(), study_csv(table));
-  fs::path const points = fs::path(run) / run_file::points_text;
+  if (!fs::exists(manifest, error)) read_manifest(run);  // says so
+  refuse_inputs_as_outputs({in_run(run_file::table), in_run(run_file::table_text), points}, {study, manifest});
+  OutputFile const tried(in_run(run_file::table));
+  SourceFiles sources;
+  sources.add("manifest", manifest, SourceFiles::Holds::bytes);
+  StudyTable table = read_study_table(run);
+  write_study_h5(in_run(run_file::table), table, fs::exists(study, error) ? read_text_file(study) : "", sources);
+  OutputFile::write_text(in_run(run_file::table_text), study_csv(table));
   if (table.repeats() > 1) {
-    OutputFile::write_text(points.string(), points_csv(study_points(table)));
+    OutputFile::write_text(points, points_csv(study_points(table)));
   } else {
     fs::remove(points, error);
   }

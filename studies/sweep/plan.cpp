@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 
 #include "analysis/correlation_settings.h"
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
+#include "render/base/partial.h"
 #include "render/base/random.h"
 #include "render/base/sobol.h"
 #include "render/base/text_file.h"
@@ -163,12 +165,30 @@ bool left_by_a_cut_plan(fs::path const& folder) {
   bool const ours = fs::is_directory(folder / run_file::cases, error) && fs::is_empty(folder / run_file::cases, error);
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string const name = entry->path().filename().string();
-    bool const partial = name.starts_with(fmt::format(".{}.partial-", run_file::manifest)) ||
-                         name.starts_with(fmt::format(".{}.partial-", run_file::study));
+    bool const partial =
+        is_partial(name, stem_beside(run_file::manifest)) || is_partial(name, stem_beside(run_file::study));
     bool const written = name == run_file::cases || name == run_file::study || name == run_file::claims;
-    if (!partial && !(ours && written)) return false;
+    if (!partial && !(ours && written) && name != "lost+found") return false;
   }
   return !error;
+}
+
+/// @throws OutputError where RUN is there and is no study's
+void refuse_foreign_run(fs::path const& folder) {
+  fs::path const manifest = folder / run_file::manifest;
+  std::error_code error;
+  if (fs::exists(manifest, error)) {
+    std::string first;
+    std::getline(std::ifstream(manifest), first);
+    if (version_of_manifest(first)) return;
+    throw OutputError(manifest.string(),
+                      "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
+  }
+  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !left_by_a_cut_plan(folder))) {
+    throw OutputError(
+        folder.string(),
+        fmt::format("is there and holds no planned study (no {}); choose another folder or empty it", run_file::manifest));
+  }
 }
 
 }  // namespace
@@ -205,18 +225,23 @@ std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& 
   return cases;
 }
 
+void try_plan_place(std::string const& run, StudyFile const& study) {
+  fs::path const folder(run), manifest = folder / run_file::manifest;
+  refuse_foreign_run(folder);
+  refuse_inputs_as_outputs(
+      {manifest.string(), (folder / run_file::study).string(), (folder / run_file::claims).string()},
+      {study.path, study.base_path});
+  OutputFile const tried(manifest.string());
+}
+
 Planned write_plan(std::string const& run, StudyFile const& study, std::vector<ManifestCase>& cases) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
   std::string const text = manifest_text(cases);
   std::error_code error;
   Planned planned = Planned::fresh;
   if (fs::exists(manifest, error)) {
+    refuse_foreign_run(folder);
     std::string const there = read_text_file(manifest.string());
-    if (!version_of_manifest(there)) {
-      throw OutputError(
-          manifest.string(),
-          "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
-    }
     std::vector<CaseResult> const results = whole_results(folder);
     if (there == text) return Planned::unchanged;
     planned = Planned::replaced;
@@ -241,9 +266,8 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
                         "was planned from another study whose cases are being computed; choose another folder, or "
                         "stop them first");
     }
-  } else if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !left_by_a_cut_plan(folder))) {
-    throw OutputError(run, fmt::format("is there and holds no planned study (no {}); choose another folder or empty it",
-                                       run_file::manifest));
+  } else {
+    refuse_foreign_run(folder);
   }
   OutputFile plan(manifest.string());
   fs::create_directories(folder / run_file::cases, error);

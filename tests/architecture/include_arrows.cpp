@@ -29,7 +29,7 @@ Names operator+(Names a, Names const& b) {
 /// files, POSIX.
 std::vector<Room> const& table() {
   static std::vector<Room> const rooms = {
-      {"render/base", {}, {"Eigen", "x86 intrinsics"}, {"HDF5", "OpenImageIO", "toml++", "TBB", "fmt"}},
+      {"render/base", {}, {"Eigen", "x86 intrinsics"}, {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "fmt"}},
       {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/medium", {"render/base"}, {"Eigen"}, {"fmt", "zlib"}},
       {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
@@ -52,6 +52,7 @@ std::vector<LibraryPattern> const& known_libraries() {
       {"Eigen", "Eigen/.*|unsupported/Eigen/.*"},
       {"HDF5", "hdf5\\.h|hdf5_hl\\.h|H5.*\\.h"},
       {"OpenImageIO", "OpenImageIO/.*"},
+      {"OpenSSL", "openssl/.*"},
       {"toml++", "toml\\+\\+/.*|toml\\.hpp|toml\\.h"},
       {"x86 intrinsics", "immintrin\\.h"},
       {"TBB", "tbb/.*|oneapi/.*"},

@@ -1,17 +1,19 @@
 #include "render/base/output_file.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "render/base/error.h"
+#include "render/base/output_folder.h"
+#include "tests/base/support/output.h"
 
 namespace gladstone {
 namespace {
@@ -21,40 +23,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
-
-std::string content(fs::path const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// A process number that no process has: that of a child that has ended.
-int dead_process() {
-  pid_t const child = fork();
-  if (child == 0) _exit(0);
-  waitpid(child, nullptr, 0);
-  return child;
-}
-
-/// A fresh folder for each test.
-class Output : public testing::Test {
- protected:
-  void SetUp() override {
-    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("output_") + info->test_suite_name() + info->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
-  std::vector<std::string> names() const {
-    std::vector<std::string> found;
-    for (auto const& entry : fs::directory_iterator(folder_)) found.push_back(entry.path().filename().string());
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-  fs::path folder_;
-};
 
 /// While it lives no file may grow beyond some bytes: writing fails as on a full disk, for this process only.
 class FileSizeLimit {
@@ -75,7 +43,6 @@ class FileSizeLimit {
 };
 
 using OutputFileTest = Output;
-using OutputFolderTest = Output;
 
 TEST_F(OutputFileTest, AppearsWholeAtCommitAndNotBefore) {
   std::string const path = in_folder("a.txt");
@@ -109,17 +76,6 @@ TEST_F(OutputFileTest, MissingFoldersAreMadeAndRemovedAgainIfNothingComes) {
   EXPECT_EQ(content(path), "text");
 }
 
-TEST_F(OutputFileTest, LeftoversOfDeadRunsAreRemovedThoseOfLiveOnesStay) {
-  std::string const dead = in_folder(".a.txt.partial-" + std::to_string(dead_process()));
-  std::string const alive = in_folder(".a.txt.partial-" + std::to_string(getppid()));
-  std::string const foreign = in_folder(".a.txt.partial-mine");
-  for (auto const& path : {dead, alive, foreign}) std::ofstream(path) << "half";
-  OutputFile::write_text(in_folder("a.txt"), "text");
-  EXPECT_FALSE(fs::exists(dead));
-  EXPECT_TRUE(fs::exists(alive));
-  EXPECT_TRUE(fs::exists(foreign));
-}
-
 TEST_F(OutputFileTest, ALinkIsFollowed) {
   std::ofstream(in_folder("real.txt")) << "old";
   fs::create_symlink("real.txt", in_folder("link.txt"));
@@ -128,13 +84,56 @@ TEST_F(OutputFileTest, ALinkIsFollowed) {
   EXPECT_EQ(content(in_folder("real.txt")), "new");
 }
 
+TEST_F(OutputFileTest, ALinkToNothingIsFollowedToWhereItLeads) {
+  fs::create_directory(in_folder("there"));
+  fs::create_symlink("there/real.txt", in_folder("link.txt"));
+  OutputFile::write_text(in_folder("link.txt"), "new");
+  EXPECT_TRUE(fs::is_symlink(in_folder("link.txt")));
+  EXPECT_EQ(content(in_folder("there/real.txt")), "new");
+  fs::create_symlink("circle.txt", in_folder("circle.txt"));
+  EXPECT_THAT([&] { OutputFile file(in_folder("circle.txt")); }, ThrowsMessage<OutputError>(HasSubstr("in a circle")));
+}
+
+TEST_F(OutputFileTest, TheRightsOfTheOldFileStay) {
+  std::string const path = in_folder("a.txt");
+  std::ofstream(path) << "old";
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  OutputFile::write_text(path, "new");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(OutputFileTest, TheLongestNamesOfAFileSystemAreWritten) {
+  std::string name;
+  for (int i = 0; i < 85; ++i) name += "\u20ac";  // three bytes each
+  ASSERT_EQ(name.size(), 255u);
+  OutputFile::write_text(in_folder(name), "text");
+  EXPECT_THAT(names(), ElementsAre(name));
+}
+
 TEST_F(OutputFileTest, FolderDeviceAndFileInThePathAreRefused) {
   EXPECT_THAT([&] { OutputFile file(folder_.string()); }, ThrowsMessage<OutputError>(HasSubstr("is a folder")));
-  EXPECT_THAT([] { OutputFile file("/dev/null"); }, ThrowsMessage<OutputError>(HasSubstr("no ordinary file")));
+  for (char const* device : {"/dev/null", "/dev/full"}) {
+    EXPECT_THAT([&] { OutputFile file(device); },
+                ThrowsMessage<OutputError>(testing::AllOf(HasSubstr(device), HasSubstr("it is a device"))));
+  }
+  ASSERT_EQ(mkfifo(in_folder("pipe").c_str(), 0666), 0);
+  EXPECT_THAT([&] { OutputFile file(in_folder("pipe")); }, ThrowsMessage<OutputError>(HasSubstr("it is a pipe")));
   std::ofstream(in_folder("file")) << "x";
   EXPECT_THAT([&] { OutputFile file(in_folder("file/a.txt")); },
               ThrowsMessage<OutputError>(HasSubstr("a part of the path is a file")));
   EXPECT_THAT([] { OutputFile file(""); }, ThrowsMessage<OutputError>(HasSubstr("has no name")));
+}
+
+// /dev/stdout is a link to whatever is open there, here an ordinary file: who opened it would not see what is renamed
+// over its name.
+TEST_F(OutputFileTest, NamesOfOpenFilesAreRefused) {
+  int const file = open(in_folder("open").c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_GE(file, 0);
+  std::string const name = "/dev/fd/" + std::to_string(file);
+  EXPECT_THAT([&] { OutputFile output(name); },
+              ThrowsMessage<OutputError>(testing::AllOf(HasSubstr(name), HasSubstr("that a process has open"))));
+  EXPECT_THAT([&] { OutputFolder output(name, {"m", {}}); }, ThrowsMessage<OutputError>(HasSubstr("has open")));
+  close(file);
 }
 
 TEST_F(OutputFileTest, ReadOnlyFolderIsRefusedAtTheStart) {
@@ -144,7 +143,7 @@ TEST_F(OutputFileTest, ReadOnlyFolderIsRefusedAtTheStart) {
   if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
   EXPECT_THAT([&] { OutputFile file(in_folder("a.txt")); },
               ThrowsMessage<OutputError>(testing::AllOf(HasSubstr("Permission denied"), HasSubstr("may write to"))));
-  EXPECT_THAT([&] { OutputFolder made(in_folder("case"), "m"); },
+  EXPECT_THAT([&] { OutputFolder made(in_folder("case"), {"m", {}}); },
               ThrowsMessage<OutputError>(HasSubstr("Permission denied")));
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
@@ -163,73 +162,6 @@ TEST_F(OutputFileTest, WhatDoesNotFitLeavesTheOldFileAndAMessage) {
   }
   EXPECT_EQ(content(path), "old");
   EXPECT_THAT(names(), ElementsAre("a.txt"));
-}
-
-TEST_F(OutputFolderTest, ReplacesAnOlderOneOfOursOnlyAtCommit) {
-  std::string const path = in_folder("case");
-  for (std::string const text : {"first", "second"}) {
-    OutputFolder folder(path + '/', "summary.json");
-    std::ofstream(folder.temporary_path() + "/summary.json") << text;
-    fs::create_directory(folder.temporary_path() + "/sub");
-    EXPECT_EQ(content(path + "/summary.json"), text == "second" ? "first" : "");
-    folder.commit();
-    EXPECT_EQ(content(path + "/summary.json"), text);
-  }
-  EXPECT_THAT(names(), ElementsAre("case"));
-}
-
-TEST_F(OutputFolderTest, WithoutCommitTheOldFolderStays) {
-  std::string const path = in_folder("case");
-  fs::create_directory(path);
-  std::ofstream(path + "/summary.json") << "old";
-  {
-    OutputFolder folder(path, "summary.json");
-    std::ofstream(folder.temporary_path() + "/summary.json") << "half";
-  }
-  EXPECT_EQ(content(path + "/summary.json"), "old");
-  EXPECT_THAT(names(), ElementsAre("case"));
-}
-
-TEST_F(OutputFolderTest, WhatAUserPutIntoItStaysAndWhatDependsOnTheOldGoes) {
-  std::string const path = in_folder("case");
-  fs::create_directories(path + "/notes/deep");
-  for (std::string const name : {"summary.json", "vectors.h5", "notes.txt", "notes/deep/a.txt"}) {
-    std::ofstream(path + '/' + name) << "old " + name;
-  }
-  fs::create_symlink("nowhere", path + "/link");
-  OutputFolder folder(path, "summary.json", {"vectors.h5"});
-  std::ofstream(folder.temporary_path() + "/summary.json") << "new";
-  folder.commit();
-  EXPECT_EQ(content(path + "/summary.json"), "new");
-  EXPECT_EQ(content(path + "/notes.txt"), "old notes.txt");
-  EXPECT_EQ(content(path + "/notes/deep/a.txt"), "old notes/deep/a.txt");
-  EXPECT_EQ(fs::read_symlink(path + "/link"), "nowhere");
-  EXPECT_FALSE(fs::exists(path + "/vectors.h5"));
-  EXPECT_THAT(names(), ElementsAre("case"));
-}
-
-TEST_F(OutputFolderTest, SomebodyElsesFolderIsRefusedAtTheStartAndAtCommit) {
-  std::string const path = in_folder("thesis");
-  fs::create_directory(path);
-  auto const refused = ThrowsMessage<OutputError>(HasSubstr("is not empty and was not made by gladstone"));
-  OutputFolder early(path, "summary.json");  // an empty one is fine
-  std::ofstream(path + "/chapter1.tex") << "precious";
-  EXPECT_THAT([&] { OutputFolder folder(path, "summary.json"); }, refused);
-  EXPECT_THAT([&] { early.commit(); }, refused);
-  EXPECT_EQ(content(path + "/chapter1.tex"), "precious");
-  EXPECT_THAT([&] { OutputFolder folder(path + "/chapter1.tex", "summary.json"); },
-              ThrowsMessage<OutputError>(HasSubstr("is a file; name a folder")));
-}
-
-TEST_F(OutputFolderTest, AnOldFolderThatAKilledRunMovedAsideComesBack) {
-  std::string const process = std::to_string(dead_process());
-  std::string const aside = in_folder(".case.old-" + process);
-  fs::create_directory(aside);
-  std::ofstream(aside + "/summary.json") << "old";
-  fs::create_directories(in_folder(".case.partial-" + process + "/sub"));
-  { OutputFolder folder(in_folder("case"), "summary.json"); }
-  EXPECT_EQ(content(in_folder("case") + "/summary.json"), "old");
-  EXPECT_THAT(names(), ElementsAre("case"));
 }
 
 }  // namespace

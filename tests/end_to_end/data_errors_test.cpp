@@ -154,7 +154,7 @@ TEST_F(DataErrors, CompareWithoutVectors) {
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: does not exist; check --vectors"});
   expect_refused({"compare", "case", "--vectors", "case"}, 2, {"case: is a folder"});
   std::filesystem::remove(in("case/truth.h5"));
-  expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not there", "gladstone render case/setup.toml -o case"});
+  expect_refused({"compare", "case"}, 2, {"case/truth.h5: is not there", "gladstone render SETUP.toml -o case"});
 }
 
 TEST_F(DataErrors, DamagedTruth) {

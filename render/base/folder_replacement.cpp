@@ -1,0 +1,198 @@
+#include "render/base/folder_replacement.h"
+
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <thread>
+
+#include "render/base/error.h"
+#include "render/base/interrupt.h"
+#include "render/base/output_file.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char const* replacing = ".replacing";
+constexpr char const* old_files = "old";
+constexpr char const* retired_files = "retired";
+
+/// A file that could not be moved.
+struct MoveError {
+  fs::path path;
+  int error;
+};
+
+/// Renames, making the folders above the new place. @return false where there is nothing to move
+bool move_file(fs::path const& from, fs::path const& to) {
+  struct stat there {};
+  if (::lstat(from.c_str(), &there) != 0 && errno == ENOENT) return false;
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  if (::rename(from.c_str(), to.c_str()) == 0) return true;
+  if (errno == ENOENT && !error) return false;
+  throw MoveError{from, errno};
+}
+
+/// Files below a folder, relative to it, the marker at the end.
+std::vector<fs::path> files_below(fs::path const& folder, std::string const& marker) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    bool const is_folder = entry->is_directory(error) && !entry->is_symlink(error);
+    if (!is_folder) files.push_back(entry->path().lexically_relative(folder));
+  }
+  std::sort(files.begin(), files.end());
+  std::stable_partition(files.begin(), files.end(), [&](fs::path const& file) { return file != marker; });
+  return files;
+}
+
+/// The files of a folder that a replacement takes away, the marker first.
+std::vector<fs::path> files_to_retire(fs::path const& staged, FolderContent const& content) {
+  std::vector<fs::path> files = files_below(staged, content.marker);
+  files.insert(files.end(), content.derived.begin(), content.derived.end());
+  std::stable_partition(files.begin(), files.end(), [&](fs::path const& file) { return file == content.marker; });
+  return files;
+}
+
+void retire(fs::path const& folder, FolderContent const& content) {
+  fs::path const work = folder / replacing;
+  if (fs::exists(work / retired_files)) return;
+  fs::create_directory(work / old_files);
+  for (fs::path const& file : files_to_retire(work / staged_files, content)) {
+    move_file(folder / file, work / old_files / file);
+  }
+  move_file(work / old_files, work / retired_files);
+}
+
+void install(fs::path const& folder, FolderContent const& content) {
+  fs::path const staged = folder / replacing / staged_files;
+  for (fs::path const& file : files_below(staged, content.marker)) move_file(staged / file, folder / file);
+}
+
+/// Undoes retire() and install() as far as they came. @param files that were staged
+void go_back(fs::path const& folder, FolderContent const& content, std::vector<fs::path> const& files) {
+  fs::path const work = folder / replacing;
+  try {
+    if (fs::exists(work / retired_files)) {
+      for (fs::path const& file : files) {
+        if (!fs::exists(fs::symlink_status(work / staged_files / file)))
+          move_file(folder / file, work / staged_files / file);
+      }
+      move_file(work / retired_files, work / old_files);
+    }
+    for (fs::path const& file : files_below(work / old_files, content.marker)) {
+      move_file(work / old_files / file, folder / file);
+    }
+  } catch (MoveError const& stuck) {
+    throw OutputError(stuck.path.string(), std::string("cannot be moved back (") + std::strerror(stuck.error) +
+                                               "); the old files are in " + work.string() + ", save them");
+  }
+}
+
+/// A folder where a file belongs, or the other way round, is found before anything is moved.
+void refuse_folders_in_the_way(fs::path const& staged, fs::path const& folder, std::string const& asked,
+                               FolderContent const& content) {
+  for (fs::path const& file : files_to_retire(staged, content)) {
+    std::error_code error;
+    if (fs::is_directory(fs::symlink_status(folder / file, error))) {
+      throw OutputError((fs::path(asked) / file).string(), "is a folder where a file belongs; move it elsewhere");
+    }
+    fs::path const above = folder / file.parent_path();
+    if (fs::exists(above, error) && !fs::is_directory(above, error)) {
+      throw OutputError((fs::path(asked) / file.parent_path()).string(),
+                        "is a file where a folder belongs; move it elsewhere");
+    }
+  }
+}
+
+}  // namespace
+
+bool is_complete(std::string const& folder, FolderContent const& content) {
+  std::error_code error;
+  fs::path const marker = fs::path(folder) / content.marker, work = fs::path(folder) / replacing;
+  do {
+    finish_replacement(folder, content);
+    if (fs::exists(marker, error)) return true;
+  } while (fs::exists(work, error));  // begun between the two looks
+  return fs::exists(marker, error);
+}
+
+bool belongs_to_replacement(std::string const& name) { return name == replacing || is_partial(name, "."); }
+
+void replace_files(Partial& partial, std::string const& folder, std::string const& asked,
+                   FolderContent const& content) {
+  fs::path const work = fs::path(folder) / replacing;
+  std::string const name = partial.path();
+  std::vector<fs::path> const files = files_below(fs::path(name) / staged_files, content.marker);
+  refuse_folders_in_the_way(fs::path(name) / staged_files, folder, asked, content);
+  auto const fail = [&asked](std::string const& what, int error) {
+    throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are in their places");
+  };
+  if (::mkdir((fs::path(name) / old_files).c_str(), 0777) != 0) fail("cannot be written", errno);
+  // A folder that is not empty is never renamed over: whose .replacing is there goes first.
+  while (int const error = partial.move_to(work.string())) {
+    if (error != ENOTEMPTY && error != EEXIST) fail("its files cannot be replaced", error);
+    finish_replacement(folder, content);
+  }
+  flush_to_disk(folder);
+  try {
+    retire(folder, content);
+    install(folder, content);
+  } catch (MoveError const& stuck) {
+    try {
+      go_back(folder, content, files);
+    } catch (...) {
+      partial.keep();
+      throw;
+    }
+    partial.move_to(name);
+    fail(stuck.path.filename().string() + " cannot be replaced", stuck.error);
+  } catch (...) {
+    partial.keep();  // the next one completes it
+    throw;
+  }
+  partial.move_to(name);
+  flush_to_disk(folder);
+}
+
+void finish_replacement(std::string const& folder, FolderContent const& content) {
+  fs::path const work = fs::path(folder) / replacing;
+  auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  struct stat there {};
+  while (::lstat(work.c_str(), &there) == 0) {
+    if (auto const taken = Leftover::take(work.string())) {
+      std::string const aside = (fs::path(folder) / taken->name(".")).string();
+      try {
+        retire(folder, content);
+        install(folder, content);
+      } catch (MoveError const& stuck) {
+        throw OutputError(stuck.path.string(),
+                          std::string("cannot be moved (") + std::strerror(stuck.error) +
+                              "), and the replacement of the files in " + folder +
+                              " that was broken off cannot be completed; see to it that the file can be moved");
+      }
+      std::error_code error;
+      if (::rename(work.c_str(), aside.c_str()) == 0) fs::remove_all(aside, error);
+      flush_to_disk(folder);
+      return;
+    }
+    if (::rmdir(work.c_str()) == 0) return;  // a disk that lost what it held
+    throw_if_interrupted();
+    if (std::chrono::steady_clock::now() > end) {
+      throw OutputError(folder, "is being replaced by " + writer_of(work.string()) +
+                                    "; try again when that has ended, or, where it was broken off, on that host");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+}  // namespace gladstone

@@ -1,0 +1,166 @@
+#include "render/base/source_files.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/image_file.h"
+#include "render/base/interrupt.h"
+#include "render/base/output_place.h"
+#include "render/base/sha256.h"
+
+namespace gladstone {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are hashed as they lie in memory");
+
+Sha256 started_picture(int columns, int rows, int sample_bits, char const* numbers) {
+  Sha256 hash;
+  hash.add("gladstone pixels " + std::to_string(columns) + ' ' + std::to_string(rows) + ' ' +
+           std::to_string(sample_bits) + ' ' + numbers + '\n');
+  return hash;
+}
+
+bool fits_16_bits(double value) { return value >= 0 && value <= 65535 && value == std::floor(value); }
+
+void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& name) {
+  std::vector<std::size_t> const shape = file.shape(name);
+  std::string head = "gladstone dataset " + name;
+  std::size_t count = 1;
+  for (std::size_t const size : shape) {
+    head += ' ' + std::to_string(size);
+    count *= size;
+  }
+  hash.add(head + '\n');
+  if (count == 0) return;
+  if (shape.empty()) {
+    std::vector<double> const value = file.read(name);
+    hash.add(value.data(), value.size() * sizeof(double));
+    return;
+  }
+  constexpr std::size_t most = std::size_t{1} << 20;  // values at a time
+  std::size_t const row = count / shape[0], rows = std::max<std::size_t>(1, most / row);
+  std::vector<double> values;
+  for (std::size_t first = 0; first < shape[0]; first += rows) {
+    throw_if_interrupted();
+    values.resize(std::min(rows, shape[0] - first) * row);
+    file.read_rows(name, first, values.size() / row, values);
+    hash.add(values.data(), values.size() * sizeof(double));
+  }
+}
+
+std::string hash_of(std::string const& path, SourceFiles::Holds holds) {
+  switch (holds) {
+    case SourceFiles::Holds::pixels:
+      return pixel_sha256(path);
+    case SourceFiles::Holds::datasets:
+      return dataset_sha256(path);
+    case SourceFiles::Holds::bytes:
+      break;
+  }
+  return byte_sha256(path);
+}
+
+}  // namespace
+
+std::string pixel_sha256(Image<double> const& picture, int sample_bits) {
+  if (!std::all_of(picture.begin(), picture.end(), fits_16_bits)) {
+    Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, "float64");
+    hash.add(picture.data(), picture.size() * sizeof(double));
+    return hash.finish();
+  }
+  Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, "uint16");
+  std::vector<std::uint16_t> row(static_cast<std::size_t>(picture.columns()));
+  double const* const end = picture.data() + picture.size();
+  for (double const* at = picture.data(); at != end; at += row.size()) {
+    std::transform(at, at + row.size(), row.begin(), [](double value) { return static_cast<std::uint16_t>(value); });
+    hash.add(row.data(), row.size() * sizeof(std::uint16_t));
+  }
+  return hash.finish();
+}
+
+std::string pixel_sha256(Image<std::uint16_t> const& picture) {
+  Sha256 hash = started_picture(picture.columns(), picture.rows(), 16, "uint16");
+  hash.add(picture.data(), picture.size() * sizeof(std::uint16_t));
+  return hash.finish();
+}
+
+std::string pixel_sha256(std::string const& path) {
+  ImageMetadata metadata;
+  Image<double> const picture = read_image(path, &metadata);
+  return pixel_sha256(picture, metadata.sample_bits);
+}
+
+std::string dataset_sha256(std::string const& path) {
+  Hdf5Reader const file(path);
+  Sha256 hash;
+  for (std::string const& name : file.number_datasets()) {
+    std::string const last = name.substr(name.rfind('/') + 1);
+    if (!last.starts_with("seconds_") && last != "device") add_dataset(hash, file, name);
+  }
+  return hash.finish();
+}
+
+std::string byte_sha256(std::string const& path) {
+  if (std::string const kind = special_file(path); !kind.empty()) {
+    throw DataError(path, "cannot be read (it is " + kind + "); name a file");
+  }
+  auto const unreadable = [&path] {
+    return DataError(path, std::string("cannot be read (") + std::strerror(errno ? errno : EIO) + ')');
+  };
+  errno = 0;
+  std::unique_ptr<FILE, int (*)(FILE*)> const file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) throw unreadable();
+  Sha256 hash;
+  std::vector<char> piece(std::size_t{1} << 20);
+  while (true) {
+    throw_if_interrupted();
+    std::size_t const size = std::fread(piece.data(), 1, piece.size(), file.get());
+    if (std::ferror(file.get())) throw unreadable();
+    hash.add(piece.data(), size);
+    if (size < piece.size()) return hash.finish();
+  }
+}
+
+void SourceFiles::add(std::string name, std::string path, Holds holds) {
+  std::string hash = hash_of(path, holds);
+  add(std::move(name), std::move(path), holds, std::move(hash));
+}
+
+void SourceFiles::add(std::string name, std::string path, Holds holds, std::string sha256) {
+  sources_.push_back({std::move(name), std::move(path), holds, std::move(sha256)});
+}
+
+void SourceFiles::add_known(std::string name, std::string sha256) {
+  sources_.push_back({std::move(name), "", Holds::bytes, std::move(sha256)});
+}
+
+std::string SourceFiles::sha256(std::string const& name) const {
+  auto const found =
+      std::find_if(sources_.begin(), sources_.end(), [&](Source const& source) { return source.name == name; });
+  return found == sources_.end() ? "" : found->sha256;
+}
+
+void SourceFiles::check() const {
+  for (Source const& source : sources_) {
+    if (source.path.empty()) continue;
+    std::string now;
+    try {
+      now = hash_of(source.path, source.holds);
+    } catch (DataError const&) {  // gone, or half of another: not what was read
+    }
+    if (now == source.sha256) continue;
+    throw DataError(source.path, "has changed since it was read (" +
+                                     (now.empty() ? std::string("it cannot be read any more")
+                                                  : "another SHA-256 of what it holds") +
+                                     "), and nothing was written; " + advice_);
+  }
+}
+
+}  // namespace gladstone

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace gladstone {
+
+inline std::string content(std::filesystem::path const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A fresh folder for each test of what writes.
+class Output : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / (std::string("output_") + info->test_suite_name() + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
+  void write(std::string const& name, std::string const& text) const { std::ofstream(folder_ / name) << text; }
+  std::vector<std::string> names(std::string const& folder = ".") const {
+    std::vector<std::string> found;
+    for (auto const& entry : std::filesystem::directory_iterator(folder_ / folder)) {
+      found.push_back(entry.path().filename().string());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace gladstone

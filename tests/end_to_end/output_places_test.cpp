@@ -1,0 +1,181 @@
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::AllOf;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// Where results may go, and that other writers and inputs are left alone.
+class Places : public Workplace {
+ protected:
+  /// A rendering of minutes that has begun.
+  std::unique_ptr<Program> start_rendering(std::function<bool()> const& prepare = {}) const {
+    auto program = std::make_unique<Program>(
+        std::vector<std::string>{"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
+        prepare);
+    for (int wait = 0; wait < 1000 && partials().empty(); ++wait) std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(partials().size(), 1u);
+    return program;
+  }
+  std::vector<std::string> partials() const {
+    std::vector<std::string> all = names();
+    std::erase_if(all, [](std::string const& name) { return !name.starts_with(".case.partial-"); });
+    return all;
+  }
+};
+
+/// A process namespace and a host name of its own, as a container has.
+bool enter_container() {
+  if (::unshare(CLONE_NEWPID | CLONE_NEWUTS) != 0 || ::sethostname("container", 9) != 0) return false;
+  pid_t const child = ::fork();  // the first process of the new namespace
+  if (child == 0) return ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
+  if (child < 0) return false;
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ::_exit(WIFEXITED(status) ? WEXITSTATUS(status) : 125);
+}
+
+TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
+  std::unique_ptr<Program> const inside = start_rendering(enter_container);
+  if (partials().empty() && inside->finish(0s).exit_code == 126) GTEST_SKIP() << "no namespaces here";
+  auto const theirs = partials();
+  ASSERT_EQ(theirs.size(), 1u);
+  EXPECT_THAT(theirs[0], HasSubstr("-container-"));
+  render("case");
+  EXPECT_EQ(partials(), theirs) << "it goes on writing there";
+  inside->finish(0s);  // and with it the container
+  for (int wait = 0; wait < 100 && !partials().empty(); ++wait) {
+    render("case");
+    std::this_thread::sleep_for(10ms);
+  }
+  fs::remove_all(in("case"));
+  render("case");
+  EXPECT_TRUE(partials().empty());
+}
+
+// What stands there is neither moved nor replaced: the folder itself stays.
+TEST_F(Places, TheFolderThatAShellStandsIn) {
+  fs::create_directory(in("here"));
+  struct stat before {};
+  struct stat after {};
+  ASSERT_EQ(::stat(in("here").c_str(), &before), 0);
+  for (int round = 0; round < 2; ++round) {
+    Outcome const outcome = run({"render", "../setup.toml", "-o", "."}, in("here"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(names("here").size(), 5u) << testing::PrintToString(names("here"));
+  }
+  EXPECT_EQ(run({"correlate", "."}, in("here")).exit_code, 0);
+  EXPECT_EQ(run({"compare", ".", "--no-figures"}, in("here")).exit_code, 0);
+  ASSERT_EQ(::stat(in("here").c_str(), &after), 0);
+  EXPECT_EQ(before.st_ino, after.st_ino);
+  EXPECT_EQ(before.st_mode, after.st_mode);
+}
+
+TEST_F(Places, AMountPoint) {
+  fs::create_directory(in("disk"));
+  pid_t const child = ::fork();
+  if (child == 0) {
+    bool const mounted = ::unshare(CLONE_NEWNS) == 0 &&
+                         ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+                         ::mount("none", in("disk").c_str(), "tmpfs", 0, "size=8m") == 0;
+    if (!mounted) ::_exit(77);
+    std::string err;
+    for (auto const& command : std::vector<std::vector<std::string>>{{"render", "setup.toml", "-o", "disk"},
+                                                                     {"render", "setup.toml", "-o", "disk"},
+                                                                     {"correlate", "disk"},
+                                                                     {"compare", "disk", "--no-figures"}}) {
+      Outcome const outcome = run(command, folder_);
+      if (outcome.exit_code != 0) err += outcome.err;
+    }
+    write("file.csv", "old");
+    if (::mount(in("setup.toml").c_str(), in("file.csv").c_str(), nullptr, MS_BIND, nullptr) != 0) ::_exit(77);
+    Outcome const onto = run({"correlate", "disk", "-o", "file.csv"}, folder_);
+    if (onto.exit_code != 2 || onto.err.find("file.csv: cannot be replaced") == std::string::npos) err += onto.err + '?';
+    write("stderr", err);
+    ::_exit(err.empty() ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here; see TheFolderThatAShellStandsIn";
+  EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
+}
+
+TEST_F(Places, DevicesAndOpenFilesAreRefusedBeforeAnythingIsComputed) {
+  render("case");
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  for (std::string const place : {"/dev/full", "/dev/null"}) {
+    expect_refused({"render", "setup.toml", "-o", place}, 2, {place + ": is no folder (it is a device); name a folder"});
+    expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", place}, 2,
+                   {place + ": is no ordinary file (it is a device); name a file"});
+    expect_refused({"demo", "-o", place}, 2, {place});
+  }
+  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2, {"/dev/stdout: is a file or pipe"});
+  expect_refused({"correlate", "case", "-o", "/dev/full"}, 2, {"/dev/full: "});
+}
+
+TEST_F(Places, AnOutputIsNeverAnInput) {
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  fs::create_symlink("rays.csv", in("link.csv"));
+  fs::create_hard_link(in("rays.csv"), in("hard.csv"));
+  std::string const around = "../" + folder_.filename().string() + "/rays.csv";
+  for (std::string const& output : std::vector<std::string>{"rays.csv", "link.csv", "hard.csv", around}) {
+    expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
+                   {output + ": would be overwritten, and is read by this command"});
+  }
+  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2, {"setup.toml: would be overwritten"});
+  expect_refused({"render", "setup.toml", "-o", "."}, 2, {"setup.toml: would be overwritten", "(as setup.toml)"});
+  render("case");
+  expect_refused({"render", "case/setup.toml", "-o", "case"}, 2, {"case/setup.toml: would be overwritten"});
+  fs::create_symlink("case/truth.h5", in("v.h5"));
+  expect_refused({"correlate", "case", "-o", "v.h5"}, 2, {"v.h5: would be overwritten", "(as case/truth.h5)"});
+  fs::copy(in("case/reference.tif"), in("picture.csv"));
+  expect_refused({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2, {"picture.csv: would be overwritten"});
+  succeed({"correlate", "case"});
+  fs::create_symlink("vectors.h5", in("case/errors.json"));
+  expect_refused({"compare", "case"}, 2, {"case/errors.json: would be overwritten", "(as case/vectors.h5)"});
+  fs::create_directory(in("run"));
+  write("run/study.toml", "base = \"../setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  fs::create_directory(in("run/cases"));
+  expect_refused({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2, {"run/study.toml: would be overwritten"});
+}
+
+// A field that lies where the case's own file is to go: it would be read, and then be gone.
+TEST_F(Places, AFileThatTheSetupNamesIsNoOutput) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
+  write("points.toml", with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""));
+  render("case", {}, "points.toml");
+  fs::rename(in("dots.csv"), in("case/vectors.csv"));
+  fs::create_symlink("case/vectors.csv", in("dots.csv"));
+  expect_refused({"render", "points.toml", "-o", "case"}, 2, {"case/vectors.csv: would be overwritten", "dots.csv)"});
+}
+
+TEST_F(Places, AHangUpCleansUpUnlessItIsIgnored) {
+  auto const program = start_rendering();
+  program->send(SIGHUP);
+  Outcome const outcome = program->finish(2s);
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
+  EXPECT_TRUE(partials().empty());
+  auto const detached = start_rendering([] { return ::signal(SIGHUP, SIG_IGN) != SIG_ERR; });
+  detached->send(SIGHUP);
+  std::this_thread::sleep_for(500ms);
+  EXPECT_EQ(partials().size(), 1u) << "under nohup it goes on";
+}
+
+TEST_F(Places, AStudyIsRefusedItsPlaceBeforeItIsPlanned) {
+  fs::create_directory(in("thesis"));
+  write("thesis/chapter1.tex", "precious");
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  expect_refused({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2, {"thesis: is there and holds no"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
