@@ -9,13 +9,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string_view>
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/base/output_file.h"
 #include "render/base/version.h"
 
 namespace gladstone {
@@ -157,12 +157,9 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
                        output->write_image(OIIO::TypeDesc::UINT16, image.data());
   if (!output->close() || !written) fail(output->geterror());
 
-  std::FILE* const file = std::fopen(path.c_str(), "wb");
-  if (!file) fail(std::strerror(errno));
-  bool const arrived = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() && std::fflush(file) == 0;
-  int const problem = errno;
-  bool const closed = std::fclose(file) == 0;
-  if (!arrived || !closed) fail(std::strerror(arrived ? errno : problem));
+  OutputFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
 }
 
 }  // namespace gladstone

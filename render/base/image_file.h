@@ -21,7 +21,7 @@ struct ImageMetadata {
 /// 0..255, 0..65535 or as stored. Colour becomes luminance (Rec. 709). @throws DataError
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
 
-/// Writes a 16-bit grey TIFF at exactly `path` (the caller stages). @throws OutputError
+/// Writes a 16-bit grey TIFF as one whole file. @throws OutputError
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);
 
 }  // namespace gladstone

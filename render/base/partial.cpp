@@ -48,10 +48,13 @@ std::string this_host() {
 }
 
 /// Tells starts of systems apart, the same in every container of one; empty where the system does not say.
-std::string this_boot() {
-  std::string id;
-  std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
-  return id.empty() ? "" : content_hash(id);
+std::string const& this_boot() {
+  static std::string const boot = [] {
+    std::string id;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
+    return id.empty() ? "" : content_hash(id);
+  }();
+  return boot;
 }
 
 /// When this system was started [s since 1970].
@@ -83,7 +86,7 @@ struct Writer {
   /// Whether a lock that nobody holds tells that the writer is dead.
   /// @param touched when its partial was changed last
   bool can_be_judged(dev_t disk, time_t touched) const {
-    std::string const now = this_boot();
+    std::string const& now = this_boot();
     if (now.empty() || boot == without_lock) return false;
     if (boot == now) return device == hexadecimal(disk);
     return host == this_host() && touched < boot_time();

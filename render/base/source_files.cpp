@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -26,8 +25,6 @@ Sha256 started_picture(int columns, int rows, int sample_bits, char const* numbe
            std::to_string(sample_bits) + ' ' + numbers + '\n');
   return hash;
 }
-
-bool fits_16_bits(double value) { return value >= 0 && value <= 65535 && value == std::floor(value); }
 
 void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& name) {
   std::vector<std::size_t> const shape = file.shape(name);
@@ -70,17 +67,18 @@ std::string hash_of(std::string const& path, SourceFiles::Holds holds) {
 }  // namespace
 
 std::string pixel_sha256(Image<double> const& picture, int sample_bits) {
-  if (!std::all_of(picture.begin(), picture.end(), fits_16_bits)) {
-    Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, "float64");
-    hash.add(picture.data(), picture.size() * sizeof(double));
-    return hash.finish();
+  std::vector<std::uint16_t> whole(picture.size());
+  int others = 0;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    double const value = picture.data()[i];
+    whole[i] = static_cast<std::uint16_t>(value >= 0 && value <= 65535 ? value : 0);
+    others |= static_cast<double>(whole[i]) != value;
   }
-  Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, "uint16");
-  std::vector<std::uint16_t> row(static_cast<std::size_t>(picture.columns()));
-  double const* const end = picture.data() + picture.size();
-  for (double const* at = picture.data(); at != end; at += row.size()) {
-    std::transform(at, at + row.size(), row.begin(), [](double value) { return static_cast<std::uint16_t>(value); });
-    hash.add(row.data(), row.size() * sizeof(std::uint16_t));
+  Sha256 hash = started_picture(picture.columns(), picture.rows(), sample_bits, others ? "float64" : "uint16");
+  if (others) {
+    hash.add(picture.data(), picture.size() * sizeof(double));
+  } else {
+    hash.add(whole.data(), whole.size() * sizeof(std::uint16_t));
   }
   return hash.finish();
 }

@@ -1,17 +1,13 @@
 #include "studies/sweep/results.h"
 
-#include <fcntl.h>
 #include <fmt/compile.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -19,9 +15,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <system_error>
 
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
+#include "render/base/partial.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -30,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int result_version = 2;
 constexpr std::size_t hash_digits = 16;
-constexpr char const* partial_ending = ".partial";  // of .INDEX.json.HOST-PROCESS.partial
+constexpr char const* partial_of_result = ".json.partial-";  // as stem_beside() and Partial name it
 constexpr std::string_view head = "{\"hash\":\"";   // then the digits, then `",` and what is hashed
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -219,40 +217,34 @@ void remove_result(std::string const& run, std::size_t index) {
 
 void remove_left_partials(std::string const& run) {
   namespace fs = std::filesystem;
-  auto const long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
   std::error_code error;
   for (fs::directory_iterator entry(fs::path(run) / run_file::cases, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!entry->path().filename().string().starts_with('.') || entry->path().extension() != partial_ending) continue;
+    if (entry->path().filename().string().find(partial_of_result) == std::string::npos) continue;
     std::error_code gone;
-    if (entry->last_write_time(gone) < long_ago && !gone) fs::remove(entry->path(), gone);
+    if (auto const taken = Leftover::take(entry->path().string())) fs::remove(entry->path(), gone);
   }
 }
 
 void write_result(std::string const& run, CaseResult const& result) {
-  // Writers never meet in a partial file, even where locks do not keep them apart.
   // There is no fsync: a result that a power cut spoils is found by its hash and computed again.
-  std::string const path = result_path(run, result.index);
-  char host[256] = {};
-  ::gethostname(host, sizeof host - 1);
-  std::string const partial = (std::filesystem::path(path).parent_path() /
-                               fmt::format(".{}.json.{}-{}{}", result.index, host, ::getpid(), partial_ending))
-                                  .string();
+  std::filesystem::path const path = result_path(run, result.index);
   std::string const text = result_text(result);
-  int const file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) cannot_be_written(path, errno);
   int error = 0;
-  for (std::size_t done = 0; error == 0 && done < text.size();) {
-    ssize_t const written = ::write(file, text.data() + done, text.size() - done);
-    if (written > 0) done += static_cast<std::size_t>(written);
-    if (written < 0 && errno != EINTR) error = errno;
-    if (written == 0) error = EIO;
+  try {
+    Partial partial(path.parent_path().string(), stem_beside(path.filename().string()), Partial::Kind::file);
+    for (std::size_t done = 0; error == 0 && done < text.size();) {
+      ssize_t const written = ::write(partial.descriptor(), text.data() + done, text.size() - done);
+      if (written > 0) done += static_cast<std::size_t>(written);
+      if (written < 0 && errno != EINTR) error = errno;
+      if (written == 0) error = EIO;
+    }
+    if (error == 0) error = partial.move_to(path.string());
+    if (error == 0) partial.keep();
+  } catch (std::system_error const& problem) {
+    error = problem.code().value();
   }
-  if (::close(file) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(partial.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  ::unlink(partial.c_str());
-  cannot_be_written(path, error);
+  if (error != 0) cannot_be_written(path.string(), error);
 }
 
 }  // namespace gladstone

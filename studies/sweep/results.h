@@ -61,7 +61,7 @@ void remove_result(std::string const& run, std::size_t index);
 /// @throws OutputError (full disk, ...), with nothing left behind
 void write_result(std::string const& run, CaseResult const& result);
 
-/// Removes what writers that were killed left behind: partial files an hour old, where writing takes milliseconds.
+/// Removes the partial files of writers that were killed.
 void remove_left_partials(std::string const& run);
 
 }  // namespace gladstone

@@ -10,6 +10,7 @@
 
 #include "render/base/content_hash.h"
 #include "render/base/hdf5_file.h"
+#include "render/base/partial.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/collect.h"
 #include "studies/sweep/results.h"
@@ -25,6 +26,23 @@ constexpr char const* two_axes = R"(base = "base.toml"
 "lens.f_number" = [8, inf]
 "lens.psf" = ["airy", "none"]
 )";
+
+/// What a writer that is killed leaves. @return its path
+std::string leave_partial(std::string const& folder, std::string const& stem) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  pid_t const child = fork();
+  if (child == 0) {
+    Partial const partial(folder, stem, Partial::Kind::file);
+    _exit(::write(ends[1], partial.path().data(), partial.path().size()) > 0 ? 0 : 1);
+  }
+  waitpid(child, nullptr, 0);
+  char path[4096];
+  ssize_t const size = ::read(ends[0], path, sizeof path);
+  close(ends[0]);
+  close(ends[1]);
+  return {path, static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
 
 class Runs : public StudyFolder {
  protected:
@@ -204,12 +222,11 @@ TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
 }
 
-// No process has the number 999999999: Linux ends at 2^22.
 TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
   StudyFile const file = study(two_axes);
   auto cases = plan_study(file, "cpu");
   std::filesystem::create_directories(in("cut"));
-  write("cut/.manifest.jsonl.partial-999999999", "{\"mani");
+  std::string const partial = leave_partial(in("cut"), stem_beside(run_file::manifest));
   write("cut/study.toml", "of somebody else");
   EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
   EXPECT_EQ(content("cut/study.toml"), "of somebody else");
@@ -222,7 +239,7 @@ TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
   std::filesystem::remove(in("cut/cases/notes.txt"));
   EXPECT_EQ(write_plan(in("cut"), file, cases), Planned::fresh);
   EXPECT_EQ(read_manifest(in("cut")).size(), 4u);
-  EXPECT_FALSE(std::filesystem::exists(in("cut/.manifest.jsonl.partial-999999999")));
+  EXPECT_FALSE(std::filesystem::exists(partial));
 }
 
 TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
@@ -430,20 +447,18 @@ TEST_F(Runs, ClaimsThatWereReplacedAreTakenInTheNewFile) {
   EXPECT_FALSE(other.take(3));
 }
 
-TEST_F(Runs, APartialResultIsWrittenByOneProcessAloneAndRemovedOnceItIsOld) {
+TEST_F(Runs, PartialResultsOfKilledWritersAreRemovedAndOthersAreLeftAlone) {
   auto const cases = planned();
-  std::vector<std::string> const others{"run/cases/.1.json.partial", "run/cases/.1.json.elsewhere-17.partial"};
-  for (std::string const& name : others) write(name, "{\"hash\":\"half");
+  std::string const elsewhere = "run/cases/.1.json.partial-elsewhere-0123456789abcdef-1-17-1";
+  write(elsewhere, "{\"hash\":\"half");
+  Partial const mine(in("run/cases"), ".1.json.", Partial::Kind::file);
+  std::string const killed = leave_partial(in("run/cases"), ".1.json.");
   write_result(in("run"), result_of(cases[1], 0.5));
   remove_left_partials(in("run"));
-  for (std::string const& name : others) EXPECT_EQ(content(name), "{\"hash\":\"half") << name;
+  EXPECT_FALSE(std::filesystem::exists(killed));
+  EXPECT_TRUE(std::filesystem::exists(mine.path()));
+  EXPECT_EQ(content(elsewhere), "{\"hash\":\"half");
   EXPECT_EQ(collect_study(in("run")).unfinished(), (std::vector<std::size_t>{0, 2, 3}));
-
-  for (std::string const& name : others) {
-    std::filesystem::last_write_time(in(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(2));
-  }
-  remove_left_partials(in("run"));
-  for (std::string const& name : others) EXPECT_FALSE(std::filesystem::exists(in(name))) << name;
   EXPECT_TRUE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
 
