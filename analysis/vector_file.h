@@ -73,7 +73,8 @@ DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec
 /// Writes vectors.h5 (path ends in .h5) or vectors.csv: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
 /// status; what was not estimated is NaN. CSV has one header line and 17 significant digits.
 /// A .h5 carries the hashes of its sources; plain numbers cannot.
-/// @throws OutputError; DataError where a source has changed since it was read; std::invalid_argument for another ending
+/// @throws OutputError; DataError where a source has changed since it was read; std::invalid_argument for another
+/// ending
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
 /// Where the positions are a complete lattice (to 0.01 px), puts the vectors row by row from the smallest y, x

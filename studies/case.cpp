@@ -296,9 +296,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   return text;
 }
 
-FolderContent case_content() {
-  return {case_file::setup, {case_file::derived.begin(), case_file::derived.end()}};
-}
+FolderContent case_content() { return {case_file::setup, {case_file::derived.begin(), case_file::derived.end()}}; }
 
 namespace {
 

@@ -242,8 +242,9 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options) {
   ComparedFiles files = compared_files(folder, options.vectors);
   if (!files.unverified.empty()) {
-    spdlog::warn("unverified: {} carries no SHA-256 of its frames, so nothing tells whether {} was measured on this case",
-                 files.unverified, files.vectors);
+    spdlog::warn(
+        "unverified: {} carries no SHA-256 of its frames, so nothing tells whether {} was measured on this case",
+        files.unverified, files.vectors);
   }
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);

@@ -97,12 +97,9 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   Image<double> const reference_frame = read_frame(reference, "reference", sources);
   Image<double> const flow_frame = read_frame(flow, "flow", sources);
   Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
-  FileOrigin origin{"gladstone vectors",
-                    1,
-                    other ? other->resolved : loaded.document.resolved(),
-                    loaded.setup.render.seed,
-                    device.name(),
-                    sources};
+  FileOrigin origin{
+      "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
+      device.name(),       sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

@@ -36,8 +36,8 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides);
 /// @param name "reference" or "flow"
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources);
 
-/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by what
-/// they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
+/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
+/// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Device const& device);
 

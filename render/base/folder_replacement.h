@@ -19,7 +19,8 @@ inline constexpr char const* staged_files = "new";
 /// Puts the files that stand in PARTIAL/new into a folder that stays itself, with its rights, its owner and all else
 /// that it holds, so that no reader takes a mixture for a case and a run that is killed at any moment leaves the old
 /// files, or new ones that finish_replacement() completes:
-///   1. PARTIAL becomes FOLDER/.replacing, in one rename: from here on the new files are what the folder is to hold. Who
+///   1. PARTIAL becomes FOLDER/.replacing, in one rename: from here on the new files are what the folder is to hold.
+///   Who
 ///      finds .replacing waits, completes it, or refuses; two writers come one after the other.
 ///   2. The marker, then every other file that is replaced or derived, moves to .replacing/old; when all have, old
 ///      becomes retired.

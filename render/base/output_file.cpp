@@ -38,8 +38,9 @@ OutputFile::OutputFile(std::string const& path) : place_(path) {
     throw OutputError(place_.asked(), "is no ordinary file (it is " + kind + "); name a file");
   }
   if (is_mount(place_.path())) {
-    throw OutputError(place_.asked(),
-                      "cannot be replaced (a file of its own is mounted there); mount its folder, or name another file");
+    throw OutputError(
+        place_.asked(),
+        "cannot be replaced (a file of its own is mounted there); mount its folder, or name another file");
   }
   place_.make_parents();
   std::string const stem = stem_beside(place_.name());
@@ -72,7 +73,8 @@ void OutputFile::write(void const* data, std::size_t size) {
 void OutputFile::commit() {
   struct stat old {};
   if (::stat(place_.path().c_str(), &old) == 0) ::fchmod(partial_->descriptor(), old.st_mode & 07777);
-  if (::fsync(partial_->descriptor()) != 0 && errno != EINVAL && errno != EROFS) place_.fail("cannot be written", errno);
+  if (::fsync(partial_->descriptor()) != 0 && errno != EINVAL && errno != EROFS)
+    place_.fail("cannot be written", errno);
   if (int const error = partial_->move_to(place_.path())) place_.fail("cannot be put in its place", error);
   partial_->keep();
   committed_ = true;

@@ -10,9 +10,9 @@
 
 namespace gladstone {
 
-/// A folder of files that belong together, which exist all or not at all. Where no folder stands, it is built beside its
-/// place and renamed when whole. A folder that is there stays itself (it may be where a shell stands, a mount, or shared
-/// with other rights): new files are made in a partial folder inside it and replace the old ones at commit(), as
+/// A folder of files that belong together, which exist all or not at all. Where no folder stands, it is built beside
+/// its place and renamed when whole. A folder that is there stays itself (it may be where a shell stands, a mount, or
+/// shared with other rights): new files are made in a partial folder inside it and replace the old ones at commit(), as
 /// replace_files() does. What a user put there stays: everything but the files that are written anew and those derived
 /// from them.
 class OutputFolder {

@@ -7,8 +7,8 @@
 namespace gladstone {
 
 /// Where output stands until it is whole: a hidden file or folder named after who writes it (host, boot of its system,
-/// disk, process, and a random number), and locked (file_lock.h) as long as the writer lives. A folder holds the lock in
-/// a file of its own, "lock-" and the writer. Two writers never share one.
+/// disk, process, and a random number), and locked (file_lock.h) as long as the writer lives. A folder holds the lock
+/// in a file of its own, "lock-" and the writer. Two writers never share one.
 class Partial {
  public:
   enum class Kind { file, folder };

@@ -154,10 +154,10 @@ void SourceFiles::check() const {
     } catch (DataError const&) {  // gone, or half of another: not what was read
     }
     if (now == source.sha256) continue;
-    throw DataError(source.path, "has changed since it was read (" +
-                                     (now.empty() ? std::string("it cannot be read any more")
-                                                  : "another SHA-256 of what it holds") +
-                                     "), and nothing was written; " + advice_);
+    throw DataError(source.path,
+                    "has changed since it was read (" +
+                        (now.empty() ? std::string("it cannot be read any more") : "another SHA-256 of what it holds") +
+                        "), and nothing was written; " + advice_);
   }
 }
 

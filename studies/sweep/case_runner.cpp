@@ -230,9 +230,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
 
   if (folder) {
     rendered.seconds = result.seconds_render;
-    folder->fill([&](std::string const& place) {
-      write_case(loaded, prepared, rendered, frames, *device_.renderer, place);
-    });
+    folder->fill(
+        [&](std::string const& place) { write_case(loaded, prepared, rendered, frames, *device_.renderer, place); });
   }
 
   std::string const name = fmt::format("case {}", one.index);
@@ -250,7 +249,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
         &shared.truths.keep(truth_key, truth_of_vectors(prepared, *device_.renderer, places, TruthAt::mid_position));
   }
   Comparison comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
-                                                {measured.field, loaded.correlate, false, "", name}, *truth, device_);
+                                          {measured.field, loaded.correlate, false, "", name}, *truth, device_);
   std::string const errors = errors_json(comparison);
   result.measures = flat_measures(errors);
   std::vector<Vec2d> const still(places.size());

@@ -185,9 +185,9 @@ void refuse_foreign_run(fs::path const& folder) {
                       "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
   }
   if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !left_by_a_cut_plan(folder))) {
-    throw OutputError(
-        folder.string(),
-        fmt::format("is there and holds no planned study (no {}); choose another folder or empty it", run_file::manifest));
+    throw OutputError(folder.string(),
+                      fmt::format("is there and holds no planned study (no {}); choose another folder or empty it",
+                                  run_file::manifest));
   }
 }
 

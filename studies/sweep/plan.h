@@ -17,8 +17,8 @@ namespace gladstone {
 /// @throws SetupError at the study's and the base's own lines; DataError for inputs that cannot be read
 std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& device);
 
-/// Tries RUN before a study is planned into it. @throws OutputError where it holds something else, cannot be written, or
-/// the plan would write over a file that is read for it
+/// Tries RUN before a study is planned into it. @throws OutputError where it holds something else, cannot be written,
+/// or the plan would write over a file that is read for it
 void try_plan_place(std::string const& run, StudyFile const& study);
 
 /// What planning found in RUN.

@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 constexpr int result_version = 2;
 constexpr std::size_t hash_digits = 16;
 constexpr char const* partial_of_result = ".json.partial-";  // as stem_beside() and Partial name it
-constexpr std::string_view head = "{\"hash\":\"";   // then the digits, then `",` and what is hashed
+constexpr std::string_view head = "{\"hash\":\"";            // then the digits, then `",` and what is hashed
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_of(Json const& json) {

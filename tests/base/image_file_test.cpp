@@ -6,9 +6,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "render/base/error.h"
+#include "tests/base/support/output.h"
 
 namespace gladstone {
 namespace {
@@ -19,11 +19,6 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 std::string temporary(std::string const& name) { return (fs::path(testing::TempDir()) / ("image_" + name)).string(); }
-
-std::string content(std::string const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// Every 16-bit value once.
 Image<std::uint16_t> all_values() {
@@ -148,9 +143,19 @@ TEST(ImageFile, UnreadablePicturesAreNamed) {
 
 TEST(ImageFile, WhatCannotBeWrittenIsSaid) {
   EXPECT_THAT([] { write_tiff("/dev/full", all_values(), {}); },
-              ThrowsMessage<OutputError>(AllOf(HasSubstr("/dev/full"), HasSubstr("No space left on device"))));
-  EXPECT_THAT([] { write_tiff("/no/such/folder/a.tif", all_values(), {}); },
+              ThrowsMessage<OutputError>(AllOf(HasSubstr("/dev/full"), HasSubstr("it is a device"))));
+  EXPECT_THAT([] { write_tiff("/proc/no/such/folder/a.tif", all_values(), {}); },
               ThrowsMessage<OutputError>(HasSubstr("No such file or directory")));
+  std::string const path = temporary("no_room.tif");
+  write_tiff(path, all_values(), {});
+  std::string const before = content(path);
+  FileSizeLimit const limit(1000);
+  EXPECT_THAT(
+      [&] {
+        write_tiff(path, all_values(), {12, 0, "text"});
+      },
+      ThrowsMessage<OutputError>(AllOf(HasSubstr("no_room.tif: cannot be written"), HasSubstr("too large"))));
+  EXPECT_EQ(content(path), before);
 }
 
 }  // namespace

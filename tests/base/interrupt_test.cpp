@@ -17,7 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A process that catches interrupts and then waits in one call for ever, as in opening a file of a server that is gone.
+/// A process that catches interrupts and then waits in one call for ever, as in opening a file of a server that is
+/// gone.
 class Blocked {
  public:
   explicit Blocked(std::function<void()> const& prepare = [] {}) {

@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,24 +21,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
-
-/// While it lives no file may grow beyond some bytes: writing fails as on a full disk, for this process only.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit const limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  void (*handler_)(int);
-  rlimit before_{};
-};
 
 using OutputFileTest = Output;
 
@@ -143,8 +123,11 @@ TEST_F(OutputFileTest, ReadOnlyFolderIsRefusedAtTheStart) {
   if (root && seteuid(65534) != 0) GTEST_SKIP() << "cannot give up root";
   EXPECT_THAT([&] { OutputFile file(in_folder("a.txt")); },
               ThrowsMessage<OutputError>(testing::AllOf(HasSubstr("Permission denied"), HasSubstr("may write to"))));
-  EXPECT_THAT([&] { OutputFolder made(in_folder("case"), {"m", {}}); },
-              ThrowsMessage<OutputError>(HasSubstr("Permission denied")));
+  EXPECT_THAT(
+      [&] {
+        OutputFolder made(in_folder("case"), {"m", {}});
+      },
+      ThrowsMessage<OutputError>(HasSubstr("Permission denied")));
   if (root) {
     ASSERT_EQ(seteuid(0), 0);
   }

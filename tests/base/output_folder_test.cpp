@@ -268,7 +268,8 @@ TEST_F(OutputFolderTest, KilledAtAnyStepItIsTheOldCaseOrTheNewOne) {
     EXPECT_THAT(names("case"), ElementsAre("flow.tif", "maps", "notes.txt", "setup.toml")) << step;
     EXPECT_THAT(names(), ElementsAre("case"));
   }
-  EXPECT_GE(completed, 8) << "four files to retire, three to install and the folder's name, before each of which it died";
+  EXPECT_GE(completed, 8)
+      << "four files to retire, three to install and the folder's name, before each of which it died";
 }
 
 TEST_F(OutputFolderTest, KilledWhileItCompletesAKilledOneItIsCompletedByTheNext) {

@@ -85,9 +85,9 @@ TEST_F(OutputErrors, FullDiskLeavesTheOldCase) {
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here; see FilesThatMayNotGrow";
   EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
-  EXPECT_THAT(read("stderr"), testing::AllOf(testing::HasSubstr("gladstone: disk/case/"),
-                                             testing::HasSubstr("No space left on device"),
-                                             testing::Not(testing::HasSubstr("partial"))));
+  EXPECT_THAT(read("stderr"),
+              testing::AllOf(testing::HasSubstr("gladstone: disk/case/"), testing::HasSubstr("No space left on device"),
+                             testing::Not(testing::HasSubstr("partial"))));
 }
 
 TEST_F(OutputErrors, FullDiskWhileDrawingLeavesTheOldResults) {
@@ -143,8 +143,9 @@ TEST_F(OutputErrors, FilesThatMayNotGrow) {
   };
   Outcome const outcome = run({"render", "setup.toml", "-o", "case", "--set", "render.seed=2"}, folder_, limited);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err << outcome.signal;
-  EXPECT_THAT(outcome.err, testing::AllOf(testing::HasSubstr("gladstone: case/"), testing::HasSubstr("cannot be written"),
-                                          testing::Not(testing::HasSubstr("partial"))))
+  EXPECT_THAT(outcome.err,
+              testing::AllOf(testing::HasSubstr("gladstone: case/"), testing::HasSubstr("cannot be written"),
+                             testing::Not(testing::HasSubstr("partial"))))
       << "named as it was asked for";
   EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
 }

@@ -98,7 +98,8 @@ TEST_F(Places, AMountPoint) {
     write("file.csv", "old");
     if (::mount(in("setup.toml").c_str(), in("file.csv").c_str(), nullptr, MS_BIND, nullptr) != 0) ::_exit(77);
     Outcome const onto = run({"correlate", "disk", "-o", "file.csv"}, folder_);
-    if (onto.exit_code != 2 || onto.err.find("file.csv: cannot be replaced") == std::string::npos) err += onto.err + '?';
+    if (onto.exit_code != 2 || onto.err.find("file.csv: cannot be replaced") == std::string::npos)
+      err += onto.err + '?';
     write("stderr", err);
     ::_exit(err.empty() ? 0 : 1);
   }
@@ -113,12 +114,14 @@ TEST_F(Places, DevicesAndOpenFilesAreRefusedBeforeAnythingIsComputed) {
   render("case");
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
   for (std::string const place : {"/dev/full", "/dev/null"}) {
-    expect_refused({"render", "setup.toml", "-o", place}, 2, {place + ": is no folder (it is a device); name a folder"});
+    expect_refused({"render", "setup.toml", "-o", place}, 2,
+                   {place + ": is no folder (it is a device); name a folder"});
     expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", place}, 2,
                    {place + ": is no ordinary file (it is a device); name a file"});
     expect_refused({"demo", "-o", place}, 2, {place});
   }
-  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2, {"/dev/stdout: is a file or pipe"});
+  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "/dev/stdout"}, 2,
+                 {"/dev/stdout: is a file or pipe"});
   expect_refused({"correlate", "case", "-o", "/dev/full"}, 2, {"/dev/full: "});
 }
 
@@ -131,21 +134,24 @@ TEST_F(Places, AnOutputIsNeverAnInput) {
     expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", output}, 2,
                    {output + ": would be overwritten, and is read by this command"});
   }
-  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2, {"setup.toml: would be overwritten"});
+  expect_refused({"trace", "setup.toml", "--rays", "rays.csv", "-o", "setup.toml"}, 2,
+                 {"setup.toml: would be overwritten"});
   expect_refused({"render", "setup.toml", "-o", "."}, 2, {"setup.toml: would be overwritten", "(as setup.toml)"});
   render("case");
   expect_refused({"render", "case/setup.toml", "-o", "case"}, 2, {"case/setup.toml: would be overwritten"});
   fs::create_symlink("case/truth.h5", in("v.h5"));
   expect_refused({"correlate", "case", "-o", "v.h5"}, 2, {"v.h5: would be overwritten", "(as case/truth.h5)"});
   fs::copy(in("case/reference.tif"), in("picture.csv"));
-  expect_refused({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2, {"picture.csv: would be overwritten"});
+  expect_refused({"correlate", "picture.csv", "case/flow.tif", "-o", "picture.csv"}, 2,
+                 {"picture.csv: would be overwritten"});
   succeed({"correlate", "case"});
   fs::create_symlink("vectors.h5", in("case/errors.json"));
   expect_refused({"compare", "case"}, 2, {"case/errors.json: would be overwritten", "(as case/vectors.h5)"});
   fs::create_directory(in("run"));
   write("run/study.toml", "base = \"../setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
   fs::create_directory(in("run/cases"));
-  expect_refused({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2, {"run/study.toml: would be overwritten"});
+  expect_refused({"sweep", "plan", "run/study.toml", "-o", "run", "--device", "cpu"}, 2,
+                 {"run/study.toml: would be overwritten"});
 }
 
 // A field that lies where the case's own file is to go: it would be read, and then be gone.
@@ -174,7 +180,8 @@ TEST_F(Places, AStudyIsRefusedItsPlaceBeforeItIsPlanned) {
   fs::create_directory(in("thesis"));
   write("thesis/chapter1.tex", "precious");
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
-  expect_refused({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2, {"thesis: is there and holds no"});
+  expect_refused({"sweep", "plan", "study.toml", "-o", "thesis", "--device", "cpu"}, 2,
+                 {"thesis: is there and holds no"});
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
+#include "render/base/source_files.h"
+
 #include <fmt/format.h>
 
-#include "render/base/source_files.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -86,7 +87,8 @@ TEST_F(Sources, ACaseThatIsReplacedWhileItIsComparedGivesNoErrors) {
   write_large_setup();
   render("case", {}, "large.toml");
   succeed({"correlate", "case"});
-  Outcome const outcome = rendered_under({"compare", "case", "--no-figures", "--threads", "1"}, ".errors.json.partial-");
+  Outcome const outcome =
+      rendered_under({"compare", "case", "--no-figures", "--threads", "1"}, ".errors.json.partial-");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("has changed since it was read"));
   EXPECT_FALSE(std::filesystem::exists(in("case/errors.json")));
@@ -122,7 +124,8 @@ TEST_F(Sources, RaysThatAreReplacedWhileTheyAreTracedGiveNoTable) {
   std::string rays = "x_mm,y_mm,z_mm,dx,dy,dz\n";
   for (int i = 0; i < 200000; ++i) rays += fmt::format("{},0,-250,0,0,1\n", i * 1e-5);
   write("rays.csv", rays);
-  auto const program = start({"trace", "setup.toml", "--rays", "rays.csv", "-o", "case/ends.csv"}, ".ends.csv.partial-");
+  auto const program =
+      start({"trace", "setup.toml", "--rays", "rays.csv", "-o", "case/ends.csv"}, ".ends.csv.partial-");
   program->send(SIGSTOP);
   write("rays.csv", rays + "0,0,-250,0,0,1\n");
   program->send(SIGCONT);
@@ -139,7 +142,8 @@ TEST_F(Sources, AnInputThatHasChangedSinceTheCaseWasRenderedIsRefusedByName) {
   render("case", {}, "points.toml");
   succeed({"correlate", "case"});
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
-  expect_refused({"compare", "case"}, 2, {"dots.csv: has changed since case was rendered from it", "render the case again"});
+  expect_refused({"compare", "case"}, 2,
+                 {"dots.csv: has changed since case was rendered from it", "render the case again"});
 }
 
 TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
