@@ -3,6 +3,7 @@
 #include <sys/prctl.h>
 #include <sys/stat.h>
 
+#include "render/base/partial.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -108,6 +109,27 @@ TEST_F(Places, AMountPoint) {
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no mount namespace here; see TheFolderThatAShellStandsIn";
   EXPECT_EQ(WEXITSTATUS(status), 0) << read("stderr");
+}
+
+// As a rendering leaves it that is killed after the first of its moves.
+TEST_F(Places, ACommandThatReadsACaseCompletesWhatWasBrokenOffThere) {
+  render("case");
+  render("fresh", {"--set", "target.seed=8"});
+  pid_t const child = ::fork();
+  if (child == 0) {
+    Partial partial(in("case"), ".", Partial::Kind::folder);
+    fs::path const work = in("case/.replacing");
+    fs::copy(in("fresh"), fs::path(partial.path()) / "new");
+    fs::create_directory(fs::path(partial.path()) / "old");
+    if (partial.move_to(work) != 0) ::_exit(1);
+    fs::rename(in("case/setup.toml"), work / "old/setup.toml");
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  succeed({"correlate", "case"});
+  expect_same_case("case", "fresh");
+  EXPECT_EQ(names("case").size(), 6u) << testing::PrintToString(names("case"));
+  EXPECT_EQ(read("case/setup.toml"), read("fresh/setup.toml"));
 }
 
 TEST_F(Places, DevicesAndOpenFilesAreRefusedBeforeAnythingIsComputed) {

@@ -32,14 +32,14 @@ class Sources : public Workplace {
   /// A correlation or comparison of seconds, and while it goes on another rendering into the same case.
   Outcome rendered_under(std::vector<std::string> arguments, std::string const& partial) const {
     auto const program = start(std::move(arguments), partial);
-    std::this_thread::sleep_for(300ms);
+    program->wait_until_computed(0.4);  // everything has been read by then
     program->send(SIGSTOP);
     render("case", {"--set", "target.seed=8"}, "large.toml");
     program->send(SIGCONT);
     return program->finish(60s);
   }
   void write_large_setup() const {
-    write("large.toml", with(with(small_setup, "[64, 64]", "[512, 512]"), "[32, 16]", "[64, 32, 32, 32, 32, 32]"));
+    write("large.toml", with(with(small_setup, "[64, 64]", "[512, 512]"), "[32, 16]", "[64, 32, 32]\noverlap = 0.75"));
   }
 };
 

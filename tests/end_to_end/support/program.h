@@ -5,11 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -62,6 +64,24 @@ class Program {
   Program& operator=(Program const&) = delete;
 
   void send(int signal) const { ::kill(child_, signal); }
+
+  /// Waits until it has computed for some time [s of processor time, of all its threads], whatever else the machine
+  /// does.
+  void wait_until_computed(double seconds) const {
+    for (int wait = 0; wait < 30000; ++wait) {
+      std::ifstream stat("/proc/" + std::to_string(child_) + "/stat");
+      std::string text;
+      std::getline(stat, text);
+      // 14th and 15th of its numbers; the second is a name in brackets
+      std::istringstream numbers(text.substr(std::min(text.rfind(')') + 1, text.size())));
+      std::string skipped;
+      for (int i = 0; i < 11; ++i) numbers >> skipped;
+      double user = 0, system = 0;
+      numbers >> user >> system;
+      if (user + system >= seconds * static_cast<double>(::sysconf(_SC_CLK_TCK))) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
 
   /// What it has written to stderr so far.
   std::string err() const { return content(streams_ / "err"); }
