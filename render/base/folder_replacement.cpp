@@ -31,14 +31,17 @@ struct MoveError {
   int error;
 };
 
+bool is_there(fs::path const& path) {
+  struct stat found {};
+  return ::lstat(path.c_str(), &found) == 0;
+}
+
 /// Renames, making the folders above the new place. @return false where there is nothing to move
 bool move_file(fs::path const& from, fs::path const& to) {
-  struct stat there {};
-  if (::lstat(from.c_str(), &there) != 0 && errno == ENOENT) return false;
-  std::error_code error;
-  fs::create_directories(to.parent_path(), error);
+  if (!is_there(from)) return false;
+  std::error_code ignored;  // where no folder can be made, the rename says why
+  fs::create_directories(to.parent_path(), ignored);
   if (::rename(from.c_str(), to.c_str()) == 0) return true;
-  if (errno == ENOENT && !error) return false;
   throw MoveError{from, errno};
 }
 
@@ -65,8 +68,8 @@ std::vector<fs::path> files_to_retire(fs::path const& staged, FolderContent cons
 
 void retire(fs::path const& folder, FolderContent const& content) {
   fs::path const work = folder / replacing;
-  if (fs::exists(work / retired_files)) return;
-  fs::create_directory(work / old_files);
+  if (is_there(work / retired_files)) return;
+  if (::mkdir((work / old_files).c_str(), 0777) != 0 && errno != EEXIST) throw MoveError{work / old_files, errno};
   for (fs::path const& file : files_to_retire(work / staged_files, content)) {
     move_file(folder / file, work / old_files / file);
   }
@@ -82,10 +85,9 @@ void install(fs::path const& folder, FolderContent const& content) {
 void go_back(fs::path const& folder, FolderContent const& content, std::vector<fs::path> const& files) {
   fs::path const work = folder / replacing;
   try {
-    if (fs::exists(work / retired_files)) {
+    if (is_there(work / retired_files)) {
       for (fs::path const& file : files) {
-        if (!fs::exists(fs::symlink_status(work / staged_files / file)))
-          move_file(folder / file, work / staged_files / file);
+        if (!is_there(work / staged_files / file)) move_file(folder / file, work / staged_files / file);
       }
       move_file(work / retired_files, work / old_files);
     }
@@ -117,13 +119,12 @@ void refuse_folders_in_the_way(fs::path const& staged, fs::path const& folder, s
 }  // namespace
 
 bool is_complete(std::string const& folder, FolderContent const& content) {
-  std::error_code error;
   fs::path const marker = fs::path(folder) / content.marker, work = fs::path(folder) / replacing;
   do {
     finish_replacement(folder, content);
-    if (fs::exists(marker, error)) return true;
-  } while (fs::exists(work, error));  // begun between the two looks
-  return fs::exists(marker, error);
+    if (is_there(marker)) return true;
+  } while (is_there(work));  // begun between the two looks
+  return is_there(marker);
 }
 
 bool belongs_to_replacement(std::string const& name) { return name == replacing || is_partial(name, "."); }
@@ -167,8 +168,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
 void finish_replacement(std::string const& folder, FolderContent const& content) {
   fs::path const work = fs::path(folder) / replacing;
   auto const end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  struct stat there {};
-  while (::lstat(work.c_str(), &there) == 0) {
+  while (is_there(work)) {
     if (auto const taken = Leftover::take(work.string())) {
       std::string const aside = (fs::path(folder) / taken->name(".")).string();
       try {
