@@ -31,11 +31,12 @@ class PointCells {
     if (!any) return;
     // A few points far away must not ask for more cells than there are points.
     double const most = 4.0 * static_cast<double>(points.size()) + 16.0;
-    double const wanted = ((high.x - low_.x) / cell_ + 1.0) * ((high.y - low_.y) / cell_ + 1.0);
-    if (wanted > most)
-      cell_ = std::max(cell_ * std::sqrt(wanted / most), std::max(high.x - low_.x, high.y - low_.y) / most);
-    columns_ = static_cast<int>((high.x - low_.x) / cell_) + 1;
-    rows_ = static_cast<int>((high.y - low_.y) / cell_) + 1;
+    constexpr double farthest = 1e150;  // whose square is finite
+    double const width = std::min(high.x - low_.x, farthest), height = std::min(high.y - low_.y, farthest);
+    double const wanted = (width / cell_ + 1.0) * (height / cell_ + 1.0);
+    if (wanted > most) cell_ = std::max(cell_ * std::sqrt(wanted / most), std::max(width, height) / most);
+    columns_ = static_cast<int>(width / cell_) + 1;
+    rows_ = static_cast<int>(height / cell_) + 1;
 
     // Counting sort by cell keeps the points of a cell in their order.
     first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
@@ -50,10 +51,11 @@ class PointCells {
     }
   }
 
-  /// Calls visit(index) for every point in the square |x - c.x|, |y - c.y| <= radius and for some beyond it.
+  /// Calls visit(index) for every point in the square |x - c.x|, |y - c.y| <= radius and for some beyond it; about a
+  /// place that is not finite for none.
   template <class Visit>
   void for_near(Vec2d c, double radius, Visit&& visit) const {
-    if (columns_ == 0) return;
+    if (columns_ == 0 || !finite(c)) return;
     int const left = clamped((c.x - radius - low_.x) / cell_, columns_);
     int const right = clamped((c.x + radius - low_.x) / cell_, columns_);
     int const top = clamped((c.y - radius - low_.y) / cell_, rows_);

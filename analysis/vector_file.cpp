@@ -60,6 +60,15 @@ void reorder(std::vector<T>& values, std::vector<std::size_t> const& order) {
 
 }  // namespace
 
+void take_vectors(DisplacementField& field, std::vector<std::size_t> const& order) {
+  reorder(field.position_px, order);
+  reorder(field.displacement_px, order);
+  reorder(field.sigma_px, order);
+  reorder(field.peak_ratio, order);
+  reorder(field.status, order);
+  field.columns = field.rows = 0;
+}
+
 void arrange_as_grid(DisplacementField& field) {
   field.columns = field.rows = 0;
   std::vector<double> x, y;
@@ -80,11 +89,7 @@ void arrange_as_grid(DisplacementField& field) {
     if (node != none) return;
     node = i;
   }
-  reorder(field.position_px, order);
-  reorder(field.displacement_px, order);
-  reorder(field.sigma_px, order);
-  reorder(field.peak_ratio, order);
-  reorder(field.status, order);
+  take_vectors(field, order);
   field.columns = static_cast<int>(columns.size());
   field.rows = static_cast<int>(rows.size());
 }

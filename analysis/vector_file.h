@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,28 +53,15 @@ VectorFile read_vectors(std::string const& path);
 /// @param image_rows for Mirror::image
 DisplacementField apply_conventions(DisplacementField field, VectorConventions const& conventions, int image_rows);
 
-/// What detect_conventions found.
-struct DetectedConventions {
-  VectorConventions conventions;
-  double score_px = 0.0;      ///< rms difference from the truth, each difference counted as at most 1 px per component
-  double runner_up_px = 0.0;  ///< the same for the best other choice of axes or sign
-  bool ambiguous = false;     ///< another choice of axes or sign is as good: the file's default was kept if among them
-  std::string report;         ///< one line for the log
-};
-
-/// Tries every choice of y axis, v sign, frame order and offset (0, -0.5, -1, -1.5 px and the format's own) against
-/// the truth and takes the best. The offset moves away from the format's own only where that improves the score by
-/// 5 %; axes and sign are called ambiguous where the runner-up is within 10 %.
-/// @param truth displacement at a place in our conventions [px]; NaN outside the view
-DetectedConventions detect_conventions(VectorFile const& file, std::function<Vec2d(Vec2d)> const& truth,
-                                       int image_rows);
-
 /// Writes vectors.h5 (path ends in .h5) or vectors.csv: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
 /// status; what was not estimated is NaN. CSV has one header line and 17 significant digits.
 /// A .h5 carries the hashes of its sources; plain numbers cannot.
 /// @throws OutputError; DataError where a source has changed since it was read; std::invalid_argument for another
 /// ending
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
+
+/// Keeps the vectors of these indices, in this order, as scattered ones.
+void take_vectors(DisplacementField& field, std::vector<std::size_t> const& order);
 
 /// Where the positions are a complete lattice (to 0.01 px), puts the vectors row by row from the smallest y, x
 /// ascending, and sets columns and rows; otherwise leaves them scattered.

@@ -47,6 +47,27 @@ nlohmann::json matrix_json(CovarianceMatrix const& matrix) {
   return rows;
 }
 
+nlohmann::ordered_json fit_json(ConventionFit const& fit) {
+  return {{"conventions", describe(fit.conventions)}, {"rms_px", number(fit.rms_px)}};
+}
+
+/// How a foreign file's vectors fit the truth by its conventions, without the offset, and by every other choice.
+nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
+  using Verdict = DetectedConventions::Verdict;
+  nlohmann::ordered_json json = fit_json(detected.fit);
+  json["verdict"] = detected.verdict == Verdict::fits    ? "fits"
+                    : detected.verdict == Verdict::noisy ? "noisy"
+                                                         : "cannot_be_told";
+  json["ambiguous"] = detected.ambiguous;
+  json["signal_px"] = number(detected.fit.signal_px);
+  json["slope"] = number(detected.fit.slope);
+  json["offset_px"] = detected.conventions.offset_px;
+  json["rms_without_offset_px"] = number(detected.without_offset.rms_px);
+  json["tried"] = nlohmann::ordered_json::array();
+  for (ConventionFit const& fit : detected.tried) json["tried"].push_back(fit_json(fit));
+  return json;
+}
+
 /// Largest strain of Eq. 9 within half a window of every vector [px/px]: one front in the window spoils it.
 std::vector<double> strain_at(Scene const& scene, std::vector<Vec2d> const& positions, int window_px) {
   int const spacing = std::max(1, std::max(scene.setup.camera.columns, scene.setup.camera.rows) / 2048);
@@ -82,7 +103,7 @@ class TruthMap {
  public:
   TruthMap(GroundTruth const& truth, CameraSetup const& camera)
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
-        maps_(map_scattered(truth.reference_px, truth.displacement_px, grid_)) {}
+        maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
   /// The nearest lattice point's displacement; NaN outside the view.
   Vec2d at(Vec2d c) const {
@@ -92,27 +113,54 @@ class TruthMap {
   }
 
  private:
+  /// Dots far from the view do not count, lest a few of them spread the smoothing over all that is seen.
+  static std::vector<Vec2d> near_view(std::vector<Vec2d> places, CameraSetup const& camera) {
+    double const margin = std::max(camera.columns, camera.rows);
+    for (Vec2d& p : places) {
+      bool const near = std::abs(p.x - 0.5 * camera.columns) <= 0.5 * camera.columns + margin &&
+                        std::abs(p.y - 0.5 * camera.rows) <= 0.5 * camera.rows + margin;
+      if (!near) p = {std::nan(""), std::nan("")};
+    }
+    return places;
+  }
+
   static constexpr int spacing = 2;
   MapGrid grid_;
   DisplacementMaps maps_;
 };
 
+/// Leaves out what no camera can have seen. @throws DataError where nothing is left, or no place is in px
+LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
+  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
+  std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
+  if (!refusal.empty()) throw DataError(path, refusal);
+  if (left_out.all() > 0) {
+    spdlog::warn("{}: {} of {} vectors are left out: {}", path, left_out.all(),
+                 file.field.size() + left_out.without_place(), left_out.text());
+  }
+  std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
+  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+  return left_out;
+}
+
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
                              CompareOptions const& options) {
   VectorFile file = read_vectors(path);
-  int const rows = loaded.setup.camera.rows;
-  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path};
+  if (options.conventions) file.conventions = parse_conventions(*options.conventions, file.conventions);
+  CameraSetup const& camera = loaded.setup.camera;
+  LeftOutVectors const left_out = screen(file, path, camera);
+  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
   if (options.conventions) {
-    file.conventions = parse_conventions(*options.conventions, file.conventions);
     vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
   } else if (file.foreign) {
-    TruthMap const map(truth, loaded.setup.camera);
+    TruthMap const map(truth, camera);
     auto const lookup = [&map](Vec2d c) { return map.at(c); };
-    DetectedConventions const detected = detect_conventions(file, lookup, rows);
-    file.conventions = detected.conventions;
-    vectors.report = detected.report;
+    vectors.detected = detect_conventions(file, lookup, camera.rows);
+    vectors.report = vectors.detected->report;
+    if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, vectors.report);
+    file.conventions = vectors.detected->conventions;
   }
-  vectors.field = apply_conventions(std::move(file.field), file.conventions, rows);
+  vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
   if (!file.foreign && path.ends_with(".h5")) {
     std::string const text = Hdf5Reader(path).attribute("setup");
     if (!text.empty()) {
@@ -265,6 +313,8 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   comparison.measured = std::move(vectors.field);
   comparison.report = vectors.report;
   comparison.foreign = vectors.foreign;
+  comparison.left_out = vectors.left_out;
+  comparison.detected = vectors.detected;
   comparison.point = std::move(truth.point);
   comparison.thin_lens = std::move(truth.thin_lens);
   DisplacementField const& measured = comparison.measured;
@@ -305,7 +355,8 @@ std::string errors_json(Comparison const& comparison) {
   nlohmann::ordered_json json;
   auto const summary = [&](std::vector<Vec2d> const& truth) {
     nlohmann::ordered_json measures;
-    for (auto const& [name, value] : error_measures(comparison.measured.displacement_px, truth, comparison.mask)) {
+    for (auto const& [name, value] :
+         error_measures(comparison.measured.displacement_px, truth, comparison.mask, comparison.vectors_in_file())) {
       measures[std::string(name)] = name == "count" ? nlohmann::json(static_cast<long long>(value)) : number(value);
     }
     return measures;
@@ -328,7 +379,12 @@ std::string errors_json(Comparison const& comparison) {
   budget["peak_locking_px"] = number(comparison.budget.peak_locking_px);
   budget["closure_px"] = number(comparison.budget.closure_px);
   json["budget"] = budget;
-  json["vectors"] = {{"total", comparison.measured.size()},
+  LeftOutVectors const& left_out = comparison.left_out;
+  json["vectors"] = {{"total", comparison.vectors_in_file()},
+                     {"left_out_place_not_finite", left_out.place_not_finite},
+                     {"left_out_outside_image", left_out.outside_image},
+                     {"left_out_displacement_not_finite", left_out.displacement_not_finite},
+                     {"left_out_displacement_beyond_image", left_out.displacement_beyond_image},
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
   if (!comparison.sources.all().empty()) {
@@ -339,6 +395,7 @@ std::string errors_json(Comparison const& comparison) {
     made_from["frames"] = comparison.verified ? "verified" : "unverified";
     json["made_from"] = made_from;
   }
+  if (comparison.detected) json["vectors"]["fit"] = fit_json(*comparison.detected);
   return json_text(json) + "\n";
 }
 

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/convention_detection.h"
 #include "analysis/error_budget.h"
 #include "analysis/error_summary.h"
-#include "analysis/vector_file.h"
+#include "analysis/vector_screening.h"
 #include "analysis/window_truth.h"
 #include "render/scene/renderer.h"
 #include "studies/case.h"
@@ -31,10 +32,14 @@ struct Comparison {
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
   VectorMask mask;
   ErrorBudget budget;
-  std::string report;  ///< what was detected about a foreign file; empty for ours
+  std::string report;                           ///< what was detected about a foreign file; empty for ours
+  LeftOutVectors left_out;                      ///< of the file; `measured` holds the others
+  std::optional<DetectedConventions> detected;  ///< of a foreign file
   bool foreign = false;
   SourceFiles sources;    ///< what the files held that were compared; nothing for vectors that never were in files
   bool verified = false;  ///< the vectors were measured on the very frames that the truth belongs to
+
+  std::size_t vectors_in_file() const { return measured.size() + left_out.without_place(); }
 };
 
 /// Virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`: two rounds of
@@ -54,6 +59,8 @@ struct MeasuredVectors {
   bool foreign = false;          ///< not to be measured again on noise-free images
   std::string report;            ///< what was detected about a foreign file
   std::string name;              ///< of the file or the case, for messages
+  LeftOutVectors left_out{};
+  std::optional<DetectedConventions> detected{};  ///< of a foreign file
 };
 
 /// Truth and theory at the places of vectors: all of a comparison that does not depend on what was measured there.

@@ -24,8 +24,11 @@ std::string error_report(Comparison const& comparison) {
                         last.bias_u_px, last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px,
                         100 * last.gross_fraction);
   }
-  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three dots\n\n", last.count,
-                      comparison.measured.size(), comparison.window.left_out);
+  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three dots\n", last.count,
+                      comparison.vectors_in_file(), comparison.window.left_out);
+  if (comparison.left_out.all() > 0) text += "  left out as well: " + comparison.left_out.text() + '\n';
+  if (comparison.detected) text += "  " + comparison.report + '\n';
+  text += '\n';
   text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "random u",
                       "random v", "rms");
   auto const line = [&](BudgetTerm const& term) {

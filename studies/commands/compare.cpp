@@ -63,12 +63,15 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder, "Case folder")->required();
   app.add_option("--vectors", arguments->compare.vectors,
-                 "Vectors of ours, OpenPIV or PIVlab, default CASE/vectors.h5");
+                 "Vectors of ours, OpenPIV, PIVlab or any x,y,u,v in px, default CASE/vectors.h5; those outside the "
+                 "image or longer than it are left out");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
       ->check(CLI::IsMember({"mid", "reference"}));
-  app.add_option("--conventions", arguments->conventions,
-                 "Axes and sign of foreign vectors instead of detecting them: y-up,v-up,swapped,offset=-0.5");
+  app.add_option(
+      "--conventions", arguments->conventions,
+      "Axes and sign of foreign vectors instead of detecting them, and refusing what fits none: y-down or y-up "
+      "or y-up-image, v-down or v-up, swapped, offset=-0.5");
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   return [arguments, &options] {
     Device const device = options.open_device();

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "analysis/convention_detection.h"
 #include "render/base/error.h"
 
 namespace gladstone {
@@ -230,7 +231,7 @@ TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
                 detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
             EXPECT_EQ(found.conventions, c) << describe(c) << " -> " << found.report;
             EXPECT_FALSE(found.ambiguous) << found.report;
-            EXPECT_LT(found.score_px, 1e-12);
+            EXPECT_LT(found.fit.rms_px, 1e-12);
           }
         }
       }
