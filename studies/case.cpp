@@ -13,6 +13,7 @@
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/units.h"
+#include "render/scene/field_coverage.h"
 #include "render/sensor/detector.h"
 #include "studies/json_text.h"
 #include "studies/truth_file.h"
@@ -20,7 +21,8 @@
 namespace gladstone {
 namespace {
 
-constexpr int map_spacing_px = 2;  // of the maps in truth.h5: turbulence's fronts are a few pixels wide
+constexpr double least_displacement_px = 1e-6;  // below it nothing moves
+constexpr int map_spacing_px = 2;               // of the maps in truth.h5: turbulence's fronts are a few pixels wide
 
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
@@ -136,6 +138,15 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   if (loaded.setup.medium.field.kind != FieldKind::none) {
     prepared.strain = known.strain ? *known.strain : map_strain(scene);
+    Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
+    std::string const coverage = field_coverage(box, loaded.setup).warning();
+    if (!coverage.empty()) warn(prepared.warnings, coverage);
+    if (prepared.strain.largest_px < least_displacement_px) {
+      warn(prepared.warnings,
+           fmt::format("nothing moves: by Eq. 9 the field displaces no place of the view by more than {:.2g} px; check "
+                       "quantity, scale, spacing and place of medium.field, or its amplitude",
+                       prepared.strain.largest_px));
+    }
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,
            fmt::format("caustic: over {:.2g} % of the view the strain is 1 or more and rays cross before they reach "

@@ -284,10 +284,11 @@ void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::s
   }
 }
 
-std::string Hdf5Reader::attribute(std::string const& name) const {
-  Lock const lock(library_lock());
-  if (H5Aexists(handle_->file, name.c_str()) <= 0) return {};
-  Id const opened(H5Aopen(handle_->file, name.c_str(), H5P_DEFAULT), H5Aclose);
+namespace {
+
+std::string attribute_text(hid_t object, std::string const& name) {
+  if (H5Aexists(object, name.c_str()) <= 0) return {};
+  Id const opened(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   Id const type(H5Aget_type(opened), H5Tclose);
   Id const space(H5Aget_space(opened), H5Sclose);
   hssize_t const count = H5Sget_simple_extent_npoints(space);
@@ -320,6 +321,18 @@ std::string Hdf5Reader::attribute(std::string const& name) const {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", value);
   return text;
+}
+
+}  // namespace
+
+std::string Hdf5Reader::attribute(std::string const& name) const {
+  Lock const lock(library_lock());
+  return attribute_text(handle_->file, name);
+}
+
+std::string Hdf5Reader::attribute_of(std::string const& dataset, std::string const& name) const {
+  Lock const lock(library_lock());
+  return attribute_text(handle_->open(path_, dataset), name);
 }
 
 /// The file grows in memory and goes to disk in close(), by calls whose errors we see: HDF5 itself cannot get out of a

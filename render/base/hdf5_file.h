@@ -45,6 +45,8 @@ class Hdf5Reader {
   void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<double> out) const;
   /// A text or numeric attribute of the root as text; empty where there is none.
   std::string attribute(std::string const& name) const;
+  /// The same of a dataset of numbers.
+  std::string attribute_of(std::string const& dataset, std::string const& name) const;
 
  private:
   std::string path_;

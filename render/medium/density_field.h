@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/base/regular_grid.h"
+#include "render/medium/field_units.h"
 
 namespace gladstone {
 
@@ -17,9 +18,9 @@ class FieldSource {
  public:
   virtual ~FieldSource() = default;
 
-  /// Nodes and spacing as the file has them [file units times `spacing_scale`, see the reader]; the origin is that of
-  /// the file; the y index runs upwards.
+  /// Nodes, spacing and origin as the file has them, in units().length; the y index runs upwards.
   virtual RegularGrid const& grid() const = 0;
+  virtual FieldUnits const& units() const = 0;
   /// What the numbers are called in the file ("Density_0001"), for messages.
   virtual std::string const& name() const = 0;
   /// Bits of precision of the stored numbers: 24 for float, 53 for double, an integer's width.

@@ -30,7 +30,7 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
     throw DataError(field.file, fmt::format("{} has {} x {} nodes (at least 2 x 2 are needed)", source.name(),
                                             grid.nodes[0], grid.nodes[1]));
   }
-  grid.spacing = field.spacing ? *field.spacing : grid.spacing * unit::millimetre;
+  grid.spacing = field.spacing ? *field.spacing : grid.spacing * source.units().metres();
   grid.periodic = field.periodic;
   if (field.extrude) grid.periodic[2] = false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -38,6 +38,18 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
     grid.origin[axis] = field.center[axis] - span / 2;
   }
   return grid;
+}
+
+/// What had to be assumed of the file's lengths; empty where they are known, or replaced by the setup's.
+std::string assumed_lengths(FieldSetup const& field, FieldSource const& source, RegularGrid const& grid) {
+  std::string const assumed = field.spacing ? "" : source.units().assumed();
+  if (assumed.empty()) return {};
+  double const mm = unit::millimetre;
+  return fmt::format(
+      "medium.field.file: of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give "
+      "medium.field.spacing_mm",
+      source.name(), field.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
+      grid.spacing.y * (grid.nodes[1] - 1) / mm);
 }
 
 /// What is lost where a file holds n itself with so few bits that n - 1 keeps few of them; empty where nothing is.
@@ -82,6 +94,8 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   BuiltMedium built;
   std::string lost = lost_digits(field, source, volume->lowest(), volume->highest());
   if (!lost.empty()) built.warnings.push_back(std::move(lost));
+  std::string assumed = assumed_lengths(field, source, grid);
+  if (!assumed.empty()) built.warnings.push_back(std::move(assumed));
   double const half = setup.thickness / 2;
   double const low = field.center.z - half, high = field.center.z + half;
   if (spline) {
@@ -178,6 +192,17 @@ std::size_t medium_bytes_needed(MediumSetup const& setup) {
   RegularGrid const& grid = source->grid();
   return grid.nodes[2] == 1 ? RefractiveIndexVolume<double>::bytes_needed(grid)
                             : RefractiveIndexVolume<float>::bytes_needed(grid);
+}
+
+Bounds<double> file_bounds(MediumSetup const& setup) {
+  FieldSetup const& field = setup.field;
+  RegularGrid const grid = world_grid(field, *open_field(field.file, field.dataset));
+  Bounds<double> box = grid_bounds(grid);
+  if (field.extrude) {
+    box.low.z = field.center.z - setup.thickness / 2;
+    box.high.z = field.center.z + setup.thickness / 2;
+  }
+  return box;
 }
 
 double steps_across(MediumSetup const& setup) {

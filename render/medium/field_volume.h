@@ -28,6 +28,9 @@ std::size_t medium_bytes_needed(MediumSetup const& setup);
 /// @throws DataError for a file that cannot be read
 double steps_across(MediumSetup const& setup);
 
+/// Where the field of a file stands [m]; opens it to see its grid. @throws DataError for a file that cannot be read
+Bounds<double> file_bounds(MediumSetup const& setup);
+
 /// What BuiltMedium::finest will be [m]; opens a file to see its grid. @throws DataError for a file that cannot be read
 double finest_length(MediumSetup const& setup);
 

@@ -1,5 +1,6 @@
 #include "render/medium/medium_setup.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -97,7 +98,7 @@ MediumSetup read_medium_setup(SetupTable table) {
   if (constant.word == "ciddor") setup.gladstone_dale = gladstone_dale_ciddor(setup.wavelength);
   if (constant.word == "merzkirch") setup.gladstone_dale = gladstone_dale_merzkirch(setup.wavelength);
   setup.ambient_density = table.number("ambient_density_kg_m3", 1.225, Range::at_least(0.0, 1e4));
-  setup.thickness = table.number("thickness_mm", 10.0, Range::positive(1e6)) * unit::millimetre;
+  auto const thickness_mm = table.number_or_auto("thickness_mm", Range::positive(1e6));
   if (table.word("interpolation", "cubic_bspline", {"cubic_bspline", "trilinear"}) == "trilinear") {
     setup.interpolation = FieldInterpolation::trilinear;
   }
@@ -112,7 +113,20 @@ MediumSetup read_medium_setup(SetupTable table) {
     for (std::size_t other = 1; other < fields.size(); ++other) fields[other].excuse();
   }
   setup.field = read_field(fields.empty() ? table.table("field") : fields.front());
+  setup.automatic_thickness = !thickness_mm;
+  setup.thickness = thickness_mm.value_or(automatic_thickness_mm(setup.field)) * unit::millimetre;
   return setup;
+}
+
+double automatic_thickness_mm(FieldSetup const& field) {
+  constexpr double radii = 7.0;
+  // to a nanometre: radii were told in mm
+  double const wanted = std::round(radii * field.radius / unit::nanometre) * 1e-6;
+  return has_size_along_z(field.kind) ? std::max(10.0, wanted) : 10.0;
+}
+
+double cut_off_share(MediumSetup const& setup) {
+  return has_size_along_z(setup.field.kind) ? std::erfc(setup.thickness / 2 / setup.field.radius) : 0.0;
 }
 
 }  // namespace gladstone

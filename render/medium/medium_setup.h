@@ -11,6 +11,11 @@
 namespace gladstone {
 
 enum class FieldKind { none, file, uniform_gradient, sinusoid, gaussian_plume, gaussian_blob, normal_shock };
+/// Whether a field fades on its own along Z, so that a slab can be too thin for it.
+constexpr bool has_size_along_z(FieldKind kind) {
+  return kind == FieldKind::gaussian_plume || kind == FieldKind::gaussian_blob;
+}
+
 enum class FieldQuantity { density, refractive_index, refractivity };
 enum class FieldInterpolation { cubic_bspline, trilinear };
 
@@ -46,7 +51,8 @@ struct MediumSetup {
   double wavelength = 532e-9;       ///< [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
   double ambient_density = 1.225;   ///< [kg/m^3]
-  double thickness = 0.01;          ///< [m]
+  double thickness = 0.01;          ///< of slabs, see automatic_thickness_mm; volumes have their own depth [m]
+  bool automatic_thickness = true;  ///< nobody has given it
   FieldInterpolation interpolation = FieldInterpolation::cubic_bspline;
   Integrator integrator = Integrator::rk4;
   Faces faces = Faces::matched;
@@ -57,5 +63,13 @@ struct MediumSetup {
 };
 
 MediumSetup read_medium_setup(SetupTable table);
+
+/// What medium.thickness_mm = "auto" stands for: 10 mm, and for a plume or a blob, whose displacement a slab about its
+/// middle cuts off by erfc(half thickness / radius), at least seven radii, which cut off 7e-7 of it [mm].
+double automatic_thickness_mm(FieldSetup const& field);
+
+/// Share of a field's displacement that the faces of its slab cut off [1]: erfc(half thickness / radius) for a plume
+/// and a blob, whose density is a Gaussian along Z; 0 for fields that have no size along Z.
+double cut_off_share(MediumSetup const& setup);
 
 }  // namespace gladstone

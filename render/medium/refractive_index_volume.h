@@ -103,6 +103,21 @@ struct GriddedIndex {
   }
 };
 
+/// The region that a grid fills [m]: from its first node to its last; where it is periodic, tiled without end across
+/// the view, but for one period along the line of sight.
+inline Bounds<double> grid_bounds(RegularGrid const& grid) {
+  Bounds<double> box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    bool const periodic = grid.periodic[static_cast<std::size_t>(axis)];
+    double const step = grid.spacing[axis];
+    double const low = grid.origin[axis];
+    double const high = low + step * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
+    box.low[axis] = !periodic ? low : (axis == 2 ? low - step / 2 : -unbounded);
+    box.high[axis] = !periodic ? high : (axis == 2 ? high + step / 2 : unbounded);
+  }
+  return box;
+}
+
 /// Owns a refractivity grid, prefiltered in place for B-splines: natural memory is nodes plus one ghost layer a side.
 /// Stored is float (volumes) or double (planes and small volumes). Splines are not-a-knot on open axes, so that they
 /// reproduce cubics up to the edge, and periodic on periodic ones.
@@ -144,14 +159,10 @@ class RefractiveIndexVolume {
     seen.origin = {T(grid_.origin.x), T(grid_.origin.y), T(grid_.origin.z)};
     seen.inverse_spacing = {T(1 / grid_.spacing.x), T(1 / grid_.spacing.y), T(1 / grid_.spacing.z)};
     seen.offset = T(offset_);
+    Bounds<double> const box = grid_bounds(grid_);
     for (int axis = 0; axis < 3; ++axis) {
-      bool const periodic = grid_.periodic[static_cast<std::size_t>(axis)];
-      double const step = grid_.spacing[axis];
-      double const low = grid_.origin[axis];
-      double const high = low + step * (grid_.nodes[static_cast<std::size_t>(axis)] - 1);
-      // tiled without end across the view, but for one period along the line of sight
-      seen.box.low[axis] = T(!periodic ? low : (axis == 2 ? low - step / 2 : -unbounded));
-      seen.box.high[axis] = T(!periodic ? high : (axis == 2 ? high + step / 2 : unbounded));
+      seen.box.low[axis] = T(box.low[axis]);
+      seen.box.high[axis] = T(box.high[axis]);
     }
     if (Dimensions == 2) {
       seen.box.low.z = T(z_low);

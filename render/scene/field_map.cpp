@@ -60,6 +60,7 @@ StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
       map.caustic(column, row) = middle + radius;
       map.strain(column, row) = std::max(std::abs(middle + radius), std::abs(middle - radius));
       if (middle + radius >= 1) ++crossed;
+      map.largest_px = std::max(map.largest_px, length(displacement(column, row)));
     }
   }
   map.caustic_fraction = static_cast<double>(crossed) / static_cast<double>(displacement.size());

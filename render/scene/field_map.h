@@ -27,6 +27,7 @@ struct StrainMap {
   Image<double> caustic;        ///< largest eigenvalue of the symmetric part of grad Delta; 1 or more: rays cross
   Image<double> strain;         ///< largest magnitude of an eigenvalue
   double caustic_fraction = 0;  ///< share of the view at 1 or more
+  double largest_px = 0;        ///< displacement anywhere on the lattice
 };
 
 /// Strain of displacements on a lattice [px], by central differences, one-sided at the edges. @pre at least 2 x 2 nodes

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -48,6 +49,53 @@ std::string metres_hint(double length) {
   if (!(millimetres < 2)) return "";
   return fmt::format(" (lengths are in mm: {0:.6g} mm was given, {0:.6g} m are {1:.6g} mm)", millimetres,
                      1e3 * millimetres);
+}
+
+constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a thickness of "auto" may take
+constexpr double negligible_loss = 0.01;  // of a field's displacement, cut off by a thickness that the user chose
+
+/// Writes down what thickness_mm = "auto" came to; a field with a size ends short of the dots and the lens.
+void resolve_thickness(Setup& setup, SetupTable medium) {
+  MediumSetup& slab = setup.medium;
+  if (!slab.automatic_thickness) return;
+  double thickness_mm = automatic_thickness_mm(slab.field);
+  if (has_size_along_z(slab.field.kind)) {
+    double const way_mm = std::min(setup.z_a, setup.z_d) / unit::millimetre;
+    thickness_mm = std::min(thickness_mm, 2 * automatic_reach * way_mm);
+  }
+  slab.thickness = thickness_mm * unit::millimetre;
+  medium.resolve("thickness_mm", thickness_mm);
+}
+
+/// Fields whose slab ends where they are still large, and volumes whose thickness was given in vain.
+void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+  MediumSetup const& slab = setup.medium;
+  double const mm = unit::millimetre, lost = cut_off_share(slab);
+  bool const limited = slab.automatic_thickness && slab.thickness < automatic_thickness_mm(slab.field) * mm;
+  if (limited || lost > negligible_loss) {
+    warnings.push_back(fmt::format(
+        "medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} mm radius "
+        "goes on beyond them; {}",
+        slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
+        slab.field.radius / mm,
+        limited ? "increase geometry.z_d_mm or z_a_mm"
+                : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
+  }
+  if (slab.field.kind != FieldKind::file || slab.field.extrude) return;
+  double depth = 0;
+  try {
+    Bounds<double> const box = file_bounds(slab);
+    depth = box.high.z - box.low.z;
+  } catch (DataError const&) {
+    return;  // left to those who read it
+  }
+  if (!slab.automatic_thickness && std::abs(slab.thickness - depth) > 1e-6 * depth) {
+    warnings.push_back(
+        fmt::format("medium.thickness_mm: {:.6g} mm is not used, since a volume has its own depth, {:.6g} "
+                    "mm; leave it out, or give medium.field.spacing_mm",
+                    slab.thickness / mm, depth / mm));
+  }
+  medium.resolve("thickness_mm", depth / mm);
 }
 
 /// Half width and height of what dots' rays cross of the medium [m].
@@ -196,6 +244,7 @@ Setup read_setup(SetupTable root) {
   setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
   setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
   setup.medium = read_medium_setup(root.table("medium"));
+  resolve_thickness(setup, root.table("medium"));
   setup.target = read_target_setup(root.table("target"));
   setup.render = read_render_setup(root.table("render"));
   for (char const* later : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
@@ -248,6 +297,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                    half / mm, metres_hint(setup.z_a)));
     }
   }
+  cross_check_thickness(setup, root.table("medium"), warnings);
   cross_check_steps(setup, root.table("medium"));
   cross_check_density(setup, root.table("medium"), warnings);
   double const magnification = setup.imaging().magnification;

@@ -9,13 +9,15 @@
 #include "render/base/image_file.h"
 #include "render/medium/density_field.h"
 #include "studies/commands/command.h"
+#include "studies/field_place.h"
 #include "studies/image_statistics.h"
 #include "studies/json_text.h"
 
 namespace gladstone {
 namespace {
 
-int describe_field(std::string const& path, std::string const& dataset, GlobalOptions const& options) {
+int describe_field(std::string const& path, std::string const& dataset, std::string const& setup,
+                   GlobalOptions const& options) {
   auto const source = open_field(path, dataset);
   RegularGrid const& grid = source->grid();
   auto const plane = static_cast<std::size_t>(grid.nodes[0]) * static_cast<std::size_t>(grid.nodes[1]);
@@ -37,20 +39,23 @@ int describe_field(std::string const& path, std::string const& dataset, GlobalOp
     }
     before = values;
   }
+  FieldPlace const place = field_place(*source, path, dataset, setup);
   nlohmann::json const json{{"dataset", source->name()},
                             {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
                             {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
                             {"minimum", low},
                             {"maximum", high},
                             {"steepest_gradient", {steepest[0], steepest[1], steepest[2]}},
-                            {"units", "as in the file; lengths are taken as mm unless spacing_mm is given"}};
+                            {"units", place.units},
+                            {"extent_mm", place.extent_mm},
+                            {"coverage", place.coverage}};
   print_result(
       options, json_text(json),
       fmt::format(
           "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
-          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z",
+          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z; {}",
           source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y, grid.spacing.z,
-          low, high, steepest[0], steepest[1], steepest[2]));
+          low, high, steepest[0], steepest[1], steepest[2], place.text));
   return ok;
 }
 
@@ -91,7 +96,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
 
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string kind, file, dataset, x, m;
+    std::string kind, file, dataset, setup, x, m;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field or image")
@@ -99,6 +104,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       ->check(CLI::IsMember({"field", "image", "lens", "mie"}));
   app.add_option("file", arguments->file, "The file");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
+  app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");
   app.add_option("--x", arguments->x)->group("");  // of info mie
   app.add_option("--m", arguments->m)->group("");
   return [arguments, &options] {
@@ -111,7 +117,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); leave them out");
     }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
-    return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, options)
+    return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, arguments->setup, options)
                                       : describe_image(arguments->file, options);
   };
 }

@@ -11,7 +11,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/convention_detection.h"
 #include "render/base/error.h"
 
 namespace gladstone {
@@ -191,80 +190,6 @@ TEST(VectorConventions, AreSaidAsTheyAreTold) {
   EXPECT_EQ(parse_conventions("y-up-image").mirror, VectorConventions::Mirror::image);
   EXPECT_THROW(parse_conventions("y-sideways"), std::invalid_argument);
   EXPECT_THROW(parse_conventions("offset=half"), std::invalid_argument);
-}
-
-/// A field without symmetry, so that every axis, sign and half pixel shows: gradients of 0.05 px/px.
-Vec2d asymmetric(Vec2d p) { return {1.0 + 0.05 * p.x - 0.03 * p.y, -0.5 + 0.05 * p.y + 0.01 * p.x}; }
-
-/// What a code with these conventions writes for the field, on a grid of 16 px that is not in the image's middle.
-VectorFile written_by(VectorConventions const& c, int image_rows, double own_offset) {
-  VectorFile file;
-  file.format = "test";
-  file.conventions.offset_px = own_offset;
-  double const low = 15.5, high = 15.5 + 16.0 * 9;
-  for (int row = 0; row < 10; ++row) {
-    for (int column = 0; column < 12; ++column) {
-      Vec2d const p{15.5 + 16.0 * column, 15.5 + 16.0 * row};
-      Vec2d d = asymmetric(p);
-      if (c.swapped) d = -d;
-      if (c.v_up) d.y = -d.y;
-      double const mirror = c.mirror == VectorConventions::Mirror::grid ? low + high : image_rows - 1.0;
-      // apply_conventions adds the offset first and mirrors then; here the other way round.
-      double const y = c.y_up ? mirror - p.y : p.y;
-      file.field.position_px.push_back({p.x - c.offset_px, y - c.offset_px});
-      file.field.displacement_px.push_back(d);
-    }
-  }
-  return file;
-}
-
-TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
-  int const image_rows = 200;
-  for (bool const y_up : {false, true}) {
-    for (bool const v_up : {false, true}) {
-      for (bool const swapped : {false, true}) {
-        for (double const offset : {0.0, -0.5, -1.0, -1.5}) {
-          for (auto const mirror : {VectorConventions::Mirror::grid, VectorConventions::Mirror::image}) {
-            if (!y_up && mirror == VectorConventions::Mirror::image) continue;
-            VectorConventions const c{y_up, v_up, swapped, offset, mirror};
-            DetectedConventions const found =
-                detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
-            EXPECT_EQ(found.conventions, c) << describe(c) << " -> " << found.report;
-            EXPECT_FALSE(found.ambiguous) << found.report;
-            EXPECT_LT(found.fit.rms_px, 1e-12);
-          }
-        }
-      }
-    }
-  }
-}
-
-TEST(DetectConventions, GivesVectorsInOurOrder) {
-  VectorConventions const c{true, true, false, -0.5, VectorConventions::Mirror::grid};
-  VectorFile const file = written_by(c, 200, -0.5);
-  DisplacementField const ours = apply_conventions(file.field, c, 200);
-  ASSERT_EQ(ours.columns, 12);
-  ASSERT_EQ(ours.rows, 10);
-  EXPECT_EQ(ours.position_px.front(), (Vec2d{15.5, 15.5}));
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    EXPECT_NEAR(ours.displacement_px[i].x, asymmetric(ours.position_px[i]).x, 1e-12);
-    EXPECT_NEAR(ours.displacement_px[i].y, asymmetric(ours.position_px[i]).y, 1e-12);
-  }
-}
-
-// A uniform shift to the right looks the same upside down: the format's own conventions stay and it is said.
-TEST(DetectConventions, SaysWhatCannotBeTold) {
-  VectorFile file = written_by({}, 200, -0.5);
-  for (Vec2d& d : file.field.displacement_px) d = {2.0, 0.0};
-  DetectedConventions const found = detect_conventions(
-      file,
-      [](Vec2d) {
-        return Vec2d{2.0, 0.0};
-      },
-      200);
-  EXPECT_TRUE(found.ambiguous);
-  EXPECT_EQ(found.conventions, file.conventions);
-  EXPECT_THAT(found.report, HasSubstr("ambiguous"));
 }
 
 }  // namespace

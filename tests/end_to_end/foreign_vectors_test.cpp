@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <functional>
+#include <limits>
+#include <utility>
+
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -28,6 +32,17 @@ class ForeignVectors : public Workplace {
     std::vector<std::string> arguments{"compare", "case", "--no-figures"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return json_of(arguments);
+  }
+  using Change = std::function<void(std::size_t, Vec2d& place, Vec2d& displacement)>;
+  /// The case's own vectors as a plain table, changed one by one.
+  void write_changed(std::string const& name, Change const& change) const {
+    std::string text = "x,y,u,v\n";
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      Vec2d place{x_[i], y_[i]}, displacement{u_[i], v_[i]};
+      change(i, place, displacement);
+      text += fmt::format("{},{},{},{}\n", place.x, place.y, displacement.x, displacement.y);
+    }
+    write(name, text);
   }
   void expect_same_errors(nlohmann::json const& other) const {
     for (char const* truth : {"ray_truth", "eq9", "eq9_cone"}) {
@@ -96,6 +111,77 @@ TEST_F(ForeignVectors, FramesTakenTheOtherWayRoundAreFound) {
   auto const errors = compare({"--vectors", "swapped.csv"});
   expect_same_errors(errors);
   EXPECT_THAT(errors["vectors"]["conventions"].get<std::string>(), testing::HasSubstr("swapped"));
+}
+
+// Numbers that no camera gives: each vector is left out with its reason, and the others are compared as ever.
+TEST_F(ForeignVectors, ImpossibleOnesAreLeftOutAndCounted) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  write_changed("some.csv", [&](std::size_t i, Vec2d& place, Vec2d& displacement) {
+    if (i == 0) place.x = nan;
+    if (i == 1) place.y = 1e15;
+    if (i == 2) place.x = -std::numeric_limits<double>::infinity();
+    if (i == 3) place.x = 1e6;
+    if (i == 4) displacement.x = 1e308;
+    if (i == 5) displacement.y = nan;
+  });
+  auto const errors = compare({"--vectors", "some.csv"});
+  nlohmann::json const& vectors = errors["vectors"];
+  EXPECT_EQ(vectors["total"], x_.size());
+  EXPECT_EQ(vectors["left_out_place_not_finite"], 2);
+  EXPECT_EQ(vectors["left_out_outside_image"], 2);
+  EXPECT_EQ(vectors["left_out_displacement_beyond_image"], 1);
+  EXPECT_EQ(vectors["left_out_displacement_not_finite"], 1);
+  EXPECT_EQ(errors["ray_truth"]["count"].get<int>(), ours_["ray_truth"]["count"].get<int>() - 6);
+  // six vectors of over two hundred less: the rms stays within a few per cent
+  EXPECT_NEAR(errors["ray_truth"]["rms_px"].get<double>() / ours_["ray_truth"]["rms_px"].get<double>(), 1.0, 0.1);
+  Outcome const told = gladstone({"compare", "case", "--no-figures", "--vectors", "some.csv"});
+  EXPECT_THAT(told.err,
+              testing::HasSubstr("6 of " + std::to_string(x_.size()) + " vectors are left out: 2 with a place"));
+  EXPECT_THAT(told.out,
+              testing::HasSubstr("left out as well: 2 with a place that is nan or infinite, 2 outside the image"));
+}
+
+TEST_F(ForeignVectors, ImpossibleOnesOfOurOwnFilesAreLeftOutToo) {
+  succeed({"correlate", "case", "-o", "v.csv"});
+  std::string text = read("v.csv");
+  auto const line = text.find('\n') + 1;
+  text.replace(line, text.find(',', line) - line, "1e15");
+  write("v.csv", text);
+  auto const errors = compare({"--vectors", "v.csv"});
+  EXPECT_EQ(errors["vectors"]["left_out_outside_image"], 1);
+  EXPECT_EQ(errors["vectors"]["total"], x_.size());
+}
+
+TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
+  write_changed("far.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 1000.0 * place; });
+  expect_refused({"compare", "case", "--vectors", "far.csv"}, 2,
+                 {"far.csv: none of", "lies in the image of 128 x 128 px (x from 7500 to", "px"});
+  write_changed("mm.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 0.01 * place; });
+  expect_refused({"compare", "case", "--vectors", "mm.csv"}, 2, {"mm.csv: ", "lie closer than pixels", "not in mm"});
+}
+
+TEST_F(ForeignVectors, ThatFitNoConventionAreRefusedUnlessTold) {
+  write_changed("exchanged.csv", [](std::size_t, Vec2d& place, Vec2d&) { std::swap(place.x, place.y); });
+  expect_refused({"compare", "case", "--vectors", "exchanged.csv"}, 2,
+                 {"exchanged.csv: named columns vectors fit no convention", "the truth itself is", "y-up,v-up",
+                  "with x and y exchanged they would fit", "--conventions"});
+  write_changed("shifted.csv", [](std::size_t, Vec2d& place, Vec2d&) { place += Vec2d{21.0, 0.0}; });
+  expect_refused({"compare", "case", "--vectors", "shifted.csv"}, 2, {"fit no convention", "another origin"});
+  auto const told = compare({"--vectors", "shifted.csv", "--conventions", "y-down,v-down"});
+  EXPECT_GT(told["ray_truth"]["rms_px"].get<double>(), 10 * ours_["ray_truth"]["rms_px"].get<double>());
+}
+
+TEST_F(ForeignVectors, HalfAPixelIsReportedWithAndWithout) {
+  write_changed("half.csv", [](std::size_t, Vec2d& place, Vec2d&) { place += Vec2d{0.5, 0.5}; });
+  auto const errors = compare({"--vectors", "half.csv"});
+  nlohmann::json const& fit = errors["vectors"]["fit"];
+  EXPECT_EQ(fit["offset_px"], -0.5);
+  EXPECT_EQ(fit["verdict"], "fits");
+  EXPECT_LT(fit["rms_px"].get<double>(), fit["rms_without_offset_px"].get<double>());
+  EXPECT_EQ(fit["tried"].size(), 8u);
+  EXPECT_THAT(errors["vectors"]["conventions"].get<std::string>(), testing::HasSubstr("x - 0.5 px fits better: rms "));
+  EXPECT_THAT(succeed({"compare", "case", "--no-figures", "--vectors", "half.csv"}),
+              testing::HasSubstr("x - 0.5 px fits better: rms "));
 }
 
 TEST_F(ForeignVectors, ToldConventionsMustBeWords) {

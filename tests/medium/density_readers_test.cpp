@@ -111,6 +111,28 @@ TEST_F(JhtdbField, LayoutWithCoordinatesGivesGridAndValues) {
   EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // x = 1, y = 2 of z = 1
 }
 
+/// A cut-out whose x and y axes name these units.
+TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
+  auto const with_units = [&](std::string const& x_unit, std::string const& y_unit) {
+    std::string const path = in_folder("units.h5");
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    Dataset const values = density(4, 3, 1);
+    writer.write(values.name, values.values, values.shape, "kg m-3", "test", "z, y, x");
+    writer.write("xcoor", axis("xcoor", 4, 0, 0.5).values, {4}, x_unit, "test", "node");
+    writer.write("ycoor", axis("ycoor", 3, 0, 0.5).values, {3}, y_unit, "test", "node");
+    writer.write("zcoor", axis("zcoor", 1, 0, 0.5).values, {1}, "1", "test", "node");  // a plane has no spacing along z
+    writer.close();
+    return path;
+  };
+  auto const source = open_field(with_units("m", "m"), "Density_0001");
+  EXPECT_TRUE(source->units().spaced);
+  EXPECT_EQ(source->units().length, "m");
+  EXPECT_EQ(source->units().values, "kg m-3");
+  EXPECT_THAT([&] { open_field(with_units("m", "mm"), "Density_0001"); },
+              refused("ycoor", "is in \"mm\" where \"xcoor\" is in \"m\""));
+  EXPECT_FALSE(open_field(write({density()}), "")->units().spaced);
+}
+
 TEST_F(JhtdbField, LayoutWithoutCoordinatesHasUnitSpacing) {
   // the older client's file: a field beside the numbers of the request
   auto const source = open_field(
@@ -377,6 +399,22 @@ TEST_F(NrrdField, SpacingAndOriginComeFromEitherSpelling) {
   EXPECT_EQ(spacings->grid().spacing.y, 0.2);
   EXPECT_EQ(spacings->grid().spacing.z, 1.0);
   EXPECT_EQ(spacings->grid().origin.x, 0.0);
+}
+
+TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const units = [&](std::string const& lines) {
+    return open_field(write("a.nrrd", header(std::string(grid_432) + lines + rest)), "")->units();
+  };
+  EXPECT_FALSE(units("").spaced);
+  EXPECT_EQ(units("spacings: 1 1 1\n").length, "");
+  EXPECT_EQ(units("spacings: 1 1 1\nunits: \"m\" \"m\" \"m\"\nsample units: \"kg/m^3\"\n").length, "m");
+  EXPECT_EQ(units("spacings: 1 1 1\nsample units: \"kg/m^3\"\n").values, "kg/m^3");
+  EXPECT_EQ(units("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n")
+                .length,
+            "um");
+  EXPECT_THAT([&] { units("spacings: 1 1 1\nunits: \"m\" \"mm\" \"m\"\n"); },
+              refused("a.nrrd", "one unit for all axes"));
 }
 
 TEST_F(NrrdField, TwoDimensionsAreOnePlane) {

@@ -66,6 +66,60 @@ TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
               IsEmpty());  // no field, no medium
 }
 
+/// Reads a plume of this radius in a setup with more keys; its resolved thickness comes with it.
+struct ReadPlume {
+  ReadSetup seen;
+  std::string resolved;
+};
+ReadPlume read_plume(std::string const& radius_mm, std::string const& medium, std::string const& more = "") {
+  SetupDocument document = SetupDocument::from_text(
+      "[medium]\n" + medium +
+          "\n[medium.field]\nkind = \"gaussian_plume\"\namplitude_kg_m3 = -0.2\nradius_mm = " + radius_mm + '\n' + more,
+      "case.toml");
+  ReadSetup seen{read_setup(document.root()), {}};
+  seen.warnings = cross_check(seen.setup, document.root());
+  document.finish();
+  return {seen, document.resolved()};
+}
+
+// Seven radii hold all but 7e-7 of a plume's displacement; the resolved setup holds the number and gives it back.
+TEST(Setup, AutomaticThicknessHoldsAPlume) {
+  for (std::string const medium : {"", "thickness_mm = \"auto\""}) {
+    ReadPlume const plume = read_plume("15", medium);
+    EXPECT_EQ(plume.seen.setup.medium.thickness, 105 * 1e-3);
+    EXPECT_THAT(plume.seen.warnings, IsEmpty());
+    EXPECT_THAT(plume.resolved, HasSubstr("thickness_mm = 105.0\n"));
+    SetupDocument again = SetupDocument::from_text(plume.resolved, "resolved");
+    EXPECT_EQ(read_setup(again.root()).medium.thickness, plume.seen.setup.medium.thickness);
+  }
+  EXPECT_THAT(read_plume("1", "").resolved, HasSubstr("thickness_mm = 10.0\n"));
+  SetupDocument bare = SetupDocument::from_text("schema = 1\n", "case.toml");
+  EXPECT_EQ(read_setup(bare.root()).medium.thickness, 0.01);
+  EXPECT_THAT(bare.resolved(), HasSubstr("thickness_mm = 10.0\n"));
+}
+
+// erfc(5 / 15) = 0.637 of the displacement lies beyond 10 mm; erfc(5 / 2.7) = 0.88 % is let pass.
+TEST(Setup, AThicknessThatCutsAPlumeOffIsWarnedOf) {
+  EXPECT_THAT(read_plume("15", "thickness_mm = 10").seen.warnings,
+              testing::ElementsAre(AllOf(HasSubstr("medium.thickness_mm: 10 mm cut 64 % of the displacement off"),
+                                         HasSubstr("use \"auto\", 105 mm"))));
+  EXPECT_THAT(read_plume("2.7", "thickness_mm = 10").seen.warnings, IsEmpty());
+}
+
+// Z_D = 20 mm leaves 39.6 mm about the mid-plane: erfc(19.8 / 15) = 6.2 % are lost.
+TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
+  ReadPlume const near_dots = read_plume("15", "", "[geometry]\nz_d_mm = 20\n");
+  EXPECT_NEAR(near_dots.seen.setup.medium.thickness, 2 * 0.99 * 0.02, 1e-12);
+  EXPECT_THAT(near_dots.seen.warnings,
+              testing::ElementsAre(AllOf(HasSubstr("39.6 mm, all that fits between the dots and the lens"),
+                                         HasSubstr("6.2 %"), HasSubstr("z_d_mm"))));
+  ReadPlume const near_lens = read_plume("15", "", "[geometry]\nz_a_mm = 30\n[lens]\nfocal_length_mm = 10\n");
+  EXPECT_NEAR(near_lens.seen.setup.medium.thickness, 2 * 0.99 * 0.03, 1e-12);
+  EXPECT_THAT([] { read_plume("15", "thickness_mm = 105", "[geometry]\nz_d_mm = 20\n"); },
+              refused("8:1", "dots lie inside the medium"))
+      << "told, not automatic";
+}
+
 // Rays follow a wave in quarters of its length, a shock in quarters of its thickness, a plume in halves of its radius,
 // a trilinear grid in quarters of a cell: 1e6 steps across 10 mm at most, whoever asks for them.
 TEST(Setup, LengthsThatNoRayGetsToTheEndOfAreRefusedAtTheirKey) {

@@ -13,6 +13,7 @@ class CheckedSource : public FieldSource {
   CheckedSource(std::string path, std::string name) : path_(std::move(path)), name_(std::move(name)) {}
 
   RegularGrid const& grid() const override { return grid_; }
+  FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
   void read_planes(int first_plane, int count, std::span<double> out) final;
 
@@ -22,6 +23,7 @@ class CheckedSource : public FieldSource {
   std::string path_;
   std::string name_;
   RegularGrid grid_;
+  FieldUnits units_;
 };
 
 }  // namespace gladstone

@@ -95,6 +95,7 @@ class JhtdbSource final : public CheckedSource {
       }
       grid_.nodes[axis] = static_cast<int>(nodes);
     }
+    units_.values = file_.attribute_of(name_, "units");
     read_coordinates();
   }
 
@@ -104,6 +105,7 @@ class JhtdbSource final : public CheckedSource {
     std::array<char const*, 3> const names{"xcoor", "ycoor", "zcoor"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!file_.has(names[axis])) continue;
+      if (axis == 0 || grid_.nodes[axis] > 1) read_unit(names[axis]);
       auto const coordinates = file_.read(names[axis]);
       std::size_t const nodes = static_cast<std::size_t>(grid_.nodes[axis]);
       if (coordinates.size() != nodes) {
@@ -117,6 +119,18 @@ class JhtdbSource final : public CheckedSource {
     }
     grid_.origin = {axes[0].first, axes[1].first, axes[2].first};
     grid_.spacing = {axes[0].step, axes[1].step, axes[2].step};
+  }
+
+  /// The unit of the coordinates, in the attribute "units" as netCDF has it.
+  void read_unit(char const* axis) {
+    std::string const unit = file_.attribute_of(axis, "units");
+    if (units_.spaced && unit != units_.length) {
+      throw DataError(
+          path_, fmt::format("dataset \"{}\" is in \"{}\" where \"xcoor\" is in \"{}\"; give all axes one unit", axis,
+                             unit, units_.length));
+    }
+    units_.spaced = true;
+    units_.length = unit;
   }
 
   int significant_bits() const override { return file_.significant_bits(name_); }

@@ -14,8 +14,9 @@ namespace gladstone {
 ///   with or without coordinates, beside small datasets of the request;
 /// and a plain [nz, ny, nx]. Numbers of any type are read as float.
 ///
-/// Spacing and origin are those of the coordinates, in the file's own unit; without them 1 and 0. An axis of one node
-/// takes the spacing of x. Axes must ascend and be uniform to 1e-4 of a step, beyond what float coordinates can tell.
+/// Spacing and origin are those of the coordinates, in the unit that their attribute "units" names; without them 1 and
+/// 0. An axis of one node takes the spacing of x. Axes must ascend and be uniform to 1e-4 of a step, beyond what float
+/// coordinates can tell.
 /// @param dataset empty: the only one that holds a scalar field
 /// @throws DataError for a wrong rank, several values a point, axes that are not uniform or do not fit
 std::unique_ptr<FieldSource> open_jhtdb(std::string const& path, std::string const& dataset);

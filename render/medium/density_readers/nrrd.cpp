@@ -213,6 +213,7 @@ class NrrdSource final : public CheckedSource {
         bytes_(header_) {
     grid_.nodes = header_.sizes;
     grid_.spacing = {header_.spacing[0], header_.spacing[1], header_.spacing[2]};
+    units_ = header_.units;
     grid_.origin = {header_.origin[0], header_.origin[1], header_.origin[2]};
   }
 

@@ -195,6 +195,18 @@ std::size_t read_sizes(Fields const& fields, NrrdHeader& header) {
   return static_cast<std::size_t>(dimension);
 }
 
+/// The unit that a field of quoted units, one an axis, names for all of them; empty where it names none.
+std::string one_unit(Fields const& fields, std::string const& key) {
+  std::string unit;
+  std::istringstream text(fields.text(key));
+  for (std::string before, word; std::getline(text, before, '"') && std::getline(text, word, '"');) {
+    if (word.empty() || word == unit) continue;
+    if (!unit.empty()) fields.refuse(key, "must name one unit for all axes");
+    unit = word;
+  }
+  return unit;
+}
+
 void read_axes(Fields const& fields, std::size_t dimension, NrrdHeader& header) {
   if (fields.has("space directions")) {
     auto const directions = fields.vectors("space directions");
@@ -216,6 +228,9 @@ void read_axes(Fields const& fields, std::size_t dimension, NrrdHeader& header) 
     fields.refuse(fields.has("axis mins") ? "axis mins" : "axis maxs", "is not read here; write spacings instead");
   }
   std::string const key = fields.has("space directions") ? "space directions" : "spacings";
+  header.units.spaced = fields.has(key);
+  header.units.length = one_unit(fields, fields.has("space directions") ? "space units" : "units");
+  header.units.values = one_unit(fields, "sample units");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bool const usable = std::isfinite(header.spacing[axis]) && header.spacing[axis] > 0.0;
     if (!usable) fields.refuse(key, "must give positive spacings; turn an axis that runs backwards round");

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "render/medium/field_units.h"
+
 namespace gladstone {
 
 /// What a NRRD header says of a scalar field of two or three dimensions.
@@ -18,11 +20,12 @@ struct NrrdHeader {
   std::array<int, 3> sizes{1, 1, 1};             ///< x (fastest), y, z
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< file units
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< file units
-  std::string content;                           ///< the field's name; may be empty
-  std::string data_path;                         ///< the header's own file where the data are attached
-  std::size_t data_offset = 0;                   ///< of the data section in data_path [bytes]
-  long line_skip = 0;                            ///< lines before the data, as stored
-  long long byte_skip = 0;                       ///< bytes before the data, as decompressed; -1: data end the file
+  FieldUnits units;
+  std::string content;          ///< the field's name; may be empty
+  std::string data_path;        ///< the header's own file where the data are attached
+  std::size_t data_offset = 0;  ///< of the data section in data_path [bytes]
+  long line_skip = 0;           ///< lines before the data, as stored
+  long long byte_skip = 0;      ///< bytes before the data, as decompressed; -1: data end the file
 
   std::size_t value_bytes() const;
   int significant_bits() const;  ///< of a value: 24 for float, 53 for double, an integer's width

@@ -1,0 +1,60 @@
+#include "studies/field_place.h"
+
+#include <fmt/format.h>
+
+#include "render/base/units.h"
+#include "render/medium/field_volume.h"
+#include "render/scene/field_coverage.h"
+#include "studies/case.h"
+
+namespace gladstone {
+namespace {
+
+nlohmann::json named(std::string const& unit) { return unit.empty() ? nlohmann::json(nullptr) : nlohmann::json(unit); }
+
+/// The setup with this field instead of its own.
+Setup with_field(std::string const& setup, FieldSource const& source, std::string const& path,
+                 std::string const& dataset) {
+  Setup whole = load_case_setup(setup, {}).setup;
+  FieldSetup& field = whole.medium.field;
+  if (field.kind != FieldKind::file) field = {};
+  field.kind = FieldKind::file;
+  field.file = path;
+  field.dataset = dataset;
+  field.extrude = source.grid().nodes[2] == 1;
+  return whole;
+}
+
+}  // namespace
+
+FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
+                       std::string const& setup) {
+  FieldUnits const& units = source.units();
+  RegularGrid const& grid = source.grid();
+  double const mm = unit::millimetre, length = units.metres();
+  std::string const assumed = units.assumed();
+  FieldPlace place;
+  place.units = {{"length", named(units.length)},
+                 {"length_m", length},
+                 {"assumed", named(assumed)},
+                 {"values", named(units.values)}};
+  Vec3d extent{};
+  for (int axis = 0; axis < 3; ++axis) {
+    extent[axis] = grid.spacing[axis] * length / mm * (grid.nodes[static_cast<std::size_t>(axis)] - 1);
+  }
+  place.extent_mm = {extent.x, extent.y, extent.z};
+  place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
+                           assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
+                           units.values.empty() ? "name no unit" : "are in " + units.values);
+  if (setup.empty()) return place;
+
+  Setup const whole = with_field(setup, source, path, dataset);
+  FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);
+  place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
+  place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm that {} sees there", 100 * seen.share,
+                            seen.view.x / mm, seen.view.y / mm, setup);
+  if (std::string const warning = seen.warning(); !warning.empty()) place.text += "; " + warning;
+  return place;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,228 @@
+#include "analysis/convention_detection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A field without symmetry, so that every axis, sign and half pixel shows: gradients of 0.05 px/px.
+Vec2d asymmetric(Vec2d p) { return {1.0 + 0.05 * p.x - 0.03 * p.y, -0.5 + 0.05 * p.y + 0.01 * p.x}; }
+
+/// What a code with these conventions writes for the field, on a grid of 16 px that is not in the image's middle.
+VectorFile written_by(VectorConventions const& c, int image_rows, double own_offset) {
+  VectorFile file;
+  file.format = "test";
+  file.conventions.offset_px = own_offset;
+  double const low = 15.5, high = 15.5 + 16.0 * 9;
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      Vec2d const p{15.5 + 16.0 * column, 15.5 + 16.0 * row};
+      Vec2d d = asymmetric(p);
+      if (c.swapped) d = -d;
+      if (c.v_up) d.y = -d.y;
+      double const mirror = c.mirror == VectorConventions::Mirror::grid ? low + high : image_rows - 1.0;
+      // apply_conventions adds the offset first and mirrors then; here the other way round.
+      double const y = c.y_up ? mirror - p.y : p.y;
+      file.field.position_px.push_back({p.x - c.offset_px, y - c.offset_px});
+      file.field.displacement_px.push_back(d);
+    }
+  }
+  return file;
+}
+
+TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
+  int const image_rows = 200;
+  for (bool const y_up : {false, true}) {
+    for (bool const v_up : {false, true}) {
+      for (bool const swapped : {false, true}) {
+        for (double const offset : {0.0, -0.5, -1.0, -1.5}) {
+          for (auto const mirror : {VectorConventions::Mirror::grid, VectorConventions::Mirror::image}) {
+            if (!y_up && mirror == VectorConventions::Mirror::image) continue;
+            VectorConventions const c{y_up, v_up, swapped, offset, mirror};
+            DetectedConventions const found =
+                detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
+            EXPECT_EQ(found.conventions, c) << describe(c) << " -> " << found.report;
+            EXPECT_FALSE(found.ambiguous) << found.report;
+            EXPECT_LT(found.fit.rms_px, 1e-12);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(DetectConventions, GivesVectorsInOurOrder) {
+  VectorConventions const c{true, true, false, -0.5, VectorConventions::Mirror::grid};
+  VectorFile const file = written_by(c, 200, -0.5);
+  DisplacementField const ours = apply_conventions(file.field, c, 200);
+  ASSERT_EQ(ours.columns, 12);
+  ASSERT_EQ(ours.rows, 10);
+  EXPECT_EQ(ours.position_px.front(), (Vec2d{15.5, 15.5}));
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    EXPECT_NEAR(ours.displacement_px[i].x, asymmetric(ours.position_px[i]).x, 1e-12);
+    EXPECT_NEAR(ours.displacement_px[i].y, asymmetric(ours.position_px[i]).y, 1e-12);
+  }
+}
+
+// A uniform shift to the right looks the same upside down: the format's own conventions stay and it is said.
+TEST(DetectConventions, SaysWhatCannotBeTold) {
+  VectorFile file = written_by({}, 200, -0.5);
+  for (Vec2d& d : file.field.displacement_px) d = {2.0, 0.0};
+  DetectedConventions const found = detect_conventions(
+      file,
+      [](Vec2d) {
+        return Vec2d{2.0, 0.0};
+      },
+      200);
+  EXPECT_TRUE(found.ambiguous);
+  EXPECT_EQ(found.conventions, file.conventions);
+  EXPECT_THAT(found.report, HasSubstr("ambiguous"));
+}
+
+/// Waves without symmetry, 0.1 px in amplitude, 37 to 61 px long: no shift by 20 px or exchange of axes fits them.
+Vec2d waves(Vec2d p) {
+  double const k = 2.0 * 3.14159265358979 / 37.0, q = 2.0 * 3.14159265358979 / 61.0;
+  return {0.1 * std::sin(k * p.x + q * p.y), 0.1 * std::cos(q * p.x - 0.5 * k * p.y + 1.0)};
+}
+
+VectorFile waves_on_a_grid() {
+  VectorFile file;
+  file.format = "test";
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 24; ++column) {
+      Vec2d const p{7.5 + 8.0 * column, 7.5 + 8.0 * row};
+      file.field.position_px.push_back(p);
+      file.field.displacement_px.push_back(waves(p));
+    }
+  }
+  return file;
+}
+
+/// Two numbers in (-1, 1), the same in every run.
+Vec2d noise(std::size_t i) {
+  auto const one = [](double seed) {
+    return 2.0 * (43758.5453 * std::abs(std::sin(seed)) - std::floor(43758.5453 * std::abs(std::sin(seed)))) - 1.0;
+  };
+  return {one(12.9898 * (static_cast<double>(i) + 1.0)), one(78.233 * (static_cast<double>(i) + 1.0))};
+}
+
+using Verdict = DetectedConventions::Verdict;
+
+// Vectors of the right size at the wrong places differ from the truth by sqrt(2) times its rms; none follows it.
+TEST(DetectConventions, RefusesWhatFitsNone) {
+  struct Wrong {
+    char const* name;
+    void (*make)(Vec2d& place, Vec2d& displacement);
+    char const* cause;
+  };
+  for (Wrong const &wrong : {
+           Wrong{"shifted",
+                 [](Vec2d&p, Vec2d&) {
+                   p += Vec2d{20.0, 20.0};
+                 },
+                 "another origin"},
+           Wrong{"x and y exchanged", [](Vec2d&p, Vec2d&) { std::swap(p.x, p.y); },
+                 "with x and y exchanged they would fit"},
+           Wrong{"all exchanged",
+                 [](Vec2d&p, Vec2d&d) {
+                   std::swap(p.x, p.y);
+                   std::swap(d.x, d.y);
+                 },
+                 "with x and y, u and v exchanged they would fit"},
+           Wrong{"in mm of the dots", [](Vec2d&p, Vec2d&) { p = 0.085 * p; }, "not in px"},
+           Wrong{"no displacement", [](Vec2d&, Vec2d&d) { d = {}; }, "not in px"},
+           Wrong{"ten times too long", [](Vec2d&, Vec2d&d) { d = 10.0 * d; }, "another unit than px"},
+       }) {
+    VectorFile file = waves_on_a_grid();
+    for (std::size_t i = 0; i < file.field.size(); ++i)
+      wrong.make(file.field.position_px[i], file.field.displacement_px[i]);
+    DetectedConventions const found = detect_conventions(file, waves, 200);
+    EXPECT_EQ(found.verdict, Verdict::fits_none) << wrong.name << ": " << found.report;
+    EXPECT_EQ(found.tried.size(), 8u) << "two directions of y, two of v, two orders of the frames";
+    EXPECT_THAT(found.report,
+                AllOf(HasSubstr("fit no convention"), HasSubstr("y-up,v-up"), HasSubstr("the truth itself is 0.07"),
+                      HasSubstr("--conventions"), HasSubstr(wrong.cause)))
+        << wrong.name;
+  }
+}
+
+// 480 vectors with noise of three times the signal: the slope is 1 +- 2 * 3 / sqrt(960) = 0.2.
+TEST(DetectConventions, KeepsWhatFollowsTheTruthHoweverNoisy) {
+  VectorFile file = waves_on_a_grid();
+  double const three_times = 3.0 * std::sqrt(3.0) * 0.1 / std::sqrt(2.0);  // of numbers even in (-1, 1)
+  for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] += three_times * noise(i);
+  DetectedConventions const found = detect_conventions(file, waves, 200);
+  EXPECT_EQ(found.verdict, Verdict::noisy) << found.report;
+  EXPECT_FALSE(found.conventions.y_up);
+  EXPECT_FALSE(found.conventions.v_up);
+  EXPECT_THAT(found.report, HasSubstr("as noisy vectors do"));
+  for (std::size_t i = 0; i < file.field.size(); ++i) file.field.displacement_px[i] = three_times * noise(i);
+  EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits_none) << "noise alone";
+}
+
+// Without displacement, or with less than a correlation can see, every choice fits as well: the format's own stays.
+TEST(DetectConventions, CannotTellByASignalBelowTheNoise) {
+  for (double const signal : {0.0, 0.05}) {
+    VectorFile file = waves_on_a_grid();
+    file.conventions.offset_px = -0.5;
+    auto const truth = [signal](Vec2d p) { return signal * waves(p); };
+    for (std::size_t i = 0; i < file.field.size(); ++i) {
+      file.field.displacement_px[i] = truth(file.field.position_px[i]) + 0.05 * noise(i);
+    }
+    DetectedConventions const found = detect_conventions(file, truth, 200);
+    EXPECT_EQ(found.verdict, Verdict::cannot_be_told) << found.report;
+    EXPECT_EQ(found.conventions, file.conventions);
+    EXPECT_THAT(found.report, HasSubstr("cannot be told"));
+  }
+}
+
+// A small signal measured well does tell.
+TEST(DetectConventions, TellsBySmallSignalsThatAreMeasuredBetter) {
+  VectorFile file = waves_on_a_grid();
+  auto const truth = [](Vec2d p) { return 0.05 * waves(p); };
+  for (std::size_t i = 0; i < file.field.size(); ++i) {
+    Vec2d const d = truth(file.field.position_px[i]) + 0.002 * noise(i);
+    file.field.displacement_px[i] = {d.x, -d.y};
+  }
+  DetectedConventions const found = detect_conventions(file, truth, 200);
+  EXPECT_EQ(found.verdict, Verdict::fits) << found.report;
+  EXPECT_TRUE(found.conventions.v_up);
+}
+
+// Half a pixel in waves of slope 2 pi 0.1 px / 37 px is a difference of up to 0.0085 px, and none with the offset.
+TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
+  VectorFile file = waves_on_a_grid();
+  for (Vec2d& p : file.field.position_px) p += Vec2d{0.5, 0.5};
+  DetectedConventions const found = detect_conventions(file, waves, 200);
+  EXPECT_EQ(found.conventions.offset_px, -0.5);
+  EXPECT_LT(found.fit.rms_px, 1e-12);
+  EXPECT_GT(found.without_offset.rms_px, 0.003);
+  EXPECT_THAT(found.report, HasSubstr("x - 0.5 px fits better: rms "));
+  EXPECT_THAT(found.report, HasSubstr("instead of 0.00"));
+
+  VectorFile own = waves_on_a_grid();
+  own.conventions.offset_px = -0.5;  // as its format says; the numbers say nothing of it
+  own.field.displacement_px.assign(own.field.size(), Vec2d{1.0, 0.5});
+  auto const uniform = [](Vec2d) { return Vec2d{1.0, 0.5}; };
+  EXPECT_THAT(offset_report(detect_conventions(own, uniform, 200)), HasSubstr("does not fit better"));
+  EXPECT_THAT(offset_report(detect_conventions(waves_on_a_grid(), waves, 200)), testing::IsEmpty());
+}
+
+// One vector in a hundred is 50 px off: it counts as 1 px, and the axes are found as before.
+TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
+  VectorFile file = waves_on_a_grid();
+  for (std::size_t i = 0; i < file.field.size(); i += 100) file.field.displacement_px[i] = {50.0, -50.0};
+  DetectedConventions const found = detect_conventions(file, waves, 200);
+  EXPECT_NE(found.verdict, Verdict::fits_none) << found.report;
+  EXPECT_EQ(found.conventions, VectorConventions{});
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,133 @@
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Setups that are right to the letter and not what was meant: they run, and say what is odd.
+class SilentMistakes : public Workplace {
+ protected:
+  std::string with_field(std::string const& field) const {
+    return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]", field);
+  }
+  std::vector<std::string> warnings(std::string const& setup, std::vector<std::string> const& more = {}) const {
+    write("setup.toml", setup);
+    render("case", more);
+    return nlohmann::json::parse(read("case/summary.json"))["warnings"].get<std::vector<std::string>>();
+  }
+  double largest_displacement() const {
+    double most = 0;
+    for (double const d : Hdf5Reader(in("case/truth.h5").string()).read("/dots/displacement_px")) {
+      most = std::max(most, std::abs(d));
+    }
+    return most;
+  }
+  /// A plane of 33 x 33 nodes that covers `width` of any unit, with a ramp of 0.02 kg/m^3 from node to node along x.
+  void write_plane(std::string const& name, double width, std::string const& unit) const {
+    std::vector<double> values, axis;
+    for (int i = 0; i < 33; ++i) axis.push_back(width * i / 32);
+    for (int j = 0; j < 33; ++j) {
+      for (int i = 0; i < 33; ++i) values.push_back(1 + 0.02 * i);
+    }
+    Hdf5Writer file(in(name).string(), {"test field", 1, "", 0, "cpu"});
+    file.write("density", values, {1, 33, 33}, "kg m-3", "a ramp", "z, y, x");
+    file.write("xcoor", axis, {33}, unit, "x", "node");
+    file.write("ycoor", axis, {33}, unit, "y", "node");
+    file.close();
+  }
+};
+
+// A plume's displacement in a slab of half thickness h is erf(h / a) of the whole: 0.363 of it in 10 mm for a = 15 mm.
+TEST_F(SilentMistakes, APlumeIsNotCutOffUnlessToldAndThenWithAWarning) {
+  std::string const plume = with_field("kind = \"gaussian_plume\"\namplitude_kg_m3 = -0.2\nradius_mm = 15.0");
+  EXPECT_THAT(warnings(plume), IsEmpty());
+  EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 105.0"));
+  double const whole = largest_displacement();
+  EXPECT_THAT(warnings(plume, {"--set", "medium.thickness_mm=10"}),
+              Contains(HasSubstr("10 mm cut 64 % of the displacement off")));
+  // the levers of slices differ by 10 % over the plume; their mean stays Z_D, and what is left is of second order
+  EXPECT_NEAR(largest_displacement() / whole, std::erf(1.0 / 3), 0.01);
+}
+
+TEST_F(SilentMistakes, CoordinatesInMetresAreReadAsTheySayThemselves) {
+  write_plane("metres.h5", 8e-3, "m");
+  std::string const field = "kind = \"file\"\nfile = \"metres.h5\"\ndataset = \"density\"\nextrude = true";
+  EXPECT_THAT(warnings(with_field(field)), IsEmpty());
+  EXPECT_GT(largest_displacement(), 0.1);
+}
+
+// The same numbers without a unit are taken for millimetres: a field 0.008 mm wide in a view of 4 mm.
+TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf) {
+  write_plane("unnamed.h5", 8e-3, "");
+  std::string const field =
+      "kind = \"file\"\nfile = \"unnamed.h5\"\ndataset = \"density\"\nextrude = true\n"
+      "center_mm = [1.0, 1.0, 0.0]";
+  EXPECT_THAT(warnings(with_field(field)),
+              AllOf(Contains(HasSubstr("name no unit and are taken as mm (the field is 0.008 x 0.008 mm wide)")),
+                    Contains(HasSubstr("were its lengths in metres, it would be 8 x 8 mm wide")),
+                    Contains(HasSubstr("nothing moves"))));
+}
+
+TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
+  write_plane("plane.h5", 8e-3, "m");
+  std::string const field =
+      "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
+      "spacing_mm = [0.25e-3, 0.25e-3, 0.25e-3]";
+  EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("were its lengths in metres")));
+  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.25, 0.25, 0.25]"}), IsEmpty());
+}
+
+TEST_F(SilentMistakes, AFieldThatMovesNothingIsWarnedOf) {
+  EXPECT_THAT(warnings(with_field("kind = \"uniform_gradient\"\ngradient_kg_m4 = [1e-6, 0.0, 0.0]")),
+              Contains(HasSubstr("nothing moves: by Eq. 9 the field displaces no place of the view by more than")));
+  EXPECT_THAT(warnings(with_field("kind = \"none\"")), Not(Contains(HasSubstr("nothing moves"))));
+}
+
+TEST_F(SilentMistakes, AThicknessThatAVolumeHasNoUseForIsWarnedOf) {
+  std::vector<double> values;
+  for (int k = 0; k < 5; ++k) {
+    for (int j = 0; j < 9; ++j) {
+      for (int i = 0; i < 9; ++i) values.push_back(1 + 0.02 * i);
+    }
+  }
+  Hdf5Writer file(in("volume.h5").string(), {"test field", 1, "", 0, "cpu"});
+  file.write("density", values, {5, 9, 9}, "kg m-3", "a ramp", "z, y, x");
+  file.close();
+  std::string const field = "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [1.0, 1.0, 1.0]";
+  EXPECT_THAT(warnings(with_field(field)), IsEmpty());
+  EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 4.0"));
+  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.thickness_mm=20"}),
+              Contains(HasSubstr("medium.thickness_mm: 20 mm is not used, since a volume has its own depth, 4 mm")));
+}
+
+// 64 px of 10 um are 5.46 mm at the dots and 4.09 mm at the mid-plane.
+TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
+  write_plane("metres.h5", 2e-3, "m");
+  auto json = json_of({"info", "field", "metres.h5", "--dataset", "density"});
+  EXPECT_EQ(json["units"]["length"], "m");
+  EXPECT_EQ(json["units"]["length_m"], 1.0);
+  EXPECT_EQ(json["units"]["values"], "kg m-3");
+  EXPECT_TRUE(json["units"]["assumed"].is_null());
+  EXPECT_NEAR(json["extent_mm"][0].get<double>(), 2.0, 1e-12);
+  EXPECT_TRUE(json["coverage"].is_null());
+  json = json_of({"info", "field", "metres.h5", "--dataset", "density", "--setup", "setup.toml"});
+  EXPECT_NEAR(json["coverage"]["share"].get<double>(), 4.0 / (4.0915 * 4.0915), 1e-3);
+
+  write_plane("unnamed.h5", 2e-3, "");
+  json = json_of({"info", "field", "unnamed.h5", "--dataset", "density"});
+  EXPECT_TRUE(json["units"]["length"].is_null());
+  EXPECT_THAT(json["units"]["assumed"].get<std::string>(), HasSubstr("taken as mm"));
+  EXPECT_THAT(succeed({"info", "field", "unnamed.h5", "--dataset", "density", "--setup", "setup.toml"}),
+              AllOf(HasSubstr("lengths name no unit and are taken as mm, so the field is 0.002 x 0.002"),
+                    HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
