@@ -379,14 +379,17 @@ std::string errors_json(Comparison const& comparison) {
   budget["peak_locking_px"] = number(comparison.budget.peak_locking_px);
   budget["closure_px"] = number(comparison.budget.closure_px);
   json["budget"] = budget;
-  LeftOutVectors const& left_out = comparison.left_out;
   json["vectors"] = {{"total", comparison.vectors_in_file()},
-                     {"left_out_place_not_finite", left_out.place_not_finite},
-                     {"left_out_outside_image", left_out.outside_image},
-                     {"left_out_displacement_not_finite", left_out.displacement_not_finite},
-                     {"left_out_displacement_beyond_image", left_out.displacement_beyond_image},
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
+  LeftOutVectors const& left_out = comparison.left_out;
+  if (comparison.foreign || left_out.all() > 0) {  // what a study measures itself has none
+    json["vectors"].update({{"left_out_place_not_finite", left_out.place_not_finite},
+                            {"left_out_outside_image", left_out.outside_image},
+                            {"left_out_displacement_not_finite", left_out.displacement_not_finite},
+                            {"left_out_displacement_beyond_image", left_out.displacement_beyond_image}});
+  }
+  if (comparison.detected) json["vectors"]["fit"] = fit_json(*comparison.detected);
   if (!comparison.sources.all().empty()) {
     nlohmann::ordered_json made_from;
     for (SourceFiles::Source const& source : comparison.sources.all()) {
@@ -395,7 +398,6 @@ std::string errors_json(Comparison const& comparison) {
     made_from["frames"] = comparison.verified ? "verified" : "unverified";
     json["made_from"] = made_from;
   }
-  if (comparison.detected) json["vectors"]["fit"] = fit_json(*comparison.detected);
   return json_text(json) + "\n";
 }
 
