@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/scene/trace_pair.h"
@@ -60,7 +61,7 @@ TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<dou
 
 }  // namespace
 
-std::vector<Ray<double>> read_rays(std::string const& path) {
+std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
   if (std::filesystem::is_directory(path)) throw DataError(path, "is a folder; name a table of rays with --rays");
   std::ifstream file(path);
   if (!file) throw DataError(path, "cannot be opened (missing or not readable); check --rays");
@@ -88,7 +89,15 @@ std::vector<Ray<double>> read_rays(std::string const& path) {
       throw DataError(fmt::format("{}:{}", path, number),
                       fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", line));
     }
-    rays.push_back({Vec3d{v[0], v[1], v[2]} * unit::millimetre, unit_direction(direction)});
+    Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
+    if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
+      throw DataError(
+          fmt::format("{}:{}", path, number),
+          fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the bench ({:.6g} mm at most, "
+                      "ten times the way from the dots to the lens); places are in mm",
+                      v[0], v[1], v[2], farthest / unit::millimetre));
+    }
+    rays.push_back({start, unit_direction(direction)});
   }
   return rays;
 }
@@ -99,7 +108,10 @@ std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> c
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) traced[i] = trace_one(view, medium, rays[i], through);
+          for (std::size_t i = begin; i < end; ++i) {
+            throw_if_interrupted();
+            traced[i] = trace_one(view, medium, rays[i], through);
+          }
         });
       },
       scene.medium.view);

@@ -19,8 +19,9 @@ struct TracedRay {
   Vec2d pixel;              ///< on the sensor
 };
 
-/// Reads x_mm,y_mm,z_mm,dx,dy,dz (world frame; directions of any length). @throws DataError with file:line
-std::vector<Ray<double>> read_rays(std::string const& path);
+/// Reads x_mm,y_mm,z_mm,dx,dy,dz (world frame; directions of any length).
+/// @param farthest that a ray may start from the origin in any direction [m] @throws DataError with file:line
+std::vector<Ray<double>> read_rays(std::string const& path, double farthest);
 
 /// Traces rays through the medium, the lens, up to the sensor. A ray that misses the medium comes out of it as it went
 /// in.

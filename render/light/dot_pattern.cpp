@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <tuple>
 
 #include "render/base/error.h"
 #include "render/base/image_file.h"
@@ -118,7 +119,39 @@ std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter) 
   return centres;
 }
 
-std::vector<Vec2d> dots_from_csv(std::string const& path) {
+namespace {
+
+/// Refuses dots at one place, to the nanometre: what a camera would see is one dot, what is traced is two.
+/// @param lines of the file that the centres stand in
+void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centres,
+                       std::vector<std::size_t> const& lines) {
+  auto const nanometres = [](double metres) { return std::round(metres * 1e9); };
+  std::vector<std::tuple<double, double, std::size_t>> sorted;
+  sorted.reserve(centres.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    sorted.emplace_back(nanometres(centres[i].x), nanometres(centres[i].y), i);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::size_t repeated = 0, first = centres.size(), second = first;
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    auto const& [x, y, dot] = sorted[i];
+    auto const& [x_before, y_before, before] = sorted[i - 1];
+    if (x != x_before || y != y_before) continue;
+    ++repeated;
+    if (dot < second) first = before, second = dot;
+  }
+  if (repeated == 0) return;
+  throw DataError(
+      fmt::format("{}:{}", path, lines[second]),
+      fmt::format("the dot at {:.6g}, {:.6g} mm stands in line {} already ({} of {} dots lie where an earlier "
+                  "one lies, and would count twice in light and truth); remove the repeated lines",
+                  centres[second].x / unit::millimetre, centres[second].y / unit::millimetre, lines[first], repeated,
+                  centres.size()));
+}
+
+}  // namespace
+
+std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
   std::ifstream file(path);
   if (!file) throw DataError(path, "cannot be opened (missing or not readable); check target.file");
   std::string line;
@@ -128,6 +161,7 @@ std::vector<Vec2d> dots_from_csv(std::string const& path) {
     throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", line));
   }
   std::vector<Vec2d> centres;
+  std::vector<std::size_t> lines;
   for (std::size_t number = 2; std::getline(file, line); ++number) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty()) continue;
@@ -144,9 +178,19 @@ std::vector<Vec2d> dots_from_csv(std::string const& path) {
       throw DataError(fmt::format("{}:{}", path, number),
                       fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", line));
     }
-    centres.push_back({value[0] * unit::millimetre, value[1] * unit::millimetre});
+    Vec2d const centre{value[0] * unit::millimetre, value[1] * unit::millimetre};
+    if (std::max(std::abs(centre.x), std::abs(centre.y)) > farthest) {
+      throw DataError(
+          fmt::format("{}:{}", path, number),
+          fmt::format("the dot at {:.6g}, {:.6g} mm lies so far off the axis that no lens sees it ({:.6g} mm "
+                      "at most, ten times the way to the lens); places are in mm",
+                      value[0], value[1], farthest / unit::millimetre));
+    }
+    centres.push_back(centre);
+    lines.push_back(number);
   }
   if (centres.empty()) throw DataError(path, "holds no dots (a line x_mm,y_mm for each is needed)");
+  refuse_coincident(path, centres, lines);
   return centres;
 }
 

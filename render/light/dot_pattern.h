@@ -33,8 +33,9 @@ std::vector<Vec2d> random_dots(Vec2d extent, std::size_t count, double diameter,
 /// @throws DataError when neighbours would overlap
 std::vector<Vec2d> regular_dots(Vec2d extent, double per_area, double diameter);
 
-/// Dots from a CSV file with the header line x_mm,y_mm. @throws DataError with file:line
-std::vector<Vec2d> dots_from_csv(std::string const& path);
+/// Dots from a CSV file with the header line x_mm,y_mm, no two at one place.
+/// @param farthest that a dot may lie off the axis in x or y [m] @throws DataError with file:line
+std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest);
 
 /// A picture as a target: every pixel a uniform square whose radiance is its grey value over the largest one; black
 /// pixels send no rays. The picture is laid over the extent, its columns along +X and its rows along -Y.

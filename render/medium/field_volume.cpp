@@ -86,7 +86,7 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   auto const volume = std::make_shared<Volume const>(
       grid, spline ? Volume::Interpolation::cubic_bspline : Volume::Interpolation::trilinear, scale, shift,
       [&](int first, int count, std::span<double> out) { source.read_planes(first, count, out); });
-  if (volume->lowest() <= -0.5 || volume->highest() >= 3.0) {
+  if (!possible_refractivity(volume->lowest()) || !possible_refractivity(volume->highest())) {
     throw DataError(field.file, fmt::format("{} gives refractive indices from {:.6g} to {:.6g} (no such medium); check "
                                             "medium.field.quantity and scale",
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));

@@ -9,6 +9,9 @@
 
 namespace gladstone {
 
+/// Whether there can be a medium of this n - 1: what no file and no closed form may exceed.
+constexpr bool possible_refractivity(double refractivity) { return refractivity > -0.5 && refractivity < 3.0; }
+
 /// The medium of a setup: owner of the grid behind the view, if there is one.
 struct BuiltMedium {
   Medium<double> view = NoMedium<double>{};

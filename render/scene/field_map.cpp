@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/scene/theory.h"
 
@@ -24,6 +25,7 @@ FieldMap map_field(Scene const& scene, int spacing_px) {
         parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
           int const row = static_cast<int>(line);
           for (int column = 0; column < columns; ++column) {
+            throw_if_interrupted();
             Vec2d const at = scene.to_target(map.position_px(column, row));
             Vec3d const start{at.x, at.y, -scene.setup.z_d};
             Ray<double> const chief{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_b()})};
@@ -130,6 +132,7 @@ StrainMap map_strain(Scene const& scene) {
           int const row = static_cast<int>(line);
           for (int column = 0; column < along_chief.columns(); ++column) {
             if (!needed[static_cast<std::size_t>(residue(row) * finer + residue(column))]) continue;
+            throw_if_interrupted();
             Vec2d const at = scene.to_target({fine_px * (column - margin * finer) + 0.5 * spacing_px,
                                               fine_px * (row - margin * finer) + 0.5 * spacing_px});
             Vec3d const start{at.x, at.y, view.sources.plane_z};

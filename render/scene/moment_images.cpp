@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
@@ -47,6 +48,7 @@ void make_images(MomentImages const& images, double* first, Vec2d middle, std::v
     for (int k = 0; k < orders; ++k) std::copy_n(narrow.data() + k * reach, reach, shares + k * lanes);
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
+    throw_if_interrupted();
     Vec2d const at = middle + half_px * points[i];
     Footprint const here = spot.footprint(at);
     double columns[orders * lanes] = {}, rows[orders * lanes] = {};

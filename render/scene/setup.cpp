@@ -7,13 +7,13 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/medium/analytic_fields.h"
 #include "render/medium/field_volume.h"
 #include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double most_steps = 1e6;       // across the medium: 10 nm each in 10 mm
 constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
 constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
 constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
@@ -111,35 +111,104 @@ Vec2d half_extent_at_medium(Setup const& setup) {
   return half;
 }
 
-/// Densities of closed forms below zero, which no gas has. A uniform gradient has them somewhere whatever it is: there
-/// it is a warning, and optically linear beyond.
-void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+/// Densities that a field takes where rays cross it [kg/m^3].
+struct DensityRange {
+  double lowest, highest;
+};
+
+/// Of a field in closed form, or of the ambient where there is none.
+DensityRange density_range(Setup const& setup) {
   FieldSetup const& field = setup.medium.field;
   double const ambient = setup.medium.ambient_density;
-  bool const wave = field.kind == FieldKind::sinusoid;
-  if (wave || field.kind == FieldKind::gaussian_plume || field.kind == FieldKind::gaussian_blob) {
-    double const lowest = ambient - (wave ? std::abs(field.amplitude) : -field.amplitude);
-    if (lowest >= 0) return;
+  switch (field.kind) {
+    case FieldKind::sinusoid:
+      return {ambient - std::abs(field.amplitude), ambient + std::abs(field.amplitude)};
+    case FieldKind::gaussian_plume:
+    case FieldKind::gaussian_blob:
+      return {ambient + std::min(field.amplitude, 0.0), ambient + std::max(field.amplitude, 0.0)};
+    case FieldKind::uniform_gradient: {
+      Vec2d const half = half_extent_at_medium(setup);
+      double const change = std::abs(field.gradient.x) * half.x + std::abs(field.gradient.y) * half.y +
+                            std::abs(field.gradient.z) * setup.medium.thickness / 2;
+      return {ambient - change, ambient + change};
+    }
+    case FieldKind::normal_shock:
+      return {field.upstream_density, field.upstream_density * shock_density_ratio(field.mach, constant::gamma_air)};
+    case FieldKind::none:
+    case FieldKind::file:
+      break;
+  }
+  return {ambient, ambient};
+}
+
+/// The key that a closed form's densities follow from.
+char const* density_key(FieldKind kind) {
+  switch (kind) {
+    case FieldKind::uniform_gradient:
+      return "gradient_kg_m4";
+    case FieldKind::normal_shock:
+      return "upstream_density_kg_m3";
+    default:
+      return "amplitude_kg_m3";
+  }
+}
+
+/// Refuses closed forms that make no medium of which a file would be accepted, and densities below zero, which no gas
+/// has. A uniform gradient has those somewhere whatever it is: there they are a warning, and optically linear beyond.
+void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+  FieldSetup const& field = setup.medium.field;
+  double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
+  if (!possible_refractivity(K * ambient)) {
+    medium.problem(
+        "ambient_density_kg_m3",
+        fmt::format("gives a refractive index of {:.6g} (no such medium); check it and medium.gladstone_dale",
+                    1 + K * ambient));
+    return;
+  }
+  auto const [lowest, highest] = density_range(setup);
+  char const* const key = density_key(field.kind);
+  if (!possible_refractivity(K * lowest) || !possible_refractivity(K * highest)) {
     medium.tables("field").front().problem(
-        "amplitude_kg_m3",
-        fmt::format("makes the density negative, {:.6g} kg/m^3 at the lowest (about medium.ambient_density_kg_m3 = "
-                    "{:.6g}); reduce the amplitude or increase the ambient density",
-                    lowest, ambient));
+        key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no such medium); "
+                         "check it and medium.gladstone_dale",
+                         1 + K * lowest, 1 + K * highest));
+  } else if (lowest >= 0) {
+    return;
   } else if (field.kind == FieldKind::uniform_gradient) {
     Vec2d const half = half_extent_at_medium(setup);
-    double const lowest = ambient - std::abs(field.gradient.x) * half.x - std::abs(field.gradient.y) * half.y -
-                          std::abs(field.gradient.z) * setup.medium.thickness / 2;
-    if (lowest >= 0) return;
     warnings.push_back(
         fmt::format("medium.field.gradient_kg_m4: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
                     "the {:.4g} x {:.4g} mm that rays cross (no gas has that); reduce the gradient or increase "
                     "medium.ambient_density_kg_m3",
                     lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+  } else {
+    medium.tables("field").front().problem(
+        key,
+        fmt::format("makes the density negative, {:.6g} kg/m^3 at the lowest (about medium.ambient_density_kg_m3 = "
+                    "{:.6g}); reduce the amplitude or increase the ambient density",
+                    lowest, ambient));
   }
 }
 
 /// Spots whose diameter is told as four standard deviations, see Setup::spot_diameter_px.
 bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero || spot == SpotModel::seed_eq8; }
+
+/// Refuses views and targets that reach further off the axis than a lens sees: chief rays from there never end.
+void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, SetupTable root) {
+  double const widest = 2 * setup.farthest_off_axis(), mm = unit::millimetre;
+  if (std::max(view.x, view.y) > widest) {
+    camera_table(root).problem(
+        "pixel_pitch_um",
+        fmt::format("makes a field of view of {:.4g} x {:.4g} mm ({:.4g} mm at most, 168 degrees: no lens sees more); "
+                    "pitches are in um; use a longer lens or fewer or smaller pixels",
+                    view.x / mm, view.y / mm, widest / mm));
+  } else if (setup.target.extent_m && std::max(setup.target.extent_m->x, setup.target.extent_m->y) > widest) {
+    target.problem("extent_mm",
+                   fmt::format("reaches beyond what any lens sees, 168 degrees ({:.4g} mm at most, ten times "
+                               "the way to the lens to each side); use the view or a little more",
+                               widest / mm));
+  }
+}
 
 /// The key of the length on which a field changes.
 std::string length_key(FieldSetup const& field) {
@@ -298,6 +367,15 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
     }
   }
   cross_check_thickness(setup, root.table("medium"), warnings);
+  if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
+    NoiseSetup const& noise = setup.camera.noise;
+    double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
+    warnings.push_back(fmt::format(
+        "camera.offset_dn: the read noise of {:.3g} grey levels is cut off at black, which makes dark pixels "
+        "{:.3g} levels too bright on average and dim ones less (levels are never below 0); set "
+        "camera.offset_dn = {:.0f} or more, as cameras do",
+        levels, clipped, std::ceil(4 * levels)));
+  }
   cross_check_steps(setup, root.table("medium"));
   cross_check_density(setup, root.table("medium"), warnings);
   double const magnification = setup.imaging().magnification;
@@ -309,6 +387,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                "enlarge the target or leave extent_mm out",
                                view.x / mm, view.y / mm));
   }
+  cross_check_extents(setup, view, target, root);
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.dot_diameter() / px;
     double const diffraction_px = setup.spot_diameter_px();

@@ -12,6 +12,9 @@
 
 namespace gladstone {
 
+/// That a ray may take across the medium: 10 nm each in 10 mm.
+inline constexpr double most_steps = 1e6;
+
 /// Table [render] of a setup.
 /// Scalar that rays are traced in. Truth is double; single is the GPU's preview.
 enum class Precision { double_precision, single };
@@ -36,6 +39,9 @@ struct Setup {
 
   double z_b() const { return z_a + z_d; }
   double focus_distance() const;
+  /// How far off the axis, in x or y, anything may lie that a lens is to see: ten times the way from the dots to it, 84
+  /// degrees [m].
+  double farthest_off_axis() const { return 10 * z_b(); }
   ImagingGeometry imaging() const {
     return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b());
   }

@@ -34,4 +34,22 @@ CameraSetup read_camera_setup(SetupTable table) {
   return setup;
 }
 
+double clipped_at_black(CameraSetup const& camera) {
+  NoiseSetup const& noise = camera.noise;
+  if (!noise.enabled) return 0;
+  double const gain = (std::pow(2.0, camera.bit_depth) - 1) / noise.full_well_e;
+  double const dark_variance = noise.shot_noise ? noise.dark_current_e : 0.0;
+  double const sigma = gain * std::sqrt(noise.read_noise_e * noise.read_noise_e + dark_variance);
+  double const black = camera.offset_dn + gain * noise.dark_current_e;
+  auto const below = [&](double level) { return 0.5 * std::erfc((black - level) / (sigma * std::sqrt(2.0))); };
+  // levels are whole numbers: the mean of what is cut off is the sum over them of the chance to fall short of each
+  if (sigma < 100) {
+    double sum = 0;
+    for (double level = -0.5; level > black - 9 * sigma; --level) sum += below(level);
+    return sum;
+  }
+  double const t = black / sigma;
+  return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * pi) - black * below(0);
+}
+
 }  // namespace gladstone

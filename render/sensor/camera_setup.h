@@ -34,4 +34,8 @@ struct CameraSetup {
 
 CameraSetup read_camera_setup(SetupTable table);
 
+/// By how much the mean of a pixel without light lies above its black level, since no level is below zero: the part of
+/// read noise (and of dark electrons' shot noise, as a normal number) that is cut off there [grey levels].
+double clipped_at_black(CameraSetup const& camera);
+
 }  // namespace gladstone

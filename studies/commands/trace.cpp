@@ -34,7 +34,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     inputs.insert(inputs.end(), {arguments->setup, arguments->rays});
     refuse_inputs_as_outputs({arguments->output}, inputs);
     OutputFile output(arguments->output);
-    std::vector<Ray<double>> const rays = read_rays(arguments->rays);
+    std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.farthest_off_axis());
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);

@@ -48,6 +48,7 @@ TEST_F(SetupErrors, AbsurdSizeIsRefusedWithItsMemoryBeforeItIsAllocated) {
   // 1e12 pixels, two frames of 18 bytes: 36 TB
   std::string text = with(small_setup, "[64, 64]", "[1000000, 1000000]");
   text = with(text, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.001");
+  text = with(text, "pixel_pitch_um = 10.0", "pixel_pitch_um = 1.0");
   auto const start = std::chrono::steady_clock::now();
   expect_setup_refused(text, {"needs 3.6e+04 GB of memory", "reduce camera.pixels"});
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
@@ -78,6 +79,33 @@ TEST_F(SetupErrors, NegativeDensitiesOfClosedForms) {
     refused(gradient, "kind = \"" + kind + "\"\namplitude_kg_m3 = -2\nradius_mm = 3", "amplitude_kg_m3",
             {"makes the density negative, -0.775 kg/m^3", "increase the ambient density"});
   }
+}
+
+// What a file's field is refused for: n - 1 = 2.26e-4 rho from -0.5 to 3.
+TEST_F(SetupErrors, ClosedFormsThatNoMediumIs) {
+  std::string const gradient = "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]";
+  for (std::string const steep : {"[1e18, 0, 0]", "[1e300, 0, 0]", "[0, 0, -1e6]", "[2e6, 2e6, 0]"}) {
+    refused(gradient, "kind = \"uniform_gradient\"\ngradient_kg_m4 = " + steep, "gradient_kg_m4",
+            {"gives refractive indices from -", "no such medium"});
+  }
+  for (std::string const kind : {"gaussian_blob", "gaussian_plume"}) {
+    refused(gradient, "kind = \"" + kind + "\"\namplitude_kg_m3 = 1e6\nradius_mm = 3", "amplitude_kg_m3",
+            {"gives refractive indices from 1.00028 to 227", "no such medium"});
+  }
+  refused(gradient, "kind = \"sinusoid\"\namplitude_kg_m3 = 1e6\nwavelength_mm = 4", "amplitude_kg_m3",
+          {"gives refractive indices from -225", "no such medium"});
+  refused(gradient, "kind = \"normal_shock\"\nmach = 3\nupstream_density_kg_m3 = 1e5\nshock_thickness_mm = 1",
+          "upstream_density_kg_m3", {"gives refractive indices from 23.6 to 88", "no such medium"});
+  refused("[medium.field]", "[medium]\nambient_density_kg_m3 = 1e4\ngladstone_dale = 0.1\n[medium.field]",
+          "ambient_density_kg_m3", {"gives a refractive index of 1001", "medium.gladstone_dale"});
+}
+
+// Ten times the 1000 mm from the dots to the lens, to each side.
+TEST_F(SetupErrors, ViewsAndTargetsWiderThanAnyLensSees) {
+  refused("dots_per_32px_window = 10.0", "dots_per_32px_window = 1e-9\nextent_mm = [1e9, 1e9]", "extent_mm",
+          {"beyond what any lens sees", "2e+04 mm at most"});
+  refused("[64, 64]\npixel_pitch_um = 10.0", "[400, 400]\npixel_pitch_um = 1e4", "pixel_pitch_um",
+          {"makes a field of view of 3.41e+04 x 3.41e+04 mm", "no lens sees more"});
 }
 
 TEST_F(SetupErrors, LengthsThatLookLikeMetres) {

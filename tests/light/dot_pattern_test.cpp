@@ -104,7 +104,7 @@ TEST(RegularDots, ThatTouchAreRefused) {
 }
 
 TEST(DotsFromCsv, AreReadInMillimetres) {
-  auto const dots = dots_from_csv(write_text("good.csv", "x_mm,y_mm\r\n1.5,-2\r\n\n-0.25,3e1\n"));
+  auto const dots = dots_from_csv(write_text("good.csv", "x_mm,y_mm\r\n1.5,-2\r\n\n-0.25,3e1\n"), 1.0);
   ASSERT_EQ(dots.size(), 2u);
   EXPECT_DOUBLE_EQ(dots[0].x, 1.5e-3);
   EXPECT_DOUBLE_EQ(dots[0].y, -2e-3);
@@ -115,7 +115,8 @@ TEST(DotsFromCsv, AreReadInMillimetres) {
 TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
   auto const refused = [](std::string const& text, std::string const& where, std::string const& why) {
     std::string const path = write_text("bad.csv", text);
-    EXPECT_THAT([&] { dots_from_csv(path); }, ThrowsMessage<DataError>(AllOf(HasSubstr(path + where), HasSubstr(why))))
+    EXPECT_THAT([&] { dots_from_csv(path, 1.0); },
+                ThrowsMessage<DataError>(AllOf(HasSubstr(path + where), HasSubstr(why))))
         << text;
   };
   refused("x,y\n1,2\n", ":1", "x_mm,y_mm");
@@ -126,7 +127,20 @@ TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
   refused("x_mm,y_mm\nnan,2\n", ":2", "finite");
   refused("x_mm,y_mm\n1,1e999\n", ":2", "finite");
   refused("x_mm,y_mm\n", "", "no dots");
-  EXPECT_THAT([] { dots_from_csv(temporary("absent.csv")); }, ThrowsMessage<DataError>(HasSubstr("cannot be opened")));
+  refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "no lens sees it (1000 mm at most");
+  refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "no lens sees it");
+  EXPECT_THAT([] { dots_from_csv(temporary("absent.csv"), 1.0); },
+              ThrowsMessage<DataError>(HasSubstr("cannot be opened")));
+}
+
+// Two dots at one place are one dot to a camera. The first pair in the file is named, all are counted; a nanometre
+// apart they are two.
+TEST(DotsFromCsv, CoincidentDotsAreRefused) {
+  auto const read = [](std::string const& text) { return dots_from_csv(write_text("twice.csv", text), 1.0); };
+  EXPECT_THAT([&] { read("x_mm,y_mm\n5,6\n1,2\n\n3,4\n1.0,2e0\n3.0000000001,4\n1,2\n"); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("twice.csv:6"), HasSubstr("1, 2 mm stands in line 3 already"),
+                                             HasSubstr("3 of 6 dots"))));
+  EXPECT_EQ(read("x_mm,y_mm\n1,2\n1.000002,2\n2,1\n1,2.000002\n").size(), 4u);
 }
 
 // Four by two pixels over 8 x 4 mm: squares of 2 mm; first row on top; grey over the largest grey; black sends nothing.
