@@ -10,6 +10,7 @@
 #include "cuda/device_deflections.h"
 #include "cuda/device_light.h"
 #include "cuda/expose_dots.h"
+#include "cuda/launch.h"
 #include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
@@ -153,7 +154,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
   if (dots > 0) {
     DeviceArray<TraceTally> tally(1, "counters");
     tally.zero();
-    DeviceArray<DotSums> sums(dots, "the dots' truth");
+    DeviceArray<DotTruth> found(dots, "the dots' truth");
     DeviceArray<DotTheory> integrals(theory == RenderTheory::yes ? dots : 0, "the dots' theory");
     DeviceArray<RayRecord<T>> records(dots_a_batch * rays, "the rays of a batch of dots");
     DeviceArray<DotCone> cones(images ? dots_a_batch : 0, "the cones of a batch of dots");
@@ -162,12 +163,14 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       throw_if_interrupted();
       batch.dots = std::min(dots_a_batch, dots - batch.first);
       trace_rays<T>(traced, medium.view<T>(), light.model().image, batch, records.data(), tally.data());
-      sum_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data());
+      throw_if_interrupted();
+      sum_dots<T>(light.model(), view.sources, batch, records.data(), found.data() + batch.first, cones.data());
       if (images) {
         if (host_light.model.controlled) expose_cones(light.model(), view.sources, batch, cones.data(), frames);
-        expose_dots<T>(light.model(), view.sources, batch, records.data(), sums.data() + batch.first, cones.data(),
+        expose_dots<T>(light.model(), view.sources, batch, records.data(), found.data() + batch.first, cones.data(),
                        frames);
       }
+      throw_if_interrupted();
       if (theory == RenderTheory::yes) {
         integrate_dots(light.model(), theory_model, view, medium.view<double>(), batch, integrals.data() + batch.first);
       }
@@ -175,11 +178,9 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       progress.advance(batch.dots);
     }
 
-    std::vector<DotSums> hits(dots);
-    sums.download(hits.data(), dots);
-    for (std::size_t dot = 0; dot < dots; ++dot) {
-      truth.set_hits(dot, hits[dot].origin, hits[dot].hits[0], hits[dot].hits[1], light_per_ray);
-    }
+    std::vector<DotTruth> hits(dots);
+    found.download(hits.data(), dots);
+    for (std::size_t dot = 0; dot < dots; ++dot) truth.set_hits(dot, hits[dot], light_per_ray);
     if (theory == RenderTheory::yes) {
       std::vector<DotTheory> along(dots);
       integrals.download(along.data(), dots);
@@ -245,7 +246,9 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
     MirroredMedium const& medium = uploads_->medium;
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
     std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
-    std::uint64_t const most = most_record_bytes / (scene.rays_per_dot * sizeof(RayRecord<T>));
+    double const steps = static_cast<double>(scene.rays_per_dot) * std::max(1.0, scene.steps_across());
+    std::uint64_t const most = std::min(most_record_bytes / (scene.rays_per_dot * sizeof(RayRecord<T>)),
+                                        static_cast<std::size_t>(most_steps_a_launch / steps));
     // where the device is short of memory, once more with smaller batches, which give the same bits
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all<T>(batch, scene, sources, on_device, medium, deflections,
@@ -255,6 +258,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
       }
   };
   Rendering rendering = render_with_margin(scene, [&] { return single ? trace(float{}) : trace(double{}); });
+  rendering.table = uploads_->deflections.state();
   if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::kept) rendering.kept = std::move(light);

@@ -1,20 +1,24 @@
+#include <algorithm>
+
 #include "cuda/cuda_error.h"
 #include "cuda/device_deflections.h"
+#include "cuda/launch.h"
+#include "render/base/interrupt.h"
 
 namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 128;
 
-/// One ray a thread: first those of the straight lattice, neighbours in a warp neighbours in the medium; then four for
-/// every node of the slopes'.
+/// One ray a thread, from ray `first` on: first those of the straight lattice, neighbours in a warp neighbours in the
+/// medium; then four for every node of the slopes'.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
-                   DeflectionTable const __grid_constant__ plan, KeptVector* const displacements,
+                   DeflectionTable const __grid_constant__ plan, long long const first, KeptVector* const displacements,
                    KeptVector* const bends, KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
   long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
-  long long const i = blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
+  long long const i = first + blockIdx.x * static_cast<long long>(threads) + threadIdx.x;
   bool const straight = i < nodes;
   long long const node = straight ? i : (i - nodes) / 4;
   SquareLattice const& lattice = straight ? plan.straight : plan.sloping;
@@ -50,7 +54,7 @@ __global__ void __launch_bounds__(threads, 3)
 
 DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& plan,
                                      DeviceMedium<double> const& medium) {
-  if (!plan.wanted) return;
+  if (!plan.wanted()) return;
   SceneView<double> const open = open_view(scene);
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
@@ -62,9 +66,17 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
   std::visit(
       [&](auto const& held) {
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
-        auto const blocks = static_cast<unsigned>((nodes + 4 + 4 * slopes + threads - 1) / threads);
-        kernel<<<blocks, threads>>>(open, held, plan.table, displacements, bends, displacement_slopes, bend_slopes);
-        check_launch("deflect");
+        std::size_t const all = (nodes + 4 + 4 * slopes + threads - 1) / threads;
+        double const steps = threads * std::max(1.0, scene.steps_across());
+        std::size_t const most = std::max<std::size_t>(1, static_cast<std::size_t>(most_steps_a_launch / steps));
+        for (std::size_t first = 0; first < all; first += most) {
+          throw_if_interrupted();
+          auto const blocks = static_cast<unsigned>(std::min(most, all - first));
+          kernel<<<blocks, threads>>>(open, held, plan.table, static_cast<long long>(first) * threads, displacements,
+                                      bends, displacement_slopes, bend_slopes);
+          check_launch("deflect");
+          if (most < all) check(cudaDeviceSynchronize(), "a part of the deflection table");
+        }
       },
       medium);
   table_ = plan.table;

@@ -109,7 +109,7 @@ struct RoomForCones {
 template <class T>
 __global__ void __launch_bounds__(threads, 4)
     expose_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
-                       RayRecord<T> const* const records, DotSums const* const sums, DotCone const* const cones,
+                       RayRecord<T> const* const records, DotTruth const* const truth, DotCone const* const cones,
                        DeviceImages const images, int const side, ConeLight* const room, unsigned short* const order,
                        std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
@@ -161,7 +161,7 @@ __global__ void __launch_bounds__(threads, 4)
       patch.flush(images, Frame::flow);
     } else {
       for (Frame const frame : {Frame::reference, Frame::flow}) {
-        CentroidSum<double> const seen = sums[i].hits[static_cast<int>(frame)];
+        CentroidSum<double> const seen = truth[i].hits[static_cast<int>(frame)];
         patch.begin(seen.weight > 0 ? plan.origin + seen.first / seen.weight : plan.origin);
         expose(frame, batch.rays, [&](std::uint64_t k) {
           RayRecord<double> const ray = widened(rays[k]);
@@ -183,7 +183,7 @@ __global__ void to_light_kernel(unsigned long long const* fixed_point, double* l
 
 template <class T>
 void expose_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-                 RayRecord<T> const* records, DotSums const* sums, DotCone const* cones, DeviceImages const& images) {
+                 RayRecord<T> const* records, DotTruth const* truth, DotCone const* cones, DeviceImages const& images) {
   auto* const kernel = expose_dots_kernel<T>;
   int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = shared_bytes(side);
@@ -192,15 +192,15 @@ void expose_dots(LightModel const& model, SourcesView<double> const& sources, Ba
   std::uint64_t const wanted = points_a_block > 0 ? std::min<std::uint64_t>(batch.dots, most_blocks) : batch.dots;
   int blocks = blocks_for(kernel, threads, shared, wanted);
   RoomForCones room = RoomForCones::make(points_a_block, blocks);
-  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, sums, cones, images, side, room.light.data(),
+  kernel<<<blocks, threads, shared>>>(model, sources, batch, records, truth, cones, images, side, room.light.data(),
                                       room.order.data(), points_a_block);
   check_launch("expose_dots");
 }
 
 template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
-                          DotSums const*, DotCone const*, DeviceImages const&);
+                          DotTruth const*, DotCone const*, DeviceImages const&);
 template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
-                          DotSums const*, DotCone const*, DeviceImages const&);
+                          DotTruth const*, DotCone const*, DeviceImages const&);
 
 void to_light(unsigned long long const* fixed_point, double* light, std::size_t count) {
   constexpr int block = 256;

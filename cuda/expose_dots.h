@@ -7,12 +7,6 @@
 
 namespace gladstone::cuda {
 
-/// What one dot's rays come to.
-struct DotSums {
-  Vec2d origin;  ///< that the sums' places count from [px]
-  CentroidSum<double> hits[frame_count];
-};
-
 /// What is known of a dot's light once its rays are summed up; stays on the device.
 struct DotCone {
   DotKind kind;
@@ -29,16 +23,16 @@ struct DeviceImages {
   double units_per_weight = 0;  ///< units of fixed point
 };
 
-/// Sums up the records of a batch's dots to truth, a block a dot: sums[i] and cones[i] belong to dot first + i.
+/// Sums up the records of a batch's dots to truth, a block a dot: truth[i] and cones[i] belong to dot first + i.
 /// The same bits on any number of blocks: a dot's sums have one order.
 /// @param cones null: no images
 template <class T>
 void sum_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-              RayRecord<T> const* records, DotSums* sums, DotCone* cones);
+              RayRecord<T> const* records, DotTruth* truth, DotCone* cones);
 extern template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
-                              DotSums*, DotCone*);
+                              DotTruth*, DotCone*);
 extern template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
-                              DotSums*, DotCone*);
+                              DotTruth*, DotCone*);
 
 /// Works out the images of a model's moments, which have a plan. @param out room for them on the device
 void make_moment_images(LightModel const& model, double* out);
@@ -50,11 +44,11 @@ void expose_cones(LightModel const& model, SourcesView<double> const& sources, B
 /// Lays down the light of all others.
 template <class T>
 void expose_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-                 RayRecord<T> const* records, DotSums const* sums, DotCone const* cones, DeviceImages const& images);
+                 RayRecord<T> const* records, DotTruth const* truth, DotCone const* cones, DeviceImages const& images);
 extern template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*,
-                                 DotSums const*, DotCone const*, DeviceImages const&);
+                                 DotTruth const*, DotCone const*, DeviceImages const&);
 extern template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
-                                 DotSums const*, DotCone const*, DeviceImages const&);
+                                 DotTruth const*, DotCone const*, DeviceImages const&);
 
 /// Turns fixed point into light per pixel. @param light count doubles on the device
 void to_light(unsigned long long const* fixed_point, double* light, std::size_t count);

@@ -10,6 +10,9 @@
 
 namespace gladstone::cuda {
 
+/// Steps of rays that one launch may take, a second or two of them: nothing ends a launch, so that Ctrl-C has to wait.
+inline constexpr double most_steps_a_launch = 4e10;
+
 /// Blocks that fill the device with a kernel, but no more than the work needs.
 template <class Kernel>
 int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64_t wanted) {

@@ -35,7 +35,7 @@ SceneView<T> cast(SceneView<double> const& view) {
   other.sources.half_size = static_cast<T>(view.sources.half_size);
   other.sources.shape = view.sources.shape;
   other.bundle = {static_cast<T>(view.bundle.lens_z), static_cast<T>(view.bundle.pupil_radius), view.bundle.seed,
-                  view.bundle.sampling};
+                  view.bundle.sampling, view.bundle.scrambling_bits};
   for (int i = 0; i < view.train.count; ++i) {
     view.train.elements[i].visit([&](auto const& element) { other.train.append(cast<T>(element)); });
   }

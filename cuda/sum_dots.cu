@@ -6,20 +6,10 @@
 namespace gladstone::cuda {
 namespace {
 
-/// What two sums have in common, so that they take one pass.
-struct RaySums {
-  CentroidSum<double> hits[frame_count];
-  TableCheck check;
-  __device__ RaySums& operator+=(RaySums const& o) {
-    for (int frame = 0; frame < frame_count; ++frame) hits[frame] += o.hits[frame];
-    check += o.check;
-    return *this;
-  }
-};
-
 /// What a dot's rays come to by themselves.
 struct DotRays {
   RaySums sums;
+  TruthErrors errors;
   bool moved;  ///< whether the flow did anything to one of them
 };
 
@@ -28,6 +18,8 @@ __global__ void __launch_bounds__(dot_threads, 3)
     sum_rays_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
                     RayRecord<T> const* const records, DotRays* const out) {
   __shared__ __align__(16) unsigned char storage[dot_threads * sizeof(RaySums)];
+  static_assert(dot_threads % most_scramblings == 0, "a thread's rays are of one scrambling");
+  auto* const of_scramblings = reinterpret_cast<RaySums*>(storage);
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
     Vec2d const centre = sources.centre[batch.first + i];
     RayRecord<T> const* const rays = records + i * batch.rays;
@@ -42,14 +34,19 @@ __global__ void __launch_bounds__(dot_threads, 3)
       if (tabled) sum.check.add(model.table, centre + model.offset(ray.place), flow_displacement(model, ray), ray);
     }
     moved = __syncthreads_or(moved);
-    sum = block_sum(sum, reinterpret_cast<RaySums*>(storage));
-    if (threadIdx.x == 0) out[i] = {sum, moved};
+    block_sums(sum, of_scramblings, static_cast<unsigned int>(model.scramblings));
+    if (threadIdx.x == 0) {
+      RaySums all;
+      for (int scrambling = 0; scrambling < model.scramblings; ++scrambling) all += of_scramblings[scrambling];
+      out[i] = {all, truth_errors(of_scramblings, model.scramblings, all), moved};
+    }
+    __syncthreads();
   }
 }
 
 __global__ void __launch_bounds__(dot_threads, 5)
     sum_dots_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
-                    DotRays const* const all_rays, DotSums* const sums, DotCone* const cones) {
+                    DotRays const* const all_rays, DotTruth* const truth, DotCone* const cones) {
   __shared__ __align__(16) unsigned char state_storage[sizeof(ConeState)];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
   ConeState& state = *reinterpret_cast<ConeState*>(state_storage);
@@ -65,10 +62,15 @@ __global__ void __launch_bounds__(dot_threads, 5)
     if (tabled) {
       if (threadIdx.x == 0) cone = model.corrected(centre, rays.sums.check);
       __syncthreads();
-      tabled = integrate_cone(model, cone, state) && !model.rays_are_better(rays.sums.check, state.simple);
+      tabled = integrate_cone(model, cone, state) && !model.rays_are_better(rays.errors, rays.sums.check, state.simple);
       if (tabled) sum_cone(model, plan, cone.origin(), state.moments, state.without_medium, hits);
     }
-    if (threadIdx.x == 0) sums[i] = {plan.origin, {hits[0], hits[1]}};
+    if (threadIdx.x == 0) {
+      truth[i] = {plan.origin,
+                  {hits[0], hits[1]},
+                  model.error(rays.errors, tabled, tabled && state.simple),
+                  tabled ? TruthPath::table : TruthPath::rays};
+    }
     if (cones) {
       DotKind const kind = model.kind(moved, tabled, tabled && state.narrow);
       if (threadIdx.x == 0) {
@@ -94,20 +96,20 @@ __global__ void __launch_bounds__(dot_threads, 5)
 
 template <class T>
 void sum_dots(LightModel const& model, SourcesView<double> const& sources, Batch const& batch,
-              RayRecord<T> const* records, DotSums* sums, DotCone* cones) {
+              RayRecord<T> const* records, DotTruth* truth, DotCone* cones) {
   DeviceArray<DotRays> rays(batch.dots, "the sums over a batch's rays");
   auto* const sum_rays = sum_rays_kernel<T>;
   sum_rays<<<blocks_for(sum_rays, dot_threads, 0, batch.dots), dot_threads>>>(model, sources, batch, records,
                                                                               rays.data());
   check_launch("sum_rays");
   sum_dots_kernel<<<blocks_for(sum_dots_kernel, dot_threads, 0, batch.dots), dot_threads>>>(model, sources, batch,
-                                                                                            rays.data(), sums, cones);
+                                                                                            rays.data(), truth, cones);
   check_launch("sum_dots");
 }
 
-template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*, DotSums*,
+template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<double> const*, DotTruth*,
                        DotCone*);
-template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*, DotSums*,
+template void sum_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*, DotTruth*,
                        DotCone*);
 
 }  // namespace gladstone::cuda

@@ -62,6 +62,32 @@ void warn(std::vector<std::string>& warnings, std::string text) {
   warnings.push_back(std::move(text));
 }
 
+/// Warns of a truth that is not known well, and says what would cure it.
+void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
+                   std::uint64_t rays) {
+  if (accuracy.unknown > 0) {
+    warn(warnings, fmt::format("truth: how well the displacements of {} of {} dots are known cannot be told (a single "
+                               "ray has no scatter); increase render.rays_per_dot to 8 or more",
+                               accuracy.unknown, rendering.truth.size()));
+  }
+  if (!(accuracy.rms_px > truth_tolerance_px)) return;
+  std::string why;
+  if (rendering.table != TableState::made) {
+    why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
+  } else if (accuracy.above_by_rays > 0) {
+    why = fmt::format(
+        "; the truth of {} of these is that of rays alone, which meet the faces of the field or lose "
+        "their way in it",
+        accuracy.above_by_rays);
+  }
+  warn(warnings,
+       fmt::format("truth: displacements are known to {:.2g} px only (rms of the dots' standard errors): {} of "
+                   "{} dots are worse than {} px, the worst is dot {} with {:.2g} px{}; increase "
+                   "render.rays_per_dot, {} now, if that matters",
+                   accuracy.rms_px, accuracy.above, rendering.truth.size(), truth_tolerance_px, accuracy.worst,
+                   accuracy.largest_px, why, rays));
+}
+
 nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   nlohmann::json json;
   for (std::size_t status = 0; status < ray_status_count; ++status) {
@@ -132,9 +158,11 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   if (!prepared.rays.converged) {
     warn(prepared.warnings,
          fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
-                     "{:.2g} px; set render.rays_per_dot higher if that matters",
+                     "{:.2g} px, where {} and {} are asked (that would take some {:.2g} rays a dot and {:.0f} s of one "
+                     "processor; \"auto\" takes {:.0f} s or 1024 rays); set render.rays_per_dot higher if that matters",
                      prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
-                     prepared.rays.truth_error_px));
+                     prepared.rays.truth_error_px, image_tolerance_levels, truth_tolerance_px,
+                     prepared.rays.rays_wanted, rays_seconds(scene) * prepared.rays.rays_wanted, rays_budget_s));
   }
   if (loaded.setup.medium.field.kind != FieldKind::none) {
     prepared.strain = known.strain ? *known.strain : map_strain(scene);
@@ -247,7 +275,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   }
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  FileOrigin origin{"gladstone truth", 1, resolved, scene.setup.render.seed, renderer.device()};
+  FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, renderer.device()};
   auto const write_frame = [&](char const* name, char const* file, Image<double> const& frame) {
     Image<std::uint16_t> const picture = picture_of(frame);
     write_tiff(place(file), picture, metadata);
@@ -268,6 +296,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
                      "(their truth is nan); reduce the gradients or Z_D",
                      unseen, scene.dots.centre.size()));
   }
+  TruthAccuracy const accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
+  warn_of_truth(warnings, rendering, accuracy, prepared.rays.rays);
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
@@ -281,6 +311,16 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
         {"sigma_px", scene.spot_sigma_px() > 0 ? nlohmann::json(scene.spot_sigma_px()) : nlohmann::json(nullptr)}}},
       {"dots", scene.dots.centre.size()},
       {"dots_unseen", unseen},
+      {"truth_error_px",
+       {{"rms", accuracy.rms_px},
+        {"largest", accuracy.largest_px},
+        {"largest_dot", accuracy.worst},
+        {"dots_above_1e-3", accuracy.above},
+        {"dots_unknown", accuracy.unknown}}},
+      {"estimator",
+       {{"dots_by_table", accuracy.by_table},
+        {"dots_by_rays", scene.dots.centre.size() - accuracy.by_table},
+        {"no_table_since", to_string(rendering.table)}}},
       {"device", renderer.device()},
       {"precision", single_precision(scene.setup, renderer) ? "single (preview)" : "double"},
       {"rays",
@@ -300,7 +340,12 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
     summary["rays_plan"] = {{"truth_error_px", prepared.rays.truth_error_px},
                             {"image_error_levels", prepared.rays.image_error_levels},
                             {"bits", prepared.rays.bits},
-                            {"extrapolated", prepared.rays.extrapolated}};
+                            {"extrapolated", prepared.rays.extrapolated},
+                            {"truth_asked_px", truth_tolerance_px},
+                            {"image_asked_levels", image_tolerance_levels},
+                            {"rays_wanted", prepared.rays.rays_wanted},
+                            {"processor_seconds", prepared.rays.seconds},
+                            {"processor_seconds_allowed", rays_budget_s}};
   }
   std::string const text = json_text(summary) + "\n";
   OutputFile::write_text(place(case_file::summary), text);

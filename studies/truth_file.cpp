@@ -1,6 +1,7 @@
 #include "studies/truth_file.h"
 
 #include <array>
+#include <limits>
 
 namespace gladstone {
 namespace {
@@ -24,11 +25,13 @@ struct PairDataset {
   char const* description;
 };
 
-constexpr std::array<PairDataset, 7> pair_datasets{{
+constexpr std::array<PairDataset, 8> pair_datasets{{
     {"/dots/reference_px", &GroundTruth::reference_px, "px",
      "radiance-weighted centroid of the rays that pass the stop in the reference frame (column, row)"},
     {"/dots/displacement_px", &GroundTruth::displacement_px, "px",
      "flow centroid minus reference centroid (u right, v down)"},
+    {"/dots/displacement_error_px", &GroundTruth::displacement_error_px, "px",
+     "standard error of displacement_px: two thirds of dots lie within it, by component; nan: unknown"},
     {"/dots/displacement_std_px", &GroundTruth::displacement_std_px, "px",
      "weighted standard deviation of the hits in the flow frame"},
     {"/dots/flux", &GroundTruth::flux, "fully lit px", "light of the dot in the reference and in the flow frame"},
@@ -58,6 +61,11 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
   file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
              "dot, frame (reference, flow)");
+  std::vector<std::int64_t> by_table;
+  for (TruthPath const path : truth.path) by_table.push_back(path == TruthPath::table ? 1 : 0);
+  file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",
+             "1: truth is a deflection table's integral over the dot's cone, corrected by its rays; 0: their centroids",
+             "dot");
   std::vector<std::int64_t> counts;
   for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
@@ -96,13 +104,24 @@ GroundTruth read_truth(std::string const& path) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
   }
+  bool const with_errors = file.attribute("version") != "1";  // the first files had none
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (PairDataset const& dataset : pair_datasets) {
+    if (dataset.values == &GroundTruth::displacement_error_px && !with_errors) {
+      truth.displacement_error_px.assign(truth.size(), {nan, nan});
+      continue;
+    }
     std::vector<double> const values = file.read(dataset.name);
     if (values.size() != 2 * truth.size()) {
       throw DataError(path,
                       std::string(dataset.name) + " has another length than /dots/position_m; render the case again");
     }
     for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
+  }
+  std::vector<std::int64_t> const by_table =
+      with_errors ? file.read_integers("/dots/by_table") : std::vector<std::int64_t>(truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    truth.path[i] = by_table.at(i) == 1 ? TruthPath::table : TruthPath::rays;
   }
   std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
   for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays.at(2 * i), rays.at(2 * i + 1)};

@@ -42,6 +42,7 @@ struct ConeRule {
   Vec2d const* directions = nullptr;
   int count = 0;
   int direction_count = 0;
+  bool fine = false;  ///< twice as fine as usual
 
   // where a cone has no simple edge: points of equal weights all over the disc that rays are sent to
   Vec2d const* scattered = nullptr;
@@ -107,6 +108,7 @@ struct TableCheck {
   double weight = 0;                          ///< of rays that pass the stop in the flow
   Vec2d traced{}, expected{};                 ///< their displacements, by tracing and by the table [px]
   double traced2[3] = {}, expected2[3] = {};  ///< their products xx, xy, yy [px^2]
+  Vec2d miss2{};                              ///< squares of what the table is off by, by component [px^2]
 
   /// @param from where the ray starts on the target [m] @param hit its displacement from flow_displacement()
   GLADSTONE_HD void add(DeflectionTable const& table, Vec2d from, Vec2d hit, RayRecord<double> const& ray) {
@@ -124,6 +126,8 @@ struct TableCheck {
     weight += w;
     traced += w * hit;
     expected += w * guess;
+    Vec2d const off = hit - guess;
+    miss2 += w * Vec2d{off.x * off.x, off.y * off.y};
     add_products(traced2, w, hit);
     add_products(expected2, w, guess);
   }
@@ -136,6 +140,7 @@ struct TableCheck {
     weight += o.weight;
     traced += o.traced;
     expected += o.expected;
+    miss2 += o.miss2;
     for (int i = 0; i < 3; ++i) {
       traced2[i] += o.traced2[i];
       expected2[i] += o.expected2[i];

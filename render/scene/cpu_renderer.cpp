@@ -24,7 +24,7 @@ void record_theory(LightModel const& light, TheoryModel const& model, SceneView<
                    Medium const& medium, std::size_t dot, std::uint64_t rays, GroundTruth& truth) {
   ConeSum cone;
   for (std::uint64_t ray = 0; ray < theory_rays(light, rays); ++ray) {
-    if (ray % rays_between_polls == 0) throw_if_interrupted();
+    throw_if_interrupted();
     add_straight_ray(light, model, view, medium, dot, ray, cone);
   }
   truth.set_theory(dot, model, integrate_chief(model, view, medium, dot), cone);
@@ -94,6 +94,7 @@ Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderIma
         },
         scene.medium.view);
   });
+  rendering.table = deflections_.state();
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
   if (images == RenderImages::kept) {
     rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));

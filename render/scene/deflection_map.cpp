@@ -12,6 +12,7 @@ namespace {
 constexpr double rays_a_source = 1024;  // of the table: more are not paid for by the rays that they save
 constexpr double cheap_rays_a_source = 32;
 constexpr double most_rays = 1e8;
+constexpr double fewest_nodes = 12;  // along either axis
 constexpr double slope_reach = 0.6;  // of the stop's radius: where the pupil's points are on average
 
 /// A lattice from low to high. @pre three spacings or more in both directions
@@ -32,10 +33,12 @@ struct NodeDensity {
   double coarseness;  ///< the slopes' spacing over that
 
   /// A grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as
-  /// many; twice as many of both, and as many slopes, where there are sources enough.
-  /// @param finest of the medium @param area of the mid-plane that cones cross [m^2]
-  static NodeDensity choose(double finest, bool grid, double area, double sources) {
-    double const spacing = grid ? finest : finest / 6;
+  /// many; twice as many of both, and as many slopes, where there are sources enough. A field that is smooth over all
+  /// of the view has no fewer nodes than polynomials need.
+  /// @param finest of the medium @param extent of the mid-plane that cones cross [m]
+  static NodeDensity choose(double finest, bool grid, Vec2d extent, double sources) {
+    double const area = extent.x * extent.y;
+    double const spacing = std::min(grid ? finest : finest / 6, std::min(extent.x, extent.y) / fewest_nodes);
     NodeDensity const fine{spacing / 2, 1}, usual{spacing, 2};
     return fine.rays(area) <= cheap_rays_a_source * sources ? fine : usual;
   }
@@ -56,6 +59,30 @@ double cone_reach(double way, double half_size, double pupil) {
 
 }  // namespace
 
+char const* to_string(TableState state) {
+  switch (state) {
+    case TableState::made:
+      break;
+    case TableState::no_medium:
+      return "nothing bends rays";
+    case TableState::no_sources:
+      return "there are no dots";
+    case TableState::chief_rays:
+      return "chief rays alone are traced (lens.f_number = inf)";
+    case TableState::random_rays:
+      return "render.sampling = \"random\" takes rays as they are";
+    case TableState::out_of_focus:
+      return "the lens is not focused on the target";
+    case TableState::field_too_small:
+      return "the field does not reach beyond the dots' cones of rays";
+    case TableState::field_too_fine:
+      return "the field is so fine that a table for these few dots would take more rays than it saves";
+    case TableState::dots_too_wide:
+      return "the dots are wide beside what the field changes on";
+  }
+  return "";
+}
+
 double table_bytes_needed(Setup const& setup) {
   FieldSetup const& field = setup.medium.field;
   if (field.kind == FieldKind::none || !std::isfinite(setup.lens.f_number) ||
@@ -66,19 +93,23 @@ double table_bytes_needed(Setup const& setup) {
   double const pupil = setup.imaging().entrance_pupil / 2 * std::sqrt(1 + Scene::stop_edge(1) / 2);
   double const beyond = 2 * cone_reach(way, setup.dot_diameter() / 2, pupil);
   Vec2d const extent = setup.target_extent();
-  double const area = ((1 - way) * extent.x + beyond) * ((1 - way) * extent.y + beyond);
+  Vec2d const crossed{(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
+  double const area = crossed.x * crossed.y;
   double const sources = setup.target.kind == TargetKind::dots ? setup.dot_count() : most_rays;
   NodeDensity const density =
-      NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, area, sources);
+      NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, crossed, sources);
   return density.bytes(area) * std::min(1.0, allowed_rays(sources) / density.rays(area));
 }
 
 DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   Setup const& setup = scene.setup;
-  if (std::holds_alternative<NoMedium<double>>(scene.medium.view) || scene.chief_rays_only() ||
-      setup.render.sampling != PupilSampling::sobol || sources.centre.empty() || !(scene.medium.finest > 0)) {
-    return;
-  }
+  state = std::holds_alternative<NoMedium<double>>(scene.medium.view) || !(scene.medium.finest > 0)
+              ? TableState::no_medium
+          : scene.chief_rays_only()                       ? TableState::chief_rays
+          : setup.render.sampling != PupilSampling::sobol ? TableState::random_rays
+          : sources.centre.empty()                        ? TableState::no_sources
+                                                          : TableState::made;
+  if (state != TableState::made) return;
   SceneView<double> const view = scene.view(sources);
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const depth = view.bundle.lens_z - view.sources.plane_z;
@@ -101,21 +132,27 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   auto const lean = [&](double q) { return 0.5 * (box.high.z - box.low.z) * (std::abs(q) + pupil) / to_lens; };
   auto const area = [&] { return (high.x - low.x) * (high.y - low.y); };
   auto const count = static_cast<double>(std::max(sources.centre.size(), scene.dots.centre.size()));
-  NodeDensity const density = NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, area(), count);
+  NodeDensity const density =
+      NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, high - low, count);
   double const spacing_of_slopes = density.coarseness * density.spacing, edge = 0.5 * spacing_of_slopes;
   low = {std::max(low.x, box.low.x + lean(low.x) + edge), std::max(low.y, box.low.y + lean(low.y) + edge)};
   high = {std::min(high.x, box.high.x - lean(high.x) - edge), std::min(high.y, box.high.y - lean(high.y) - edge)};
   double const least = 3 * spacing_of_slopes;
-  if (!(high.x - low.x >= least && high.y - low.y >= least)) return;
-  if (!(density.rays(area()) <= allowed_rays(count))) return;
+  if (!(high.x - low.x >= least && high.y - low.y >= least)) {
+    state = TableState::field_too_small;
+  } else if (!(density.rays(area()) <= allowed_rays(count))) {
+    state = TableState::field_too_fine;
+  }
   // a source's cone is integrated from a few places of it: it must not change much between them
   double const stop = scene.imaging.entrance_pupil / 2;
-  if ((1 - way) * half_size > 0.5 * std::max(scene.medium.finest, way * stop)) return;
+  if ((1 - way) * half_size > 0.5 * std::max(scene.medium.finest, way * stop)) state = TableState::dots_too_wide;
+  if (state != TableState::made) return;
   table.way = way;
   table.pupil_step = slope_reach * stop;
   place(table.straight, density.spacing, low, high);
   place(table.sloping, spacing_of_slopes, low, high);
-  wanted = std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b();
+  // out of focus a dot's cone has its rule, for theory, but no table
+  if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) state = TableState::out_of_focus;
 
   SceneView<double> const open = open_view(scene);
   numbers_ = {open.sources.plane_z,
@@ -139,7 +176,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
 }
 
 bool DeflectionPlan::same_table(DeflectionPlan const& other) const {
-  return wanted && other.wanted && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
+  return wanted() && other.wanted() && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
 }
 
 SceneView<double> open_view(Scene const& scene) {
@@ -150,14 +187,14 @@ SceneView<double> open_view(Scene const& scene) {
 }
 
 DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
-  if (!plan.wanted) return;
+  if (!plan.wanted()) return;
   SceneView<double> const open = open_view(scene);
   table_ = plan.table;
   auto const for_each_node = [](SquareLattice const& lattice, auto const& visit) {
     parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
-      throw_if_interrupted();
       std::size_t at = row * static_cast<std::size_t>(lattice.columns);
       for (int column = 0; column < lattice.columns; ++column) {
+        throw_if_interrupted();
         visit(lattice.node(column, static_cast<int>(row)), at++);
       }
     });

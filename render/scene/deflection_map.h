@@ -8,13 +8,29 @@
 
 namespace gladstone {
 
+/// Whether there is a table, and why not.
+enum class TableState {
+  made,
+  no_medium,        ///< nothing bends rays
+  no_sources,       ///< there is nothing to see
+  chief_rays,       ///< a dot has no cone
+  random_rays,      ///< somebody wants them as they are
+  out_of_focus,     ///< a point's rays do not meet on the sensor
+  field_too_small,  ///< it hardly reaches beyond the cones, if at all
+  field_too_fine,   ///< the table would take more rays than it saves
+  dots_too_wide,    ///< their cones change too much from place to place of a dot
+};
+/// As the end of the sentence "there is no deflection table: ..."; empty where there is one.
+char const* to_string(TableState state);
+
 /// Where a scene's deflection table has its nodes. None where rays are not traced through a medium and a focused lens
 /// with a stop, where the field is too fine for the number of sources to pay for a table, or where somebody wants
 /// random rays as they are. It covers the scene's own dots and the sources, for any number of rays: virtual dots among
 /// the scene's own have the table of these.
 struct DeflectionPlan {
   DeflectionTable table;  ///< without its values; its way is 0 where cones are not integrated by a rule at all
-  bool wanted = false;
+  TableState state = TableState::no_sources;
+  bool wanted() const { return state == TableState::made; }
 
   DeflectionPlan() = default;
   DeflectionPlan(Scene const& scene, DotPattern const& sources);
@@ -61,7 +77,8 @@ class KeptDeflections {
   template <class... More>
   DeflectionTable table(Scene const& scene, DotPattern const& sources, More const&... more) {
     DeflectionPlan plan(scene, sources);
-    if (!plan.wanted) return plan.table;
+    state_ = plan.state;
+    if (!plan.wanted()) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {
       map_.reset();  // first gives its memory back
       map_ = std::make_unique<Map>(scene, plan, more...);
@@ -70,8 +87,11 @@ class KeptDeflections {
     return map_->table();
   }
   void forget() { map_.reset(); }
+  /// Of the last table that was asked for.
+  TableState state() const { return state_; }
 
  private:
+  TableState state_ = TableState::no_sources;
   DeflectionPlan plan_;
   std::unique_ptr<Map> map_;
 };

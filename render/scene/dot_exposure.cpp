@@ -168,13 +168,11 @@ void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&image
   centre_ = centre;
   plan_ = DotPlan::make(model_, centre, radiance);
   light_per_weight_ = light_per_weight;
-  for (int frame = 0; frame < frame_count; ++frame) {
-    images_[frame] = images[frame];
-    sums_[frame] = {};
-  }
+  std::copy_n(images, frame_count, images_);
+  std::fill_n(of_scramblings_, most_scramblings, RaySums{});
+  recorded_ = 0;
   moved_ = false;
   tabled_ = model_.tabled(centre);
-  check_ = {};
   rays_.clear();
 }
 
@@ -193,10 +191,11 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
     largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
   }
   RayRecord<double> const ray = make_record(model_.image, centre_, plan_.origin, emitted, reference, flow);
-  sums_[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
-  sums_[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
+  RaySums& sums = of_scramblings_[recorded_++ % static_cast<std::uint64_t>(model_.scramblings)];
+  sums.hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
+  sums.hits[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
   moved_ |= ray.moved;
-  if (tabled_) check_.add(model_.table, centre_ + model_.offset(ray.place), flow_displacement(model_, ray), ray);
+  if (tabled_) sums.check.add(model_.table, centre_ + model_.offset(ray.place), flow_displacement(model_, ray), ray);
   if (!with_images_) return;
   if (model_.controlled) {
     rays_.push_back(ray);
@@ -250,7 +249,7 @@ void DotExposure::deposit_rays() {
   }
 }
 
-std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
+std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone(TruthErrors const& errors) {
   if (!model_.correctable(check_, plan_.expected_weight)) return {};
   ConeIntegral integral{model_.corrected(centre_, check_), {}};
   CorrectedCone const& cone = integral.cone;
@@ -266,7 +265,7 @@ std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
       simple = !std::isnan(rim);
     }
   }
-  if (model_.rays_are_better(check_, simple)) return {};
+  if (model_.rays_are_better(errors, check_, simple)) return {};
   int const points = model_.cone_points(simple);
   cone_points_.clear();
   for (int i = 0; i < rule.count; ++i) {
@@ -283,7 +282,9 @@ std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone() {
     if (!std::isfinite(moments.square())) return {};
     integral.narrow = integral.narrow && model_.narrow(moments);
   }
-  sum_cone(model_, plan_, cone.origin(), integral.whole, integral.without_medium, sums_);
+  sum_cone(model_, plan_, cone.origin(), integral.whole, integral.without_medium, truth_.hits);
+  truth_.path = TruthPath::table;
+  truth_.error = model_.error(errors, true, simple);
   return integral;
 }
 
@@ -335,7 +336,12 @@ void DotExposure::deposit_narrow(ConeIntegral const& integral) {
 }
 
 void DotExposure::finish_light() {
-  std::optional<ConeIntegral> const integral = moved_ && tabled_ ? integrate_cone() : std::nullopt;
+  RaySums all;
+  for (int i = 0; i < model_.scramblings; ++i) all += of_scramblings_[i];
+  check_ = all.check;
+  TruthErrors const errors = truth_errors(of_scramblings_, model_.scramblings, all);
+  truth_ = {plan_.origin, {all.hits[0], all.hits[1]}, model_.error(errors, false, false), TruthPath::rays};
+  std::optional<ConeIntegral> const integral = moved_ && tabled_ ? integrate_cone(errors) : std::nullopt;
   if (!with_images_ || !model_.controlled) return;  // else every ray's light was laid down as it came
   deposit_source(Frame::reference);
   switch (model_.kind(moved_, integral.has_value(), integral && integral->narrow)) {
@@ -360,7 +366,7 @@ void DotExposure::finish(GroundTruth& truth, std::size_t dot) {
       patches_[static_cast<std::size_t>(frame)].flush(images_[frame], light_per_weight_);
     }
   }
-  truth.set_hits(dot, plan_.origin, sums_[0], sums_[1], light_per_weight_);
+  truth.set_hits(dot, truth_, light_per_weight_);
 }
 
 }  // namespace gladstone

@@ -13,6 +13,7 @@
 #include "render/scene/ground_truth.h"
 #include "render/scene/scene.h"
 #include "render/scene/trace_pair.h"
+#include "render/scene/truth_error.h"
 #include "render/sensor/exposure.h"
 
 namespace gladstone {
@@ -105,11 +106,10 @@ class DotExposure {
 
   /// Ends the dot: its light joins the images, its truth is written.
   void finish(GroundTruth& truth, std::size_t dot);
-  /// Completes sums and patches without sending them anywhere.
+  /// Completes truth and patches without sending them anywhere.
   void finish_light();
 
   LightPatch const& patch(Frame frame) const { return patches_[static_cast<std::size_t>(frame)]; }
-  CentroidSum<double> const& sum(Frame frame) const { return sums_[static_cast<std::size_t>(frame)]; }
   StatusCounts const& statuses() const { return statuses_; }
   /// Largest distance by which the medium moved a ray on the lens plane [m].
   double largest_bend() const { return std::sqrt(largest_bend2_); }
@@ -124,7 +124,7 @@ class DotExposure {
     bool narrow = true;  ///< at all places
   };
   /// Of a dot that the table covers; empty: its rays have to do.
-  std::optional<ConeIntegral> integrate_cone();
+  std::optional<ConeIntegral> integrate_cone(TruthErrors const& errors);
   /// Lays down the light in the flow square by square. @return false: there are too many, and nothing was done
   bool deposit_wide(ConeIntegral const& integral);
   /// Lays down the light in the flow by the moments about one displacement.
@@ -143,9 +143,11 @@ class DotExposure {
   std::vector<RayRecord<double>> rays_;  ///< of the dot, where images are controlled
   LightImage* images_[frame_count] = {};
   std::vector<LightPatch> patches_;
-  CentroidSum<double> sums_[frame_count];
-  bool tabled_ = false;  ///< whether the deflection table covers the dot's rays
-  TableCheck check_;
+  RaySums of_scramblings_[most_scramblings];
+  std::uint64_t recorded_ = 0;  ///< rays so far
+  bool tabled_ = false;         ///< whether the deflection table covers the dot's rays
+  TableCheck check_;            ///< of all rays
+  DotTruth truth_;
   std::vector<ConeLight> cone_points_;      ///< of all places
   std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
   LightPatch::Series column_, row_;         ///< of one point of the source
@@ -154,15 +156,12 @@ class DotExposure {
   double largest_bend2_ = 0;
 };
 
-/// Ctrl-C is looked for this often within a dot, whose rays may take seconds.
-inline constexpr std::uint64_t rays_between_polls = 128;
-
 /// Traces the first `rays` rays of a dot in order, two side by side. @throws Interrupted
 template <class Medium>
 void trace_dot(TracePair<double, Medium> const& pair, std::uint64_t dot, std::uint64_t rays, DotExposure& exposure) {
   std::uint64_t ray = 0;
   for (; ray + 2 <= rays; ray += 2) {
-    if (ray % rays_between_polls == 0) throw_if_interrupted();
+    throw_if_interrupted();  // each of them may take a million steps
     pair.template together<2>({dot, ray}, exposure);
   }
   if (ray < rays) pair({dot, ray}, exposure);

@@ -1,28 +1,33 @@
 #include "render/scene/ground_truth.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace gladstone {
 
 void GroundTruth::resize(std::size_t count) {
   position_m.resize(count);
-  for (auto* column :
-       {&reference_px, &displacement_px, &displacement_std_px, &flux, &eq9_px, &chief_px, &eq9_cone_px}) {
+  for (auto* column : {&reference_px, &displacement_px, &displacement_error_px, &displacement_std_px, &flux, &eq9_px,
+                       &chief_px, &eq9_cone_px}) {
     column->resize(count);
   }
   rays.resize(count);
+  path.resize(count);
 }
 
-void GroundTruth::set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> const& reference,
-                           CentroidSum<double> const& flow, double light_per_weight) {
+void GroundTruth::set_hits(std::size_t dot, DotTruth const& found, double light_per_weight) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Vec2d const none{nan, nan};
+  CentroidSum<double> const &reference = found.hits[0], &flow = found.hits[1];
   bool const seen[2] = {reference.weight > 0, flow.weight > 0};
-  reference_px[dot] = seen[0] ? origin + reference.mean() : none;
+  reference_px[dot] = seen[0] ? found.origin + reference.mean() : none;
   displacement_px[dot] = seen[0] && seen[1] ? flow.mean() - reference.mean() : none;
+  displacement_error_px[dot] = seen[0] && seen[1] ? found.error : none;
   displacement_std_px[dot] = seen[1] ? flow.deviation() : none;
   flux[dot] = {reference.weight * light_per_weight, flow.weight * light_per_weight};
   rays[dot] = {reference.count, flow.count};
+  path[dot] = found.path;
 }
 
 void GroundTruth::set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
@@ -31,6 +36,35 @@ void GroundTruth::set_theory(std::size_t dot, TheoryModel const& model, Gradient
   eq9_px[dot] = model.displacement(chief.plain, model.lever);
   chief_px[dot] = model.displacement(chief.levered, 1.0);
   eq9_cone_px[dot] = cone.weight > 0 ? model.displacement(cone.levered / cone.weight, 1.0) : Vec2d{nan, nan};
+}
+
+TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px) {
+  TruthAccuracy accuracy;
+  double squares = 0;
+  std::size_t known = 0;
+  for (std::size_t dot = 0; dot < truth.size(); ++dot) {
+    bool const by_table = truth.path[dot] == TruthPath::table;
+    accuracy.by_table += by_table ? 1 : 0;
+    if (std::isnan(truth.displacement_px[dot].x)) continue;
+    Vec2d const error = truth.displacement_error_px[dot];
+    double const larger = std::max(error.x, error.y);
+    if (!std::isfinite(larger)) {
+      ++accuracy.unknown;
+      continue;
+    }
+    ++known;
+    squares += error.x * error.x + error.y * error.y;
+    if (larger > accuracy.largest_px) {
+      accuracy.largest_px = larger;
+      accuracy.worst = dot;
+    }
+    if (larger > limit_px) {
+      ++accuracy.above;
+      accuracy.above_by_rays += by_table ? 0 : 1;
+    }
+  }
+  accuracy.rms_px = std::sqrt(squares / (2.0 * static_cast<double>(known)));
+  return accuracy;
 }
 
 DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px) {

@@ -32,7 +32,7 @@ struct CentroidSum {
     count += o.count;
     return *this;
   }
-  Vec2<T> mean() const { return first / weight; }
+  GLADSTONE_HD Vec2<T> mean() const { return first / weight; }
   Vec2<T> deviation() const {
     using std::sqrt;
     Vec2<T> const m = mean();
@@ -42,27 +42,55 @@ struct CentroidSum {
   }
 };
 
+/// What a dot's truth was made from.
+enum class TruthPath : int {
+  rays,   ///< the centroids of its rays
+  table,  ///< the integral of a deflection table over its cone, which its rays correct
+};
+
+/// A dot's truth in numbers, on whichever device they were made.
+struct DotTruth {
+  Vec2d origin;  ///< that the sums' places count from [px]
+  CentroidSum<double> hits[2];
+  Vec2d error;  ///< standard error of the displacement [px]
+  TruthPath path = TruthPath::rays;
+};
+
 /// What a camera sees of every dot (ray truth), and what theory says of it; all in px, flow minus reference.
 struct GroundTruth {
   std::vector<Vec3d> position_m;
   std::vector<Vec2d> reference_px;     ///< radiance-weighted centroid of the rays that pass the stop; NaN: none does
   std::vector<Vec2d> displacement_px;  ///< flow centroid minus reference centroid
+  std::vector<Vec2d> displacement_error_px;       ///< standard error of displacement_px; NaN: unknown (truth_error.h)
   std::vector<Vec2d> displacement_std_px;         ///< weighted standard deviation of the flow hits
   std::vector<Vec2d> flux;                        ///< light in the reference (x) and the flow (y) frame [fully lit px]
   std::vector<std::array<std::int64_t, 2>> rays;  ///< counted in each frame
   std::vector<Vec2d> eq9_px;                      ///< Rajendran et al. eq. 9 along the chief ray, lever Z_D
   std::vector<Vec2d> chief_px;                    ///< the same with each slice's own lever
   std::vector<Vec2d> eq9_cone_px;                 ///< averaged over the disc and the stop's pupil, own levers
+  std::vector<TruthPath> path;                    ///< that displacement_px came by
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);
-  /// Writes what the rays of a dot say. @param origin that the sums' places count from [px]
-  void set_hits(std::size_t dot, Vec2d origin, CentroidSum<double> const& reference, CentroidSum<double> const& flow,
-                double light_per_weight);
+  /// Writes what the rays of a dot say.
+  void set_hits(std::size_t dot, DotTruth const& found, double light_per_weight);
   /// Writes what theory says of it.
   void set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
                   ConeSum const& cone);
 };
+
+/// What the standard errors of the dots' displacements come to.
+struct TruthAccuracy {
+  double rms_px = 0;              ///< over dots and components whose error is known; NaN: none is
+  double largest_px = 0;          ///< of a component
+  std::size_t worst = 0;          ///< the dot that has it
+  std::size_t above = 0;          ///< dots with a component above the limit
+  std::size_t unknown = 0;        ///< dots that are seen, but by so few rays that their errors are not known
+  std::size_t by_table = 0;       ///< dots whose truth is the table's
+  std::size_t above_by_rays = 0;  ///< of those above the limit, the others
+};
+/// @param limit_px of a component
+TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px);
 
 /// Counts of rays by RayStatus in each frame.
 using StatusCounts = std::array<std::array<std::int64_t, ray_status_count>, 2>;

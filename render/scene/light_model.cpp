@@ -78,10 +78,10 @@ unsigned z_order(Vec2d p) {
 
 /// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
 /// finest lengths.
-/// @param radius of the cone, in those lengths
-void make_cone_rule(double radius, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
-  int const rings = std::min(40, static_cast<int>(std::ceil(0.35 * radius)) + 4);
-  int const count = std::min(ConeRule::most_directions, 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
+/// @param radius of the cone, in those lengths @param times as many rings and directions
+void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
+  int const rings = std::min(40, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
+  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
   for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
   GaussLegendre const nodes(rings);
   for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
@@ -164,15 +164,20 @@ OwnedLightModel::OwnedLightModel(Scene const& scene, DotPattern const& sources, 
   model.mean_pupil2 = 0.5 * stop_radius * stop_radius;
   model.distance = scene.setup.z_a + scene.setup.z_d;
   model.sent_radius = scene.pupil_radius();
+  model.scramblings = 1 << scrambling_bits(scene.rays_per_dot);
   model.table = table;
   if (table.way > 0) {
-    make_cone_rule(table.way * stop_radius / scene.medium.finest, cone_points, cone_directions);
+    // a closed form's finest length is no cell but the whole of a wave's slope; and many rays leave time for a rule
+    // that leaves as little as they do
+    bool const fine = scene.medium.grid.nodes[0] <= 1 || scene.rays_per_dot >= 4096;
+    make_cone_rule(table.way * stop_radius / scene.medium.finest, fine ? 2 : 1, cone_points, cone_directions);
     int const scattered = std::max(1024, 2 * static_cast<int>(cone_points.size()));
     cone_scattered = sunflower(scattered);
     model.cone = {cone_points.data(),
                   cone_directions.data(),
                   static_cast<int>(cone_points.size()),
                   static_cast<int>(cone_directions.size()),
+                  fine,
                   cone_scattered.data(),
                   scattered,
                   Scene::stop_edge(scattered)};

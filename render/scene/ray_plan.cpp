@@ -20,8 +20,8 @@ namespace gladstone {
 namespace {
 
 constexpr double step_tolerance_px = 1e-4;
-constexpr double truth_tolerance_px = 1e-3;
-constexpr double image_tolerance_levels = 0.5;
+constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
+constexpr std::uint64_t always_allowed = 1024;
 constexpr int scramblings = 4;
 constexpr std::size_t sample_dots = 96;
 constexpr double widest_image_px = 100;  // of a dot that is measured whole
@@ -57,11 +57,11 @@ Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size
   probe.bend.resize(dots.size());
   parallel_chunks(dots.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      throw_if_interrupted();
       Vec2d const centre = scene.dots.centre[dots[i]];
       Vec2d sum{};
       int seen = 0;
       for (auto const& [beside, pupil] : rays) {
+        throw_if_interrupted();
         Vec3d const start{centre.x + beside.x, centre.y + beside.y, view.sources.plane_z};
         Ray<double> const straight{
             start, normalized(Vec3d{pupil.x - start.x, pupil.y - start.y, view.bundle.lens_z - start.z})};
@@ -438,12 +438,15 @@ StepPlan plan_step(Scene& scene) {
   double const coarsest = empty ? scene.setup.medium.thickness : scene.medium.coarsest_step;
   plan.step_mm = given.value_or(coarsest / unit::millimetre);
   if (!empty) {
+    Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+    double const depth_mm = (box.high.z - box.low.z) / unit::millimetre;
     StepProbe const probe(scene, plan.step_mm * unit::millimetre);
     Probe coarse = probe.at(plan.step_mm * unit::millimetre);
     for (int halvings = 0;; ++halvings) {
       Probe fine = probe.at(plan.step_mm / 2 * unit::millimetre);
       probe.compare(coarse, fine, plan);
-      if (given || plan.change_px < step_tolerance_px || halvings == 12) break;
+      bool const finest = halvings == 12 || depth_mm > 0.5 * most_steps * plan.step_mm;
+      if (given || plan.change_px < step_tolerance_px || finest) break;
       plan.step_mm /= 2;
       coarse = std::move(fine);
     }
@@ -459,6 +462,15 @@ void use_step(Scene& scene, StepPlan const& plan) {
 
 RaysPlan measure_rays(Scene const& scene) { return RayErrors(scene).measure(); }
 
+double rays_seconds(Scene const& scene) {
+  // emission, lens and sums; a step of the flow ray; a pixel that a spot is spread over [s]
+  constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9;
+  std::optional<AiryTable> airy;
+  double const width = 2 * make_spot(scene, airy).half_width() + 1;
+  double const ray = a_ray + a_step * scene.steps_across() + frame_count * a_pixel * width * width;
+  return static_cast<double>(scene.dots.centre.size()) * ray;
+}
+
 RaysPlan plan_rays(Scene& scene) {
   RaysPlan plan;
   plan.bits = std::min(scene.setup.camera.bit_depth, 12);
@@ -467,7 +479,9 @@ RaysPlan plan_rays(Scene& scene) {
     return plan;
   }
   RayErrors const errors(scene);
-  constexpr std::uint64_t most = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
+  double const seconds_a_ray = rays_seconds(scene);
+  std::uint64_t most = always_allowed;
+  while (most < most_rays && 2 * static_cast<double>(most) * seconds_a_ray <= rays_budget_s) most *= 2;
   bool const single_ray = scene.chief_rays_only() && scene.dots.half_size == 0;
   Progress progress("choosing the rays", 8);
   std::vector<double> excess;  // errors over their tolerances, whichever is larger, from doubling to doubling
@@ -477,24 +491,23 @@ RaysPlan plan_rays(Scene& scene) {
         std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels));
     plan.converged = excess.back() <= 1;
     progress.advance();
-    if (plan.converged || scene.rays_per_dot >= most_measured) break;
+    if (plan.converged || scene.rays_per_dot >= std::min(most, most_measured)) break;
   }
+  plan.rays_wanted = static_cast<double>(scene.rays_per_dot);
   if (!plan.converged) {
     // beyond what is measured, errors go on falling as they did over the last three doublings
     double const order = std::clamp(std::log2(excess[excess.size() - 4] / excess.back()) / 3, 0.5, 1.0);
-    auto const measured = static_cast<double>(scene.rays_per_dot);
-    double rest = excess.back();
-    while (scene.rays_per_dot < most && rest > 1) {
-      scene.rays_per_dot *= 2;
-      rest *= std::pow(2.0, -order);
-    }
+    double const measured = plan.rays_wanted;
+    plan.rays_wanted *= std::exp2(std::ceil(std::log2(excess.back()) / order));
+    plan.converged = plan.rays_wanted <= static_cast<double>(most);
+    scene.rays_per_dot = plan.converged ? static_cast<std::uint64_t>(plan.rays_wanted) : most;
     double const gain = std::pow(static_cast<double>(scene.rays_per_dot) / measured, -order);
     plan.truth_error_px *= gain;
     plan.image_error_levels *= gain;
-    plan.extrapolated = true;
-    plan.converged = rest <= 1;
+    plan.extrapolated = scene.rays_per_dot > static_cast<std::uint64_t>(measured);
   }
   plan.rays = scene.rays_per_dot;
+  plan.seconds = seconds_a_ray * static_cast<double>(plan.rays);
   return plan;
 }
 

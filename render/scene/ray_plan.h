@@ -15,6 +15,13 @@ struct StepPlan {
   double largest_bend = 0;  ///< on the lens plane, of the probing rays [m]
 };
 
+/// What "auto" asks of truth [px] and of images [grey levels].
+inline constexpr double truth_tolerance_px = 1e-3;
+inline constexpr double image_tolerance_levels = 0.5;
+
+/// Processor time that rays chosen by "auto" may take [s], half of it on two cores: beyond, 1024 rays a dot are taken.
+inline constexpr double rays_budget_s = 60;
+
 /// How the number of rays was chosen.
 struct RaysPlan {
   std::uint64_t rays = 0;
@@ -22,8 +29,14 @@ struct RaysPlan {
   double image_error_levels = 0;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
-  bool converged = true;      ///< false: the largest number, 65536, is not enough
+  bool converged = true;      ///< false: the largest number that is taken is not enough
+  double rays_wanted = 0;     ///< that would be, as far as can be told
+  double seconds = 0;         ///< of processor time that a rendering with `rays` will take, by rays_seconds()
 };
+
+/// Processor time that a rendering of the scene takes for one ray of every dot [s]: a count of steps and of pixels lit
+/// times what each took on the processor of docs/benchmarks.md. Not a clock's, so that a plan is the same anywhere.
+double rays_seconds(Scene const& scene);
 
 /// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, dots being probed by five rays
 /// shared by all steps (pupil centre and four points of its rim); starts from medium.coarsest_step, never above it. Of
@@ -43,8 +56,8 @@ void use_step(Scene& scene, StepPlan const& plan);
 RaysPlan measure_rays(Scene const& scene);
 
 /// Chooses rays_per_dot: the smallest power of two for which measure_rays() finds less than 1e-3 px rms in truth and
-/// half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. Sets
-/// scene.rays_per_dot.
+/// half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most
+/// 65,536, and no more than rays_budget_s allows. Sets scene.rays_per_dot.
 RaysPlan plan_rays(Scene& scene);
 
 }  // namespace gladstone

@@ -18,7 +18,8 @@ struct Rendering {
   std::shared_ptr<KeptLight const> kept;  ///< with RenderImages::kept alone
   GroundTruth truth;
   StatusCounts statuses{};
-  std::int64_t rays = 0;  ///< traced, both frames
+  std::int64_t rays = 0;                      ///< traced, both frames
+  TableState table = TableState::no_sources;  ///< whether truth had a deflection table
 };
 
 /// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.

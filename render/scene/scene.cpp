@@ -92,11 +92,17 @@ SceneView<double> Scene::view(DotPattern const& sources) const {
   seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : pupil_radius();
   seen.bundle.seed = setup.render.seed;
   seen.bundle.sampling = setup.render.sampling;
+  seen.bundle.scrambling_bits = scrambling_bits(rays_per_dot);
   if (!chief_rays_only()) seen.train.append(aperture_stop());
   seen.train.append(ThinLens<double>{setup.z_a, setup.lens.focal_length});
   seen.sensor = {setup.z_a + imaging.image_distance, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
   seen.tracing = {step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces};
   return seen;
+}
+
+double Scene::steps_across() const {
+  Bounds<double> const box = std::visit([](auto const& seen) { return seen.bounds(); }, medium.view);
+  return step > 0 ? (box.high.z - box.low.z) / step : 0;
 }
 
 double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
@@ -209,7 +215,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
       }
       break;
     case TargetKind::points:
-      scene.dots.centre = dots_from_csv(setup.target.file);
+      scene.dots.centre = dots_from_csv(setup.target.file, setup.farthest_off_axis());
       break;
     case TargetKind::image:
       scene.dots = picture_target(setup.target.file, setup.target_extent());

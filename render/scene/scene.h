@@ -26,6 +26,8 @@ struct Scene {
   SceneView<double> view() const { return view(dots); }
   SceneView<double> view(DotPattern const& sources) const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
+  /// Steps that a ray along the axis takes across the medium; 0 without one.
+  double steps_across() const;
   /// Width of the smoothed zone about the stop's edge, as a share of its area; falls with the number of rays [1].
   static double stop_edge(double rays);
   double stop_edge() const { return stop_edge(static_cast<double>(rays_per_dot)); }

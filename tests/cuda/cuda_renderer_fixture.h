@@ -57,6 +57,9 @@ class CudaRendererTest : public testing::Test {
     Rendering const cpu = render_all(scene), gpu = on_device(again);
     EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
     EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
+    EXPECT_LT(largest_difference(cpu.truth.displacement_error_px, gpu.truth.displacement_error_px), 1e-9);
+    EXPECT_EQ(cpu.truth.path, gpu.truth.path);
+    EXPECT_EQ(cpu.table, gpu.table);
     EXPECT_LT(largest_difference(cpu.truth.displacement_std_px, gpu.truth.displacement_std_px), 1e-6);
     EXPECT_LT(largest_difference(cpu.truth.eq9_px, gpu.truth.eq9_px), 1e-9);
     EXPECT_LT(largest_difference(cpu.truth.chief_px, gpu.truth.chief_px), 1e-9);

@@ -137,8 +137,8 @@ TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
   DeflectionPlan const plan(scene, scene.dots);
-  ASSERT_TRUE(plan.wanted);
-  ASSERT_FALSE(DeflectionPlan(few, few.dots).wanted);
+  ASSERT_TRUE(plan.wanted());
+  ASSERT_FALSE(DeflectionPlan(few, few.dots).wanted());
   render(few);  // puts the field on the device, where it stays
   {
     DeviceMemoryLimit const limit(plan.table.bytes() - 1);
@@ -159,7 +159,7 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
-  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted);
+  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
   render(scene);  // puts field and table on the device, where they stay
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);

@@ -248,9 +248,40 @@ TEST_F(Variants, OddButPossibleSetupsRender) {
   }
 }
 
+// A dot beyond a volume's faces is known by its rays alone; one rendering says how well, and how to do better.
+TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
+  Outcome const outcome = gladstone(
+      {"render", "setup.toml", "-o", "case", "--set", "lens.focus=medium", "--set", "camera.noise.read_noise_e=3"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::HasSubstr("truth: displacements are known to 0.0"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("since the lens is not focused on the target; increase "
+                                              "render.rays_per_dot, 32 now"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("camera.offset_dn: the read noise of 6.55 grey levels is cut off"));
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  double const rms = summary["truth_error_px"]["rms"];
+  EXPECT_GT(rms, 1e-3);
+  EXPECT_GE(summary["truth_error_px"]["largest"], rms);
+  EXPECT_GT(summary["truth_error_px"]["dots_above_1e-3"], 0);
+  EXPECT_EQ(summary["estimator"]["dots_by_table"], 0);
+  EXPECT_EQ(summary["estimator"]["no_table_since"], "the lens is not focused on the target");
+  double square = 0;
+  std::vector<double> const errors = dataset("/dots/displacement_error_px");
+  for (double const error : errors) square += error * error / static_cast<double>(errors.size());
+  EXPECT_NEAR(std::sqrt(square), rms, 1e-9 * rms);
+
+  // in focus a table knows this field to far better, and nothing is said
+  Outcome const focused = gladstone({"render", "setup.toml", "-o", "focused"});
+  EXPECT_THAT(focused.err, testing::Not(testing::HasSubstr("truth:")));
+  auto const better = nlohmann::json::parse(read("focused/summary.json"));
+  EXPECT_LT(better["truth_error_px"]["largest"], 1e-4);
+  EXPECT_EQ(better["estimator"]["dots_by_rays"], 0);
+  EXPECT_EQ(better["estimator"]["no_table_since"], "");
+  for (double const by_table : dataset("/dots/by_table", "focused")) EXPECT_EQ(by_table, 1);
+}
+
 TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
   Outcome const outcome =
-      gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[1e300, 0, 0]"});
+      gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("dots are not seen in one of the frames"));
   EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field.gradient_kg_m4: the density is negative"));

@@ -94,6 +94,46 @@ TEST(OwenScrambling, KeepsTheNets) {
   }
 }
 
+// Rays are dealt in turn to scramblings of their own: ray 4 k + i is point k of the i-th of four. The first is the one
+// that would be alone; sixteen points of each fill the sixteen intervals of every coordinate; and what one says of a
+// point's place says nothing of another's: their correlation over 2000 sources stays within five standard errors.
+TEST(Sobol, RaysAreDealtToIndependentScramblings) {
+  BundleView<double> const alone = bundle(PupilSampling::sobol);
+  BundleView<double> dealt = alone;
+  dealt.scrambling_bits = 2;
+  double u[sobol_dimensions], v[sobol_dimensions];
+  for (std::uint64_t scrambling = 0; scrambling < 4; ++scrambling) {
+    int filled[sobol_dimensions] = {};
+    for (std::uint64_t point = 0; point < 16; ++point) {
+      sample_coordinates(dealt, 5, 4 * point + scrambling, u);
+      sample_coordinates(alone, 5, point, v);
+      for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
+        filled[dimension] |= 1 << static_cast<int>(16 * u[dimension]);
+        EXPECT_EQ(u[dimension] == v[dimension], scrambling == 0);
+      }
+    }
+    for (int const intervals : filled) EXPECT_EQ(intervals, 0xffff);
+  }
+  constexpr int sources = 2000;
+  double sum[sobol_dimensions] = {};
+  for (std::uint64_t source = 0; source < sources; ++source) {
+    sample_coordinates(dealt, source, 0, u);
+    sample_coordinates(dealt, source, 1, v);
+    for (int dimension = 0; dimension < sobol_dimensions; ++dimension) {
+      sum[dimension] += 12 * (u[dimension] - 0.5) * (v[dimension] - 0.5);
+    }
+  }
+  for (double const correlation : sum) EXPECT_NEAR(correlation / sources, 0, 5 / std::sqrt(double(sources)));
+}
+
+TEST(Sobol, AHandfulOfRaysHasFewerScramblings) {
+  for (auto const& [rays, bits] :
+       {std::pair{1, 0}, {2, 1}, {3, 1}, {4, 2}, {7, 2}, {8, 3}, {511, 3}, {512, 2}, {65536, 2}}) {
+    EXPECT_EQ(scrambling_bits(static_cast<std::uint64_t>(rays)), bits) << rays;
+    EXPECT_LE(1 << bits, most_scramblings);
+  }
+}
+
 // Over the scramblings of many sources every point is uniform: mean 1/2 and variance 1/12 within five standard errors,
 // sqrt(1/(12 n)) and sqrt((1/80 - 1/144)/n); coordinates of different dimensions and of neighbouring sources, and bits
 // of different streams, are uncorrelated within 5/sqrt(n).

@@ -251,8 +251,8 @@ TEST_P(TableUnderFineSpots, GivesTheirLight) {
     }
   }
   Scene by_rays = scene_with_dots(setup, few, 65536), by_table = scene_with_dots(setup, all, 256);
-  ASSERT_FALSE(DeflectionPlan(by_rays, by_rays.dots).wanted);
-  ASSERT_TRUE(DeflectionPlan(by_table, by_table.dots).wanted);
+  ASSERT_FALSE(DeflectionPlan(by_rays, by_rays.dots).wanted());
+  ASSERT_TRUE(DeflectionPlan(by_table, by_table.dots).wanted());
   Image<double> const exact = render_all(by_rays).light.flow, found = render_all(by_table).light.flow;
   EXPECT_LT(picture_error(found, exact).rms_levels, 1.5);
 }

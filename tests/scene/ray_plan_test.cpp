@@ -106,6 +106,35 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
   EXPECT_GT(plan.image_error_levels, 0.5);
 }
 
+// Out of focus every ray's light stays where it lands, and half a grey level under discs twenty deep would take more
+// rays than anybody waits for. The plan stops at its budget of processor time, counted and not clocked, and tells what
+// was asked, what it got, and what it would have taken.
+TEST(PlanRays, StaysWithinItsBudget) {
+  auto setup = table1_setup(512);
+  setup.lens.focus = Focus::medium;
+  Scene scene = build_scene(setup);
+  plan_step(scene);
+  RaysPlan const plan = plan_rays(scene);
+  EXPECT_FALSE(plan.converged);
+  EXPECT_GT(plan.image_error_levels, image_tolerance_levels);
+  EXPECT_LE(plan.seconds, rays_budget_s);
+  EXPECT_GT(2 * plan.seconds, rays_budget_s) << "twice as many would not be within it";
+  EXPECT_GT(plan.rays_wanted, static_cast<double>(plan.rays));
+  EXPECT_NEAR(plan.seconds, rays_seconds(scene) * static_cast<double>(plan.rays), 1e-9);
+}
+
+// A ray's time is counted in steps and lit pixels; 1024 rays are always taken where they are asked for.
+TEST(PlanRays, CountsTheTimeOfARay) {
+  auto setup = table1_setup(64);
+  setup.medium.field = dns_plane("kepeak");
+  Scene scene = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  double const coarse = rays_seconds(scene), steps = scene.steps_across();
+  scene.step /= 10;
+  EXPECT_NEAR(rays_seconds(scene) - coarse, 16 * 9 * steps * 0.12e-6, 1e-12);
+  scene.step /= 1e5;  // a second for every ray of a dot: 60 rays would fill the budget
+  EXPECT_GT(1024 * rays_seconds(scene), rays_budget_s);
+}
+
 // The promise: truth to 1e-3 px rms and the flow picture, which scatters more, to half a grey level of 12 bits rms over
 // lit pixels, against 16 times as many rays of another scrambling, which add less than a hundredth.
 TEST(PlanRays, KeepsItsPromiseAgainstManyMoreRays) {
@@ -199,7 +228,7 @@ TEST(MeasureRays, TellsHowFarATableLeadsTruthAstray) {
   setup.medium.field.scale *= 4;
   Scene scene = scene_with_dots(setup, lattice(64, 20, 3), 256);
   plan_step(scene);
-  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted);
+  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
   DotPattern some = scene.dots;
   some.centre.clear();
   for (std::size_t i = 17; i < scene.dots.centre.size(); i += 40) some.centre.push_back(scene.dots.centre[i]);

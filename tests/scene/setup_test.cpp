@@ -249,7 +249,7 @@ TEST(Memory, OfATableIsKnownFromItsSetup) {
     setup.medium.field = field;
     Scene const scene = build_scene(setup);
     DeflectionPlan const plan(scene, scene.dots);
-    ASSERT_TRUE(plan.wanted);
+    ASSERT_TRUE(plan.wanted());
     EXPECT_NEAR(table_bytes_needed(setup) / static_cast<double>(plan.table.bytes()), 1, 0.1);
   }
   gladstone::Setup setup = table1_setup(256);
