@@ -195,7 +195,7 @@ GLADSTONE_HD void fill_cell(GriddedIndex<double, Stored, Basis, 3> const& grid, 
   }
   // axis by axis from weights of the nodes to powers of the way from the corner
   auto const transform = [](double* line, int stride, double inverse_spacing) {
-    double powers[S], unit = 1;
+    double powers[Basis::support], unit = 1;
     for (int power = 0; power < S; ++power) {
       powers[power] = 0;
       for (int node = 0; node < S; ++node) powers[power] += Basis::power_in_weight(power, node) * line[node * stride];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 #include "render/base/units.h"
 #include "render/scene/deflection_map.h"
@@ -173,7 +174,7 @@ SeenDot see(Scene const& scene, std::size_t dot, DeflectionTable const& table) {
   truth.resize(1);
   std::visit(
       [&](auto const& medium) {
-        TracePair const pair{scene.view(), medium};
+        TracePair<double, std::decay_t<decltype(medium)>> const pair{scene.view(), medium};
         exposure.begin(scene.dots.centre[dot], 1.0, images, scene.light_per_ray(scene.dots));
         trace_dot(pair, dot, scene.rays_per_dot, exposure);
         exposure.finish(truth, 0);

@@ -1,0 +1,44 @@
+#include "studies/ray_file.h"
+#include "tests/fuzz/input.h"
+
+using namespace gladstone;
+
+namespace {
+
+/// A gradient between lens and target; its step is given, so that nothing is planned.
+Scene gradient_scene() {
+  SetupDocument document = SetupDocument::from_text(R"(schema = 1
+experiment = "bos"
+[camera]
+pixels = [64, 64]
+pixel_pitch_um = 10.0
+[lens]
+focal_length_mm = 105.0
+f_number = 11.0
+[geometry]
+z_a_mm = 750.0
+z_d_mm = 250.0
+[medium]
+step_mm = 2.0
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [20.0, 10.0, 0.0]
+[target]
+dots_per_32px_window = 1.0
+)",
+                                                    "setup.toml");
+  Scene scene = build_scene(read_setup(document.root()));
+  plan_step(scene);
+  return scene;
+}
+
+}  // namespace
+
+// Rays as a table, followed to the sensor.
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
+  std::string_view const input = fuzz::text_of(data, size);
+  static Scene const scene = gradient_scene();
+  std::string const path = fuzz::file_of(input, "rays.csv");
+  fuzz::read(input, [&] { traced_rays_csv(trace_rays(scene, read_rays(path), Through::all)); });
+  return 0;
+}

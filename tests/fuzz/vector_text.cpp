@@ -1,0 +1,34 @@
+#include <cmath>
+#include <vector>
+
+#include "analysis/vector_file.h"
+#include "analysis/window_truth.h"
+#include "tests/fuzz/input.h"
+
+using namespace gladstone;
+
+namespace {
+
+/// A displacement that only the right conventions fit.
+Vec2d truth(Vec2d c) {
+  if (!(c.x >= 0 && c.y >= 0 && c.x <= 127 && c.y <= 127)) return {std::nan(""), std::nan("")};
+  return {0.02 * c.x, 0.5 + 0.01 * c.y};
+}
+
+}  // namespace
+
+// Vectors as text of any program, through what a comparison does with their places.
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
+  std::string_view const input = fuzz::text_of(data, size);
+  std::string const path = fuzz::file_of(input, "vectors.txt");
+  fuzz::read(input, [&] {
+    VectorFile file = read_vectors(path);
+    VectorConventions const conventions =
+        file.foreign ? detect_conventions(file, truth, 128).conventions : file.conventions;
+    DisplacementField const field = apply_conventions(std::move(file.field), conventions, 128);
+    std::vector<Vec2d> const dots{{10, 10}, {14, 10}, {10, 14}, {14, 14}, {100, 90}};
+    std::vector<Vec2d> const moved(dots.size(), Vec2d{0.5, 0.25});
+    window_truth(dots, moved, {}, field.position_px, top_hat_window(32));
+  });
+  return 0;
+}
