@@ -5,6 +5,14 @@ PREFIX ?= /usr/local
 WARNINGS_AS_ERRORS ?= $(if $(filter dev,$(PRESET)),ON,OFF)
 BUILD := $(if $(filter default,$(PRESET)),build,build/$(PRESET))
 
+# the rooms whose tests `make test` builds and runs; empty: all tests
+TESTED ?=
+
+# `make fuzz`: seconds in all; `make soak`: disturbed runs, and what they are drawn from
+FUZZ_SECONDS ?= 600
+SOAK_RUNS ?= 300
+SOAK_SEED ?= 1
+
 # what `make studies` computes
 STUDIES ?= $(patsubst studies/cases/study_%.toml,%,$(sort $(wildcard studies/cases/study_*.toml)))
 DEVICE ?= auto
@@ -19,6 +27,9 @@ PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
 	zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format clang-tidy
+# the compiler of PRESET=dev, with libFuzzer, and what makes its reports readable
+DEV_PACKAGES := clang libclang-rt-dev llvm
+PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # programs that only tests call; without them those are skipped
 TEST_PACKAGES := munge slurmctld slurmd slurm-client
 
@@ -29,16 +40,17 @@ space := $(subst ,, )
 TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
 
-.PHONY: build test demo studies bench lint format install clean help packages configure
+.PHONY: build test demo studies bench fuzz soak lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone
 
 test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
-test: configure  ## build and run every test; only some: ctest --test-dir build -R medium/
-	cmake --build $(BUILD) --parallel $(JOBS)
-	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
+test: configure  ## build and run every test; of some rooms: TESTED='base medium'; once more: ctest --test-dir build -R medium/
+	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(TESTED:%=%_tests))
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
+		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$')
 
 demo: build  ## the seed's experiment from setup to error report, into out/demo
 	$(BUILD)/bin/gladstone demo -o out/demo
@@ -54,6 +66,15 @@ studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number
 bench: configure  ## measure rays/s, steps/s and vectors/s; options: BENCH='--benchmark_filter=...'
 	cmake --build $(BUILD) --parallel $(JOBS) --target gladstone_bench
 	$(BUILD)/bin/gladstone_bench $(BENCH)
+
+fuzz:  ## give every reader made-up files, under sanitizers, into out/fuzz; longer: FUZZ_SECONDS=3600
+	@$(MAKE) --no-print-directory PRESET=dev configure
+	cmake --build build/dev --parallel $(JOBS) --target fuzz_targets
+	ctest --test-dir build/dev --output-on-failure --label-regex '^fuzz$$'
+	tests/fuzz/fuzz.sh build/dev out/fuzz $(FUZZ_SECONDS)
+
+soak: build  ## kill, starve and confuse the program, and check what is left: SOAK_RUNS=300, SOAK_SEED=1
+	python3 -B tests/soak/soak.py --program $(BUILD)/bin/gladstone --seed $(SOAK_SEED) --runs $(SOAK_RUNS)
 
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)

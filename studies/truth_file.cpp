@@ -98,6 +98,10 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
 
 GroundTruth read_truth(std::string const& path) {
   Hdf5Reader const file(path);
+  auto const check_length = [&](std::string const& name, std::size_t length, std::size_t wanted) {
+    if (length != wanted)
+      throw DataError(path, name + " has another length than /dots/position_m; render the case again");
+  };
   GroundTruth truth;
   std::vector<double> const position = file.read("/dots/position_m");
   truth.resize(position.size() / 3);
@@ -112,10 +116,7 @@ GroundTruth read_truth(std::string const& path) {
       continue;
     }
     std::vector<double> const values = file.read(dataset.name);
-    if (values.size() != 2 * truth.size()) {
-      throw DataError(path,
-                      std::string(dataset.name) + " has another length than /dots/position_m; render the case again");
-    }
+    check_length(dataset.name, values.size(), 2 * truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
   }
   std::vector<std::int64_t> const by_table =
@@ -124,22 +125,31 @@ GroundTruth read_truth(std::string const& path) {
     truth.path[i] = by_table.at(i) == 1 ? TruthPath::table : TruthPath::rays;
   }
   std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
-  for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays.at(2 * i), rays.at(2 * i + 1)};
+  check_length("/dots/rays", rays.size(), 2 * truth.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
   return truth;
 }
 
 FieldMap read_field_map(std::string const& path) {
   Hdf5Reader const file(path);
   FieldMap map;
-  map.spacing_px = static_cast<int>(file.read("/field/spacing_px").at(0));
+  std::vector<double> const spacing = file.read("/field/spacing_px");
   auto const shape = file.shape("/field/density_kg_m3");
-  int const rows = static_cast<int>(shape.at(0)), columns = static_cast<int>(shape.at(1));
-  map.density = Image<double>(columns, rows);
-  map.density_gradient = Image<Vec2d>(columns, rows);
-  map.eq9_px = Image<Vec2d>(columns, rows);
+  if (spacing.size() != 1 || shape.size() != 2 || !(spacing[0] >= 1 && spacing[0] <= 1e6)) {
+    throw DataError(path,
+                    "/field holds no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
+  }
+  map.spacing_px = static_cast<int>(spacing[0]);
   std::vector<double> const density = file.read("/field/density_kg_m3");
   std::vector<double> const gradient = file.read("/field/density_gradient_kg_m4");
   std::vector<double> const eq9 = file.read("/field/eq9_px");
+  if (gradient.size() != 2 * density.size() || eq9.size() != 2 * density.size()) {
+    throw DataError(path, "the maps in /field have unequal sizes; render the case again");
+  }
+  int const rows = static_cast<int>(shape[0]), columns = static_cast<int>(shape[1]);
+  map.density = Image<double>(columns, rows);
+  map.density_gradient = Image<Vec2d>(columns, rows);
+  map.eq9_px = Image<Vec2d>(columns, rows);
   for (std::size_t i = 0; i < map.density.size(); ++i) {
     map.density.data()[i] = density[i];
     map.density_gradient.data()[i] = {gradient[2 * i], gradient[2 * i + 1]};

@@ -1,3 +1,4 @@
+#include "render/scene/ray_plan.h"
 #include "studies/ray_file.h"
 #include "tests/fuzz/input.h"
 
