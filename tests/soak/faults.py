@@ -52,7 +52,8 @@ def case_files(bench, kind):
 def whole_case(bench, place, kind):
     """Renders, correlates and compares to the end; then only a case is there, with the known numbers."""
     case = os.path.join(place, "case")
-    for arguments in (("render", bench.at(f"{kind}.toml"), "-o", case), ("correlate", case), ("compare", case)):
+    for arguments in (("render", bench.at(f"{kind}.toml"), "-o", case), ("correlate", case),
+                      ("compare", case, "--no-figures")):
         bench.succeed(*arguments, "--quiet")
     if bench.errors(case) != bench.known[kind]["errors"]:
         raise Wrong("after the fault the same commands give other errors")
