@@ -1,6 +1,5 @@
 #include "studies/compare.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -173,69 +172,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   return vectors;
 }
 
-/// A file that a case should hold by now. @param command that makes it
-std::string made_file(std::string const& folder, char const* name, std::string const& command) {
-  std::string path = in_case(folder, name);
-  if (!std::filesystem::exists(path)) throw DataError(path, "is not there; make it with: " + command);
-  return path;
-}
-
-/// Where the vectors are. @throws DataError where they are not
-std::string vectors_path(std::string const& folder, std::string const& given) {
-  if (given.empty()) return made_file(folder, case_file::vectors, "gladstone correlate " + folder);
-  if (!std::filesystem::exists(given)) throw DataError(given, "does not exist; check --vectors");
-  if (std::filesystem::is_directory(given)) throw DataError(given, "is a folder; name a file of vectors");
-  return given;
-}
-
 }  // namespace
-
-namespace {
-
-/// The files that the setup names are read again: they must be those that the truth was traced through.
-void refuse_changed_inputs(std::string const& truth, std::string const& folder) {
-  nlohmann::json const inputs = nlohmann::json::parse(Hdf5Reader(truth).attribute("inputs_sha256"), nullptr, false);
-  if (!inputs.is_object()) return;
-  for (auto const& [path, hash] : inputs.items()) {
-    if (!std::filesystem::exists(path) || hash == byte_sha256(path)) continue;  // its reader says what is missing
-    throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); bring "
-                                      "the old file back, or render the case again",
-                                      folder));
-  }
-}
-
-}  // namespace
-
-ComparedFiles compared_files(std::string const& folder, std::string const& vectors) {
-  ComparedFiles files;
-  files.setup = in_case(folder, case_file::setup);
-  files.truth = made_file(folder, case_file::truth, "gladstone render SETUP.toml -o " + folder);
-  files.vectors = vectors_path(folder, vectors);
-  bool const hdf5 = files.vectors.ends_with(".h5") || files.vectors.ends_with(".hdf5");
-  SourceFiles& sources = files.sources;
-  sources.on_change("compare again, after gladstone correlate " + folder + " where the case was rendered anew");
-  sources.add("", files.setup, SourceFiles::Holds::bytes);
-  sources.add("truth", files.truth, SourceFiles::Holds::datasets);
-  sources.add("vectors", files.vectors, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-  refuse_changed_inputs(files.truth, folder);
-  if (!hdf5) files.unverified = files.vectors;
-  if (!hdf5) return files;
-  Hdf5Reader const truth(files.truth), measured(files.vectors);
-  for (std::string const frame : {"reference", "flow"}) {
-    std::string const mine = truth.attribute(frame + "_sha256"), theirs = measured.attribute(frame + "_sha256");
-    if (mine.empty() || theirs.empty()) {
-      files.unverified = theirs.empty() ? files.vectors : files.truth;
-    } else if (mine != theirs) {
-      throw DataError(files.vectors,
-                      fmt::format("was measured on other frames than {} belongs to (the SHA-256 of its {} frame's "
-                                  "pixels is {:.12}..., not {:.12}...); run gladstone correlate {} again, or give "
-                                  "vectors of frames that were changed on purpose as .csv",
-                                  files.truth, frame, theirs, mine, folder));
-    }
-    if (!theirs.empty()) sources.add_known(frame, theirs);
-  }
-  return files;
-}
 
 void name_sources(Comparison& comparison, ComparedFiles files) {
   comparison.verified = files.unverified.empty();

@@ -11,6 +11,7 @@
 #include "analysis/window_truth.h"
 #include "render/scene/renderer.h"
 #include "studies/case.h"
+#include "studies/compared_files.h"
 #include "studies/device.h"
 
 namespace gladstone {
@@ -79,16 +80,6 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
                            MeasuredVectors vectors, PointTruth truth, Device const& device,
                            TruthAt at = TruthAt::mid_position);
-
-/// The files that a comparison reads: setup, truth and vectors of a CASE, as they are now.
-struct ComparedFiles {
-  std::string setup, truth, vectors;
-  SourceFiles sources;
-  std::string unverified;  ///< which of them does not tell its frames; empty: both do, and they are the same
-};
-/// @param vectors a file; empty: those of the case
-/// @throws DataError where one is not there, or the vectors were measured on other frames than the truth belongs to
-ComparedFiles compared_files(std::string const& folder, std::string const& vectors);
 
 /// Lets a comparison's errors.json name those files by what they hold.
 void name_sources(Comparison& comparison, ComparedFiles files);
