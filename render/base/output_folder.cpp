@@ -51,7 +51,7 @@ OutputFolder::OutputFolder(std::string const& path, FolderContent content)
     }
     if (!S_ISDIR(there.st_mode)) throw OutputError(place_.asked(), "is a file; name a folder");
     refuse_foreign_folder();
-    remove_leftovers(place_.path(), inside);
+    remove_leftovers(place_.path());
     stage(place_.path(), inside);
     return;
   }

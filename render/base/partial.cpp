@@ -207,15 +207,31 @@ std::string writer_of(std::string const& folder) {
   return writer ? "process " + writer->process + " on host " + writer->host : "another process";
 }
 
-void remove_leftovers(std::string const& parent, std::string const& stem) {
+namespace {
+
+/// @param chosen tells by a name
+template <class Chosen>
+void remove_dead(std::string const& folder, Chosen const& chosen) {
   std::vector<fs::path> found;
   std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end; entry.increment(error)) {
-    if (is_partial(entry->path().filename().string(), stem)) found.push_back(entry->path());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (chosen(entry->path().filename().string())) found.push_back(entry->path());
   }
   for (fs::path const& path : found) {
     if (auto const taken = Leftover::take(path.string())) fs::remove_all(path, error);
   }
+}
+
+}  // namespace
+
+void remove_leftovers(std::string const& parent, std::string const& stem) {
+  remove_dead(parent, [&](std::string const& name) { return is_partial(name, stem); });
+}
+
+void remove_leftovers(std::string const& folder) {
+  remove_dead(folder, [](std::string const& name) {
+    return name.starts_with('.') && name.find('.' + std::string(label)) != std::string::npos;
+  });
 }
 
 std::string stem_beside(std::string const& name) {

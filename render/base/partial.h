@@ -61,6 +61,9 @@ std::string writer_of(std::string const& folder);
 /// Removes the partials with this stem in a folder whose writers are dead.
 void remove_leftovers(std::string const& parent, std::string const& stem);
 
+/// The same of every stem; for folders that are gladstone's own.
+void remove_leftovers(std::string const& folder);
+
 /// The stem of what belongs to a name beside it: ".NAME.", shortened where the file system's limit on names would be
 /// exceeded.
 std::string stem_beside(std::string const& name);

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 /// @return what was drawn
 std::vector<fs::path> write_results(std::string const& place, Comparison const& comparison, std::string const& json,
                                     bool figures) {
+  remove_leftovers(place, stem_beside("comparison"));
   Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
   fs::path const made = fs::path(staging.path()) / "figures";
   fs::create_directory(made);

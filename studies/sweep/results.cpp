@@ -28,8 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int result_version = 2;
 constexpr std::size_t hash_digits = 16;
-constexpr char const* partial_of_result = ".json.partial-";  // as stem_beside() and Partial name it
-constexpr std::string_view head = "{\"hash\":\"";            // then the digits, then `",` and what is hashed
+constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_of(Json const& json) {
@@ -216,14 +215,7 @@ void remove_result(std::string const& run, std::size_t index) {
 }
 
 void remove_left_partials(std::string const& run) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  for (fs::directory_iterator entry(fs::path(run) / run_file::cases, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (entry->path().filename().string().find(partial_of_result) == std::string::npos) continue;
-    std::error_code gone;
-    if (auto const taken = Leftover::take(entry->path().string())) fs::remove(entry->path(), gone);
-  }
+  remove_leftovers((std::filesystem::path(run) / run_file::cases).string());
 }
 
 void write_result(std::string const& run, CaseResult const& result) {

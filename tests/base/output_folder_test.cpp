@@ -246,6 +246,19 @@ TEST_F(OutputFolderTest, OfTwoWritersTheLastOneWinsAndNothingIsLeft) {
   }
 }
 
+TEST_F(OutputFolderTest, WhatKilledWritersOfItsFilesLeftGoesToo) {
+  write_old_case();
+  pid_t const child = fork();
+  if (child == 0) {
+    Partial const vectors(in_folder("case"), ".vectors.h5.", Partial::Kind::file);
+    Partial const figures(in_folder("case"), ".comparison.", Partial::Kind::folder);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  write_case("new");
+  EXPECT_THAT(names("case"), ElementsAre("flow.tif", "maps", "notes.txt", "setup.toml"));
+}
+
 // Where the marker is, all files are of one version; where it is not, the next look completes the new one.
 TEST_F(OutputFolderTest, KilledAtAnyStepItIsTheOldCaseOrTheNewOne) {
   bool ended = false;
