@@ -53,6 +53,7 @@ std::string metres_hint(double length) {
 
 constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a thickness of "auto" may take
 constexpr double negligible_loss = 0.01;  // of a field's displacement, cut off by a thickness that the user chose
+constexpr double noticeable_loss = 1e-4;  // cut off where the user chose none: 1e-4 px in a pixel, as truth is good to
 
 /// Writes down what thickness_mm = "auto" came to; a field with a size ends short of the dots and the lens.
 void resolve_thickness(Setup& setup, SetupTable medium) {
@@ -71,7 +72,7 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
 void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
   MediumSetup const& slab = setup.medium;
   double const mm = unit::millimetre, lost = cut_off_share(slab);
-  bool const limited = slab.automatic_thickness && slab.thickness < automatic_thickness_mm(slab.field) * mm;
+  bool const limited = slab.automatic_thickness && lost > noticeable_loss;
   if (limited || lost > negligible_loss) {
     warnings.push_back(fmt::format(
         "medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} mm radius "

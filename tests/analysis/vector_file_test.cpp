@@ -169,6 +169,14 @@ TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
   EXPECT_EQ(back.field.sigma_px[0], (Vec2d{0.1, 0.2}));
 }
 
+// What no double holds is a number all the same: one vector is left out for it, not the file refused.
+TEST_F(VectorFiles, NumbersBeyondDoublesAreInfinite) {
+  VectorFile const back = read_vectors(file("n.csv", "x,y,u,v\n1e400,-1e400,1e-400,inf\n"));
+  double const infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(back.field.position_px[0], (Vec2d{infinity, -infinity}));
+  EXPECT_EQ(back.field.displacement_px[0], (Vec2d{0.0, infinity}));
+}
+
 TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
   EXPECT_THAT(problem(""), AllOf(HasSubstr("bad.csv:1"), HasSubstr("empty")));
   EXPECT_THAT(problem("x,y,u,v\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("no row")));
