@@ -52,8 +52,12 @@ test: configure  ## build and run every test; of some rooms: TESTED='base medium
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
 		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$')
 
-demo: build  ## the seed's experiment from setup to error report, into out/demo
+demo: build  ## the seed's experiment from setup to error report, into out/demo; README's passage and figures: DOCS=1
 	$(BUILD)/bin/gladstone demo -o out/demo
+	@[ -z "$(DOCS)" ] || { cp out/demo/figure4.png out/demo/agreement.png docs && awk ' \
+		FNR == NR { if (/^## /) told = 1; if (FNR > 1 && !told) { gsub(/\]\(/, "](docs/"); story = story $$0 "\n" } next } \
+		/^## / { inside = 0 } !inside; /^## What the demo shows/ { inside = 1; printf "%s", story }' \
+		out/demo/summary.md README.md > out/demo/README.md && cp out/demo/README.md README.md; }
 
 studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number z_d'; a GPU: DEVICE=cuda; docs' figures: DOCS=1
 	@for study in $(STUDIES); do run=out/studies/$$study; \

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "render/base/contracts.h"
 #include "render/medium/density_field.h"
@@ -13,18 +12,7 @@ namespace gladstone {
 namespace {
 
 constexpr int pieces_across = 4;  // of the plane, for the jackknife
-
-/// Which piece of a periodic plane of `plane_nodes` a place on the medium's mid-plane belongs to.
-std::size_t piece_at(Vec2d place, FieldSetup const& field, int plane_nodes) {
-  auto const index = [&](double along, double centre, double spacing) {
-    double const node = (along - centre) / spacing + 0.5 * (plane_nodes - 1);
-    double const share = node / plane_nodes - std::floor(node / plane_nodes);
-    return std::min(static_cast<int>(share * pieces_across), pieces_across - 1);
-  };
-  int const column = index(place.x, field.center.x, field.spacing->x);
-  int const row = index(place.y, field.center.y, field.spacing->y);
-  return static_cast<std::size_t>(row * pieces_across + column);
-}
+constexpr int dots_across = 96;   // of the whole plane: at 512 nodes half the size of the turbulence's structures
 
 using Pieces = std::array<AgreementSums, pieces_across * pieces_across>;
 
@@ -75,15 +63,6 @@ double AgreementSums::cone_px() const { return std::sqrt(cone / (2 * static_cast
 double AgreementSums::rays_px() const { return std::sqrt(rays / (2 * static_cast<double>(dots))); }
 Agreement AgreementSums::agreement() const { return {eq9_rays / std::sqrt(eq9 * rays), std::sqrt(rays / eq9)}; }
 
-AgreementSums agreement_in_view(Scene const& scene, GroundTruth const& truth) {
-  AgreementSums sums;
-  auto const sensor = scene.view().sensor;
-  for (std::size_t dot = 0; dot < truth.size(); ++dot) {
-    if (sensor.covers(truth.reference_px[dot])) sums.add(truth, dot);
-  }
-  return sums;
-}
-
 Image<double> field_plane(FieldSetup const& field) {
   auto const source = open_field(field.file, field.dataset);
   RegularGrid const& grid = source->grid();
@@ -97,23 +76,30 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
   FieldSetup& field = setup.medium.field;
   int const plane_nodes = open_field(field.file, field.dataset)->grid().nodes[0];
   GLADSTONE_EXPECTS(nodes > 0 && plane_nodes % nodes == 0 && setup.render.rays_per_dot);
-  int const views = plane_nodes / nodes;
+  int const views = plane_nodes / nodes, dots = dots_across / views;
+  GLADSTONE_EXPECTS(dots * views == dots_across);
   field.spacing = Vec3d{spacing, spacing, spacing};
-  setup.target.dots_per_32px_window /= views * views;
-  setup.view_margin_px = 0;
-  std::uint64_t const seed = setup.target.seed;
+  double const pitch = nodes * spacing / dots * setup.z_b() / setup.z_a;  // on the target
   Pieces pieces;
   for (int row = 0; row < views; ++row) {
     for (int column = 0; column < views; ++column) {
-      field.center = {column * nodes * spacing, row * nodes * spacing, 0};
-      setup.target.seed = seed + static_cast<std::uint64_t>(row * views + column);
+      field.center = {-column * nodes * spacing, -row * nodes * spacing, 0};
       Scene scene = build_scene(setup);
+      scene.dots.centre.clear();
+      for (int j = 0; j < dots; ++j) {
+        for (int i = 0; i < dots; ++i)
+          scene.dots.centre.push_back({pitch * (i - 0.5 * (dots - 1)), pitch * (j - 0.5 * (dots - 1))});
+      }
       plan_step(scene);
       scene.rays_per_dot = *setup.render.rays_per_dot;
       GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
-      for (std::size_t dot = 0; dot < truth.size(); ++dot) {
-        Vec2d const on_medium = scene.dots.centre[dot] * (setup.z_a / setup.z_b());
-        pieces[piece_at(on_medium, field, plane_nodes)].add(truth, dot);
+      for (int j = 0; j < dots; ++j) {
+        for (int i = 0; i < dots; ++i) {
+          int const piece_row = (row * dots + j) * pieces_across / dots_across;
+          int const piece_column = (column * dots + i) * pieces_across / dots_across;
+          pieces[static_cast<std::size_t>(piece_row * pieces_across + piece_column)].add(
+              truth, static_cast<std::size_t>(j * dots + i));
+        }
       }
     }
   }

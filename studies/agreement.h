@@ -13,7 +13,7 @@ struct AgreementSums {
   double eq9 = 0, cone = 0, rays = 0, eq9_rays = 0;  ///< of squares and of the product [px^2]
   std::size_t dots = 0;
 
-  /// Adds the dots of a truth that have rays in both frames and are seen by the camera.
+  /// Adds a dot that has rays in both frames; leaves out another.
   void add(GroundTruth const& truth, std::size_t i);
   AgreementSums& operator+=(AgreementSums const& other);
   AgreementSums operator-(AgreementSums const& part) const;
@@ -23,9 +23,6 @@ struct AgreementSums {
   double rays_px() const;
   Agreement agreement() const;
 };
-
-/// Over the dots of a truth that the camera sees.
-AgreementSums agreement_in_view(Scene const& scene, GroundTruth const& truth);
 
 /// Agreement over a whole plane.
 struct PlaneAgreement {
@@ -38,13 +35,12 @@ struct PlaneAgreement {
 /// The plane's nodes of a setup whose field is one periodic plane in a file.
 Image<double> field_plane(FieldSetup const& field);
 
-/// Spacing at which so many nodes reach across `width` [m].
-inline double spacing_across(double width, int nodes) { return width / (nodes - 1); }
-
-/// Traces the setup's dots over the whole of its periodic square plane, of which the view shows `nodes` by `nodes`
-/// nodes at `spacing` at a time: as many views as the plane holds, which share the dots of one.
-/// @param setup with rays_per_dot as a number; spacing and centre of its field do not count
-/// @pre the plane's nodes are a multiple of `nodes`
+/// Traces dots on one lattice, 96 by 96, over the whole of the setup's periodic square plane, of which the view shows
+/// `nodes` by `nodes` nodes at `spacing` at a time: as many views as the plane holds.
+/// @param setup with rays_per_dot as a number and a target of discs or points; spacing and centre of its field do not
+///              count, nor do the places of its dots
+/// @param spacing of the plane's nodes [m]
+/// @pre the plane holds 1, 2, 3, 4, 6, 8 ... views along an axis, a divisor of 96
 PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Renderer& renderer);
 
 }  // namespace gladstone

@@ -67,27 +67,6 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   return json;
 }
 
-/// Largest strain of Eq. 9 within half a window of every vector [px/px]: one front in the window spoils it.
-std::vector<double> strain_at(Scene const& scene, std::vector<Vec2d> const& positions, int window_px) {
-  int const spacing = std::max(1, std::max(scene.setup.camera.columns, scene.setup.camera.rows) / 2048);
-  Image<double> const strain = strain_of(map_field(scene, spacing).eq9_px, spacing).strain;
-  std::vector<double> largest;
-  largest.reserve(positions.size());
-  for (Vec2d const& p : positions) {
-    double const half = 0.5 * window_px;
-    int const left = std::max(0, static_cast<int>((p.x - half) / spacing));
-    int const right = std::min(strain.columns() - 1, static_cast<int>((p.x + half) / spacing));
-    int const top = std::max(0, static_cast<int>((p.y - half) / spacing));
-    int const bottom = std::min(strain.rows() - 1, static_cast<int>((p.y + half) / spacing));
-    double value = 0;
-    for (int row = top; row <= bottom; ++row) {
-      for (int column = left; column <= right; ++column) value = std::max(value, strain(column, row));
-    }
-    largest.push_back(value);
-  }
-  return largest;
-}
-
 /// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not
 /// change.
 std::vector<double> correlation_flux(GroundTruth const& truth) {
@@ -336,15 +315,6 @@ std::string errors_json(Comparison const& comparison) {
     json["made_from"] = made_from;
   }
   return json_text(json) + "\n";
-}
-
-VectorMask gentle_mask(Comparison const& comparison, Scene const& scene, int window_px, double limit) {
-  VectorMask mask = comparison.mask;
-  std::vector<double> const strain = strain_at(scene, comparison.measured.position_px, window_px);
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (!(strain[i] <= limit)) mask[i] = 0;
-  }
-  return mask;
 }
 
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison) {

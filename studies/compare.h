@@ -90,9 +90,6 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
 /// errors.json: for each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
 std::string errors_json(Comparison const& comparison);
 
-/// Mask of the vectors on whose window Eq. 9 strains by at most `limit` [px/px]: one front in the window spoils it.
-VectorMask gentle_mask(Comparison const& comparison, Scene const& scene, int window_px, double limit);
-
 /// Draws displacement maps, histograms, error against gradient and the budget into the CASE. @return their paths
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison);
 

@@ -11,10 +11,13 @@
 #include "render/base/error.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
+#include "render/base/units.h"
 #include "studies/case.h"
 #include "studies/compare.h"
 #include "studies/correlate.h"
+#include "studies/demo_story.h"
 #include "studies/error_report.h"
+#include "studies/figures/agreement_figure.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
 #include "studies/truth_file.h"
@@ -22,19 +25,34 @@
 namespace gladstone {
 namespace {
 
-constexpr double gentle_strain = 0.3;
-
-/// One instant of the demo.
+/// One instant of the turbulence field.
 struct Instant {
   char const* name;
-  char const* heading;
+  char const* time;
+  char const* what;
   char const* file;
-  int rays;  ///< a dot; fronts need more
 };
 constexpr Instant instants[] = {
-    {"kepeak", "t = 2.56, just after the peak of kinetic energy", "hbdt512_kepeak_slice.h5", 512},
-    {"late", "t = 6.00, decayed", "hbdt512_late_slice.h5", 256},
+    {"kepeak", "t = 2.56", "just after the peak of kinetic energy", "hbdt512_kepeak_slice.h5"},
+    {"late", "t = 6.00", "decayed", "hbdt512_late_slice.h5"},
 };
+
+/// How many nodes of the planes reach across 32.7 mm, and the spacing that makes them do so.
+struct Fineness {
+  int nodes;
+  double spacing_mm;
+};
+/// First that of the paper's authors' sample field.
+constexpr Fineness finenesses[] = {{64, 0.519}, {128, 0.2575}, {256, 0.1282}, {512, 0.06399}};
+
+constexpr int rays_of_case = 256, rays_of_planes = 64;  // a dot
+
+CaseSetup load_instant(std::string const& shared, Instant const& instant, Fineness fineness, int rays) {
+  return load_case_setup(shared + "/studies/cases/table1.toml",
+                         {fmt::format("medium.field.file=\"{}/data/fields/{}\"", shared, instant.file),
+                          fmt::format("medium.field.spacing_mm=[{0}, {0}, {0}]", fineness.spacing_mm),
+                          fmt::format("render.rays_per_dot={}", rays)});
+}
 
 MapAxes axes_of(FieldMap const& field) {
   Vec2d const first = field.position_px(0, 0);
@@ -50,46 +68,68 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
   SeedFigure4Instant instant;
   instant.heading = heading;
   instant.density = field.density;
-  for (auto* map : {&instant.gradient_x, &instant.gradient_y, &instant.theory_u, &instant.theory_v}) {
+  instant.theory.name = "Eq. 9";
+  for (auto* map : {&instant.gradient_x, &instant.gradient_y, &instant.theory.u_px, &instant.theory.v_px}) {
     *map = Image<double>(columns, rows);
   }
   for (std::size_t i = 0; i < field.density.size(); ++i) {
     instant.gradient_x.data()[i] = field.density_gradient.data()[i].x;
     instant.gradient_y.data()[i] = field.density_gradient.data()[i].y;
-    instant.theory_u.data()[i] = field.eq9_px.data()[i].x;
-    instant.theory_v.data()[i] = field.eq9_px.data()[i].y;
+    instant.theory.u_px.data()[i] = field.eq9_px.data()[i].x;
+    instant.theory.v_px.data()[i] = field.eq9_px.data()[i].y;
   }
   MapGrid const grid{columns, rows, field.position_px(0, 0), static_cast<double>(field.spacing_px)};
-  DisplacementMaps rays = map_scattered(truth.reference_px, truth.displacement_px, grid);
-  instant.rays_u = std::move(rays.u_px);
-  instant.rays_v = std::move(rays.v_px);
+  auto const on_grid = [&](char const* name, std::vector<Vec2d> const& displacement_px) {
+    DisplacementMaps maps = map_scattered(truth.reference_px, displacement_px, grid);
+    return NamedMaps{name, std::move(maps.u_px), std::move(maps.v_px)};
+  };
+  instant.cone = on_grid("cone-averaged", truth.eq9_cone_px);
+  instant.rays = on_grid("light rays", truth.displacement_px);
   return instant;
 }
 
-/// What another scrambling of the rays would change.
-std::string monte_carlo_error(Setup const& setup) {
-  Scene scene = build_scene(setup);
-  plan_step(scene);
-  plan_rays(scene);
-  RaysPlan const error = measure_rays(scene);
-  return fmt::format(
-      "Monte Carlo error at {} rays a dot, rms: truth {:.4f} px per component, images {:.2f} % of full scale over lit\n"
-      "pixels of the worse frame (four scramblings of 96 dots).\n\n",
-      error.rays, error.truth_error_px, 100 * error.image_error_levels / (std::pow(2.0, error.bits) - 1));
+/// The numbers of the paper's case, over the vectors that are compared.
+DemoInstant::Paper paper_numbers(Comparison const& comparison) {
+  VectorMask const& mask = comparison.mask;
+  DemoInstant::Paper paper;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i]) paper.sums.add(comparison.point, i);
+  }
+  auto const rms = [&](std::vector<Vec2d> const& one, std::vector<Vec2d> const& other) {
+    return summarize_errors(one, other, mask).rms_px;
+  };
+  std::vector<Vec2d> const& measured = comparison.measured.displacement_px;
+  paper.cone_minus_rays_px = rms(comparison.point.eq9_cone_px, comparison.point.displacement_px);
+  paper.measured_minus_rays_px = rms(measured, comparison.point.displacement_px);
+  paper.measured_minus_window_px = rms(measured, comparison.window.displacement_px);
+  paper.report = error_report(comparison);
+  return paper;
 }
 
-std::string table_row(std::string const& name, Comparison const& comparison, VectorMask const& mask) {
-  std::vector<Vec2d> const& measured = comparison.measured.displacement_px;
-  auto const rms = [&](std::vector<Vec2d> const& truth) { return summarize_errors(measured, truth, mask).rms_px; };
-  ErrorSummary const against_rays = summarize_errors(measured, comparison.point.displacement_px, mask);
-  std::vector<Vec2d> const zero(measured.size());
-  double const signal = summarize_errors(comparison.point.displacement_px, zero, mask).rms_px;
-  double const theory = summarize_errors(comparison.point.eq9_px, comparison.point.displacement_px, mask).rms_px;
-  double const cone = summarize_errors(comparison.point.eq9_cone_px, comparison.point.displacement_px, mask).rms_px;
-  return fmt::format("| {} | {} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.4f} | {:.1f} % |\n", name,
-                     against_rays.count, signal, theory, cone, against_rays.rms_px,
-                     rms(comparison.window.displacement_px), rms(comparison.point.eq9_cone_px),
-                     rms(comparison.point.eq9_px), 100 * against_rays.gross_fraction);
+/// The planes of an instant from coarse to fine, traced and predicted.
+std::vector<DemoInstant::Plane> trace_planes(Setup const& setup, GradientSpectrum const& spectrum, Renderer& renderer) {
+  std::vector<DemoInstant::Plane> planes;
+  for (Fineness const& fineness : finenesses) {
+    double const spacing = fineness.spacing_mm * unit::millimetre;
+    planes.push_back({fineness.nodes, spectrum.structure_size() * spacing / cone_width(setup),
+                      agreement_over_plane(setup, fineness.nodes, spacing, renderer),
+                      predicted_agreement(spectrum, spacing, setup)});
+  }
+  return planes;
+}
+
+/// Points and curve of an instant in the agreement figure.
+AgreementSeries agreement_series(Setup const& setup, GradientSpectrum const& spectrum, DemoInstant const& instant) {
+  AgreementSeries series;
+  series.name = instant.time;
+  for (DemoInstant::Plane const& plane : instant.planes) {
+    series.points.push_back({plane.size_over_cone, plane.nodes, plane.traced.sums.agreement(), plane.traced.error});
+  }
+  for (double const size : agreement_sizes()) {
+    double const spacing = size * cone_width(setup) / spectrum.structure_size();
+    series.prediction.push_back({size, predicted_agreement(spectrum, spacing, setup)});
+  }
+  return series;
 }
 
 }  // namespace
@@ -110,17 +150,21 @@ std::string run_demo(std::string const& folder, Device const& device) {
   namespace fs = std::filesystem;
   auto const start = std::chrono::steady_clock::now();
   std::string const shared = shared_folder();
-  std::string rows, reports;
+  std::vector<DemoInstant> found;
   std::vector<SeedFigure4Instant> panels;
+  std::vector<AgreementSeries> series;
   MapAxes axes;  // of both: one camera
+  Setup paper;   // likewise, but for its field
   OutputFile const tried((fs::path(folder) / "summary.md").string());
   for (Instant const& instant : instants) OutputFolder((fs::path(folder) / instant.name).string(), case_content());
   for (Instant const& instant : instants) {
-    spdlog::info("{}: {}", instant.name, instant.heading);
+    DemoInstant& result = found.emplace_back();
+    result.time = instant.time;
+    result.heading = fmt::format("{}, {}", instant.time, instant.what);
+    spdlog::info("{}: {}", instant.name, result.heading);
     std::string const place = (fs::path(folder) / instant.name).string();
-    CaseSetup loaded = load_case_setup(shared + "/studies/cases/table1.toml",
-                                       {fmt::format("medium.field.file=\"{}/data/fields/{}\"", shared, instant.file),
-                                        fmt::format("render.rays_per_dot={}", instant.rays)});
+    CaseSetup loaded = load_instant(shared, instant, finenesses[0], rays_of_case);
+    paper = loaded.setup;
     refuse_case_over_inputs(place, loaded.document.file_names());
     FinishedCase const made = render_to_folder(loaded, *device.renderer, place);
     spdlog::info("{}: correlating", instant.name);
@@ -133,15 +177,7 @@ std::string run_demo(std::string const& folder, Device const& device) {
         truth_of_vectors(made.prepared, *device.renderer, measured.field.position_px, TruthAt::mid_position), device);
     name_sources(comparison, compared_files(place, ""));
     OutputFile::write_text(in_case(place, case_file::errors), errors_json(comparison));
-    rows += table_row(fmt::format("{}, all vectors", instant.name), comparison, comparison.mask);
-    VectorMask const gentle =
-        gentle_mask(comparison, made.prepared.scene, loaded.correlate.window_px.back(), gentle_strain);
-    rows += table_row(fmt::format("{}, strain <= {}", instant.name, gentle_strain), comparison, gentle);
-    VectorMask steep = comparison.mask;
-    for (std::size_t i = 0; i < steep.size(); ++i) steep[i] = steep[i] && !gentle[i];
-    rows += table_row(fmt::format("{}, strain > {}", instant.name, gentle_strain), comparison, steep);
-    reports += fmt::format("## {}: {}\n\n{}```\n{}```\n\n", instant.name, instant.heading,
-                           monte_carlo_error(loaded.setup), error_report(comparison));
+    result.paper = paper_numbers(comparison);
     try {
       draw_comparison(place, comparison);
     } catch (GnuplotMissing const& missing) {
@@ -150,28 +186,26 @@ std::string run_demo(std::string const& folder, Device const& device) {
     std::string const truth_path = in_case(place, case_file::truth);
     FieldMap const field = read_field_map(truth_path);
     axes = axes_of(field);
-    panels.push_back(figure_instant(instant.heading, field, dots));
+    panels.push_back(figure_instant(result.heading, field, dots));
+    spdlog::info("{}: tracing finer fields", instant.name);
+    Setup plane = loaded.setup;
+    plane.render.rays_per_dot = rays_of_planes;
+    GradientSpectrum const spectrum = gradient_spectrum(field_plane(plane.medium.field));
+    result.planes = trace_planes(plane, spectrum, *device.renderer);
+    series.push_back(agreement_series(plane, spectrum, result));
   }
   try {
     write_seed_figure4((fs::path(folder) / "figure4.png").string(), axes, panels);
+    std::vector<double> single_wave;
+    for (double const size : agreement_sizes())
+      single_wave.push_back(std::abs(cone_transfer(paper, size * cone_width(paper))));
+    write_agreement_figure((fs::path(folder) / "agreement.png").string(), series, single_wave);
   } catch (GnuplotMissing const& missing) {
     spdlog::warn("{}", missing.what());
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string const text =
-      "# The seed's experiment\n\n"
-      "Rajendran, Bane & Vlachos, section 4, Table 1: Z_A 0.75 m, Z_D 0.25 m, 105 mm, f/11, 10 um pixels, 512 x 512 "
-      "px, 20 dots in\n"
-      "32 x 32 px, density field 10 mm deep. Root mean squares in px per component. Vectors are told apart by the "
-      "largest strain of\n"
-      "Eq. 9 on their window: where it exceeds 0.3 a single ray's displacement changes by a third of the way to its "
-      "neighbour, and\n"
-      "at 1 rays cross. The earlier instant has such fronts; the late one is the quantitative case.\n\n"
-      "| vectors | count | signal | Eq. 9 - rays | cone Eq. 9 - rays | measured - rays | measured - rays on the window "
-      "| measured - cone "
-      "Eq. 9 | measured - Eq. 9 | over 1 px |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n" +
-      rows + "\n" + reports +
+      "# What the demo shows\n\n" + demo_story(paper, found) + "\n" + demo_details(found) +
       fmt::format(
           "Made in {:.0f} s on {}. Each folder holds the images, truth.h5, vectors.h5, errors.json and figures.\n",
           seconds, device.name());

@@ -58,22 +58,25 @@ void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vecto
   GLADSTONE_EXPECTS(!instants.empty());
   MapFigure figure;
   figure.axes = axes;
-  figure.columns = 4;
+  figure.columns = 5;
   for (SeedFigure4Instant const& instant : instants) {
     Image<double> magnitude(instant.gradient_x.columns(), instant.gradient_x.rows());
     std::transform(instant.gradient_x.begin(), instant.gradient_x.end(), instant.gradient_y.begin(), magnitude.begin(),
                    [](double x, double y) { return std::hypot(x, y); });
-    auto const group = [&](char const* quantity) { return fmt::format("{} {}", quantity, figure.panels.size() / 8); };
-    std::string const gradient = group("gradient"), theory = group("theory"), rays = group("rays");
+    std::string const gradient = "gradient of " + instant.heading, displacement = "displacement of " + instant.heading;
+    auto const add_displacements = [&](char const* component, Image<double> NamedMaps::*map) {
+      for (NamedMaps const& source : {instant.theory, instant.cone, instant.rays}) {
+        figure.panels.push_back(
+            {fmt::format("Δ{}, {} [px]", component, source.name), source.*map, ColourScale::diverging, displacement});
+      }
+    };
     figure.panels.push_back({"ρ [kg/m³]", instant.density, ColourScale::sequential});
     figure.panels.push_back({"∂ρ/∂x [kg/m⁴]", instant.gradient_x, ColourScale::diverging, gradient});
-    figure.panels.push_back({"Δx, theory (Eq. 9) [px]", instant.theory_u, ColourScale::diverging, theory});
-    figure.panels.push_back({"Δx, light rays [px]", instant.rays_u, ColourScale::diverging, rays});
+    add_displacements("x", &NamedMaps::u_px);
     figure.panels.push_back({"|∇ρ| [kg/m⁴]", std::move(magnitude), ColourScale::magnitude});
     figure.panels.push_back({"∂ρ/∂y [kg/m⁴]", instant.gradient_y, ColourScale::diverging, gradient});
-    figure.panels.push_back({"Δy, theory (Eq. 9) [px]", instant.theory_v, ColourScale::diverging, theory});
-    figure.panels.push_back({"Δy, light rays [px]", instant.rays_v, ColourScale::diverging, rays});
-    figure.row_headings.push_back(instant.heading);
+    add_displacements("y", &NamedMaps::v_px);
+    figure.row_headings.push_back(instant.heading + "  (its six displacements have one range of colours)");
     figure.row_headings.emplace_back();
   }
   write_map_figure(path, figure);

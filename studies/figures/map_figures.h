@@ -26,14 +26,14 @@ struct SeedFigure4Instant {
   std::string heading;                   ///< "t = 2.56, after the peak of kinetic energy"
   Image<double> density;                 ///< [kg/m^3]
   Image<double> gradient_x, gradient_y;  ///< d rho/dx, d rho/dy, y upwards [kg/m^4]
-  Image<double> theory_u, theory_v;      ///< Eq. 9 [px], v downwards
-  Image<double> rays_u, rays_v;          ///< ray displacement interpolated onto the grid [px], v downwards
+  NamedMaps theory;                      ///< Eq. 9
+  NamedMaps cone;                        ///< Eq. 9 averaged over the cone, interpolated as the rays are
+  NamedMaps rays;                        ///< ray displacement interpolated onto the grid
 };
 
 /// Rajendran, Bane & Vlachos, Figure 4: contours of density, density gradients, theoretical displacements, simulated
-/// light ray displacements; two rows an instant. Both components share their range; theory and rays have each their
-/// own, since the ray cone smooths fine structures to a fraction of Eq. 9. The magnitude of the gradient fills the
-/// place below the density.
+/// light ray displacements, and between these Eq. 9 averaged over the ray cone; two rows an instant, whose
+/// displacements share one range, as its gradients do. The magnitude of the gradient fills the place below the density.
 void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants);
 
 }  // namespace gladstone

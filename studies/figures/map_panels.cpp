@@ -77,22 +77,49 @@ double tic_step(double length, double most) {
 
 /// Lengths of the layout, in pixels of the picture.
 struct Layout {
-  static constexpr int left = 40, right = 74, above = 34, below = 28, edge = 14, bar_gap = 10, bar = 13;
-  static constexpr int axis_label = 26, title = 44, heading = 34;
+  static constexpr int above = 34, below = 28, edge = 14, bar_gap = 10, bar = 13;
+  static constexpr int title = 44, heading = 34;
+  int left = 40, right = 74, axis_label = 26;
   int map_width = 300;
   int map_height = 300;
+  bool inner_tics = true;  ///< numbers along every panel, not along the outer ones alone
 };
 
 /// The largest map of the data's proportions that fits the width, at most 1.5 times as high.
 Layout layout_of(MapFigure const& figure, Image<double> const& map) {
   Layout layout;
   layout.map_width = figure.columns >= 4 ? 270 : 330;
+  if (figure.columns >= 5) {
+    layout.map_width = 200;
+    layout.axis_label += layout.left - 12;
+    layout.left = 12;
+    layout.right = 72;
+    layout.inner_tics = false;
+  }
   double const width = map.columns() * std::abs(figure.axes.x_step);
   double const height = map.rows() * std::abs(figure.axes.y_step);
   double const ratio = height / width;
   if (ratio > 1.5) layout.map_width = std::max(60, static_cast<int>(layout.map_width * 1.5 / ratio));
   layout.map_height = std::max(40, static_cast<int>(std::lround(layout.map_width * ratio)));
   return layout;
+}
+
+/// Five tics from one end of the range to the other, so that its limits can be read.
+std::string colour_tics(ColourRange range) {
+  constexpr int steps = 4;
+  double const largest = std::max(std::abs(range.lower), std::abs(range.upper));
+  // three digits of the range's width, and whatever stands before them
+  int const decimals = static_cast<int>(2 - std::floor(std::log10(range.upper - range.lower)));
+  std::string tics;
+  for (int i = 0; i <= steps; ++i) {
+    double const value = range.lower + (range.upper - range.lower) * i / steps;
+    bool const zero = std::abs(value) < 1e-9 * largest;
+    std::string const text = zero           ? "0"
+                             : decimals > 5 ? fmt::format("{:.2e}", value)
+                                            : fmt::format("{:.{}f}", value, std::max(0, decimals));
+    tics += fmt::format("{}{} {:.10g}", i == 0 ? "" : ", ", GnuplotFigure::quoted_tic(text), value);
+  }
+  return tics;
 }
 
 /// Averages blocks of pixels where the map is much finer than the picture, so that nothing aliases.
@@ -133,7 +160,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
   };
 
   // Pixel positions of the rows from the top.
-  int const cell_width = Layout::left + layout.map_width + Layout::right;
+  int const cell_width = layout.left + layout.map_width + layout.right;
   int const cell_height = Layout::above + layout.map_height + Layout::below;
   std::vector<int> top(static_cast<std::size_t>(rows));
   int y = Layout::edge + (figure.title.empty() ? 0 : Layout::title);
@@ -142,8 +169,8 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
     top[static_cast<std::size_t>(row)] = y;
     y += cell_height;
   }
-  int const width = 2 * Layout::edge + Layout::axis_label + figure.columns * cell_width;
-  int const height = y + Layout::axis_label + Layout::edge;
+  int const width = 2 * Layout::edge + layout.axis_label + figure.columns * cell_width;
+  int const height = y + layout.axis_label + Layout::edge;
 
   GnuplotFigure plot(width, height);
   auto const screen_x = [&](double x_px) { return x_px / width; };
@@ -157,7 +184,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
     if (heading_of(row).empty()) continue;
     plot.command(fmt::format(
         "set label {} {} at screen {:.6f}, {:.6f} left font 'DejaVu Sans Bold,13' textcolor '#101010'", row + 2,
-        GnuplotFigure::quoted(heading_of(row)), screen_x(Layout::edge + Layout::axis_label + Layout::left),
+        GnuplotFigure::quoted(heading_of(row)), screen_x(Layout::edge + layout.axis_label + layout.left),
         screen_y(top[static_cast<std::size_t>(row)] - 0.5 * Layout::heading)));
   }
 
@@ -169,7 +196,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
     if (panel.map.empty()) continue;
     int const row = i / figure.columns;
     int const column = i % figure.columns;
-    int const left = Layout::edge + Layout::axis_label + column * cell_width + Layout::left;
+    int const left = Layout::edge + layout.axis_label + column * cell_width + layout.left;
     int const upper = top[static_cast<std::size_t>(row)] + Layout::above;
     plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", screen_x(left),
                              screen_x(left + layout.map_width)));
@@ -182,8 +209,9 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
                              GnuplotFigure::quoted(panel.title)));
     plot.command(panel.scale == ColourScale::diverging ? diverging_palette : viridis);
     ColourRange const range = ranges[static_cast<std::size_t>(i)];
-    plot.command(fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",
-                             range.lower, range.upper));
+    plot.command(
+        fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics ({}) font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",
+                    range.lower, range.upper, colour_tics(range)));
     double const x_end = axes.x_first + axes.x_step * (panel.map.columns() - 1);
     double const y_end = axes.y_first + axes.y_step * (panel.map.rows() - 1);
     plot.command(fmt::format("set xrange [{:.10g}:{:.10g}]", std::min(axes.x_first, x_end) - half_x,
@@ -197,6 +225,8 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
         "set xtics {:.10g} font 'DejaVu Sans,9' offset 0,0.4; set ytics {:.10g} font 'DejaVu Sans,9' offset 0.6,0",
         tic_step(x_span, layout.map_width / 42.0), tic_step(y_high - y_low, layout.map_height / 36.0)));
     bool const lowest = i + figure.columns >= count;
+    plot.command(fmt::format("set format x '{}'; set format y '{}'", layout.inner_tics || lowest ? "% h" : "",
+                             layout.inner_tics || column == 0 ? "% h" : ""));
     plot.command(lowest ? fmt::format("set xlabel {} offset 0,0.8", GnuplotFigure::quoted(axes.x_label))
                         : std::string("unset xlabel"));
     plot.command(column == 0 ? fmt::format("set ylabel {} offset 1.6,0", GnuplotFigure::quoted(axes.y_label))
