@@ -18,10 +18,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND GLADSTONE_ARCHITECTURE)
   list(APPEND GLADSTONE_USAGE_FLAGS -march=${GLADSTONE_ARCHITECTURE})
 endif()
 
-# For our own targets alone.
+# For our own targets alone. Files that are compiled together may use the same names.
 add_library(gladstone_flags INTERFACE)
 target_compile_options(gladstone_flags INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic -Wshadow ${GLADSTONE_USAGE_FLAGS}>)
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wpedantic ${GLADSTONE_USAGE_FLAGS}
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>>)
 # Device code takes constexpr functions of the shared headers as they are.
 list(JOIN GLADSTONE_USAGE_FLAGS "," usage_flags)
 target_compile_options(gladstone_flags INTERFACE
