@@ -38,6 +38,8 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.weighting = table.word("weighting", settings.weighting, {"gaussian", "uniform"});
   settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic"});
   settings.final_passes = static_cast<int>(table.integer("final_passes", settings.final_passes, 1, 5));
+  settings.max_displacement_px =
+      table.number_or_word("max_displacement_px", {{}, "none"}, {"none"}, Range::positive(512.0)).number;
   settings.median_threshold = table.number("median_threshold", settings.median_threshold, Range::positive());
   settings.median_epsilon_px = table.number("median_epsilon_px", settings.median_epsilon_px, Range::positive());
   return settings;

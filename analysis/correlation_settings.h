@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@ struct CorrelationSettings {
   std::string weighting = "gaussian";      ///< "gaussian" over twice the window, or "uniform" over the window
   std::string deformation = "quintic";     ///< B-spline that deforms the images between passes: "cubic" or "quintic"
   int final_passes = 1;                    ///< times the last pass is run, 1 .. 5; more sharpen detail and noise alike
-  double median_threshold = 2.0;           ///< normalised median residual of a spurious vector
-  double median_epsilon_px = 0.1;          ///< noise level in that residual [px]
+  std::optional<double> max_displacement_px;  ///< largest along either axis, (0, 512]; none: what the windows permit
+  double median_threshold = 2.0;              ///< normalised median residual of a spurious vector
+  double median_epsilon_px = 0.1;             ///< noise level in that residual [px]
 };
 
 /// Reads the table [correlate]; problems are collected in its document.

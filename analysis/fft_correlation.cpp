@@ -152,10 +152,13 @@ class PairwiseCorrelation {
     }
     result.outcome = WindowCorrelation::Outcome::measured;
     result.peaks = found.count;
-    for (int p = 0; p < found.count; ++p)
-      result.shift[p] = {refined_shift(plane, found.peak[p], Axis::x, x_, column),
-                         refined_shift(plane, found.peak[p], Axis::y, y_, row)};
-    result.peak_ratio = peak_ratio(found.peak[0].height, found.count > 1 ? found.peak[1].height : 0.0);
+    for (int p = 0; p < found.count; ++p) {
+      // join() has put the scale into the plane
+      MeasuredPeak const peak = measured_peak(plane, found.peak[p].x, found.peak[p].y, 1.0, x_, column, y_, row);
+      result.shift[p] = peak.shift;
+      result.coefficient[p] = peak.coefficient;
+    }
+    result.peak_ratio = peak_ratio(found.peak[0].height, found.peak[1].height, found.peak[2].height);
   }
 
   ImagePair const& pair_;

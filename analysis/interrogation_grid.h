@@ -28,6 +28,15 @@ struct InterrogationGrid {
     return {centre(static_cast<int>(vector % static_cast<std::size_t>(columns))),
             centre(static_cast<int>(vector / static_cast<std::size_t>(columns)))};
   }
+  /// The vector whose window's centre is nearest to a place in the image. @pre size() > 0
+  GLADSTONE_HD std::size_t nearest(Vec2d position) const {
+    auto const index = [&](double along, int count) {
+      int const k = static_cast<int>(std::lround((along - centre(0)) / spacing_px));
+      return k < 0 ? 0 : (k < count ? k : count - 1);
+    };
+    return static_cast<std::size_t>(index(position.y, rows)) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(index(position.x, columns));
+  }
 };
 
 /// The grid of a pass on an image of the given size.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 #include "analysis/fft_correlation.h"
@@ -24,6 +26,8 @@ class StandardCorrelator final : public Correlator {
     std::optional<PairDeformer> deformer;
     if (schedule_.passes() > 1) deformer.emplace(reference, flow, schedule_.spline_degree());
     std::optional<DensePredictor> predictor;
+    std::vector<char> ambiguous;
+    InterrogationGrid grid_before;
     for (int pass = 0;; ++pass) {
       InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
       ImagePair const pair = predictor ? deformer->deform(*predictor) : make_image_pair(reference, flow);
@@ -31,11 +35,17 @@ class StandardCorrelator final : public Correlator {
           correlate_windows(pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass),
                             fmt::format("correlate {}/{}", pass + 1, schedule_.passes()));
       std::vector<GridVector> vectors(windows.size());
-      std::transform(windows.begin(), windows.end(), vectors.begin(), grid_vector);
+      auto const predicted = [&](std::size_t i) { return predictor ? predictor->at(grid.centre(i)) : Vec2d{}; };
+      AmbiguousPlaces const before{grid_before, pass > 0 ? ambiguous.data() : nullptr};
+      for (std::size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = grid_vector(windows[i], predicted(i), schedule_.limit_px(), before.at(grid.centre(i)));
+      ambiguous.resize(vectors.size());
+      std::transform(vectors.begin(), vectors.end(), ambiguous.begin(),
+                     [](GridVector const& v) { return v.ambiguous; });
+      grid_before = grid;
       // what a pass adds to its predictor is validated, not the sum: there steep gradients are already taken off
       validate_vectors(vectors, grid.columns, schedule_.rule(pass));
-      if (predictor)
-        for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i].displacement += predictor->at(grid.centre(i));
+      for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i].displacement += predicted(i);
       if (schedule_.is_last(pass)) {
         std::vector<MeasuredVector> measured(windows.size());
         std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
@@ -58,9 +68,17 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
       overlap_(settings.overlap),
       last_rule_{settings.median_threshold, settings.median_epsilon_px},
       weighting_(window_weighting(settings)),
-      spline_degree_(settings.deformation == "cubic" ? 3 : 5) {
+      spline_degree_(settings.deformation == "cubic" ? 3 : 5),
+      limit_px_(settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())) {
   GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
   windows_.insert(windows_.end(), static_cast<std::size_t>(settings.final_passes - 1), settings.window_px.back());
+}
+
+int CorrelationSchedule::search_radius_px(int pass) const {
+  int const widest = windows_[pass] / (pass == 0 ? 2 : 4);
+  if (pass > 0 || limit_px_ >= widest) return widest;
+  // CUDA's kernels search blocks of four; what lies beyond the limit grid_vector() leaves out
+  return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px_ / 4.0)));
 }
 
 ValidationRule CorrelationSchedule::rule(int pass) const {
@@ -91,6 +109,10 @@ DisplacementField displacement_field(InterrogationGrid const& grid, std::span<Me
     field.displacement_px.push_back(vectors[i].displacement);
     field.peak_ratio.push_back(vectors[i].peak_ratio);
     field.status.push_back(vectors[i].status);
+    field.raw_px.push_back(vectors[i].raw);
+    field.correlation.push_back(vectors[i].correlation);
+    field.reason.push_back(vectors[i].reason);
+    field.ambiguous.push_back(vectors[i].ambiguous ? 1 : 0);
   }
   return field;
 }

@@ -30,10 +30,12 @@ class CorrelationSchedule {
     return make_interrogation_grid(columns, rows, windows_[pass], overlap_);
   }
   /// Largest shift looked for along either axis.
-  int search_radius_px(int pass) const { return windows_[pass] / (pass == 0 ? 2 : 4); }
+  int search_radius_px(int pass) const;
   /// A predictor that is off by half a pixel does no harm, one that has lost a steep gradient does: only gross errors
   /// are taken out between passes.
   ValidationRule rule(int pass) const;
+  /// Largest displacement along either axis [px]; infinite where there is no limit but the windows'.
+  double limit_px() const { return limit_px_; }
   WindowWeighting weighting() const { return weighting_; }
   int spline_degree() const { return spline_degree_; }
 
@@ -43,39 +45,83 @@ class CorrelationSchedule {
   ValidationRule last_rule_;
   WindowWeighting weighting_;
   int spline_degree_;
+  double limit_px_;
 };
 
 /// Checks that a pair of images suits the settings. @throws DataError
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
                        int flow_rows);
 
-/// A window's result as a vector to be validated.
-GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window) {
+/// Where the pass before could not tell displacements apart: one flag for each of its vectors.
+struct AmbiguousPlaces {
+  InterrogationGrid grid;
+  char const* flag;  ///< null in the first pass
+
+  GLADSTONE_HD bool at(Vec2d position_px) const { return flag != nullptr && flag[grid.nearest(position_px)] != 0; }
+};
+
+/// A window's result as a vector to be validated: the first of its peaks that the limit allows, the next ones as
+/// alternatives.
+/// @param predictor that the pass was deformed by, at the window's centre [px]
+/// @param limit_px  largest displacement along either axis, predictor included
+/// @param ambiguous whether the pass before was, here
+GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2d predictor, double limit_px,
+                                           bool ambiguous) {
+  using std::abs;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   GridVector vector;
-  if (window.outcome == WindowCorrelation::Outcome::masked) vector.status = VectorStatus::masked;
+  vector.raw = {nan, nan};
+  vector.ambiguous = ambiguous;
+  if (window.outcome == WindowCorrelation::Outcome::masked) {
+    vector.status = VectorStatus::masked;
+    vector.reason = VectorReason::masked;
+  }
   if (window.outcome != WindowCorrelation::Outcome::measured) return vector;
-  vector.status = VectorStatus::valid;
-  vector.displacement = window.shift[0];
-  vector.alternative_count = window.peaks - 1;
-  for (int k = 1; k < window.peaks; ++k) vector.alternatives[k - 1] = window.shift[k];
+  vector.reason = VectorReason::beyond_limit;
+  for (int k = 0; k < window.peaks; ++k) {
+    Vec2d const whole = predictor + window.shift[k];
+    if (abs(whole.x) > limit_px || abs(whole.y) > limit_px) continue;
+    if (vector.status == VectorStatus::valid) {
+      vector.alternatives[vector.alternative_count++] = window.shift[k];
+      if (window.coefficient[k] >= nearly_as_high * vector.correlation) vector.ambiguous = true;
+      continue;
+    }
+    vector.status = VectorStatus::valid;
+    vector.reason = VectorReason::measured;
+    vector.displacement = window.shift[k];
+    vector.raw = whole;
+    vector.correlation = window.coefficient[k];
+  }
   return vector;
 }
 
 /// What a correlation tells of one vector; NaN where it is not known.
 struct MeasuredVector {
   Vec2d displacement;  ///< [px]
+  Vec2d raw;           ///< before replacement [px]
   double peak_ratio;
+  double correlation;
   VectorStatus status;
+  VectorReason reason;
+  bool ambiguous;
 };
 
 GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, WindowCorrelation const& window) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  bool const measured = window.outcome == WindowCorrelation::Outcome::measured;
-  return {is_sound(vector.status) ? vector.displacement : Vec2d{nan, nan}, measured ? window.peak_ratio : nan,
-          vector.status};
+  bool const measured = is_measured(vector);
+  MeasuredVector result;
+  result.displacement = is_sound(vector.status) ? vector.displacement : Vec2d{nan, nan};
+  result.raw = vector.raw;
+  result.peak_ratio = window.outcome == WindowCorrelation::Outcome::measured ? window.peak_ratio : nan;
+  result.correlation = measured ? (vector.correlation < 1.0 ? vector.correlation : 1.0) : nan;
+  result.status = vector.status;
+  result.reason = vector.reason;
+  result.ambiguous = measured && vector.ambiguous;
+  return result;
 }
 
-/// The result of the last pass. @param vectors one for each of the grid's windows
+/// The result of the last pass.
+/// @param vectors one for each of the grid's windows
 DisplacementField displacement_field(InterrogationGrid const& grid, std::span<MeasuredVector const> vectors);
 
 /// The weighting by its name. @pre "gaussian" or "uniform"

@@ -16,15 +16,25 @@ GLADSTONE_HD T parabola_offset(T left, T centre, T right) {
   return offset < T(-1) ? T(-1) : (offset > T(1) ? T(1) : offset);
 }
 
-/// Three-point Gaussian estimate of a peak between samples, in sample distances from the centre: exact for samples of
-/// exp(-(s - s0)^2 / (2 sigma^2)). Willert & Gharib, Exp. Fluids 10 (1991) 181. Where a sample is not positive there is
-/// no logarithm, and the parabola through the samples stands in.
-/// @pre centre is not below left and right (a local maximum), else the result is within [-1, 1] but means little
+/// A peak between samples along one axis.
 template <class T>
-GLADSTONE_HD T gaussian_peak_offset(T left, T centre, T right) {
+struct PeakBetweenSamples {
+  T offset;    ///< from the centre [sample distances]
+  T log_rise;  ///< logarithm of the height there over the centre sample [1]
+};
+
+/// Three-point Gaussian estimate of a peak between samples: exact for samples of exp(-(s - s0)^2 / (2 sigma^2)).
+/// Willert & Gharib, Exp. Fluids 10 (1991) 181. Where a neighbour is not positive there is no logarithm, and the
+/// parabola through the samples stands in.
+/// @pre centre > 0, not below left and right (a local maximum), else the offset is within [-1, 1] but means little
+template <class T>
+GLADSTONE_HD PeakBetweenSamples<T> gaussian_peak(T left, T centre, T right) {
   using std::log;
-  if (!(left > T(0) && centre > T(0) && right > T(0))) return parabola_offset(left, centre, right);
-  return parabola_offset(T(log(left / centre)), T(0), T(log(right / centre)));
+  bool const positive = left > T(0) && centre > T(0) && right > T(0);
+  T const l = positive ? T(log(left / centre)) : left / centre, r = positive ? T(log(right / centre)) : right / centre;
+  T const c = positive ? T(0) : T(1), offset = parabola_offset(l, c, r);
+  T const rise = T(0.5) * offset * ((r - l) + (l - T(2) * c + r) * offset);
+  return {offset, positive ? rise : T(log(c + rise))};
 }
 
 }  // namespace gladstone

@@ -73,6 +73,7 @@ DisplacementField apply_conventions(DisplacementField field, VectorConventions c
   double const u_sign = conventions.swapped ? -1.0 : 1.0;
   double const v_sign = conventions.v_up ? -u_sign : u_sign;
   for (Vec2d& d : field.displacement_px) d = {u_sign * d.x, v_sign * d.y};
+  for (Vec2d& d : field.raw_px) d = {u_sign * d.x, v_sign * d.y};
   arrange_as_grid(field);
   return field;
 }

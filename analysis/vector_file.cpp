@@ -66,6 +66,10 @@ void take_vectors(DisplacementField& field, std::vector<std::size_t> const& orde
   reorder(field.sigma_px, order);
   reorder(field.peak_ratio, order);
   reorder(field.status, order);
+  reorder(field.raw_px, order);
+  reorder(field.correlation, order);
+  reorder(field.reason, order);
+  reorder(field.ambiguous, order);
   field.columns = field.rows = 0;
 }
 
@@ -107,13 +111,20 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   auto const sigma = [&](std::size_t i) { return field.sigma_px.empty() ? Vec2d{nan, nan} : field.sigma_px[i]; };
   auto const ratio = [&](std::size_t i) { return field.peak_ratio.empty() ? nan : field.peak_ratio[i]; };
   auto const status = [&](std::size_t i) { return field.status.empty() ? 0 : static_cast<int>(field.status[i]); };
+  // vectors that say nothing of it are their own raw ones, for no other reason than that they were measured
+  auto const raw = [&](std::size_t i) { return field.raw_px.empty() ? field.displacement_px[i] : field.raw_px[i]; };
+  auto const correlation = [&](std::size_t i) { return field.correlation.empty() ? nan : field.correlation[i]; };
+  auto const reason = [&](std::size_t i) { return field.reason.empty() ? 0 : static_cast<int>(field.reason[i]); };
+  auto const ambiguous = [&](std::size_t i) { return field.ambiguous.empty() ? 0 : int{field.ambiguous[i]}; };
 
   if (path.ends_with(".csv")) {
-    std::string text = "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status\n";
+    std::string text =
+        "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,ambiguous\n";
     for (std::size_t i = 0; i < count; ++i) {
-      Vec2d const p = field.position_px[i], d = field.displacement_px[i], s = sigma(i);
-      fmt::format_to(std::back_inserter(text), "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", p.x, p.y,
-                     d.x, d.y, s.x, s.y, ratio(i), status(i));
+      Vec2d const p = field.position_px[i], d = field.displacement_px[i], s = sigma(i), r = raw(i);
+      fmt::format_to(std::back_inserter(text),
+                     "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{:.17g},{:.17g},{:.17g},{},{}\n", p.x,
+                     p.y, d.x, d.y, s.x, s.y, ratio(i), status(i), r.x, r.y, correlation(i), reason(i), ambiguous(i));
     }
     OutputFile file(path);
     file.write(text.data(), text.size());
@@ -141,10 +152,21 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   write("/sigma_u_px", "px", "estimated standard uncertainty of u", [&](std::size_t i) { return sigma(i).x; });
   write("/sigma_v_px", "px", "estimated standard uncertainty of v", [&](std::size_t i) { return sigma(i).y; });
   write("/peak_ratio", "1", "highest over second highest correlation peak", ratio);
-  std::vector<std::int64_t> codes(count);
-  for (std::size_t i = 0; i < count; ++i) codes[i] = status(i);
-  file.write("/status", std::span<std::int64_t const>(codes), {count}, "1", "0 valid, 1 replaced, 2 masked, 3 invalid",
-             "vector");
+  auto const write_codes = [&](char const* name, char const* description, auto const& value_of) {
+    std::vector<std::int64_t> codes(count);
+    for (std::size_t i = 0; i < count; ++i) codes[i] = value_of(i);
+    file.write(name, std::span<std::int64_t const>(codes), {count}, "1", description, "vector");
+  };
+  write_codes("/status", "0 valid, 1 replaced, 2 masked, 3 invalid", status);
+  write("/u_raw_px", "px", "displacement to the right before replacement", [&](std::size_t i) { return raw(i).x; });
+  write("/v_raw_px", "px", "displacement downwards before replacement", [&](std::size_t i) { return raw(i).y; });
+  write("/correlation", "1", "correlation coefficient of the peak that u_raw_px, v_raw_px is", correlation);
+  write_codes("/reason",
+              "0 as measured, 1 replaced by another peak, 2 replaced by the neighbours' median, 3 masked, 4 no signal, "
+              "5 spurious with too few sound neighbours, 6 beyond max_displacement_px, 7 uncorrelated",
+              reason);
+  write_codes("/ambiguous", "1 where another displacement fits (nearly) as well", ambiguous);
+  file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));
   if (field.columns > 0) {
     file.attribute("/", "grid_columns", std::int64_t{field.columns});
     file.attribute("/", "grid_rows", std::int64_t{field.rows});

@@ -12,23 +12,20 @@ void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule
   std::vector<int> spurious;
   for (int i = 0; i < count; ++i)
     if (is_spurious(vectors.data(), i, columns, rows, rule)) spurious.push_back(i);
-  for (int const i : spurious) vectors[i].status = VectorStatus::invalid;
+  for (int const i : spurious) take_out(vectors[i]);
 
   // rounds from the rim of a spurious patch inwards; within a round only what was sound before counts
   while (!spurious.empty()) {
     std::vector<int> left;
-    std::vector<std::pair<int, Vec2d>> replaced;
+    std::vector<std::pair<int, VectorReplacement>> replaced;
     for (int const i : spurious) {
-      Vec2d value;
-      if (find_replacement(vectors.data(), i, columns, rows, rule, value))
-        replaced.emplace_back(i, value);
+      VectorReplacement found{};
+      if (find_replacement(vectors.data(), i, columns, rows, rule, found))
+        replaced.emplace_back(i, found);
       else
         left.push_back(i);
     }
-    for (auto const& [i, value] : replaced) {
-      vectors[i].displacement = value;
-      vectors[i].status = VectorStatus::replaced;
-    }
+    for (auto const& [i, found] : replaced) replace(vectors[i], found);
     if (replaced.empty()) break;
     spurious = std::move(left);
   }

@@ -67,10 +67,16 @@ GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& n
 /// One vector of a grid under validation.
 struct GridVector {
   Vec2d displacement;                   ///< [px]; means nothing where the status is masked or invalid
+  Vec2d raw;                            ///< as measured, predictor included [px]; NaN where nothing was
   std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks
   int alternative_count = 0;
+  double correlation = 0.0;  ///< coefficient of the peak that `raw` is [1]
+  bool ambiguous = false;    ///< in this pass or one before, another displacement fits (nearly) as well
   VectorStatus status = VectorStatus::invalid;
+  VectorReason reason = VectorReason::no_signal;
 };
+
+GLADSTONE_HD inline bool is_measured(GridVector const& vector) { return vector.raw.x == vector.raw.x; }
 
 /// When a vector is spurious.
 struct ValidationRule {
@@ -155,18 +161,35 @@ GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int colum
   return !(around.count < Neighbours<double>::capacity && agrees(without_slope(around, offset)));
 }
 
+/// What a spurious vector is replaced by, and where it is from.
+struct VectorReplacement {
+  Vec2d value;
+  VectorReason reason;
+};
+
 /// Finds what replaces the spurious vector i. @return false where too few neighbours are sound
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
-                                          ValidationRule const& rule, Vec2d& value) {
+                                          ValidationRule const& rule, VectorReplacement& found) {
   Neighbours<double> const around = neighbours_of(
       i, columns, rows, [&](int k) { return vectors[k].displacement; },
       [&](int k) { return is_sound(vectors[k].status); });
   if (around.count < fewest_neighbours) return false;
-  value = around.median();
+  found = {around.median(), VectorReason::neighbours};
   for (int k = vectors[i].alternative_count - 1; k >= 0; --k)
     if (normalised_median_residual(vectors[i].alternatives[k], around, rule.epsilon_px) <= rule.threshold)
-      value = vectors[i].alternatives[k];
+      found = {vectors[i].alternatives[k], VectorReason::other_peak};
   return true;
+}
+
+/// Takes a spurious vector out, and puts what replaces it in its place.
+GLADSTONE_HD inline void take_out(GridVector& vector) {
+  vector.status = VectorStatus::invalid;
+  vector.reason = VectorReason::no_neighbours;
+}
+GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by) {
+  vector.displacement = by.value;
+  vector.status = VectorStatus::replaced;
+  vector.reason = by.reason;
 }
 
 /// Finds what fills the unknown node i from the known around it. @return false where there is none

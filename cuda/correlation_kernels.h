@@ -58,9 +58,10 @@ struct WindowJob {
   WindowCorrelation* results;
 };
 
-/// A peak of a correlation plane and the four values beside it.
+/// A peak of a correlation plane: its highest sample and the four beside it.
 struct PeakSample {
   int x, y;
+  float height;  ///< between the samples
   float centre, left, right, above, below;
 };
 
@@ -105,12 +106,21 @@ void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, floa
 struct Replacement {
   int index;
   enum State : int { open, found, done } state;
-  Vec2d value;
+  VectorReplacement by;
 };
 
-/// Turns the results of a pass into vectors and validates them. @param list, count scratch: a place for every vector
-void validate(WindowCorrelation const* windows, GridVector* vectors, InterrogationGrid const& grid,
-              ValidationRule const& rule, Replacement* list, int* count);
+/// What a pass was deformed by.
+struct PassPredictor {
+  PredictorView view;
+  bool any;  ///< false in the first pass: the images are as they were taken
+  GLADSTONE_HD Vec2d at(Vec2d position_px) const { return any ? view.at(position_px) : Vec2d{}; }
+};
+/// Turns the results of a pass into vectors. @param ambiguous receives a flag for each
+void take_vectors(WindowCorrelation const* windows, GridVector* vectors, InterrogationGrid const& grid,
+                  PassPredictor const& predictor, double limit_px, AmbiguousPlaces const& before, char* ambiguous);
+/// Validates the vectors of a pass. @param list, count scratch: a place for every vector
+void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
+              int* count);
 /// Adds to every vector what its pass was deformed by.
 void add_predictor(GridVector* vectors, InterrogationGrid const& grid, PredictorView const& predictor);
 /// What the last pass tells of every vector.

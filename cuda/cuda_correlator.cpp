@@ -67,6 +67,7 @@ class CorrelationPlan {
     windows_ = DeviceArray<WindowCorrelation>(most_vectors, purpose);
     peaks_ = DeviceArray<WindowPeaks>(most_vectors, purpose);
     vectors_ = DeviceArray<GridVector>(most_vectors, purpose);
+    for (DeviceArray<char>& flags : ambiguous_) flags = DeviceArray<char>(most_vectors, purpose);
     measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
     measured_.zero();  // the gaps between its members are copied to the host, too
     list_ = DeviceArray<Replacement>(most_vectors, purpose);
@@ -106,7 +107,9 @@ class CorrelationPlan {
       if (pass > 0)
         deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, predictor(pass - 1), deformed);
       correlate_windows(now, pass > 0 ? deformed : original);
-      validate(windows_.data(), vectors_.data(), now.grid, schedule_.rule(pass), list_.data(), list_size_.data());
+      take_vectors(windows_.data(), vectors_.data(), now.grid, deformed_by(pass), schedule_.limit_px(), before(pass),
+                   ambiguous_[pass % 2].data());
+      validate(vectors_.data(), now.grid, schedule_.rule(pass), list_.data(), list_size_.data());
       if (pass > 0) add_predictor(vectors_.data(), now.grid, predictor(pass - 1));
       if (schedule_.is_last(pass)) return download(now.grid);
       make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
@@ -148,6 +151,15 @@ class CorrelationPlan {
     PredictorView view = passes_[pass].predictor;
     view.nodes = extended_.data();
     return view;
+  }
+
+  PassPredictor deformed_by(int pass) const {
+    return pass > 0 ? PassPredictor{predictor(pass - 1), true} : PassPredictor{{}, false};
+  }
+
+  AmbiguousPlaces before(int pass) const {
+    return pass > 0 ? AmbiguousPlaces{passes_[pass - 1].grid, ambiguous_[(pass - 1) % 2].data()}
+                    : AmbiguousPlaces{{}, nullptr};
   }
 
   /// Room for the windows that are worked on together where one does not fit into shared memory: fewer where the device
@@ -198,6 +210,7 @@ class CorrelationPlan {
   DeviceArray<WindowCorrelation> windows_;
   DeviceArray<WindowPeaks> peaks_;
   DeviceArray<GridVector> vectors_;
+  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and the one before
   DeviceArray<MeasuredVector> measured_;
   DeviceArray<Replacement> list_;
   DeviceArray<int> list_size_{1, purpose};

@@ -73,14 +73,14 @@ __global__ void __launch_bounds__(threads_of_rounds)
       Replacement& hole = list[n];
       if (hole.state == Replacement::open &&
           find_filling(
-              nodes, hole.index, columns, rows, [&](int k) { return known[k] != 0; }, hole.value))
+              nodes, hole.index, columns, rows, [&](int k) { return known[k] != 0; }, hole.by.value))
         hole.state = Replacement::found;
     }
     __syncthreads();
     for (int n = static_cast<int>(threadIdx.x); n < *count; n += static_cast<int>(blockDim.x)) {
       Replacement& hole = list[n];
       if (hole.state != Replacement::found) continue;
-      nodes[hole.index] = hole.value;
+      nodes[hole.index] = hole.by.value;
       known[hole.index] = 1;
       hole.state = Replacement::done;
       progress = 1;

@@ -16,27 +16,25 @@ struct SampledPlane {
   }
 };
 
-/// The place of one peak along one axis, thread by thread: axes, then peaks, then windows.
+/// Place and height of one peak, thread by thread: peaks, then windows.
 __global__ void measure_peaks(WindowJob const job, WindowPeaks const* all_peaks) {
-  constexpr int parts = 2 * PeakList<float>::capacity;
+  constexpr int parts = PeakList<float>::capacity;
   long long const at = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
   long long const window = at / parts;
   if (window >= static_cast<long long>(job.grid.size())) return;
-  int const which = static_cast<int>(at % parts) / 2;
-  Axis const axis = at % 2 == 0 ? Axis::x : Axis::y;
-  int const place =
-      axis == Axis::x ? static_cast<int>(window % job.grid.columns) : static_cast<int>(window / job.grid.columns);
+  int const which = static_cast<int>(at % parts);
+  int const column = static_cast<int>(window % job.grid.columns), row = static_cast<int>(window / job.grid.columns);
   WindowPeaks const& peaks = all_peaks[window];
   WindowCorrelation& result = job.results[window];
-  double shift = 0.0;
+  MeasuredPeak peak{};
   if (which < peaks.count) {
     SampledPlane const plane{peaks.peak[which]};
-    shift = refined_shift(plane, {plane.sample.x, plane.sample.y, plane.sample.centre}, axis,
-                          axis == Axis::x ? job.x : job.y, place);
+    peak = measured_peak(plane, plane.sample.x, plane.sample.y, peaks.scale, job.x, column, job.y, row);
   }
-  (axis == Axis::x ? result.shift[which].x : result.shift[which].y) = shift;
-  if (at % parts != 0) return;
-  write_outcome(peaks.count, peaks.peak[0].centre, peaks.peak[1].centre, peaks.scale, result);
+  result.shift[which] = peak.shift;
+  result.coefficient[which] = peak.coefficient;
+  if (which != 0) return;
+  write_outcome(peaks.count, {peaks.peak[0].height, peaks.peak[1].height, peaks.peak[2].height}, peaks.scale, result);
   if (peaks.outcome != WindowCorrelation::Outcome::measured) result.outcome = peaks.outcome;
 }
 
@@ -50,7 +48,7 @@ void correlate_small_windows(WindowJob const& job, WindowPeaks* peaks) {
   else
     correlate_windows_of_32(job, peaks);
   constexpr unsigned threads = 192;
-  auto const parts = 2 * PeakList<float>::capacity * job.grid.size();
+  auto const parts = PeakList<float>::capacity * job.grid.size();
   measure_peaks<<<static_cast<unsigned>((parts + threads - 1) / threads), threads>>>(job, peaks);
   check_launch("measure_peaks");
 }

@@ -28,7 +28,7 @@ __device__ int list_maxima(Plane const& plane, int radius, int begin, int end, P
       maximum = height > 0.0f && is_maximum(plane, dx, dy, height);
     }
     unsigned const all = __ballot_sync(0xffffffffu, maximum);
-    if (maximum) list[count + __popc(all & ((1u << lane) - 1u))] = {dx, dy, height};
+    if (maximum) list[count + __popc(all & ((1u << lane) - 1u))] = {dx, dy, refined_peak(plane, dx, dy, height).height};
     count += __popc(all);
     y += rows_per_step;
     x += columns_per_step;
@@ -46,7 +46,8 @@ __device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> co
     if (can_enter(found, list[k].height)) insert_peak(found, list[k]);
 }
 
-/// A positive maximum of a plane as whole numbers: heights order as their bits do, shifts in reading order.
+/// A positive maximum of a plane as whole numbers: heights between the samples order as their bits do, shifts in
+/// reading order.
 struct RankedPeak {
   unsigned height = 0;  ///< 0: none
   unsigned order = 0;   ///< the earlier in reading order, the higher
@@ -142,7 +143,8 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
 #pragma unroll
     for (int k = 0; k < 4; ++k) {
       float const height = patch(k, 0);
-      if (x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height)) own.add(ranked_peak(height, x + k, y));
+      if (x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height))
+        own.add(ranked_peak(refined_peak(patch, k, 0, height).height, x + k, y));
     }
     y += rows_per_step;
     group += groups_per_step;
@@ -161,6 +163,8 @@ __device__ HighestPeaks search_block(PairedPlane<pitch> const& plane, int radius
   if (block.x <= radius && block.y <= radius) {
     PlanePeak<float> found[2];
     maxima_of_block(plane, radius, block.x, block.y, found);
+    for (PlanePeak<float>& peak : found)
+      if (peak.height > 0.0f) peak.height = refined_peak(plane, peak.x, peak.y, peak.height).height;
     RankedPeak const upper = ranked_peak(found[0].height, found[0].x, found[0].y);
     RankedPeak const lower = ranked_peak(found[1].height, found[1].x, found[1].y);
     bool const in_order = upper.height >= lower.height;
@@ -177,14 +181,17 @@ __device__ __noinline__ void find_all_peaks(Plane const plane, int radius, Plane
   int const listed = list_maxima(plane, radius, 0, (2 * radius + 1) * (2 * radius + 1), list);
   __syncwarp();
   if (threadIdx.x % 32u == 0) {
-    found.count = 0;
+    found = {};
     insert_listed(found, list, listed);
+    prefer_nearest(plane, radius, found, [&](auto const& visit) {
+      for (int k = 0; k < listed; ++k) visit(list[k]);
+    });
   }
   __syncwarp();
 }
 
 /// The peaks of a window from the highest of every share, as find_peaks gives them: the three highest maxima, unless
-/// two of them are close. By one full warp.
+/// two of them are close, or nearly as high. By one full warp.
 /// @param list, found memory for the other case
 /// @return how many; lane k < 3 receives the k-th in `own`
 template <class Plane>
@@ -201,7 +208,8 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   int const peaks = (first.height != 0) + (second.height != 0) + (third.height != 0);
   bool const close = (peaks > 1 && are_close(first.peak(), second.peak())) ||
                      (peaks > 2 && (are_close(first.peak(), third.peak()) || are_close(second.peak(), third.peak())));
-  if (close || incomplete) {
+  bool const rivals = peaks > 1 && second.peak().height >= static_cast<float>(nearly_as_high) * first.peak().height;
+  if (close || incomplete || rivals) {
     find_all_peaks(plane, radius, list, found);
     own = found.peak[lane < capacity ? lane : 0];
     return found.count;
@@ -210,12 +218,13 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   return peaks;
 }
 
-/// Writes what does not need a place between the pixels.
-__device__ inline void write_outcome(int count, double highest, double second, double scale,
-                                     WindowCorrelation& result) {
+/// Writes what hangs on the heights in the plane alone.
+__device__ inline void write_outcome(int count, float const (&height)[3], double scale, WindowCorrelation& result) {
   result.outcome = count > 0 ? WindowCorrelation::Outcome::measured : WindowCorrelation::Outcome::no_signal;
   result.peaks = count;
-  result.peak_ratio = count > 0 ? peak_ratio(scale * highest, count > 1 ? scale * second : 0.0) : 0.0;
+  result.peak_ratio = count > 0 ? peak_ratio(scale * height[0], count > 1 ? scale * height[1] : 0.0,
+                                             count > 2 ? scale * height[2] : 0.0)
+                                : 0.0;
 }
 
 /// Writes what the peaks say about window (column, row). By one full warp.
@@ -224,23 +233,21 @@ template <class Plane>
 __device__ void write_peaks(Plane const& plane, PeakList<float> const& found, double scale, AxisWeightsView const& x,
                             int column, AxisWeightsView const& y, int row, WindowCorrelation& result) {
   int const lane = static_cast<int>(threadIdx.x % 32u);
-  if (lane < 2 * PeakList<float>::capacity) {
-    int const which = lane / 2;
-    Axis const axis = lane % 2 == 0 ? Axis::x : Axis::y;
-    double const shift = which < found.count ? refined_shift(plane, found.peak[which], axis, axis == Axis::x ? x : y,
-                                                             axis == Axis::x ? column : row)
-                                             : 0.0;
-    (axis == Axis::x ? result.shift[which].x : result.shift[which].y) = shift;
+  if (lane < PeakList<float>::capacity) {
+    MeasuredPeak peak{};
+    if (lane < found.count)
+      peak = measured_peak(plane, found.peak[lane].x, found.peak[lane].y, scale, x, column, y, row);
+    result.shift[lane] = peak.shift;
+    result.coefficient[lane] = peak.coefficient;
   }
-  if (lane == 31) write_outcome(found.count, found.peak[0].height, found.peak[1].height, scale, result);
+  if (lane == 31)
+    write_outcome(found.count, {found.peak[0].height, found.peak[1].height, found.peak[2].height}, scale, result);
 }
 
 /// Writes that there is nothing to measure. By one thread.
 __device__ inline void write_nothing(WindowCorrelation::Outcome why, WindowCorrelation& result) {
+  result = WindowCorrelation();
   result.outcome = why;
-  result.peaks = 0;
-  for (int k = 0; k < 3; ++k) result.shift[k] = Vec2d{};
-  result.peak_ratio = 0.0;
 }
 
 }  // namespace gladstone::cuda

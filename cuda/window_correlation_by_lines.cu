@@ -192,7 +192,7 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
     // the peaks, a row of shifts at a time; `lines` has room for the maxima of a row
     WrappedPlane const plane{window, size, pitch};
     auto* const list = reinterpret_cast<PlanePeak<float>*>(lines);
-    if (thread == 0) found.count = 0;
+    if (thread == 0) found = {};
     for (int dy = -radius; dy <= radius; ++dy) {
       int count = 0;
       for (int first = -radius; first <= radius; first += 32) {
@@ -200,13 +200,17 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
         float const height = dx <= radius ? plane(dx, dy) : 0.0f;
         bool const maximum = height > 0.0f && is_maximum(plane, dx, dy, height);
         unsigned const all = __ballot_sync(all_lanes, maximum);
-        if (maximum) list[count + __popc(all & ((1u << thread) - 1u))] = {dx, dy, height};
+        if (maximum)
+          list[count + __popc(all & ((1u << thread) - 1u))] = {dx, dy, refined_peak(plane, dx, dy, height).height};
         count += __popc(all);
       }
       __syncwarp();
       if (thread == 0) insert_listed(found, list, count);
       __syncwarp();
     }
+    if (thread == 0)
+      prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_rivals(plane, radius, found, visit); });
+    __syncwarp();
     write_peaks(plane, found, scale, job.x, column, job.y, row, result);
   }
 }

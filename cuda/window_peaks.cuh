@@ -25,8 +25,14 @@ __device__ void leave_peaks(Plane const& plane, int radius, HighestPeaks const* 
   if (lane < PeakList<float>::capacity) {
     bool const there = lane < count;
     int const dx = there ? peak.x : 0, dy = there ? peak.y : 0;
-    peaks.peak[lane] = {
-        dx, dy, there ? peak.height : 0.0f, plane(dx - 1, dy), plane(dx + 1, dy), plane(dx, dy - 1), plane(dx, dy + 1)};
+    peaks.peak[lane] = {dx,
+                        dy,
+                        there ? peak.height : 0.0f,
+                        plane(dx, dy),
+                        plane(dx - 1, dy),
+                        plane(dx + 1, dy),
+                        plane(dx, dy - 1),
+                        plane(dx, dy + 1)};
   }
   if (lane == 0) {
     peaks.outcome = WindowCorrelation::Outcome::measured;

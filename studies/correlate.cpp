@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "analysis/correlator.h"
+#include "analysis/pair_verdict.h"
 #include "analysis/vector_file.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
@@ -35,13 +36,17 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
   return file;
 }
 
-template <class Correlate>
-Measurement timed(Correlate const& correlate) {
-  auto const start = std::chrono::steady_clock::now();
-  Measurement measurement{correlate(), 0};
-  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return measurement;
-}
+/// Frames that somebody else owns.
+class FramesView final : public FramePair {
+ public:
+  FramesView(Image<double> const& reference, Image<double> const& flow) : reference_(reference), flow_(flow) {}
+  Image<double> const& reference() const override { return reference_; }
+  Image<double> const& flow() const override { return flow_; }
+
+ private:
+  Image<double> const& reference_;
+  Image<double> const& flow_;
+};
 
 }  // namespace
 
@@ -59,11 +64,16 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                     fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
                                 reference.columns(), reference.rows(), largest));
   }
-  return timed([&] { return device.correlator(settings)->correlate(reference, flow); });
+  return correlate_frames(FramesView(reference, flow), settings, device);
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device) {
-  return timed([&] { return device.correlator(settings)->correlate_pair(frames); });
+  auto const start = std::chrono::steady_clock::now();
+  std::unique_ptr<Correlator> const correlator = device.correlator(settings);
+  Measurement measurement{correlator->correlate_pair(frames), 0};
+  judge_pair(measurement.field, frames, *correlator, settings);
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
 }
 
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides) {

@@ -12,7 +12,7 @@ namespace gladstone {
 
 /// What a measurement gives.
 struct Measurement {
-  DisplacementField field;
+  DisplacementField field;  ///< as judge_pair() leaves it
   double seconds = 0;
 };
 

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <utility>
+
 #include "analysis/vector_readers/vector_readers.h"
 #include "render/base/error.h"
 
@@ -13,6 +16,24 @@ DisplacementField whole_field(std::vector<double> const& x, std::vector<double> 
   for (std::size_t i = 0; i < x.size(); ++i) field.sigma_px.push_back({sigma_u[i], sigma_v[i]});
   field.peak_ratio = peak_ratio;
   return field;
+}
+
+/// What files of older versions do not have: how each vector came about. @param column values by name
+/// @param place of the reason of vector i, and what it is called there
+template <class Column, class Place>
+void add_origin(DisplacementField& field, Column const& column, Place const& place) {
+  std::vector<double> const u = column("u_raw_px"), v = column("v_raw_px"), reason = column("reason"),
+                            ambiguous = column("ambiguous");
+  field.correlation = column("correlation");
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!(reason[i] >= 0.0 && reason[i] <= 7.0 && reason[i] == std::floor(reason[i]))) {
+      auto const [where, name] = place(i);
+      throw DataError(where, fmt::format("{} = {} is not a whole number from 0 to 7", name, reason[i]));
+    }
+    field.raw_px.push_back({u[i], v[i]});
+    field.reason.push_back(static_cast<VectorReason>(static_cast<int>(reason[i])));
+    field.ambiguous.push_back(ambiguous[i] != 0.0 ? 1 : 0);
+  }
 }
 
 }  // namespace
@@ -42,6 +63,11 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     }
     field.status[i] = static_cast<VectorStatus>(static_cast<int>(status[i]));
   }
+  if (file.has("/u_raw_px")) {
+    add_origin(
+        field, [&](std::string const& name) { return read('/' + name); },
+        [&](std::size_t i) { return std::pair(path, fmt::format("/reason[{}]", i)); });
+  }
   return {std::move(field), "gladstone", {}, false};
 }
 
@@ -58,6 +84,13 @@ VectorFile read_gladstone_csv(TextTable const& table) {
       whole_field(table.column({"x_px"}), table.column({"y_px"}), table.column({"u_px"}), table.column({"v_px"}),
                   table.column({"sigma_u_px"}), table.column({"sigma_v_px"}), table.column({"peak_ratio"}));
   read_status(table, *table.find({"status"}), field);
+  if (table.find({"u_raw_px"})) {
+    add_origin(
+        field, [&](std::string const& name) { return table.column({name}); },
+        [&](std::size_t i) {
+          return std::pair(fmt::format("{}:{}", table.path, table.line[i]), std::string("reason"));
+        });
+  }
   return {std::move(field), "gladstone", {}, false};
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "render/base/vec.h"
@@ -10,16 +12,33 @@ namespace gladstone {
 /// What a measured vector is worth; the numbers are those of vectors.h5 and vectors.csv.
 enum class VectorStatus : int { valid = 0, replaced = 1, masked = 2, invalid = 3 };
 
+/// How a vector came to be what it is; the numbers are those of vectors.h5 and vectors.csv.
+enum class VectorReason : int {
+  measured = 0,       ///< valid: as measured
+  other_peak = 1,     ///< replaced by another peak of its window, since it disagreed with its neighbours
+  neighbours = 2,     ///< replaced by its neighbours' median, since no peak agreed with them
+  masked = 3,         ///< half the window unknown
+  no_signal = 4,      ///< invalid: nothing in the window to correlate
+  no_neighbours = 5,  ///< invalid: disagreed with its neighbours, too few of which are sound to replace it
+  beyond_limit = 6,   ///< invalid: no peak within the largest displacement that was allowed
+  uncorrelated = 7,   ///< invalid: no better than what windows give that have nothing in common
+};
+
 /// Displacements at scattered or gridded points: one type for truth, theory and measurement.
 /// Positions and displacements in px; column x to the right, row y downwards, displacement = flow - reference.
 struct DisplacementField {
   std::vector<Vec2d> position_px;
   std::vector<Vec2d> displacement_px;
-  std::vector<Vec2d> sigma_px;       ///< standard uncertainty, NaN where not estimated; empty: none
-  std::vector<double> peak_ratio;    ///< highest over second correlation peak; empty: none
-  std::vector<VectorStatus> status;  ///< empty: all valid
-  int columns = 0;                   ///< vectors in a row of the interrogation grid, row by row; 0: scattered
+  std::vector<Vec2d> sigma_px;          ///< standard uncertainty, NaN where not estimated; empty: none
+  std::vector<double> peak_ratio;       ///< highest over second correlation peak; empty: none
+  std::vector<VectorStatus> status;     ///< empty: all valid
+  std::vector<Vec2d> raw_px;            ///< before replacement; NaN where nothing was measured; empty: not known
+  std::vector<double> correlation;      ///< coefficient of the peak that raw_px is, NaN as there; empty: not known
+  std::vector<VectorReason> reason;     ///< empty: not known
+  std::vector<std::uint8_t> ambiguous;  ///< 1 where another displacement fits (nearly) as well; empty: not known
+  int columns = 0;                      ///< vectors in a row of the interrogation grid, row by row; 0: scattered
   int rows = 0;
+  std::vector<std::string> warnings;  ///< about the measurement as a whole
 
   std::size_t size() const { return position_px.size(); }
   /// True for vectors that count in statistics (valid or replaced).

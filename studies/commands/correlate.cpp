@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -74,22 +75,23 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
-    if (counts[0] + counts[1] == 0) {
+    DisplacementField const& field = measurement.field;
+    auto const ambiguous = std::count(field.ambiguous.begin(), field.ambiguous.end(), 1);
+    for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
+    bool const any_valid = counts[0] + counts[1] > 0;
+    if (!any_valid) {
       spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
-                   written, measurement.field.size());
+                   written, field.size());
     }
-    nlohmann::json const json{{"vectors", measurement.field.size()},
-                              {"file", written},
-                              {"valid", counts[0]},
-                              {"replaced", counts[1]},
-                              {"masked", counts[2]},
-                              {"invalid", counts[3]},
-                              {"device", device.name()},
-                              {"seconds_correlate", measurement.seconds}};
+    nlohmann::json const json{{"vectors", field.size()}, {"file", written},
+                              {"valid", counts[0]},      {"replaced", counts[1]},
+                              {"masked", counts[2]},     {"invalid", counts[3]},
+                              {"ambiguous", ambiguous},  {"warnings", field.warnings},
+                              {"device", device.name()}, {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),
-                 fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, measurement.field.size(),
-                             counts[1], counts[3], measurement.seconds));
-    return ok;
+                 fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, field.size(), counts[1],
+                             counts[3], measurement.seconds));
+    return any_valid ? ok : check_missed;
   };
 }
 

@@ -265,9 +265,10 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.measures.emplace_back("dots", static_cast<double>(prepared.scene.dots.centre.size()));
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
   result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
-  result.measures.emplace_back("warnings", static_cast<double>(prepared.warnings.size()));
-  result.vectors = vector_errors(comparison);
   result.warnings = prepared.warnings;
+  result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
+  result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
+  result.vectors = vector_errors(comparison);
   result.seconds_compare = seconds_since(start);
 
   if (!folder) return;
