@@ -215,6 +215,21 @@ bool single_precision(Setup const& setup, Renderer const& renderer) {
   return setup.render.precision == Precision::single && renderer.device() == "cuda";
 }
 
+/// What keeps pixels from saturation: what fills them is the light, the charge without light, or their noise.
+/// @param light_e electrons that light sets free in the brightest pixel
+std::string saturation_cure(CameraSetup const& camera, double light_e) {
+  NoiseSetup const& noise = camera.noise;
+  double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
+  double const offset_e = camera.offset_dn / full_scale * noise.full_well_e;
+  double const dark_e = noise.enabled ? noise.dark_current_e : 0.0;
+  bool const without_noise = offset_e + light_e + dark_e >= noise.full_well_e;
+  if (without_noise && dark_e > light_e) return "lower camera.noise.dark_current_e";
+  double const shot_e = noise.shot_noise ? std::sqrt(light_e + dark_e) : 0.0;
+  if (without_noise || noise.read_noise_e <= shot_e) return "lower camera.exposure";
+  return fmt::format("lower camera.noise.read_noise_e: {:.4g} electrons are {:.2g} of the full well",
+                     noise.read_noise_e, noise.read_noise_e / noise.full_well_e);
+}
+
 }  // namespace
 
 double exposure_of(CameraSetup const& camera, KeptLight const& light) {
@@ -270,8 +285,9 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   std::string const resolved = loaded.document.resolved();
 
   if (saturated_reference + saturated_flow > 0) {
-    warn(warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; lower camera.exposure",
-                               saturated_reference, saturated_flow));
+    warn(warnings,
+         fmt::format("{} pixels are saturated in the reference, {} in the flow frame; {}", saturated_reference,
+                     saturated_flow, saturation_cure(camera, rendered.exposure_e * rendering.kept->brightest())));
   }
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};

@@ -13,6 +13,7 @@
 #include "analysis/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
+#include "render/base/input_file.h"
 #include "render/sensor/detector.h"
 #include "studies/correlate.h"
 #include "studies/figures/error_figures.h"

@@ -7,6 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
+#include "render/base/input_file.h"
 #include "studies/case.h"
 
 namespace gladstone {
@@ -15,15 +16,17 @@ namespace {
 /// A file that a case should hold by now. @param command that makes it
 std::string made_file(std::string const& folder, char const* name, std::string const& command) {
   std::string path = in_case(folder, name);
-  if (!std::filesystem::exists(path)) throw DataError(path, "is not there; make it with: " + command);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw DataError(path, "is not there; make it with: " + command);
   return path;
 }
 
 /// Where the vectors are. @throws DataError where they are not
 std::string vectors_path(std::string const& folder, std::string const& given) {
   if (given.empty()) return made_file(folder, case_file::vectors, "gladstone correlate " + folder);
-  if (!std::filesystem::exists(given)) throw DataError(given, "does not exist; check --vectors");
-  if (std::filesystem::is_directory(given)) throw DataError(given, "is a folder; name a file of vectors");
+  std::error_code error;
+  if (!std::filesystem::exists(given, error)) throw DataError(given, "does not exist; check --vectors");
+  require_input_file(given, "a file of vectors");
   return given;
 }
 

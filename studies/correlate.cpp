@@ -48,6 +48,28 @@ class FramesView final : public FramePair {
   Image<double> const& flow_;
 };
 
+void warn_of_colour(std::string const& path, ImageMetadata const& metadata) {
+  if (metadata.channels < 3) return;
+  spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
+               path);
+}
+
+/// Pixels that are nan or infinite are left out of every window, as the correlator does: they are told, and refused
+/// where nothing else is there.
+void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
+                  Image<double> const& flow) {
+  for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
+    std::size_t const bad = count_not_finite(*image);
+    if (bad == image->size()) {
+      throw DataError(name, fmt::format("all of its {} pixels are nan or infinite; export it anew", bad));
+    }
+    if (bad > 0) {
+      spdlog::warn("{}: {} of {} pixels are nan or infinite, and are left out of the windows they lie in", name, bad,
+                   image->size());
+    }
+  }
+}
+
 }  // namespace
 
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
@@ -64,6 +86,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                     fmt::format("is {} x {} px, smaller than a window of {} px; set correlate.window_px smaller",
                                 reference.columns(), reference.rows(), largest));
   }
+  check_finite(reference_name, reference, flow_name, flow);
   return correlate_frames(FramesView(reference, flow), settings, device);
 }
 
@@ -87,12 +110,19 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources) {
   ImageMetadata metadata;
   Image<double> frame = read_image(path, &metadata);
-  if (metadata.channels >= 3) {
-    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
-                 path);
-  }
+  warn_of_colour(path, metadata);
   sources.add(name, path, SourceFiles::Holds::pixels, pixel_sha256(frame, metadata.sample_bits));
   return frame;
+}
+
+std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources) {
+  ImageMetadata metadata;
+  sources.add("", pair, SourceFiles::Holds::bytes);
+  std::array<Image<double>, 2> frames = read_frame_pair(pair, &metadata);
+  warn_of_colour(pair, metadata);
+  sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
+  sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
+  return frames;
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "analysis/correlation_settings.h"
@@ -35,6 +36,9 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides);
 /// Reads a frame and enters it, by what it holds, among the sources of the vectors. A colour picture is warned of.
 /// @param name "reference" or "flow"
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources);
+
+/// The same for a file of two pages, reference and flow.
+std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
 
 /// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
 /// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then

@@ -1,7 +1,10 @@
 #include "studies/image_statistics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "render/base/image_file.h"
 
 namespace gladstone {
 namespace {
@@ -24,7 +27,7 @@ std::vector<Neighbourhood> neighbourhoods(Image<double> const& image) {
           here.response += value * (i == 0 ? 2 : -1) * (j == 0 ? 2 : -1);
         }
       }
-      all.push_back(here);
+      if (std::isfinite(here.mean)) all.push_back(here);
     }
   }
   return all;
@@ -40,12 +43,14 @@ double median(std::vector<double> values) {
 /// Heights over the background of what stands out from it and from its eight neighbours.
 std::vector<double> peak_heights(Image<double> const& image, double background, double sign) {
   double largest = 0;
-  for (double const value : image) largest = std::max(largest, sign * (value - background));
+  for (double const value : image) {
+    if (std::isfinite(value)) largest = std::max(largest, sign * (value - background));
+  }
   std::vector<double> heights;
   for (int row = 1; row + 1 < image.rows(); ++row) {
     for (int column = 1; column + 1 < image.columns(); ++column) {
       double const height = sign * (image(column, row) - background);
-      bool peak = height > largest / 3;
+      bool peak = height > largest / 3 && std::isfinite(height);
       for (int j = -1; j <= 1 && peak; ++j) {
         for (int i = -1; i <= 1 && peak; ++i) {
           peak = sign * (image(column + i, row + j) - background) <= height;
@@ -63,6 +68,7 @@ double dot_diameter_px(Image<double> const& image, double mean, double noise) {
   for (int row = 0; row < image.rows(); ++row) {
     for (int column = 0; column + 1 < image.columns(); ++column) {
       double const a = image(column, row) - mean, b = image(column + 1, row) - mean;
+      if (!std::isfinite(a) || !std::isfinite(b)) continue;
       zero += 0.5 * (a * a + b * b);
       one += a * b;
       ++pairs;
@@ -78,9 +84,10 @@ double dot_diameter_px(Image<double> const& image, double mean, double noise) {
 ImageStatistics image_statistics(Image<double> const& image) {
   double const unknown = std::nan("");
   ImageStatistics seen{0, unknown, unknown, unknown, unknown};
-  for (double const value : image) seen.mean += value / static_cast<double>(image.size());
+  auto const finite = static_cast<double>(image.size() - count_not_finite(image));
+  for (double const value : image) seen.mean += std::isfinite(value) ? value / finite : 0;
   double skewness = 0;
-  for (double const value : image) skewness += std::pow(value - seen.mean, 3);
+  for (double const value : image) skewness += std::isfinite(value) ? std::pow(value - seen.mean, 3) : 0;
   double const sign = skewness < 0 ? -1 : 1;  // of the dots against the background
 
   std::vector<Neighbourhood> flat = neighbourhoods(image);

@@ -26,7 +26,8 @@ struct ImageStatistics {
 /// standard deviation of a pixel's white noise (Immerkaer, Comput. Vis. Image Underst. 64 (1996) 300). It is averaged
 /// over the fifth of the places whose 3 x 3 mean is farthest from the dots': the mask is orthogonal to the mean, so
 /// that this choice prefers no noise. Below black nothing is recorded: noise about a black level of 0 is seen by its
-/// upper half. Dots: pixels that no neighbour exceeds and that rise over a third of the largest height.
+/// upper half. Dots: pixels that no neighbour exceeds and that rise over a third of the largest height. Pixels that are
+/// nan or infinite are left out, with the neighbourhoods that hold one.
 ImageStatistics image_statistics(Image<double> const& image);
 
 }  // namespace gladstone

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstdio>
 #include <iostream>
-#include <new>
 #include <string_view>
 
 #include "render/base/error.h"
@@ -15,6 +14,7 @@
 #include "render/base/nearest_name.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/version_text.h"
 
@@ -84,8 +84,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);
   app.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
   app.add_flag("--quiet", options.quiet, "No log, no progress bars");
-  app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(CLI::Range(0, 4096));
-  app.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(whole_number(0, 4096));
+  app.add_option("--device", options.device, "auto, cpu or cuda")->check(one_of({"auto", "cpu", "cuda"}));
   app.footer(
       "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 3 incomplete study, 5 "
       "device "
@@ -99,6 +99,7 @@ int run(int argc, char** argv) {
                     commands[i].example));
     bodies[i] = commands[i].attach(*parsed[i], options);
   }
+  app.failure_message(refusal);
   app.allow_extras();  // what nobody knows is refused below, with the nearest name
   try {
     app.parse(argc, argv);
@@ -138,10 +139,8 @@ int guarded(int argc, char** argv) {
     return fail("", error.what(), interrupted_by_user);
   } catch (DeviceError const& error) {
     return fail("device error: ", error.what(), device_error);
-  } catch (std::bad_alloc const&) {
-    return fail("", "out of memory; reduce the image, the field or the number of dots", bad_input);
   } catch (std::exception const& error) {
-    return fail("", error.what(), bad_input);
+    return fail("", message_of(error), bad_input);
   }
 }
 

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
+#include "render/base/text_file.h"
 #include "render/base/units.h"
 #include "render/scene/trace_pair.h"
 
@@ -62,22 +61,18 @@ TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<dou
 }  // namespace
 
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
-  if (std::filesystem::is_directory(path)) throw DataError(path, "is a folder; name a table of rays with --rays");
-  std::ifstream file(path);
-  if (!file) throw DataError(path, "cannot be opened (missing or not readable); check --rays");
-  std::string line;
-  std::getline(file, line);
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  if (line != "x_mm,y_mm,z_mm,dx,dy,dz") {
-    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)", line));
+  LineReader file(path, "a table of rays with --rays");
+  auto const header = file.next();
+  if (header != "x_mm,y_mm,z_mm,dx,dy,dz") {
+    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm,z_mm,dx,dy,dz)",
+                                             excerpt(header.value_or(""))));
   }
   std::vector<Ray<double>> rays;
-  for (std::size_t number = 2; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) continue;
+  while (auto const line = file.next()) {
+    if (line->empty()) continue;
     double v[6] = {};
-    char const* at = line.data();
-    char const* const end = at + line.size();
+    char const* at = line->data();
+    char const* const end = at + line->size();
     bool good = true;
     for (int i = 0; i < 6 && good; ++i) {
       auto const [rest, error] = std::from_chars(at, end, v[i]);
@@ -86,17 +81,18 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
     }
     Vec3d const direction{v[3], v[4], v[5]};
     if (!good || direction == Vec3d{}) {
-      throw DataError(fmt::format("{}:{}", path, number),
-                      fmt::format("\"{}\" is not six finite numbers with a direction that is not zero", line));
+      throw DataError(file.place(), fmt::format("\"{}\" is not six finite numbers with a direction that is not zero",
+                                                excerpt(*line)));
     }
     Vec3d const start = Vec3d{v[0], v[1], v[2]} * unit::millimetre;
     if (std::max({std::abs(start.x), std::abs(start.y), std::abs(start.z)}) > farthest) {
       throw DataError(
-          fmt::format("{}:{}", path, number),
+          file.place(),
           fmt::format("the ray starts at {:.6g}, {:.6g}, {:.6g} mm, far outside the bench ({:.6g} mm at most, "
                       "ten times the way from the dots to the lens); places are in mm",
                       v[0], v[1], v[2], farthest / unit::millimetre));
     }
+    require_room(rays, path, "rays");
     rays.push_back({start, unit_direction(direction)});
   }
   return rays;

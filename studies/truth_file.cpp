@@ -96,15 +96,23 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   file.close();
 }
 
+namespace {
+
+/// @throws DataError where a dataset has not the length that goes with the others
+void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
+  if (there == needed) return;
+  throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
+                            " belong to the others; render the case again");
+}
+
+}  // namespace
+
 GroundTruth read_truth(std::string const& path) {
   Hdf5Reader const file(path);
-  auto const check_length = [&](std::string const& name, std::size_t length, std::size_t wanted) {
-    if (length != wanted)
-      throw DataError(path, name + " has another length than /dots/position_m; render the case again");
-  };
   GroundTruth truth;
   std::vector<double> const position = file.read("/dots/position_m");
   truth.resize(position.size() / 3);
+  require_length(path, "/dots/position_m", position.size(), 3 * truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
   }
@@ -116,7 +124,7 @@ GroundTruth read_truth(std::string const& path) {
       continue;
     }
     std::vector<double> const values = file.read(dataset.name);
-    check_length(dataset.name, values.size(), 2 * truth.size());
+    require_length(path, dataset.name, values.size(), 2 * truth.size());
     for (std::size_t i = 0; i < truth.size(); ++i) (truth.*dataset.values)[i] = {values[2 * i], values[2 * i + 1]};
   }
   std::vector<std::int64_t> const by_table =
@@ -125,7 +133,7 @@ GroundTruth read_truth(std::string const& path) {
     truth.path[i] = by_table.at(i) == 1 ? TruthPath::table : TruthPath::rays;
   }
   std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
-  check_length("/dots/rays", rays.size(), 2 * truth.size());
+  require_length(path, "/dots/rays", rays.size(), 2 * truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
   return truth;
 }
@@ -134,8 +142,10 @@ FieldMap read_field_map(std::string const& path) {
   Hdf5Reader const file(path);
   FieldMap map;
   std::vector<double> const spacing = file.read("/field/spacing_px");
+  require_length(path, "/field/spacing_px", spacing.size(), 1);
   auto const shape = file.shape("/field/density_kg_m3");
-  if (spacing.size() != 1 || shape.size() != 2 || !(spacing[0] >= 1 && spacing[0] <= 1e6)) {
+  constexpr std::size_t largest = 1'000'000;  // pixels of a camera along an axis
+  if (shape.size() != 2 || shape[0] > largest || shape[1] > largest || !(spacing[0] >= 1 && spacing[0] <= largest)) {
     throw DataError(path,
                     "/field holds no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");
   }
@@ -143,9 +153,8 @@ FieldMap read_field_map(std::string const& path) {
   std::vector<double> const density = file.read("/field/density_kg_m3");
   std::vector<double> const gradient = file.read("/field/density_gradient_kg_m4");
   std::vector<double> const eq9 = file.read("/field/eq9_px");
-  if (gradient.size() != 2 * density.size() || eq9.size() != 2 * density.size()) {
-    throw DataError(path, "the maps in /field have unequal sizes; render the case again");
-  }
+  require_length(path, "/field/density_gradient_kg_m4", gradient.size(), 2 * density.size());
+  require_length(path, "/field/eq9_px", eq9.size(), 2 * density.size());
   int const rows = static_cast<int>(shape[0]), columns = static_cast<int>(shape[1]);
   map.density = Image<double>(columns, rows);
   map.density_gradient = Image<Vec2d>(columns, rows);

@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/text_file.h"
 
 namespace gladstone::detail {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
+constexpr std::size_t most_lines_before_numbers = 1000;
 
 std::string_view trimmed(std::string_view text) {
   auto const begin = text.find_first_not_of(blanks);
@@ -106,29 +107,31 @@ std::vector<double> const& TextTable::column(std::initializer_list<std::string_v
   if (auto const found = find(any_of)) return values[*found];
   throw DataError(fmt::format("{}:{}", path, header_line),
                   fmt::format("no column {} (the columns are {}); name it in the header line", *any_of.begin(),
-                              fmt::join(names, ", ")));
+                              excerpt(fmt::format("{}", fmt::join(names, ", ")), 200)));
 }
 
 TextTable read_text_table(std::string const& path) {
-  std::ifstream file(path);
-  if (!file) throw DataError(path, "cannot be opened");
+  LineReader file(path, "a file of vectors");
   TextTable table;
   table.path = path;
   auto const fail = [&](std::size_t at, std::string const& message) {
     throw DataError(fmt::format("{}:{}", path, at), message);
   };
 
-  std::string line;
   std::string header;
   char separator = 0;
-  for (std::size_t at = 1; std::getline(file, line); ++at) {
-    std::string_view text = line;
+  while (auto const line = file.next()) {
+    std::size_t const at = file.number();
+    std::string_view text = *line;
     if (at == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     text = trimmed(text);
     if (text.empty()) continue;
 
     // Lines before the first row of numbers: the last of them is the header.
     if (separator == 0 && !number(split(text, separator_of(text)).front())) {
+      if (at > most_lines_before_numbers) {
+        fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
+      }
       if (table.header_line != 0) table.preamble.push_back(header);
       header = text;
       table.header_line = at;
@@ -147,16 +150,16 @@ TextTable read_text_table(std::string const& path) {
     std::vector<std::string_view> const fields = split(text, separator);
     if (fields.size() != table.names.size()) {
       fail(at, fmt::format("{} fields where the header names {} columns ({})", fields.size(), table.names.size(),
-                           fmt::join(table.names, ", ")));
+                           excerpt(fmt::format("{}", fmt::join(table.names, ", ")), 200)));
     }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       std::optional<double> const value = number(fields[i]);
-      if (!value) fail(at, fmt::format("{} = \"{}\" is not a number", table.names[i], fields[i]));
+      if (!value) fail(at, fmt::format("{} = \"{}\" is not a number", excerpt(table.names[i]), excerpt(fields[i])));
       table.values[i].push_back(*value);
     }
+    require_room(table.line, path, "vectors");
     table.line.push_back(at);
   }
-  if (file.bad()) throw DataError(path, "cannot be read to its end");
   if (table.header_line == 0) throw DataError(path + ":1", "the file is empty");
   if (table.line.empty()) fail(table.header_line, "no row of numbers follows the header");
   return table;

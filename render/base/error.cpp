@@ -1,20 +1,45 @@
 #include "render/base/error.h"
 
+#include <algorithm>
+#include <filesystem>
+#include <new>
+#include <string_view>
+
 namespace gladstone {
 namespace {
 
-std::string joined(std::vector<SetupProblem> const& problems) {
+std::string joined(std::vector<SetupProblem> const& problems, std::size_t more) {
+  std::size_t const told = std::min(problems.size(), most_problems_told);
   std::string text;
-  for (auto const& problem : problems) {
-    if (!text.empty()) text += '\n';
-    text += problem.where + ": " + problem.message;
+  for (std::size_t i = 0; i < told; ++i) {
+    if (i > 0) text += '\n';
+    text += problems[i].where + ": " + problems[i].message;
   }
-  return text;
+  more += problems.size() - told;
+  return more == 0 ? text : text + "\nand " + std::to_string(more) + (more == 1 ? " problem more" : " problems more");
 }
 
 }  // namespace
 
-SetupError::SetupError(std::vector<SetupProblem> problems)
-    : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+SetupError::SetupError(std::vector<SetupProblem> problems, std::size_t more)
+    : Error(joined(problems, more)), problems_(std::move(problems)), more_(more) {}
+
+bool lacks_memory(std::exception const& error) {
+  return dynamic_cast<std::bad_alloc const*>(&error) || dynamic_cast<std::length_error const*>(&error) ||
+         dynamic_cast<MemoryError const*>(&error) ||
+         std::string_view(error.what()).find("(-4:Insufficient memory)") != std::string_view::npos;
+}
+
+std::string message_of(std::exception const& error) {
+  if (dynamic_cast<Error const*>(&error)) return error.what();
+  if (dynamic_cast<std::invalid_argument const*>(&error)) return error.what();  // ours alone throw it
+  if (lacks_memory(error)) return "out of memory; reduce the image, the field or the number of dots";
+  if (auto const* const file = dynamic_cast<std::filesystem::filesystem_error const*>(&error)) {
+    return file->path1().string() + ": cannot be looked at or changed (" + file->code().message() +
+           "); check the name and the rights";
+  }
+  return std::string("a fault of gladstone itself, or of a library that it uses (") + error.what() +
+         "); try other inputs, and report this with the command line";
+}
 
 }  // namespace gladstone

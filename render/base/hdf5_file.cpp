@@ -3,7 +3,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <ctime>
@@ -12,8 +11,11 @@
 #include <mutex>
 #include <numeric>
 
+#include "render/base/available_memory.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
+#include "render/base/input_file.h"
+#include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
 #include "render/base/output_file.h"
 #include "render/base/version.h"
@@ -55,6 +57,13 @@ void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::size_t product(std::vector<std::size_t> const& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+/// "2000 x 1000 x 1000"
+std::string sizes_text(std::vector<std::size_t> const& shape) {
+  std::string text;
+  for (std::size_t const size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
+  return text;
 }
 
 std::string class_name(H5T_class_t type) {
@@ -106,6 +115,9 @@ struct Hdf5Reader::Handle {
   /// Opens a dataset to be read row by row: with a cache for the chunks that share its rows, so that each chunk is
   /// decompressed once, whatever the count of rows asked for (as long as they fit into 128 MiB).
   hid_t open_rows(std::string const& path, std::string const& dataset);
+  /// Reads a box of the dataset that open_rows has opened; `out` has exactly its size. @throws DataError
+  void read(std::string const& path, std::string const& dataset, std::vector<hsize_t> const& start,
+            std::vector<hsize_t> const& size, std::span<double> out) const;
 };
 
 namespace {
@@ -120,7 +132,11 @@ std::vector<std::size_t> shape_of(hid_t dataset) {
 
 template <class Value>
 std::vector<Value> read_whole(hid_t dataset, hid_t type, std::string const& path, std::string const& name) {
-  std::vector<Value> values(product(shape_of(dataset)));
+  auto const shape = shape_of(dataset);
+  // what the header says may be far from what the file holds
+  std::string const what = "dataset \"" + name + "\" of " + sizes_text(shape) + " values";
+  require_memory(path, what, std::accumulate(shape.begin(), shape.end(), 1.0 * sizeof(Value), std::multiplies<>()));
+  std::vector<Value> values(product(shape));
   if (!values.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     throw DataError(path, "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
   }
@@ -176,18 +192,23 @@ hid_t Hdf5Reader::Handle::open_rows(std::string const& path, std::string const& 
   return rows;
 }
 
+void Hdf5Reader::Handle::read(std::string const& path, std::string const& dataset, std::vector<hsize_t> const& start,
+                              std::vector<hsize_t> const& size, std::span<double> out) const {
+  throw_if_interrupted();
+  GLADSTONE_EXPECTS(out.size() == product({size.begin(), size.end()}));
+  if (out.empty()) return;
+  Id const on_disk(H5Dget_space(rows), H5Sclose);
+  H5Sselect_hyperslab(on_disk, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
+  Id const in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
+  if (H5Dread(rows, H5T_NATIVE_DOUBLE, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
+    throw DataError(path, "dataset \"" + dataset + "\" cannot be read (the file is damaged or cut short)");
+  }
+}
+
 Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
   Lock const lock(library_lock());
   silence();
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw DataError(path, "does not exist; check the name");
-  if (std::filesystem::is_directory(status)) throw DataError(path, "is a folder; name an HDF5 file");
-  if (FILE* const file = std::fopen(path.c_str(), "rb")) {
-    std::fclose(file);
-  } else {
-    throw DataError(path, std::string("cannot be opened (") + std::strerror(errno) + ')');
-  }
+  require_input_file(path, "an HDF5 file");
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw DataError(path, "is not an HDF5 file; check the name, or make or fetch it again");
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -268,20 +289,25 @@ std::vector<std::int64_t> Hdf5Reader::read_integers(std::string const& dataset) 
 void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::size_t count,
                            std::span<double> out) const {
   Lock const lock(library_lock());
-  hid_t const opened = handle_->open_rows(path_, dataset);
-  auto const shape = shape_of(opened);
+  auto const shape = shape_of(handle_->open_rows(path_, dataset));
   GLADSTONE_EXPECTS(!shape.empty() && first + count <= shape[0]);
-  GLADSTONE_EXPECTS(out.size() == count * (product(shape) / std::max<std::size_t>(shape[0], 1)));
-  if (out.empty()) return;
   std::vector<hsize_t> start(shape.size(), 0), size(shape.begin(), shape.end());
   start[0] = first;
   size[0] = count;
-  Id const on_disk(H5Dget_space(opened), H5Sclose);
-  H5Sselect_hyperslab(on_disk, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
-  Id const in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-  if (H5Dread(opened, H5T_NATIVE_DOUBLE, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
-    throw DataError(path_, "dataset \"" + dataset + "\" cannot be read (the file is damaged or cut short)");
-  }
+  handle_->read(path_, dataset, start, size, out);
+}
+
+void Hdf5Reader::read_rows_of(std::string const& dataset, std::size_t element, std::size_t first, std::size_t count,
+                              std::span<double> out) const {
+  Lock const lock(library_lock());
+  auto const shape = shape_of(handle_->open_rows(path_, dataset));
+  GLADSTONE_EXPECTS(shape.size() > 1 && element < shape[0] && first + count <= shape[1]);
+  std::vector<hsize_t> start(shape.size(), 0), size(shape.begin(), shape.end());
+  start[0] = element;
+  size[0] = 1;
+  start[1] = first;
+  size[1] = count;
+  handle_->read(path_, dataset, start, size, out);
 }
 
 namespace {

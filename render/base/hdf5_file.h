@@ -43,6 +43,9 @@ class Hdf5Reader {
   std::vector<std::int64_t> read_integers(std::string const& dataset) const;
   /// Rows [first, first + count) of the leading axis, converted to double; `out` has exactly their size.
   void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<double> out) const;
+  /// Rows [first, first + count) of the second axis of one element of the leading axis.
+  void read_rows_of(std::string const& dataset, std::size_t element, std::size_t first, std::size_t count,
+                    std::span<double> out) const;
   /// A text or numeric attribute of the root as text; empty where there is none.
   std::string attribute(std::string const& name) const;
   /// The same of a dataset of numbers.

@@ -9,12 +9,17 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
+#include <cstring>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/input_file.h"
+#include "render/base/interrupt.h"
 #include "render/base/output_file.h"
 #include "render/base/version.h"
 
@@ -60,16 +65,48 @@ ImageMetadata metadata_of(OIIO::ImageSpec const& spec) {
   return metadata;
 }
 
+/// More values than any compression packs into a byte of a file: 1032 in deflate (a run of 258 bytes takes two bits),
+/// 1365 in LZW (twelve bits for 4 kB at the most), more only in what pictures are not written in.
+constexpr double most_packed = 2048;
+constexpr double always_believed = 16e6;  // bytes: nothing is lost by asking for them
+constexpr int most_pages_counted = 1000;
+
+/// A header is believed where the file is long enough for its pixels, and memory for them.
+void check_size(OIIO::ImageSpec const& spec, std::string const& path, std::uint64_t file_bytes) {
+  double const pixels = static_cast<double>(spec.width) * spec.height * spec.depth;
+  double const samples = pixels * spec.nchannels;
+  std::string const sizes = fmt::format("{} x {} px of {} {}", spec.width, spec.height, spec.nchannels,
+                                        spec.nchannels == 1 ? "value" : "values");
+  int const bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+  double const stored = samples * std::max(bits, 1) / 8;
+  // without compression, one byte of a palette's indices gives three of colours
+  bool const packed = spec.get_string_attribute("compression", "unknown") != "none";
+  double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
+  if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
+    throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
+                                      "{:.3g} MB; copy it again",
+                                      sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
+  }
+  if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
+  // the library's tile or strip, the samples as stored and as numbers, and the picture
+  double const tile = static_cast<double>(spec.tile_width) * spec.tile_height * std::max(spec.tile_depth, 1);
+  double const tile_bytes = tile * spec.nchannels * static_cast<double>(spec.format.size());
+  double const sample_bytes = static_cast<double>(spec.format.size()) + sizeof(double);
+  require_memory(path, "a picture of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
+}
+
 /// All samples as stored. OpenImageIO widens 10, 12 and other odd depths to 8 or 16 bits by scaling; `shift` undoes it.
 template <class Stored>
 std::vector<double> read_samples(OIIO::ImageInput& input, std::string const& path, int shift) {
   OIIO::ImageSpec const& spec = input.spec();
   std::vector<Stored> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-  bool const read = input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Stored>::value, samples.data());
+  bool const read = input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Stored>::value,
+                                     samples.data());
   if (!read || input.has_error()) {  // of a TIFF cut short it says true, and leaves an error for every missing strip
-    std::string const why = input.geterror();
-    throw DataError(path, "cannot be read to its end (" + why.substr(0, why.find('\n')) + "); copy it again");
+    input.geterror();
+    throw DataError(path, "cannot be read to its end (it is damaged or cut short); copy it again");
   }
+  throw_if_interrupted();
   std::vector<double> values(samples.size());
   double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -104,32 +141,108 @@ std::vector<double> read_samples(OIIO::ImageInput& input, std::string const& pat
   }
 }
 
+/// A picture file, open at its first page.
+class Picture {
+ public:
+  explicit Picture(std::string const& path) : path_(path), file_(path, "a picture") {
+    OIIO::ImageSpec configuration;
+    configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
+    input_ = OIIO::ImageInput::open(path, &configuration);
+    if (!input_) {
+      OIIO::geterror();
+      throw DataError(path,
+                      "cannot be read as a picture (it is of another format, damaged or cut short); give TIFF, "
+                      "PNG or EXR, if need be written anew without compression");
+    }
+    count_pages();
+  }
+
+  /// Without the smaller ones that are previews of the first.
+  std::size_t pages() const { return pages_.size(); }
+
+  Image<double> read(std::size_t page, ImageMetadata* metadata) {
+    if (!input_->seek_subimage(pages_[page], 0)) {
+      throw DataError(path_, fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
+    }
+    OIIO::ImageSpec const spec = input_->spec();
+    check_size(spec, path_, file_.size());
+    auto const samples = read_samples(*input_, path_);
+    std::size_t const channels = static_cast<std::size_t>(spec.nchannels);
+    Image<double> image(spec.width, spec.height);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      double const* const sample = samples.data() + i * channels;
+      image.data()[i] = channels < 3 ? sample[0] : 0.2126 * sample[0] + 0.7152 * sample[1] + 0.0722 * sample[2];
+    }
+    if (metadata) {
+      *metadata = metadata_of(spec);
+      metadata->channels = spec.nchannels;
+      metadata->sample_bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+    }
+    return image;
+  }
+
+ private:
+  void count_pages() {
+    OIIO::ImageSpec const first = input_->spec();
+    for (int page = 1; page < most_pages_counted && input_->seek_subimage(page, 0); ++page) {
+      throw_if_interrupted();
+      OIIO::ImageSpec const& spec = input_->spec();
+      if (spec.width < first.width && spec.height < first.height) continue;
+      pages_.push_back(page);
+    }
+    input_->geterror();
+    input_->seek_subimage(0, 0);
+  }
+
+  std::string path_;
+  InputFile file_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  std::vector<int> pages_{0};
+};
+
+/// What goes wrong for want of memory names the file.
+template <class Read>
+auto named(std::string const& path, Read const& read) {
+  try {
+    return read();
+  } catch (std::bad_alloc const&) {
+    throw MemoryError(path, "does not fit into memory; give a smaller picture, or use a machine with more");
+  } catch (std::length_error const&) {
+    throw MemoryError(path, "does not fit into memory; give a smaller picture, or use a machine with more");
+  }
+}
+
 }  // namespace
 
 Image<double> read_image(std::string const& path, ImageMetadata* metadata) {
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw DataError(path, "does not exist; check the name");
-  if (std::filesystem::is_directory(status)) throw DataError(path, "is a folder; name a picture");
-  OIIO::ImageSpec configuration;
-  configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
-  auto const input = OIIO::ImageInput::open(path, &configuration);
-  if (!input) throw DataError(path, "cannot be read as a picture (" + OIIO::geterror() + "); give TIFF, PNG or EXR");
+  return named(path, [&] {
+    Picture picture(path);
+    if (picture.pages() > 1) {
+      throw DataError(path, fmt::format("has {} pages, and one picture is needed; write the page that is meant to a "
+                                        "file of its own (a file of two frames, reference and flow, is given alone: "
+                                        "gladstone correlate PAIR.tif -o vectors.csv)",
+                                        picture.pages()));
+    }
+    return picture.read(0, metadata);
+  });
+}
 
-  OIIO::ImageSpec const spec = input->spec();
-  auto const samples = read_samples(*input, path);
-  std::size_t const channels = static_cast<std::size_t>(spec.nchannels);
-  Image<double> image(spec.width, spec.height);
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    double const* const sample = samples.data() + i * channels;
-    image.data()[i] = channels < 3 ? sample[0] : 0.2126 * sample[0] + 0.7152 * sample[1] + 0.0722 * sample[2];
-  }
-  if (metadata) {
-    *metadata = metadata_of(spec);
-    metadata->channels = spec.nchannels;
-    metadata->sample_bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
-  }
-  return image;
+std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata) {
+  return named(path, [&] {
+    Picture picture(path);
+    if (picture.pages() != 2) {
+      throw DataError(path, fmt::format("has {} {}, and a file that is given alone needs two: reference and flow; give "
+                                        "two pictures, or a case folder",
+                                        picture.pages(), picture.pages() == 1 ? "page" : "pages"));
+    }
+    Image<double> reference = picture.read(0, metadata);
+    return std::array{std::move(reference), picture.read(1, nullptr)};
+  });
+}
+
+std::size_t count_not_finite(Image<double> const& image) {
+  return static_cast<std::size_t>(
+      std::count_if(image.begin(), image.end(), [](double value) { return !std::isfinite(value); }));
 }
 
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata) {
@@ -150,12 +263,12 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
 
   // Into memory first: libtiff does not say when a disk is full.
   auto const output = OIIO::ImageOutput::create("tif");
-  if (!output) fail(OIIO::geterror());
+  if (!output) fail("no writer of TIFF is installed");
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   bool const written = output->set_ioproxy(&memory) && output->open(path, spec) &&
                        output->write_image(OIIO::TypeDesc::UINT16, image.data());
-  if (!output->close() || !written) fail(output->geterror());
+  if (!output->close() || !written) fail("out of memory?");
 
   OutputFile file(path);
   file.write(bytes.data(), bytes.size());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -18,8 +19,16 @@ struct ImageMetadata {
 };
 
 /// Reads any picture that OpenImageIO knows (TIFF, PNG, EXR; 8, 16 bit, float) as raw values in double:
-/// 0..255, 0..65535 or as stored. Colour becomes luminance (Rec. 709). @throws DataError
+/// 0..255, 0..65535 or as stored. Colour becomes luminance (Rec. 709).
+/// @throws DataError, also for a file of several pages
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
+
+/// The pages of a file that holds two frames of one size, as cameras for PIV write them: reference and flow.
+/// @throws DataError for another number of pages
+std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata = nullptr);
+
+/// Pixels that are nan or infinite, as pictures of floating-point numbers may have.
+std::size_t count_not_finite(Image<double> const& image);
 
 /// Writes a 16-bit grey TIFF as one whole file. @throws OutputError
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);

@@ -29,8 +29,11 @@ std::optional<std::string> nearest_name(std::string_view word, std::vector<std::
     // a name without its unit means the one with it
     bool const without_unit =
         !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
-    std::size_t const distance = without_unit ? 1 : edit_distance(word, candidate);
     std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
+    // no fewer edits than the lengths differ by: a word as long as a book is compared with nothing
+    std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
+    if (!without_unit && (least > allowed || (nearest && least >= smallest))) continue;
+    std::size_t const distance = without_unit ? 1 : edit_distance(word, candidate);
     if (distance > allowed || (nearest && distance >= smallest)) continue;
     nearest = candidate;
     smallest = distance;

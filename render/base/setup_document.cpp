@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <memory>
+#include <set>
+#include <string_view>
 #include <tuple>
 
 #include "render/base/nearest_name.h"
@@ -9,6 +12,8 @@
 
 namespace gladstone {
 namespace {
+
+constexpr std::size_t longest_assignment = 200;  // shown of a --set
 
 bool is_index(std::string const& step) { return step.size() > 2 && step.front() == '[' && step.back() == ']'; }
 
@@ -43,7 +48,7 @@ std::string unread_message(SetupDocument::State const& state, std::vector<std::s
   auto const named = [&](std::string const& name) {
     auto path = table;
     path.push_back(name);
-    return is_table ? '[' + dotted_path(path) + ']' : '"' + name + '"';
+    return is_table ? '[' + excerpt(dotted_path(path)) + ']' : '"' + excerpt(name) + '"';
   };
   std::string const place = is_table ? "" : " in " + table_name(table);
   if (record.find(key)) return named(key) + place + " has no effect with the other settings; remove it";
@@ -59,27 +64,57 @@ std::string unread_message(SetupDocument::State const& state, std::vector<std::s
   return message + "; known are " + quoted_list(known);
 }
 
-void collect_unread(SetupDocument::State& state, SetupNode const& node, SetupRecord const& record,
-                    std::vector<std::string>& path) {
+/// A key of a setup that nobody read.
+struct UnreadKey {
+  std::shared_ptr<std::vector<std::string> const> table;
+  SetupRecord const* record;
+  SetupMember const* member;
+};
+
+void collect_unread(SetupNode const& node, SetupRecord const& record, std::vector<std::string>& path,
+                    std::vector<UnreadKey>& unread) {
   if (record.excused) return;
-  for (auto const& [key, value] : node.members) {
+  std::shared_ptr<std::vector<std::string> const> table;
+  for (auto const& member : node.members) {
+    auto const& [key, value] = member;
     auto const* const entry = record.find(key);
     if (!entry || !entry->read) {
-      state.problems.push_back({state.where(value.place), unread_message(state, path, record, key, value)});
+      if (!table) table = std::make_shared<std::vector<std::string> const>(path);
+      unread.push_back({table, &record, &member});
       continue;
     }
     path.push_back(key);
     if (value.kind == SetupNode::Kind::table && !entry->tables.empty()) {
-      collect_unread(state, value, entry->tables.front(), path);
+      collect_unread(value, entry->tables.front(), path, unread);
     } else if (value.kind == SetupNode::Kind::array) {
       for (std::size_t i = 0; i < std::min(value.elements.size(), entry->tables.size()); ++i) {
         path.push_back('[' + std::to_string(i) + ']');
-        collect_unread(state, value.elements[i], entry->tables[i], path);
+        collect_unread(value.elements[i], entry->tables[i], path, unread);
         path.pop_back();
       }
     }
     path.pop_back();
   }
+}
+
+/// Problems with the keys that nobody read, of which no more than are told are put into words.
+/// @return how many there are
+std::size_t add_unread(SetupDocument::State& state) {
+  std::vector<std::string> path;
+  std::vector<UnreadKey> unread;
+  collect_unread(state.root, state.record, path, unread);
+  auto const place = [](UnreadKey const& one) {
+    SetupPlace const& at = one.member->value.place;
+    return std::tuple{!at.assignment.empty(), at.line, at.column};
+  };
+  std::stable_sort(unread.begin(), unread.end(),
+                   [&](UnreadKey const& a, UnreadKey const& b) { return place(a) < place(b); });
+  for (std::size_t i = 0; i < std::min(unread.size(), most_problems_told); ++i) {
+    auto const& [table, record, member] = unread[i];
+    state.problems.push_back(
+        {state.where(member->value.place), unread_message(state, *table, *record, member->key, member->value)});
+  }
+  return unread.size();
 }
 
 void set_place(SetupNode& node, SetupPlace const& place) {
@@ -131,7 +166,7 @@ SetupRecord& SetupDocument::State::record_of(std::vector<std::string> const& pat
 }
 
 std::string SetupDocument::State::where(SetupPlace const& place) const {
-  if (!place.assignment.empty()) return "--set " + place.assignment;
+  if (!place.assignment.empty()) return "--set " + excerpt(place.assignment, longest_assignment);
   std::string const& file = place.source ? place.source->name : name;
   return file + ':' + std::to_string(std::max(place.line, 1)) + ':' + std::to_string(std::max(place.column, 1));
 }
@@ -141,6 +176,12 @@ std::string SetupDocument::State::where(std::vector<std::string> const& path) co
     auto const* const node = find(above);
     if (node && (node->place.known() || above.empty())) return where(node->place);
   }
+}
+
+std::string SetupDocument::State::absolute_name(SetupNode const& text) const {
+  namespace fs = std::filesystem;
+  fs::path const place = text.place.source ? text.place.source->folder : folder;
+  return fs::absolute(place / text.text).lexically_normal().string();
 }
 
 std::string dotted_path(std::vector<std::string> const& path) {
@@ -160,12 +201,16 @@ SetupDocument::~SetupDocument() = default;
 SetupDocument SetupDocument::from_file(std::string const& path) {
   std::string text;
   try {
-    text = read_text_file(path);
+    text = read_text_file(path, "a setup file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2) + "; give the name of a setup file"}});
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2)}});
   }
   auto const folder = std::filesystem::absolute(path).parent_path();
-  return from_text(text, path, folder.string());
+  SetupDocument document = from_text(text, path, folder.string());
+  if (document.empty()) {
+    throw SetupError({{path, "is empty (no key is set); gladstone render --help shows a setup to begin with"}});
+  }
+  return document;
 }
 
 SetupDocument SetupDocument::from_text(std::string_view text, std::string const& name, std::string const& folder) {
@@ -178,7 +223,7 @@ SetupDocument SetupDocument::from_text(std::string_view text, std::string const&
 }
 
 void SetupDocument::override_key(std::string const& assignment) {
-  std::string const where = "--set " + assignment;
+  std::string const where = "--set " + excerpt(assignment, longest_assignment);
   auto const equals = assignment.find('=');
   if (equals == std::string::npos) {
     add_problem(where, "has no \"=\"; write --set key.path=value");
@@ -187,6 +232,12 @@ void SetupDocument::override_key(std::string const& assignment) {
   auto const path = split_path(assignment.substr(0, equals));
   if (std::find(path.begin(), path.end(), "") != path.end()) {
     add_problem(where, "has an empty key; write --set key.path=value");
+    return;
+  }
+  if (path.size() > most_setup_depth) {
+    add_problem(where, "has a key of " + std::to_string(path.size()) +
+                           " parts (no setup is so deep); write the key "
+                           "that is meant");
     return;
   }
   std::string const text = assignment.substr(equals + 1);
@@ -270,26 +321,29 @@ void SetupDocument::add_problem(std::string where, std::string message) {
 
 bool SetupDocument::has_problems() const { return !state_->problems.empty(); }
 
+bool SetupDocument::empty() const { return state_->root.members.empty(); }
+
 void SetupDocument::finish() {
   auto& problems = state_->problems;
-  std::vector<std::string> path;
-  collect_unread(*state_, state_->root, state_->record, path);
+  std::size_t const before = problems.size();
+  std::size_t const unread = add_unread(*state_);
+  std::size_t const untold = unread - (problems.size() - before);
   std::stable_sort(problems.begin(), problems.end(),
                    [](SetupProblem const& a, SetupProblem const& b) { return sort_key(a.where) < sort_key(b.where); });
+  std::set<std::pair<std::string_view, std::string_view>> known;
   std::vector<SetupProblem> distinct;
   for (auto const& problem : problems) {
-    auto const same = [&](SetupProblem const& other) {
-      return other.where == problem.where && other.message == problem.message;
-    };
-    if (std::none_of(distinct.begin(), distinct.end(), same)) distinct.push_back(problem);
+    if (known.emplace(problem.where, problem.message).second) distinct.push_back(problem);
   }
   problems = distinct;
-  if (!problems.empty()) throw SetupError(distinct);
+  if (!problems.empty()) throw SetupError(distinct, untold);
 }
 
 std::string SetupDocument::resolved() const { return resolved_toml(state_->record); }
 
 std::string SetupDocument::written() const {
+  auto const is_absolute = [this](SetupFileName const& file) { return state_->find(file.path)->text == file.absolute; };
+  if (std::all_of(state_->files.begin(), state_->files.end(), is_absolute)) return toml_document(state_->root);
   State absolute;
   absolute.root = state_->root;
   for (auto const& [path, name] : state_->files) absolute.find(path)->text = name;
@@ -301,6 +355,24 @@ std::vector<std::string> SetupDocument::file_names() const {
   for (auto const& file : state_->files) names.push_back(file.absolute);
   return names;
 }
+
+std::vector<std::vector<std::string>> SetupDocument::file_keys() const {
+  std::vector<std::vector<std::string>> keys;
+  for (auto const& file : state_->files) keys.push_back(file.path);
+  return keys;
+}
+
+void SetupDocument::name_files(std::vector<std::vector<std::string>> const& keys) {
+  state_->files.clear();
+  for (auto const& path : keys) {
+    SetupNode* const node = state_->find(path);
+    if (!node || node->kind != SetupNode::Kind::text || node->text.empty()) continue;
+    node->text = state_->absolute_name(*node);
+    state_->files.push_back({path, node->text});
+  }
+}
+
+SetupDocument SetupDocument::copy() const { return SetupDocument(std::make_unique<State>(*state_)); }
 
 std::string const& SetupDocument::folder() const { return state_->folder; }
 

@@ -87,9 +87,70 @@ std::string cure(std::string_view complaint) {
   return "";
 }
 
+/// Where a text in quotes ends, which begins at `at`: behind its last quote, or at the end of all.
+std::size_t end_of_quotes(std::string_view text, std::size_t at) {
+  char const quote = text[at];
+  std::string_view const three = quote == '"' ? "\"\"\"" : "'''";
+  bool const several_lines = text.substr(at).starts_with(three);
+  for (std::size_t i = at + (several_lines ? 3 : 1); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (several_lines && text.substr(i).starts_with(three)) {
+      std::size_t end = i + 3;  // one or two quotes more belong to the text
+      while (end < i + 5 && end < text.size() && text[end] == quote) ++end;
+      return end;
+    } else if (!several_lines && (text[i] == quote || text[i] == '\n')) {
+      return i + 1;
+    }
+  }
+  return text.size();
+}
+
+/// The first place where a key has more parts, or brackets lie deeper in one another, than most_setup_depth. The
+/// library's parser and the trees made of its result go down one call for each.
+std::optional<SetupPlace> too_deep(std::string_view text) {
+  std::size_t dots = 0, brackets = 0;  // dots since the last character that separates keys and values
+  std::size_t line = 1, line_start = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char const c = text[i];
+    if (c == '"' || c == '\'') {
+      std::size_t const end = end_of_quotes(text, i);
+      for (; i + 1 < end; ++i) {
+        if (text[i] != '\n') continue;
+        ++line;
+        line_start = i + 1;
+      }
+      if (text[i] != '\n') continue;
+    } else if (c == '#') {
+      i = std::min(text.find('\n', i), text.size());
+      if (i == text.size()) break;
+    }
+    if (text[i] == '.') {
+      ++dots;
+    } else if (std::string_view("\n=,[]{}").find(text[i]) != std::string_view::npos) {
+      dots = 0;
+      if (text[i] == '[' || text[i] == '{') ++brackets;
+      if ((text[i] == ']' || text[i] == '}') && brackets > 0) --brackets;
+    }
+    if (dots >= most_setup_depth || brackets > most_setup_depth) {
+      return SetupPlace{static_cast<int>(line), static_cast<int>(i - line_start) + 1, {}};
+    }
+    if (text[i] == '\n') {
+      ++line;
+      line_start = i + 1;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 SetupNode parse_toml(std::string_view text, std::string const& name) {
+  if (auto const deep = too_deep(text)) {
+    throw SetupError({{name + ':' + std::to_string(deep->line) + ':' + std::to_string(deep->column),
+                       "tables or arrays lie more than " + std::to_string(most_setup_depth) +
+                           " deep in one another (no setup is so deep); write the key that is meant"}});
+  }
   try {
     SetupNode root = converted(toml::parse(text));
     root.place = {1, 1, {}};
@@ -102,6 +163,7 @@ SetupNode parse_toml(std::string_view text, std::string const& name) {
 }
 
 std::optional<SetupNode> parse_toml_value(std::string_view text) {
+  if (too_deep(text)) return std::nullopt;
   try {
     toml::table const table = toml::parse("value = " + std::string(text));
     if (table.size() != 1) return std::nullopt;

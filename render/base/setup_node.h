@@ -55,10 +55,14 @@ struct SetupMember {
 /// Says of a value and of all below it that they came from another file.
 void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source);
 
+/// Most parts of a dotted key or of a table's name, and most brackets within one another: a hundred times what setups
+/// have, and far from what a stack holds.
+inline constexpr std::size_t most_setup_depth = 32;
+
 /// Parses TOML 1.0. @throws SetupError with the parser's own description at name:line:column
 SetupNode parse_toml(std::string_view text, std::string const& name);
 
-/// Parses the right side of an assignment; nothing where it is not TOML.
+/// Parses the right side of an assignment; nothing where it is not TOML, or deeper than most_setup_depth.
 std::optional<SetupNode> parse_toml_value(std::string_view text);
 
 /// Text as TOML, on one line.

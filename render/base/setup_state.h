@@ -35,6 +35,8 @@ struct SetupDocument::State {
   std::string where(SetupPlace const& place) const;
   /// Where the value at the path stands; where it is absent, the nearest table above it.
   std::string where(std::vector<std::string> const& path) const;
+  /// The file that a text of the setup names: relative to the folder of the file that it stands in.
+  std::string absolute_name(SetupNode const& text) const;
 };
 
 /// "medium.field[0].kind"

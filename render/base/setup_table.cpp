@@ -326,10 +326,7 @@ std::string SetupTable::required_path(std::string const& key) {
     if (present_here && is_string(key)) problem(key, "must not be empty; give a file name");
     return {};
   }
-  namespace fs = std::filesystem;
-  auto const& source = state_->find(below(path_, key))->place.source;
-  fs::path const folder = source ? source->folder : state_->folder;
-  std::string const path = fs::absolute(folder / written).lexically_normal().string();
+  std::string const path = state_->absolute_name(*state_->find(below(path_, key)));
   state_->files.push_back({below(path_, key), path});
   use(*state_, path_, key, toml_text(std::string_view(path)));
   return path;

@@ -43,6 +43,8 @@ class SetupDocument {
 
   void add_problem(std::string where, std::string message);
   bool has_problems() const;
+  /// Whether no key at all is set.
+  bool empty() const;
 
   /// Throws SetupError with all problems found so far, among them every key that nobody read, each with the nearest
   /// known key of that table.
@@ -57,6 +59,14 @@ class SetupDocument {
 
   /// Absolute names of the files that were asked for by required_path.
   std::vector<std::string> file_names() const;
+  /// Their keys, paths from the root.
+  std::vector<std::vector<std::string>> file_keys() const;
+  /// Takes the texts at these keys as the names of files, as reading the setup would find them, and makes them
+  /// absolute; others are none.
+  void name_files(std::vector<std::vector<std::string>> const& keys);
+
+  /// The same document once more, with all that was read of it.
+  SetupDocument copy() const;
 
   /// The folder that relative file names refer to.
   std::string const& folder() const;

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <tuple>
 
 #include "render/base/error.h"
 #include "render/base/image_file.h"
 #include "render/base/interrupt.h"
+#include "render/base/text_file.h"
 #include "render/base/units.h"
 
 namespace gladstone {
@@ -152,22 +152,19 @@ void refuse_coincident(std::string const& path, std::vector<Vec2d> const& centre
 }  // namespace
 
 std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
-  std::ifstream file(path);
-  if (!file) throw DataError(path, "cannot be opened (missing or not readable); check target.file");
-  std::string line;
-  std::getline(file, line);
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  if (line != "x_mm,y_mm") {
-    throw DataError(path + ":1", fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", line));
+  LineReader file(path, "a table of points");
+  auto const header = file.next();
+  if (header != "x_mm,y_mm") {
+    throw DataError(path + ":1",
+                    fmt::format("the header line is \"{}\" (it must be x_mm,y_mm)", excerpt(header.value_or(""))));
   }
   std::vector<Vec2d> centres;
   std::vector<std::size_t> lines;
-  for (std::size_t number = 2; std::getline(file, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty()) continue;
+  while (auto const line = file.next()) {
+    if (line->empty()) continue;
     double value[2] = {};
-    char const* at = line.data();
-    char const* const end = at + line.size();
+    char const* at = line->data();
+    char const* const end = at + line->size();
     bool good = true;
     for (int i = 0; i < 2 && good; ++i) {
       auto const [rest, error] = std::from_chars(at, end, value[i]);
@@ -175,19 +172,19 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
       at = rest + 1;
     }
     if (!good) {
-      throw DataError(fmt::format("{}:{}", path, number),
-                      fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", line));
+      throw DataError(file.place(), fmt::format("\"{}\" is not two finite numbers x_mm,y_mm", excerpt(*line)));
     }
     Vec2d const centre{value[0] * unit::millimetre, value[1] * unit::millimetre};
     if (std::max(std::abs(centre.x), std::abs(centre.y)) > farthest) {
       throw DataError(
-          fmt::format("{}:{}", path, number),
+          file.place(),
           fmt::format("the dot at {:.6g}, {:.6g} mm lies so far off the axis that no lens sees it ({:.6g} mm "
                       "at most, ten times the way to the lens); places are in mm",
                       value[0], value[1], farthest / unit::millimetre));
     }
+    require_room(centres, path, "dots");
     centres.push_back(centre);
-    lines.push_back(number);
+    lines.push_back(file.number());
   }
   if (centres.empty()) throw DataError(path, "holds no dots (a line x_mm,y_mm for each is needed)");
   refuse_coincident(path, centres, lines);
@@ -196,6 +193,10 @@ std::vector<Vec2d> dots_from_csv(std::string const& path, double farthest) {
 
 DotPattern picture_target(std::string const& path, Vec2d extent) {
   Image<double> const picture = read_image(path);
+  if (std::size_t const bad = count_not_finite(picture); bad > 0) {
+    throw DataError(path, fmt::format("{} of {} pixels are nan or infinite (grey values are the radiance); mend them",
+                                      bad, picture.size()));
+  }
   double const white = picture.empty() ? 0.0 : *std::max_element(picture.begin(), picture.end());
   if (!(white > 0)) throw DataError(path, "is black all over (no pixel sends light)");
   double const side = extent.x / picture.columns();

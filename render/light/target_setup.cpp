@@ -22,7 +22,7 @@ TargetSetup read_target_setup(SetupTable table) {
     }
   } else {
     setup.file = table.required_path("file");
-    if (!setup.file.empty() && !std::filesystem::exists(setup.file)) {
+    if (std::error_code error; !setup.file.empty() && !std::filesystem::exists(setup.file, error)) {
       table.problem("file", "there is no file " + setup.file + "; relative names start at the setup file's folder");
     }
   }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "render/base/error.h"
+#include "render/base/input_file.h"
 #include "render/medium/density_readers/jhtdb.h"
 #include "render/medium/density_readers/nrrd.h"
 
@@ -28,10 +29,7 @@ constexpr std::array field_formats{
 }  // namespace
 
 std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset) {
-  std::error_code error;
-  auto const status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw DataError(path, "does not exist; check the name");
-  if (std::filesystem::is_directory(status)) throw DataError(path, "is a folder; name a field file");
+  require_input_file(path, "a field file");
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

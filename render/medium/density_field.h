@@ -30,6 +30,8 @@ class FieldSource {
   /// @throws DataError for holes (JHTDB's -999.9) and numbers that are NaN or beyond a float, with their count, and for
   ///         truncated data
   virtual void read_planes(int first_plane, int count, std::span<double> out) = 0;
+  /// The same of rows [first_row, first_row + count) of one plane, for planes that are too large to be held.
+  virtual void read_rows(int plane, int first_row, int count, std::span<double> out) = 0;
 };
 
 /// Opens a field file: one row per format in density_field.cpp (.h5 JHTDB cut-out, .nrrd, .nhdr).

@@ -17,7 +17,7 @@ Vec3d three(std::vector<double> const& values, double unit_size) {
 void read_file_field(SetupTable& table, FieldSetup& field) {
   field.file = table.required_path("file");
   field.where = table.where("file");
-  if (!field.file.empty() && !std::filesystem::exists(field.file)) {
+  if (std::error_code error; !field.file.empty() && !std::filesystem::exists(field.file, error)) {
     table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
   }
   field.dataset = table.text("dataset", "");

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
+#include "render/base/available_memory.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
@@ -19,22 +19,6 @@
 
 namespace gladstone {
 namespace {
-
-/// Memory that can be had without swapping [bytes]: /proc/meminfo, or the control group's limit where that is less.
-double available_memory() {
-  double available = std::numeric_limits<double>::infinity();
-  std::ifstream meminfo("/proc/meminfo");
-  std::string key, unit_name;
-  double kilobytes = 0;
-  while (meminfo >> key >> kilobytes) {
-    std::getline(meminfo, unit_name);
-    if (key == "MemAvailable:") available = kilobytes * 1024;
-  }
-  std::ifstream limit_file("/sys/fs/cgroup/memory.max"), usage_file("/sys/fs/cgroup/memory.current");
-  double limit = 0, usage = 0;
-  if (limit_file >> limit && usage_file >> usage) available = std::min(available, limit - usage);
-  return available;
-}
 
 double gigabytes(double bytes) { return bytes / 1e9; }
 

@@ -1,5 +1,7 @@
 #include "render/sensor/camera_setup.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -25,6 +27,13 @@ CameraSetup read_camera_setup(SetupTable table) {
   if (setup.noise.enabled) {
     setup.noise.full_well_e = noise.number("full_well_e", 30000.0, Range::at_least(1.0, 1e9));
     setup.noise.read_noise_e = noise.number("read_noise_e", 3.0, Range::at_least(0.0, 1e6));
+    if (setup.noise.read_noise_e > setup.noise.full_well_e) {
+      noise.problem("read_noise_e",
+                    fmt::format("is more than the full well of {:.6g} electrons (nothing but noise would "
+                                "be seen); give the standard deviation of a pixel in the dark, a few "
+                                "electrons for most cameras",
+                                setup.noise.full_well_e));
+    }
     setup.noise.dark_current_e = noise.number("dark_current_e", 0.0, Range::at_least(0.0, 1e9));
     Range efficiency = Range::positive(1.0);
     setup.noise.quantum_efficiency = noise.number("quantum_efficiency", 0.6, efficiency);

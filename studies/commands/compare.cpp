@@ -9,6 +9,7 @@
 
 #include "render/base/output_file.h"
 #include "render/base/partial.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/error_report.h"
 #include "studies/figures/gnuplot.h"
@@ -68,7 +69,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
                  "image or longer than it are left out");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
-      ->check(CLI::IsMember({"mid", "reference"}));
+      ->check(one_of({"mid", "reference"}));
   app.add_option(
       "--conventions", arguments->conventions,
       "Axes and sign of foreign vectors instead of detecting them, and refusing what fits none: y-down or y-up "

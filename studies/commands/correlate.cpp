@@ -23,7 +23,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     std::string output, config;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("input", arguments->inputs, "A case folder, or two images: reference and flow")
+  app.add_option("input", arguments->inputs,
+                 "A case folder, two images (reference and flow), or one image file of these two pages")
       ->required()
       ->expected(1, 2);
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
@@ -40,7 +41,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     }
     bool const configured = !arguments->config.empty() || !arguments->overrides.empty();
     std::string config = arguments->config;
-    if (config.empty() && configured && arguments->inputs.size() == 1) {
+    if (std::error_code error; config.empty() && configured && arguments->inputs.size() == 1 &&
+                               std::filesystem::is_directory(arguments->inputs[0], error)) {
       config = in_case(arguments->inputs[0], case_file::setup);
     }
     CorrelationFile const other = !config.empty() ? read_correlation_file(config, arguments->overrides)
@@ -48,17 +50,14 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     Measurement measurement;
     std::string written = output;
     std::vector<std::string> inputs = arguments->inputs;
-    bool const is_case = inputs.size() == 1;
+    std::error_code error;
+    bool const is_case = inputs.size() == 1 && std::filesystem::is_directory(inputs[0], error);
     if (is_case) {
       std::string const& folder = arguments->inputs[0];
-      if (!std::filesystem::is_directory(folder)) {
-        throw DataError(
-            folder, "is not a case folder (give one, or two images: gladstone correlate A.tif B.tif -o vectors.csv)");
-      }
       if (written.empty()) written = in_case(folder, case_file::vectors);
       inputs = rendered_files(folder);
     } else if (output.empty()) {
-      throw OutputError("correlate", "two images need -o FILE.h5 or FILE.csv");
+      throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
     refuse_inputs_as_outputs({written}, inputs);
@@ -66,9 +65,13 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     if (is_case) {
       measurement = correlate_case(arguments->inputs[0], written, configured ? &other : nullptr, device);
     } else {
-      std::string const &a = inputs[0], &b = inputs[1];
       SourceFiles sources;
-      Image<double> const reference = read_frame(a, "reference", sources), flow = read_frame(b, "flow", sources);
+      bool const one_file = arguments->inputs.size() == 1;
+      std::string const a = one_file ? inputs[0] + " (page 1)" : inputs[0];
+      std::string const b = one_file ? inputs[0] + " (page 2)" : inputs[1];
+      auto const [reference, flow] =
+          one_file ? read_frames(inputs[0], sources)
+                   : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, device.name(), std::move(sources)});

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,8 +9,10 @@
 #include "render/base/error.h"
 #include "render/base/image_file.h"
 #include "render/medium/density_field.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/field_place.h"
+#include "studies/field_statistics.h"
 #include "studies/image_statistics.h"
 #include "studies/json_text.h"
 
@@ -20,32 +23,14 @@ int describe_field(std::string const& path, std::string const& dataset, std::str
                    GlobalOptions const& options) {
   auto const source = open_field(path, dataset);
   RegularGrid const& grid = source->grid();
-  auto const plane = static_cast<std::size_t>(grid.nodes[0]) * static_cast<std::size_t>(grid.nodes[1]);
-  std::vector<double> values(plane), before;
-  double low = HUGE_VAL, high = -HUGE_VAL, steepest[3] = {};
-  for (int k = 0; k < grid.nodes[2]; ++k) {
-    source->read_planes(k, 1, values);
-    auto const [least, most] = std::minmax_element(values.begin(), values.end());
-    low = std::min(low, *least);
-    high = std::max(high, *most);
-    auto const slope = [&](double a, double b, int axis) {
-      steepest[axis] = std::max(steepest[axis], std::abs(a - b) / grid.spacing[axis]);
-    };
-    auto const width = static_cast<std::size_t>(grid.nodes[0]);
-    for (std::size_t i = 0; i < plane; ++i) {
-      if (i % width != 0) slope(values[i], values[i - 1], 0);
-      if (i >= width) slope(values[i], values[i - width], 1);
-      if (!before.empty()) slope(values[i], before[i], 2);
-    }
-    before = values;
-  }
+  FieldStatistics const seen = field_statistics(*source);
   FieldPlace const place = field_place(*source, path, dataset, setup);
   nlohmann::json const json{{"dataset", source->name()},
                             {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
                             {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
-                            {"minimum", low},
-                            {"maximum", high},
-                            {"steepest_gradient", {steepest[0], steepest[1], steepest[2]}},
+                            {"minimum", seen.minimum},
+                            {"maximum", seen.maximum},
+                            {"steepest_gradient", {seen.steepest.x, seen.steepest.y, seen.steepest.z}},
                             {"units", place.units},
                             {"extent_mm", place.extent_mm},
                             {"coverage", place.coverage}};
@@ -55,14 +40,22 @@ int describe_field(std::string const& path, std::string const& dataset, std::str
           "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
           "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z; {}",
           source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y, grid.spacing.z,
-          low, high, steepest[0], steepest[1], steepest[2], place.text));
+          seen.minimum, seen.maximum, seen.steepest.x, seen.steepest.y, seen.steepest.z, place.text));
   return ok;
 }
 
 int describe_image(std::string const& path, GlobalOptions const& options) {
   ImageMetadata metadata;
   Image<double> const image = read_image(path, &metadata);
-  auto const [least, most] = std::minmax_element(image.begin(), image.end());
+  std::size_t const not_finite = count_not_finite(image);
+  if (not_finite == image.size()) {
+    throw DataError(path, fmt::format("all of its {} pixels are nan or infinite; export it anew", not_finite));
+  }
+  if (not_finite > 0) {
+    spdlog::warn("{}: {} of {} pixels are nan or infinite, and are left out", path, not_finite, image.size());
+  }
+  auto const [least, most] = std::minmax_element(
+      image.begin(), image.end(), [](double a, double b) { return std::isfinite(a) && (!std::isfinite(b) || a < b); });
   ImageStatistics const seen = image_statistics(image);
   auto const known = [](double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
@@ -74,6 +67,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
                             {"minimum", *least},
                             {"maximum", *most},
                             {"mean", seen.mean},
+                            {"not_finite", not_finite},
                             {"dot_diameter_px", known(seen.dot_diameter_px)},
                             {"channels", metadata.channels},
                             {"background", known(seen.background)},
@@ -101,7 +95,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("kind", arguments->kind, "field or image")
       ->required()
-      ->check(CLI::IsMember({"field", "image", "lens", "mie"}));
+      ->check(one_of({"field", "image", "lens", "mie"}));
   app.add_option("file", arguments->file, "The file");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");

@@ -7,8 +7,27 @@
 #include "studies/commands/command.h"
 
 namespace gladstone {
+namespace {
+
+constexpr char const* example_setup =
+    R"(A setup to begin with. What is left out has a default; the setup.toml of the case has them all.
+
+  [lens]
+  focal_length_mm = 105.0
+  f_number = 11.0
+
+  [geometry]
+  z_a_mm = 750.0       # from the lens to the middle of the medium
+  z_d_mm = 250.0       # from there to the dots
+
+  [medium.field]
+  kind = "uniform_gradient"
+  gradient_kg_m4 = [20.0, 10.0, 0.0])";
+
+}  // namespace
 
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
+  app.footer(app.get_footer() + "\n\n" + example_setup);
   struct Arguments {
     std::string setup, folder;
     std::vector<std::string> overrides;

@@ -30,7 +30,18 @@ char const* to_string(Planned planned) {
   return "replaced";
 }
 
+constexpr char const* example_study =
+    R"(A study to begin with; docs/studies.md says more.
+
+  base = "setup.toml"                # relative to this file
+  [axes]
+  "lens.f_number" = [4, 8, 16]
+  "geometry.z_d_mm" = { linear = [100, 1000, 10] }   # first, last, count
+  [study]
+  repeats = 3)";
+
 CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
+  app.footer(app.get_footer() + "\n\n" + example_study);
   struct Arguments {
     std::string study, run;
   };
@@ -38,13 +49,14 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
   app.add_option("study", arguments->study, "Study file (TOML): base setup and axes")->required();
   app.add_option("-o,--output", arguments->run, "RUN folder to make")->required();
   return [arguments, &options] {
-    StudyFile const study = read_study(arguments->study);
-    try_plan_place(arguments->run, study);
+    StudyFile read = read_study(arguments->study);
+    try_plan_place(arguments->run, read);
     std::string const device = options.device == "auto" ? options.open_device().name() : options.device;
-    std::vector<ManifestCase> cases = plan_study(study, device);
-    Planned const planned = write_plan(arguments->run, study, cases);
+    StudyPlan const plan = plan_study(std::move(read), device);
+    StudyFile const& study = plan.study();
+    Planned const planned = write_plan(arguments->run, plan);
     nlohmann::ordered_json json{{"run", arguments->run},
-                                {"cases", cases.size()},
+                                {"cases", plan.size()},
                                 {"repeats", study.repeats},
                                 {"device", device},
                                 {"planned", to_string(planned)}};
@@ -56,7 +68,7 @@ CommandBody attach_plan(CLI::App& app, GlobalOptions const& options) {
       axes += fmt::format("  {}: {} values\n", axis.key, values);
     }
     print_result(options, json_text(json),
-                 fmt::format("{}: {} cases for {}{}\n{}", arguments->run, cases.size(), device,
+                 fmt::format("{}: {} cases for {}{}\n{}", arguments->run, plan.size(), device,
                              planned == Planned::unchanged ? ", planned already" : "", axes));
     return ok;
   };

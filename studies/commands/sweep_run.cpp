@@ -15,6 +15,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/sweep_slurm.h"
 #include "studies/json_text.h"
 #include "studies/sweep/run.h"
@@ -205,7 +206,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
-      ->check(CLI::Range(1, 4096));
+      ->check(whole_number(1, 4096));
   // an empty list is a mistake, and not every case
   app.add_option_function<std::string>(
       "--case", [arguments](std::string const& list) { arguments->selection.only = list; },

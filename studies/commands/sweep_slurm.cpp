@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "studies/commands/arguments.h"
 #include "studies/json_text.h"
 #include "studies/sweep/case_list.h"
 
@@ -76,9 +77,9 @@ void add_slurm_options(CLI::App& app, SlurmArguments& arguments) {
   only_with_slurm(app.add_option("--time", options.time, "Time limit of a task: 30 (minutes), 2:00:00, 1-12"));
   only_with_slurm(app.add_option("--gres", options.gres, "Resources of a task: gpu:1"));
   only_with_slurm(app.add_option("--cases-per-task", options.cases_per_task, "Default: as few as the cluster allows")
-                      ->check(CLI::Range(1, 1000000)));
+                      ->check(whole_number(1, 1000000)));
   only_with_slurm(app.add_option("--throttle", options.throttle, "Tasks that may run at a time; default: no limit")
-                      ->check(CLI::Range(1, 1000000)));
+                      ->check(whole_number(1, 1000000)));
   only_with_slurm(app.add_option("--sbatch", options.sbatch, "Another option for sbatch: --sbatch=--account=flow")
                       ->take_all()
                       ->expected(1)

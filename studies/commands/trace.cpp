@@ -7,6 +7,7 @@
 #include "render/base/output_file.h"
 #include "render/base/source_files.h"
 #include "studies/case.h"
+#include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/json_text.h"
 #include "studies/ray_file.h"
@@ -23,7 +24,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--rays", arguments->rays, "CSV x_mm,y_mm,z_mm,dx,dy,dz in the world frame")->required();
   app.add_option("-o,--output", arguments->output, "CSV to write")->required();
   app.add_option("--through", arguments->through, "How far: medium, optics or all")
-      ->check(CLI::IsMember({"medium", "optics", "all"}));
+      ->check(one_of({"medium", "optics", "all"}));
   app.add_option("--set", arguments->overrides, "Override a key: --set lens.f_number=16")->expected(1)->take_all();
   return [arguments, &options] {
     SourceFiles sources;

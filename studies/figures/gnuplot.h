@@ -1,20 +1,20 @@
 #pragma once
 
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "render/base/error.h"
 #include "render/base/image.h"
 
 namespace gladstone {
 
 /// The program gnuplot is not there: figures cannot be drawn, the numbers are not concerned.
-class GnuplotMissing : public std::runtime_error {
+class GnuplotMissing : public Error {
  public:
   GnuplotMissing()
-      : std::runtime_error(
+      : Error(
             "figures are not drawn: program gnuplot not found (Debian package gnuplot-nox); the numbers "
             "are written all the same") {}
 };

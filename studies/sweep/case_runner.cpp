@@ -82,11 +82,10 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
 }
 
 /// Whether an error tells of a lack of memory, which is no property of the case: another moment or machine has more.
-bool lacks_memory(std::exception const& error) {
+bool wants_memory(std::exception const& error) {
   std::string_view const text = error.what();
-  return dynamic_cast<std::bad_alloc const*>(&error) || text.starts_with("out of device memory") ||
-         text.find("GB of memory (") != text.npos ||          // as check_memory refuses, before anything is allocated
-         text.find("(-4:Insufficient memory)") != text.npos;  // OpenCV
+  return lacks_memory(error) || text.starts_with("out of device memory") ||
+         text.find("GB of memory (") != text.npos;  // as check_memory refuses, before anything is allocated
 }
 
 /// Whether the next case would meet the same.
@@ -170,18 +169,15 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
     try {
       compute(one, keep, result);
     } catch (std::exception const& error) {
-      if (!lacks_memory(error)) throw;
+      if (!wants_memory(error)) throw;
       shared_ = std::make_unique<Shared>();  // once more without what is kept for other cases
       result = fresh;
       compute(one, keep, result);
     }
   } catch (std::exception const& error) {
-    bool const no_memory = lacks_memory(error);
+    bool const no_memory = wants_memory(error);
     if (!no_memory && stops_the_run(error)) throw;
-    std::string const text = dynamic_cast<std::bad_alloc const*>(&error)
-                                 ? "out of memory; reduce the image, the field or the number of dots"
-                                 : error.what();
-    return failed_case(one.index, one.line_hash, device_.name(), text, no_memory);
+    return failed_case(one.index, one.line_hash, device_.name(), message_of(error), no_memory);
   }
   check_inputs(one);  // nor while it was computed
   return result;

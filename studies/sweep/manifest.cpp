@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
-#include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
@@ -39,12 +41,6 @@ constexpr std::size_t hash_end_size = hash_start.size() + 16 + 2;
 
 bool has_hash(std::string_view line) {
   return line.size() > hash_end_size && line.substr(line.size() - hash_end_size).starts_with(hash_start);
-}
-
-/// Of a line without its own hash.
-std::string hash_of_line(std::string_view line) {
-  return has_hash(line) ? content_hash(std::string(line.substr(0, line.size() - hash_end_size)) + '}')
-                        : content_hash(line);
 }
 
 /// Nothing where an object is no case of a manifest of ours.
@@ -96,8 +92,10 @@ ManifestCase parse_line(std::string_view line, std::size_t index, std::string co
   ManifestCase one;
   try {
     one = case_of(json, line);
-  } catch (nlohmann::json::exception const& error) {
-    throw DataError(place, fmt::format("is damaged ({}); plan the study again", error.what()));
+  } catch (nlohmann::json::exception const&) {
+    throw DataError(place,
+                    "is damaged (a member that every line has is missing, or of another kind); plan the study "
+                    "again");
   }
   if (!has_hash(line)) {
     throw DataError(place,
@@ -145,51 +143,71 @@ std::string manifest_line(ManifestCase const& one) {
   return fmt::format("{}{}{}\"}}", std::string_view(body).substr(0, body.size() - 1), hash_start, content_hash(body));
 }
 
-std::string manifest_text(std::vector<ManifestCase>& cases) {
-  std::string text;
-  for (ManifestCase& one : cases) {
-    std::string const line = manifest_line(one);
-    one.line_hash = hash_of_line(line);
-    text += line + '\n';
-  }
-  return text;
+std::string hash_of_line(std::string_view line) {
+  return has_hash(line) ? content_hash(std::string(line.substr(0, line.size() - hash_end_size)) + '}')
+                        : content_hash(line);
 }
 
-std::optional<int> version_of_manifest(std::string_view text) {
+std::optional<int> version_of_manifest(InputFile const& file) {
+  // as manifest_line() begins a line; what another gladstone, or somebody else, wrote is parsed
+  std::string text(64, '\0');
+  text.resize(file.read(0, text.data(), text.size()));
+  int version = 0, index = -1;
+  if (std::sscanf(text.c_str(), "{\"manifest\":%d,\"index\":%d,", &version, &index) == 2) return version;
+  constexpr std::size_t most = std::size_t{64} << 20;
+  text.resize(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), most)));
+  text.resize(file.read(0, text.data(), text.size()));
   return version_of(Json::parse(text.substr(0, text.find('\n')), nullptr, false));
 }
 
-Manifest::Manifest(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
-  for (std::size_t begin = 0; begin < text_.size(); begin = ends_.back() + 1) {
-    std::size_t const end = text_.find('\n', begin), index = ends_.size();
-    std::string_view const line = std::string_view(text_).substr(begin, end - begin);
-    ends_.push_back(end);
-    bool const as_written = line.starts_with(line_start(index)) && line.ends_with('}');
-    if (end == std::string::npos) damaged(place_of(path_, index));
-    if (!as_written) parse_line(line, index, place_of(path_, index));
+Manifest::Manifest(std::string const& path) : file_(path, "the folder of a planned study") {
+  std::vector<char> buffer(std::size_t{4} << 20);
+  std::size_t held = 0;    // bytes of the buffer, from the start of a line on
+  std::uint64_t read = 0;  // bytes of the file
+  while (true) {
+    std::size_t const got = file_.read(read, buffer.data() + held, buffer.size() - held);
+    read += got;
+    held += got;
+    std::uint64_t const start = read - held;
+    std::size_t begin = 0;
+    while (auto const* const stop = static_cast<char const*>(std::memchr(buffer.data() + begin, '\n', held - begin))) {
+      std::string_view const line(buffer.data() + begin, static_cast<std::size_t>(stop - buffer.data()) - begin);
+      std::size_t const index = ends_.size();
+      bool const as_written = line.starts_with(line_start(index)) && line.ends_with('}');
+      ends_.push_back(start + begin + line.size());
+      begin += line.size() + 1;
+      if (!as_written) parse_line(line, index, place_of(path, index));
+    }
+    held -= begin;
+    std::memmove(buffer.data(), buffer.data() + begin, held);
+    if (got == 0) break;
+    if (held == buffer.size()) buffer.resize(2 * buffer.size());
   }
-  if (ends_.empty()) throw DataError(path_, "is empty; plan the study again");
+  if (held > 0) damaged(place_of(path, ends_.size()));
+  if (ends_.empty()) throw DataError(path, "is empty; plan the study again");
 }
 
-std::string_view Manifest::line(std::size_t index) const {
-  std::size_t const begin = index == 0 ? 0 : ends_[index - 1] + 1;
-  return std::string_view(text_).substr(begin, ends_[index] - begin);
+std::string Manifest::line(std::size_t index) const {
+  std::uint64_t const begin = index == 0 ? 0 : ends_[index - 1] + 1;
+  std::string text(static_cast<std::size_t>(ends_[index] - begin), '\0');
+  text.resize(file_.read(begin, text.data(), text.size()));
+  return text;
 }
 
 ManifestCase Manifest::operator[](std::size_t index) const {
-  return parse_line(line(index), index, place_of(path_, index));
+  return parse_line(line(index), index, place_of(file_.path(), index));
 }
 
 std::string Manifest::line_hash(std::size_t index) const { return hash_of_line(line(index)); }
 
 Manifest read_manifest(std::string const& run) {
   std::string const path = (std::filesystem::path(run) / run_file::manifest).string();
-  if (!std::filesystem::exists(path)) {
+  if (std::error_code error; !std::filesystem::exists(path, error)) {
     throw DataError(run, fmt::format("is no planned study (it holds no {}); make one with: gladstone sweep plan "
                                      "STUDY.toml -o {}",
                                      run_file::manifest, run));
   }
-  return {path, read_text_file(path)};
+  return Manifest(path);
 }
 
 }  // namespace gladstone

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/input_file.h"
+
 namespace gladstone {
 
 /// What an axis of a study is set to in a case.
@@ -53,17 +55,20 @@ inline constexpr int manifest_version = 2;
 /// The text of a case's line, without line end. Equal cases give equal text. Its last member is the line_hash.
 std::string manifest_line(ManifestCase const& one);
 
-/// The version of the manifest that a text's first line begins; nothing where it is no gladstone manifest.
-std::optional<int> version_of_manifest(std::string_view text);
+/// The line_hash of a line.
+std::string hash_of_line(std::string_view line);
 
-/// RUN/manifest.jsonl as it was read. A case is parsed when it is asked for: of many workers each needs some cases
-/// only, and who looks at results needs no more than the hashes of their lines.
+/// The version of the manifest that a file's first line begins; nothing where it is no gladstone manifest.
+std::optional<int> version_of_manifest(InputFile const& file);
+
+/// RUN/manifest.jsonl, which is not held in memory: a case is read and parsed when it is asked for. Of many workers
+/// each needs some cases only, and who looks at results needs no more than the hashes of their lines.
 class Manifest {
  public:
-  /// @param path for messages
+  /// Reads the file through for its lines. It must stay as it is; another may take its place.
   /// @throws DataError at manifest.jsonl:LINE for a foreign or damaged file, a line cut short, out of order or of
   /// another version
-  Manifest(std::string path, std::string text);
+  explicit Manifest(std::string const& path);
 
   std::size_t size() const { return ends_.size(); }
   /// @throws DataError where the line is not what was planned, by its hash, or has none
@@ -72,16 +77,13 @@ class Manifest {
   std::string line_hash(std::size_t index) const;
 
  private:
-  std::string_view line(std::size_t index) const;
+  std::string line(std::size_t index) const;
 
-  std::string path_, text_;
-  std::vector<std::size_t> ends_;  ///< of every line, before its line end
+  InputFile file_;
+  std::vector<std::uint64_t> ends_;  ///< of every line, before its line end
 };
 
 /// Reads RUN/manifest.jsonl. @throws DataError as Manifest, and where there is none
 Manifest read_manifest(std::string const& run);
-
-/// Cases as a manifest's text; fills in their line_hash.
-std::string manifest_text(std::vector<ManifestCase>& cases);
 
 }  // namespace gladstone

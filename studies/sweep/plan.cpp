@@ -3,20 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
 
-#include "analysis/correlation_settings.h"
-#include "render/base/content_hash.h"
 #include "render/base/error.h"
+#include "render/base/input_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
+#include "render/base/parallel.h"
 #include "render/base/partial.h"
-#include "render/base/random.h"
-#include "render/base/sobol.h"
+#include "render/base/progress.h"
 #include "render/base/text_file.h"
-#include "studies/case.h"
 #include "studies/sweep/claims.h"
 #include "studies/sweep/results.h"
 
@@ -25,133 +27,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// TOML's whole numbers have 63 bits.
-std::uint64_t case_seed(StudyFile const& study, std::size_t repeat) {
-  return repeat == 0 ? study.seed : repeat_seed(study.seed, repeat) >> 1;
-}
-
-/// Whether the axes' values hold something at a path of keys, by itself or in a table above it.
-bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std::vector<std::string> const& path) {
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    std::vector<std::string> const& above = study.axes[k].path;
-    if (above.size() > path.size() || !std::equal(above.begin(), above.end(), path.begin())) continue;
-    SetupNode const* node = &values[k].node;
-    for (std::size_t i = above.size(); node && i < path.size(); ++i) node = node->find(path[i]);
-    if (node) return true;
-  }
-  return false;
-}
-
-/// The base with the axes' values and, where they give none, the seeds put in.
-SetupDocument compose(StudyFile const& study, std::vector<AxisValue> const& values, std::uint64_t seed) {
-  SetupDocument document =
-      SetupDocument::from_text(study.base_text, study.base_path, fs::path(study.base_path).parent_path().string());
-  for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
-  SetupNode number;
-  number.kind = SetupNode::Kind::integer;
-  number.integer = static_cast<long long>(seed);
-  number.place = study.place;
-  std::vector<std::vector<std::string>> const seeds{
-      {"target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
-  for (std::vector<std::string> const& path : seeds) {
-    if (axes_give(study, values, path)) continue;
-    SetupNode const* const table = document.find({path.begin(), path.end() - 1});
-    if (!table && path.size() > 2) continue;  // noise that nobody asked for
-    // what should be a table and is none is told when the setup is read
-    if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
-    document.set(path, number);
-  }
-  return document;
-}
-
-/// Values of all axes at a point of the study.
-std::vector<AxisValue> values_at(StudyFile const& study, std::size_t point) {
-  std::vector<AxisValue> values(study.axes.size());
-  std::size_t rest = point;
-  for (std::size_t k = values.size(); k-- > 0;) {
-    AxisPlan const& axis = study.axes[k];
-    if (study.mode == StudyMode::zip) {
-      values[k] = axis.value(point);
-    } else if (study.mode == StudyMode::grid) {
-      values[k] = axis.value(rest % axis.size());
-      rest /= axis.size();
-    } else {
-      auto const scrambling = static_cast<std::uint32_t>(mix64(study.seed + 0x9e3779b97f4a7c15ULL * (k + 1)));
-      std::uint32_t const bits = sobol_bits(static_cast<std::uint32_t>(point), static_cast<int>(k));
-      values[k] = axis.value_at(owen_scramble(bits, scrambling) * 0x1p-32);
-    }
-  }
-  return values;
-}
-
-/// The points that between them take every value of every axis (of a sampled range: its ends and a sample).
-std::vector<std::vector<AxisValue>> points_to_try(StudyFile const& study) {
-  std::vector<std::vector<AxisValue>> points;
-  if (study.mode == StudyMode::zip) {
-    for (std::size_t point = 0; point < study.points(); ++point) points.push_back(values_at(study, point));
-    return points;
-  }
-  std::vector<AxisValue> first;
-  for (AxisPlan const& axis : study.axes) first.push_back(axis.value(0));
-  points.push_back(first);
-  for (std::size_t k = 0; k < study.axes.size(); ++k) {
-    AxisPlan const& axis = study.axes[k];
-    bool const sampled = study.mode == StudyMode::sobol && axis.range;
-    for (std::size_t i = sampled ? std::max<std::size_t>(axis.size(), 2) - 1 : 1; i < axis.size(); ++i) {
-      points.push_back(first);
-      points.back()[k] = axis.value(i);
-    }
-    if (sampled) {
-      points.push_back(first);
-      points.back()[k] = values_at(study, 0)[k];
-    }
-  }
-  return points;
-}
-
-std::string where(StudyFile const& study, SetupPlace const& place) {
-  return fmt::format("{}:{}:{}", study.path, place.line, place.column);
-}
-
-/// A key that nobody knows is the axis's mistake, not its values'; whole numbers are not what a range is sampled by.
-void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
-  bool const unknown = problem.message.starts_with("unknown ");
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (problem.where != where(study, values[k].node.place)) continue;
-    if (unknown) problem.where = where(study, study.axes[k].place);
-    if (study.mode == StudyMode::sobol && study.axes[k].range &&
-        problem.message.find("whole number") != std::string::npos) {
-      problem.message += "; \"sobol\" takes any numbers between a range's ends, so write the whole ones as a list";
-    }
-  }
-}
-
-void try_all(StudyFile const& study) {
-  std::vector<SetupProblem> problems;
-  for (std::vector<AxisValue> const& point : points_to_try(study)) {
-    throw_if_interrupted();
-    try {
-      load_case_setup(compose(study, point, study.seed), FieldMemory::taken);
-    } catch (SetupError const& error) {
-      for (SetupProblem problem : error.problems()) {
-        blame_the_axis(study, point, problem);
-        auto const same = [&](SetupProblem const& known) {
-          return known.where == problem.where && known.message == problem.message;
-        };
-        if (std::none_of(problems.begin(), problems.end(), same)) problems.push_back(problem);
-      }
-    }
-  }
-  if (!problems.empty()) throw SetupError(problems);
-}
-
 /// Results in RUN that are whole, without their numbers. @throws DataError where one is of another version
 std::vector<CaseResult> whole_results(fs::path const& run) {
   std::vector<CaseResult> results;
   std::error_code error;
   for (fs::directory_iterator entry(run / run_file::cases, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->path().extension() != ".json" || !entry->is_regular_file()) continue;
+    std::error_code ignored;
+    if (entry->path().extension() != ".json" || !entry->is_regular_file(ignored)) continue;
+    throw_if_interrupted();
     std::string const path = entry->path().string();
     if (auto result = parse_result(read_text_file(path), path, ResultPart::head)) results.push_back(std::move(*result));
   }
@@ -178,9 +62,7 @@ void refuse_foreign_run(fs::path const& folder) {
   fs::path const manifest = folder / run_file::manifest;
   std::error_code error;
   if (fs::exists(manifest, error)) {
-    std::string first;
-    std::getline(std::ifstream(manifest), first);
-    if (version_of_manifest(first)) return;
+    if (version_of_manifest(InputFile(manifest.string(), "another folder"))) return;
     throw OutputError(manifest.string(),
                       "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
   }
@@ -191,39 +73,53 @@ void refuse_foreign_run(fs::path const& folder) {
   }
 }
 
-}  // namespace
-
-std::vector<ManifestCase> plan_study(StudyFile const& study, std::string const& device) {
-  try_all(study);
-  std::vector<ManifestCase> cases;
-  std::map<std::string, std::string> hashes;
-  std::size_t const points = study.points();
-  for (std::size_t repeat = 0; repeat < study.repeats; ++repeat) {
-    for (std::size_t point = 0; point < points; ++point) {
-      throw_if_interrupted();
-      std::vector<AxisValue> const values = values_at(study, point);
-      ManifestCase one;
-      one.index = cases.size();
-      one.repeat = repeat;
-      one.seed = case_seed(study, repeat);
-      one.device = device;
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        one.parameters.emplace_back(study.axes[k].key, values[k].parameter);
-      }
-      SetupDocument document = compose(study, values, one.seed);
-      read_setup(document.root());  // to learn which values are names of files
-      read_correlation_settings(document.root().table("correlate"));
-      one.setup = document.written();
-      for (std::string const& name : document.file_names()) {
-        std::string& hash = hashes[name];
-        if (hash.empty()) hash = file_hash(name);
-        one.inputs[name] = hash;
-      }
-      cases.push_back(std::move(one));
+/// Hands out the lines of a plan in their order, each with its end, until one is not taken.
+void each_line(StudyPlan const& plan, std::string const& label, std::function<bool(std::string const&)> const& take) {
+  constexpr std::size_t at_once = 4096;
+  Progress progress(label, plan.size());
+  std::vector<std::string> lines;
+  for (std::size_t first = 0; first < plan.size(); first += at_once) {
+    lines.resize(std::min(at_once, plan.size() - first));
+    parallel_chunks(lines.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) lines[i] = plan.line(first + i) + '\n';
+    });
+    for (std::string const& line : lines) {
+      if (!take(line)) return;
     }
+    progress.advance(lines.size());
   }
-  return cases;
 }
+
+/// Whether a manifest is the plan's, byte by byte.
+bool is_the_same(InputFile const& manifest, StudyPlan const& plan) {
+  std::uint64_t offset = 0;
+  std::string there;
+  bool same = true;
+  each_line(plan, "comparing plans", [&](std::string const& line) {
+    there.resize(line.size());
+    there.resize(manifest.read(offset, there.data(), there.size()));
+    offset += line.size();
+    return same = there == line;
+  });
+  return same && offset == manifest.size();
+}
+
+/// @param manifest for messages
+void write_lines(StudyPlan const& plan, std::string const& path, std::string const& manifest) {
+  auto const fail = [&manifest](int error) {
+    throw OutputError(manifest, fmt::format("cannot be written ({})", std::strerror(error != 0 ? error : EIO)));
+  };
+  errno = 0;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "wb"), std::fclose);
+  if (!file) fail(errno);
+  each_line(plan, "planning", [&](std::string const& line) {
+    if (std::fwrite(line.data(), 1, line.size(), file.get()) != line.size()) fail(errno);
+    return true;
+  });
+  if (std::fclose(file.release()) != 0) fail(errno);
+}
+
+}  // namespace
 
 void try_plan_place(std::string const& run, StudyFile const& study) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
@@ -234,22 +130,21 @@ void try_plan_place(std::string const& run, StudyFile const& study) {
   OutputFile const tried(manifest.string());
 }
 
-Planned write_plan(std::string const& run, StudyFile const& study, std::vector<ManifestCase>& cases) {
+Planned write_plan(std::string const& run, StudyPlan const& plan) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
-  std::string const text = manifest_text(cases);
   std::error_code error;
   Planned planned = Planned::fresh;
   if (fs::exists(manifest, error)) {
     refuse_foreign_run(folder);
-    std::string const there = read_text_file(manifest.string());
+    InputFile const there(manifest.string(), "another folder");
+    int const version = *version_of_manifest(there);
     std::vector<CaseResult> const results = whole_results(folder);
-    if (there == text) return Planned::unchanged;
+    if (is_the_same(there, plan)) return Planned::unchanged;
     planned = Planned::replaced;
-    auto const lost = [&cases](CaseResult const& result) {
-      return result.index >= cases.size() || cases[result.index].line_hash != result.line_hash;
+    auto const lost = [&plan](CaseResult const& result) {
+      return result.index >= plan.size() || plan[result.index].line_hash != result.line_hash;
     };
     if (auto const count = std::count_if(results.begin(), results.end(), lost); count > 0) {
-      int const version = *version_of_manifest(there);
       std::string const why = version == manifest_version
                                   ? "from another study"
                                   : fmt::format(
@@ -269,13 +164,13 @@ Planned write_plan(std::string const& run, StudyFile const& study, std::vector<M
   } else {
     refuse_foreign_run(folder);
   }
-  OutputFile plan(manifest.string());
+  OutputFile output(manifest.string());
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');
-  OutputFile::write_text((folder / run_file::study).string(), study.text);
+  OutputFile::write_text((folder / run_file::study).string(), plan.study().text);
   Claims const made(run, Claims::Use::take);
-  plan.write(text.data(), text.size());
-  plan.commit();
+  write_lines(plan, output.temporary_path(), manifest.string());
+  output.commit();
   return planned;
 }
 

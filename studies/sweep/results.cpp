@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -20,6 +19,7 @@
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
 #include "render/base/partial.h"
+#include "render/base/text_file.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -191,18 +191,28 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
 std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
                                       ResultPart part) {
   std::string const path = result_path(run, index);
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::ostringstream text;
-  text << file.rdbuf();  // up to where it can be read: what cannot is no whole result, and the next run's takes its
-                         // place
-  std::optional<CaseResult> result = parse_result(std::move(text).str(), path, part);
-  std::error_code error;
-  if (!result && std::filesystem::is_directory(path, error)) {
-    throw DataError(path, "is a folder, and stands where the result of a case belongs; remove it or move it elsewhere");
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  if (!S_ISREG(status.st_mode)) {
+    throw DataError(path, fmt::format("is {}, and stands where the result of a case belongs; remove it or move it "
+                                      "elsewhere",
+                                      S_ISDIR(status.st_mode) ? "a folder" : "no regular file"));
   }
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (MemoryError const&) {
+    throw;
+  } catch (DataError const&) {
+    return std::nullopt;  // what cannot be read is no whole result, and the next run's takes its place
+  }
+  std::optional<CaseResult> const result = parse_result(text, path, part);
   if (!result || result->index != index || result->line_hash != line_hash) return std::nullopt;
   return result;
+}
+
+bool has_result(std::string const& run, std::size_t index) {
+  return ::access(result_path(run, index).c_str(), F_OK) == 0;
 }
 
 void remove_result(std::string const& run, std::size_t index) {

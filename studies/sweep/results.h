@@ -54,6 +54,9 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
 std::optional<CaseResult> read_result(std::string const& run, std::size_t index, std::string const& line_hash,
                                       ResultPart part = ResultPart::all);
 
+/// Whether a file stands where the result of a case belongs, whole or not.
+bool has_result(std::string const& run, std::size_t index);
+
 /// Removes a case's result. @pre the caller holds the case's claim @throws OutputError
 void remove_result(std::string const& run, std::size_t index);
 

@@ -56,7 +56,10 @@ RunState state_of(std::string const& run, Manifest const& cases, std::vector<std
   RunState state;
   Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
-    std::optional<CaseResult> result = read_result(run, index, cases.line_hash(index), ResultPart::head);
+    throw_if_interrupted();
+    // of a study that has only begun, no line is read but those of finished cases
+    std::optional<CaseResult> result;
+    if (has_result(run, index)) result = read_result(run, index, cases.line_hash(index), ResultPart::head);
     if (!result) {
       state.missing.push_back(index);
       if (claims.held(index)) state.running.push_back(index);

@@ -3,17 +3,17 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
+#include "render/base/error.h"
 #include "studies/sweep/job_array.h"
 
 namespace gladstone {
 
 /// There is no Slurm here, or it does not take the job; its own message is passed on.
-class SlurmError : public std::runtime_error {
+class SlurmError : public Error {
  public:
-  using std::runtime_error::runtime_error;
+  using Error::Error;
 };
 
 /// How many tasks a job array of this cluster may have (`scontrol show config`, MaxArraySize); Slurm's own default,

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <unordered_map>
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
@@ -49,10 +50,13 @@ double along(AxisPlan::Range const& range, double t) {
 class StudyReader {
  public:
   StudyReader(std::string const& path, std::string text)
-      : document_(SetupDocument::from_text(text, path, folder_of(path))), tree_(parse_toml(text, path)) {
+      : document_(SetupDocument::from_text(text, path, folder_of(path))),
+        source_(std::make_shared<SetupSource const>(SetupSource{path, folder_of(path)})) {
     study_.path = path;
     study_.text = std::move(text);
-    set_source(tree_, std::make_shared<SetupSource const>(SetupSource{path, folder_of(path)}));
+    if (document_.empty()) {
+      throw SetupError({{path, "is empty (no key is set); gladstone sweep plan --help shows a study to begin with"}});
+    }
   }
 
   StudyFile read() {
@@ -60,7 +64,10 @@ class StudyReader {
     study_.base_path = root.required_path("base");
     if (!study_.base_path.empty()) {
       try {
-        study_.base_text = read_text_file(study_.base_path);
+        study_.base_text = read_text_file(study_.base_path, "a setup file", most_setup_bytes);
+        if (SetupDocument::from_text(study_.base_text, study_.base_path).empty()) {
+          throw DataError(study_.base_path, "is empty (no key is set)");
+        }
       } catch (DataError const& error) {
         root.problem("base", fmt::format("{} (the setup that every case starts from; relative names start at the "
                                          "study's folder)",
@@ -78,6 +85,11 @@ class StudyReader {
   static std::string folder_of(std::string const& path) {
     return std::filesystem::absolute(path).parent_path().string();
   }
+  /// A place of this file, also where its value goes into another document.
+  SetupPlace placed(SetupPlace place) const {
+    place.source = source_;
+    return place;
+  }
   void problem(SetupPlace const& place, std::string message) {
     document_.add_problem(fmt::format("{}:{}:{}", study_.path, std::max(place.line, 1), std::max(place.column, 1)),
                           std::move(message));
@@ -86,14 +98,19 @@ class StudyReader {
   void read_axes(SetupTable& root) {
     if (!root.has("axes")) root.problem("axes", "is missing; write [axes] and below it \"key.path\" = [values]");
     root.pass_over("axes");
-    SetupNode const* const axes = tree_.find("axes");
+    SetupNode const* const axes = document_.find({"axes"});
     if (!axes) return;
-    study_.place = axes->place;
+    study_.place = placed(axes->place);
     if (axes->kind != Kind::table) {
       problem(axes->place, "axes must be a table; write [axes] and below it \"key.path\" = [values]");
       return;
     }
     if (axes->members.empty()) problem(axes->place, "[axes] is empty; name at least one key of the setup");
+    if (axes->members.size() > most_axes) {
+      problem(axes->place, fmt::format("[axes] has {} keys ({} at most); put those that do not change into the base",
+                                       axes->members.size(), most_axes));
+      return;
+    }
     for (auto const& [key, node] : axes->members) study_.axes.push_back(read_axis(key, node));
     std::stable_sort(study_.axes.begin(), study_.axes.end(), [](AxisPlan const& a, AxisPlan const& b) {
       return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
@@ -103,7 +120,7 @@ class StudyReader {
   AxisPlan read_axis(std::string const& key, SetupNode const& node) {
     AxisPlan axis;
     axis.key = key;
-    axis.place = node.place;
+    axis.place = placed(node.place);
     axis.path.emplace_back();
     for (char const c : key) {
       if (c == '.') {
@@ -113,7 +130,11 @@ class StudyReader {
       }
     }
     if (std::find(axis.path.begin(), axis.path.end(), "") != axis.path.end()) {
-      problem(node.place, fmt::format("\"{}\" is no key path; write it as \"table.key\"", key));
+      problem(node.place, fmt::format("\"{}\" is no key path; write it as \"table.key\"", excerpt(key)));
+    }
+    if (axis.path.size() > most_setup_depth) {
+      problem(node.place, fmt::format("\"{}\" has {} parts (no setup is so deep); write the key that is meant",
+                                      excerpt(key), axis.path.size()));
     }
     if (node.kind == Kind::array) {
       read_list(node, axis);
@@ -155,6 +176,7 @@ class StudyReader {
   AxisValue read_value(SetupNode const& element, std::string const& key) {
     AxisValue value;
     value.node = element;
+    set_source(value.node, source_);
     if (element.is_number()) {
       value.parameter = {number_label(element.as_double()), element.as_double()};
     } else if (element.kind == Kind::text) {
@@ -273,16 +295,16 @@ class StudyReader {
 
   /// The same values of all axes of a zip: they would be counted as repeats of one point.
   void refuse_points_twice() {
-    std::map<std::vector<std::string>, std::size_t> points;
+    std::unordered_map<std::string, std::size_t> points;
     for (std::size_t i = 0; i < study_.points(); ++i) {
-      std::vector<std::string> labels;
-      std::string named;
-      for (AxisPlan const& axis : study_.axes) {
-        labels.push_back(axis.value(i).parameter.label);
-        named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", axis.key, labels.back());
-      }
+      std::string labels;
+      for (AxisPlan const& axis : study_.axes) labels += axis.value(i).parameter.label + '\0';
       auto const [known, fresh] = points.try_emplace(std::move(labels), i);
       if (fresh) continue;
+      std::string named;
+      for (AxisPlan const& axis : study_.axes) {
+        named += fmt::format("{}{} = {}", named.empty() ? "" : ", ", axis.key, axis.value(i).parameter.label);
+      }
       problem(study_.axes.front().value(i).node.place,
               fmt::format("the values {} and {} of the axes are the same ({}); remove one (repeats = N gives every "
                           "case N times, with other dots)",
@@ -317,8 +339,9 @@ class StudyReader {
   }
 
   static constexpr long long most = std::numeric_limits<long long>::max();
+  static constexpr std::size_t most_axes = 100;
   SetupDocument document_;
-  SetupNode tree_;
+  std::shared_ptr<SetupSource const> source_;
   StudyFile study_;
 };
 
@@ -347,9 +370,9 @@ std::size_t StudyFile::points() const {
 StudyFile read_study(std::string const& path) {
   std::string text;
   try {
-    text = read_text_file(path);
+    text = read_text_file(path, "a study file", most_setup_bytes);
   } catch (DataError const& error) {
-    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2) + "; give the name of a study file"}});
+    throw SetupError({{path, std::string(error.what()).substr(path.size() + 2)}});
   }
   return StudyReader(path, std::move(text)).read();
 }

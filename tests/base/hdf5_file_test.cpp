@@ -150,6 +150,33 @@ TEST_F(Hdf5, FileCutShortIsSaidToBeDamaged) {
               ThrowsMessage<DataError>(AllOf(HasSubstr("cut.h5"), HasSubstr("cut short"))));
 }
 
+// Of 10007 rows written in chunks the header says what no machine has memory for: 2^60 bytes.
+TEST_F(Hdf5, WhatAHeaderPromisesIsHeldAgainstTheMemory) {
+  std::string const path = in_folder("promise.h5");
+  write_ramp(path, 10007);
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string const rows("\x17\x27\0\0\0\0\0\0", 8), promised("\0\0\0\0\0\0\0\x02", 8);
+  int replaced = 0;
+  for (std::size_t at; (at = bytes.find(rows)) != std::string::npos; ++replaced) bytes.replace(at, 8, promised);
+  ASSERT_GE(replaced, 1);
+  std::ofstream(path, std::ios::binary) << bytes;
+  Hdf5Reader const reader(path);
+  EXPECT_THAT([&] { reader.read("/group/deeper/ramp"); },
+              ThrowsMessage<MemoryError>(
+                  AllOf(HasSubstr("promise.h5: dataset \"/group/deeper/ramp\" of 144115188075855872 x 3 values"),
+                        HasSubstr("GB of memory"))));
+}
+
+TEST_F(Hdf5, PartsOfRowsAreReadAlone) {
+  write_ramp(in_folder("a.h5"), 4);
+  Hdf5Reader const reader(in_folder("a.h5"));
+  std::vector<double> const all = ramp(12);
+  std::vector<double> part(2);
+  reader.read_rows_of("/group/deeper/ramp", 2, 1, 2, part);
+  EXPECT_THAT(part, ElementsAre(all[7], all[8]));
+}
+
 TEST_F(Hdf5, FullDiskLeavesTheOldFileAndAMessage) {
   std::string const path = in_folder("a.h5");
   write_ramp(path, 1);

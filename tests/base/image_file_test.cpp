@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -139,6 +140,99 @@ TEST(ImageFile, UnreadablePicturesAreNamed) {
   std::string const whole = content(temporary("cut.tif"));
   std::ofstream(temporary("cut.tif"), std::ios::binary) << whole.substr(0, whole.size() / 2);
   EXPECT_THAT([] { read_image(temporary("cut.tif")); }, ThrowsMessage<DataError>(HasSubstr("cut.tif")));
+}
+
+/// Pages of one TIFF, each with its number as the value of every pixel.
+std::string write_pages(std::string const& name, std::vector<std::pair<int, int>> const& sizes) {
+  std::string const path = temporary(name);
+  auto const output = OIIO::ImageOutput::create(path);
+  for (std::size_t page = 0; page < sizes.size(); ++page) {
+    auto const [columns, rows] = sizes[page];
+    OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT16);
+    std::vector<std::uint16_t> const values(spec.image_pixels(), static_cast<std::uint16_t>(page + 1));
+    auto const mode = page == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage;
+    EXPECT_TRUE(output->open(path, spec, mode) && output->write_image(OIIO::TypeDesc::UINT16, values.data()));
+  }
+  EXPECT_TRUE(output->close());
+  return path;
+}
+
+TEST(ImageFile, SeveralPagesAreRefusedWithTheirNumberAndTwoAreAPair) {
+  std::string const pair = write_pages("pair.tif", {{8, 6}, {8, 6}});
+  EXPECT_THAT([&] { read_image(pair); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("pair.tif: has 2 pages"), HasSubstr("gladstone correlate"))));
+  auto const [reference, flow] = read_frame_pair(pair);
+  EXPECT_EQ(reference.columns(), 8);
+  EXPECT_EQ(reference(7, 5), 1);
+  EXPECT_EQ(flow(0, 0), 2);
+
+  std::string const film = write_pages("film.tif", {{8, 6}, {8, 6}, {8, 6}});
+  EXPECT_THAT([&] { read_frame_pair(film); }, ThrowsMessage<DataError>(HasSubstr("film.tif: has 3 pages")));
+  std::string const one = write_pages("one.tif", {{8, 6}});
+  EXPECT_THAT([&] { read_frame_pair(one); }, ThrowsMessage<DataError>(HasSubstr("one.tif: has 1 page, ")));
+}
+
+// Cameras and viewers put small copies behind a picture.
+TEST(ImageFile, PreviewsAreNoPages) {
+  EXPECT_EQ(read_image(write_pages("preview.tif", {{64, 48}, {16, 12}}))(0, 0), 1);
+  auto const [reference, flow] = read_frame_pair(write_pages("previews.tif", {{64, 48}, {16, 12}, {64, 48}, {16, 12}}));
+  EXPECT_EQ(reference(0, 0), 1);
+  EXPECT_EQ(flow(0, 0), 3);
+}
+
+/// Puts another value into a TIFF's header. @param tag 256 the width, 257 the height
+std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) {
+  auto const number = [&](std::size_t place, std::size_t size) {
+    std::uint32_t found = 0;
+    for (std::size_t i = size; i-- > 0;) found = found << 8 | static_cast<unsigned char>(bytes[place + i]);
+    return found;
+  };
+  std::size_t const directory = number(4, 4);
+  for (std::size_t entry = 0; entry < number(directory, 2); ++entry) {
+    std::size_t const place = directory + 2 + 12 * entry;
+    if (number(place, 2) != tag) continue;
+    bytes[place + 2] = 4;  // of 32 bits
+    for (std::size_t i = 0; i < 4; ++i) bytes[place + 8 + i] = static_cast<char>(value >> (8 * i) & 0xffu);
+  }
+  return bytes;
+}
+
+// 50,000 x 50,000 px of 16 bits are 5 GB; the file has 128 kB, and packed as densely as can be 0.3 GB.
+TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
+  for (char const* packing : {"none", "zip", "lzw"}) {
+    std::string const path = temporary("damaged.tif");
+    OIIO::ImageSpec spec(256, 256, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = packing;
+    auto const output = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, all_values().data()));
+    ASSERT_TRUE(output->close());
+    std::string const bytes = with_tag(with_tag(content(path), 256, 50000), 257, 50000);
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_THAT([&] { read_image(path); },
+                ThrowsMessage<DataError>(AllOf(HasSubstr("damaged.tif: is damaged"), HasSubstr("50000 x 50000 px"))))
+        << packing;
+  }
+}
+
+// An even grey packs as densely as any picture, a thousand to one.
+TEST(ImageFile, DenselyPackedPicturesAreRead) {
+  for (char const* name : {"even.png", "even.exr", "even.tif"}) {
+    std::string const path = temporary(name);
+    OIIO::ImageSpec spec(3000, 3000, 1, OIIO::TypeDesc::UINT16);
+    spec["compression"] = "zip";
+    auto const output = OIIO::ImageOutput::create(path);
+    std::vector<std::uint16_t> const values(spec.image_pixels(), 0);
+    ASSERT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeDesc::UINT16, values.data())) << name;
+    ASSERT_TRUE(output->close());
+    EXPECT_EQ(read_image(path).columns(), 3000) << name;
+    fs::remove(path);
+  }
+}
+
+TEST(ImageFile, PixelsThatAreNoNumbersAreCounted) {
+  float const nan = std::nanf(""), infinite = HUGE_VALF;
+  std::string const path = write_picture<float>("holes.tif", {1, nan, 2, infinite, -infinite, 3}, 3, 1);
+  EXPECT_EQ(count_not_finite(read_image(path)), 3u);
 }
 
 TEST(ImageFile, WhatCannotBeWrittenIsSaid) {

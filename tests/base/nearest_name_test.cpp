@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 namespace gladstone {
 namespace {
 
@@ -19,6 +21,14 @@ TEST(NearestName, IsTheLikelyMeaningOrNothing) {
   EXPECT_EQ(nearest_name("z_a", {"z_d_mm", "z_a_mm"}), "z_a_mm");  // the unit forgotten
   EXPECT_EQ(nearest_name("wavelength", {"file", "kind"}), std::nullopt);
   EXPECT_EQ(nearest_name("x", {}), std::nullopt);
+}
+
+// Edit distances take the product of both lengths: a book against a hundred keys would take minutes.
+TEST(NearestName, OfAVeryLongWordIsNoneAtOnce) {
+  std::string const book(std::size_t{16} << 20, 'a');
+  auto const start = std::chrono::steady_clock::now();
+  EXPECT_EQ(nearest_name(book, std::vector<std::string>(100, "magnification")), std::nullopt);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
 TEST(QuotedList, ReadsAsASentence) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -322,8 +323,108 @@ TEST(SetupDocument, SyntaxErrorHasLineAndColumn) {
   }
 }
 
+/// "a.a.a", of so many parts.
+std::string dotted(std::size_t parts) {
+  std::string key = "a";
+  for (std::size_t i = 1; i < parts; ++i) key += ".a";
+  return key;
+}
+
+std::string repeated(std::string const& text, std::size_t count) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+// Every part is a call deeper in the parser and in what goes over its tree; stacks hold some ten thousand.
+TEST(SetupDocument, KeysAndBracketsAreBoundedInDepth) {
+  std::size_t const many = 100000;
+  std::vector<std::pair<std::string, std::string>> const deep{
+      {"x = 1\n" + dotted(many) + " = 1\n", "2:64"},
+      {'[' + dotted(many) + "]\nx = 1\n", "1:65"},
+      {"[[" + dotted(many) + "]]\n", "1:66"},
+      {"x = { " + dotted(many) + " = 1 }\n", "1:70"},
+      {"x = " + repeated("[", many) + repeated("]", many) + '\n', "1:37"},
+      {"x = " + repeated("{ a = ", many) + '1' + repeated("}", many) + '\n', "1:197"},
+      {repeated("\"a\" . 'a' .", many) + "a = 1\n", ""},
+      // what looks like the inside of a text and is not
+      {"x = [ \"\"\"a\"\"\"\", { " + dotted(many) + " = 1 } ]\n", ""},
+      {"x = '\\' # '\ny = { " + dotted(many) + " = '' }\n", "2:70"},
+  };
+  for (auto const& [text, place] : deep) {
+    try {
+      document(text);
+      ADD_FAILURE() << "accepted " << text.substr(0, 40);
+    } catch (SetupError const& error) {
+      EXPECT_THAT(error.problems()[0].where, testing::StartsWith("case.toml:" + place)) << text.substr(0, 40);
+      EXPECT_THAT(error.problems()[0].message, HasSubstr("more than 32 deep")) << text.substr(0, 40);
+    }
+  }
+  EXPECT_NO_THROW(document(dotted(most_setup_depth) + " = 1.5\n"));
+  EXPECT_NO_THROW(document("x = " + repeated("[", most_setup_depth) + repeated("]", most_setup_depth)));
+  std::string const dots(1000, '.');
+  EXPECT_NO_THROW(document("a = \"" + dots + "\"\nb = '''\n" + dots + "'''\n# " + dots + '\n'));
+}
+
+TEST(SetupOverride, KeysAndValuesAreBoundedInDepth) {
+  auto setup = document("b = 1\n");
+  setup.override_key(dotted(100000) + "=1");
+  setup.override_key("b=" + repeated("[", 100000) + repeated("]", 100000));
+  setup.root().text("b", "");  // what is no TOML is a text
+  auto const found = problems(setup);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0], HasSubstr("has a key of 100000 parts"));
+  EXPECT_LT(found[0].size(), 400u);
+}
+
+// A message for every key took 47 MB for 200,000 of them, and the search among all messages for each of them 214 s.
+// Only the first ones are put into words now: what takes the time is the parser, far more than 20,000 keys a second.
+TEST(SetupDocument, ManyUnknownKeysAreCountedAndTheFirstTold) {
+  std::string text;
+  std::size_t const count = 100000;
+  for (std::size_t i = 0; i < count; ++i) text += "key" + std::to_string(i) + " = 1\n";
+  auto const start = std::chrono::steady_clock::now();
+  auto setup = document(text);
+  setup.root().number("known", 1.0);
+  try {
+    setup.finish();
+    FAIL() << "accepted";
+  } catch (SetupError const& error) {
+    std::string const what = error.what();
+    EXPECT_EQ(error.problems().size(), most_problems_told);
+    EXPECT_EQ(error.more(), count - most_problems_told);
+    EXPECT_THAT(what, testing::StartsWith("case.toml:1:1: unknown key \"key0\""));
+    EXPECT_THAT(what, HasSubstr("\ncase.toml:20:1: unknown key \"key19\""));
+    EXPECT_THAT(what, testing::EndsWith("\nand 99980 problems more"));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+TEST(SetupDocument, ALongKeyIsCutInItsMessage) {
+  std::string const name(3 << 20, 'k');
+  auto setup = document(name + " = 1\n");
+  setup.root().number("known", 1.0);
+  auto const found = problems(setup);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_LT(found[0].size(), 200u);
+}
+
+TEST(SetupDocument, AFileWithoutAnyKeyIsNoSetup) {
+  auto const path = (std::filesystem::path(testing::TempDir()) / "empty_setup.toml").string();
+  for (char const* text : {"", "\n\n", "# nothing but a remark\n"}) {
+    std::ofstream(path) << text;
+    try {
+      SetupDocument::from_file(path);
+      FAIL() << "accepted";
+    } catch (SetupError const& error) {
+      EXPECT_THAT(error.what(), HasSubstr(path + ": is empty (no key is set); gladstone render --help"));
+    }
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(SetupDocument, MissingFileAndFolderAreNamed) {
-  for (auto const& [path, why] : {std::pair{"/no/such/setup.toml", "No such file"}, std::pair{"/tmp", "folder"}}) {
+  for (auto const& [path, why] : {std::pair{"/no/such/setup.toml", "does not exist"}, std::pair{"/tmp", "folder"}}) {
     try {
       SetupDocument::from_file(path);
       FAIL() << "accepted " << path;

@@ -149,13 +149,12 @@ TEST_F(SetupErrors, DiffractionSpotBeyondReasonAndStepsWithoutEnd) {
 }
 
 TEST_F(SetupErrors, MissingSetupFile) {
-  expect_refused({"render", "nowhere.toml", "-o", "case"}, 2,
-                 {"nowhere.toml: cannot be read (No such file or directory)"});
+  expect_refused({"render", "nowhere.toml", "-o", "case"}, 2, {"nowhere.toml: does not exist"});
 }
 
 TEST_F(SetupErrors, AFolderIsNoSetup) {
   std::filesystem::create_directory(in("folder"));
-  expect_refused({"render", "folder", "-o", "case"}, 2, {"folder: cannot be read (it is a folder)"});
+  expect_refused({"render", "folder", "-o", "case"}, 2, {"folder: is a folder; name a setup file"});
 }
 
 TEST_F(SetupErrors, BinaryRubbishIsNoSetup) {

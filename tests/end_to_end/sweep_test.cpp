@@ -506,7 +506,7 @@ TEST_F(Sweeps, BadCommandLinesAreRefused) {
   expect_refused({"sweep", "run", "run", "--case", ""}, 2, {"--case: \"\" is no list of cases; write 17, or 0-3,7"});
   expect_refused({"sweep", "run", "run", "--retry-faild"}, 2, {"--retry-failed"});
   expect_refused({"sweep", "status", "."}, 2, {"is no planned study", "gladstone sweep plan"});
-  expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: cannot be read"});
+  expect_refused({"sweep", "plan", "nothing.toml", "-o", "other"}, 2, {"nothing.toml: does not exist"});
   write("other.toml", with(small_study, "[8, 16, 32]", "[8, 16, 64]"));
   succeed({"sweep", "run", "run", "--quiet"});
   expect_refused({"sweep", "plan", "other.toml", "-o", "run", "--device", "cpu"}, 2,

@@ -130,8 +130,7 @@ TEST_F(Trace, BadRaysAreRefusedWithTheirLine) {
   refused(header + "0,0,-250,0,0,1\n0,0,-250,0,0\n", "rays.csv:3: ");
   refused(header + "0,0,-250,0,0,0\n", "rays.csv:2: ");
   refused(header + "0,0,nan,0,0,1\n", "rays.csv:2: ");
-  expect_refused({"trace", "setup.toml", "--rays", "nowhere.csv", "-o", "out.csv"}, 2,
-                 {"nowhere.csv: cannot be opened"});
+  expect_refused({"trace", "setup.toml", "--rays", "nowhere.csv", "-o", "out.csv"}, 2, {"nowhere.csv: does not exist"});
   std::filesystem::create_directory(in("folder"));
   expect_refused({"trace", "setup.toml", "--rays", "folder", "-o", "out.csv"}, 2, {"folder: is a folder"});
 }

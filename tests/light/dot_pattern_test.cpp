@@ -130,7 +130,7 @@ TEST(DotsFromCsv, MistakesAreReportedWithFileAndLine) {
   refused("x_mm,y_mm\n1,2\n1e9,0\n", ":3", "no lens sees it (1000 mm at most");
   refused("x_mm,y_mm\n1,2\n0,-1000.1\n", ":3", "no lens sees it");
   EXPECT_THAT([] { dots_from_csv(temporary("absent.csv"), 1.0); },
-              ThrowsMessage<DataError>(HasSubstr("cannot be opened")));
+              ThrowsMessage<DataError>(HasSubstr("does not exist")));
 }
 
 // Two dots at one place are one dot to a camera. The first pair in the file is named, all are counted; a nanometre

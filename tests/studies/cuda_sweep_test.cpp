@@ -42,13 +42,13 @@ dots_per_32px_window = 20.0
 [render]
 rays_per_dot = 128
 )");
-    return plan_study(study(R"(base = "base.toml"
+    return all_cases(plan_study(study(R"(base = "base.toml"
 [axes]
 "lens.f_number" = [8, 16]
 "camera.noise.read_noise_e" = [0.0, 10.0]
 "correlate.window_px" = [[32, 16], [32]]
 )"),
-                      device);
+                                device));
   }
 };
 

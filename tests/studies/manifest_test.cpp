@@ -52,10 +52,9 @@ class Runs : public StudyFolder {
   }
   /// Plans into "run".
   std::vector<ManifestCase> planned(std::string const& text = two_axes) const {
-    StudyFile const file = study(text);
-    std::vector<ManifestCase> cases = plan_study(file, "cpu");
-    write_plan(in("run"), file, cases);
-    return cases;
+    StudyPlan const plan = plan_study(study(text), "cpu");
+    write_plan(in("run"), plan);
+    return all_cases(plan);
   }
   CaseResult result_of(ManifestCase const& one, double rms) const {
     CaseResult result;
@@ -175,9 +174,8 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
   for (std::size_t at; (at = older.find(",\"hash\":")) != std::string::npos;) older.erase(at, 26);
   EXPECT_THAT(complaint_about(older, 0), testing::HasSubstr("manifest.jsonl:1: holds no hash of itself"));
   write_result(in("run"), result_of(cases[1], 0.5));
-  StudyFile const same = study(two_axes);
-  auto again = plan_study(same, "cpu");
-  EXPECT_EQ(write_plan(in("run"), same, again), Planned::replaced);
+  StudyPlan const again = plan_study(study(two_axes), "cpu");
+  EXPECT_EQ(write_plan(in("run"), again), Planned::replaced);
   EXPECT_EQ(content("run/manifest.jsonl"), whole);
   EXPECT_TRUE(read_result(in("run"), 1, again[1].line_hash).has_value());
 }
@@ -185,71 +183,65 @@ TEST_F(Runs, AChangedLineIsRefusedWhereItsCaseIsAskedFor) {
 TEST_F(Runs, PlanningAgainKeepsWhatIsThere) {
   auto cases = planned();
   write_result(in("run"), result_of(cases[1], 0.5));
-  StudyFile const same = study(two_axes);
-  EXPECT_EQ(write_plan(in("run"), same, cases), Planned::unchanged);
+  EXPECT_EQ(write_plan(in("run"), plan_study(study(two_axes), "cpu")), Planned::unchanged);
 
   // more repeats come behind what is there
-  StudyFile const longer = study(std::string(two_axes) + "[study]\nrepeats = 2\n");
-  auto more = plan_study(longer, "cpu");
-  EXPECT_EQ(write_plan(in("run"), longer, more), Planned::replaced);
+  StudyPlan const more = plan_study(study(std::string(two_axes) + "[study]\nrepeats = 2\n"), "cpu");
+  EXPECT_EQ(write_plan(in("run"), more), Planned::replaced);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
   EXPECT_TRUE(read_result(in("run"), 1, more[1].line_hash).has_value());
 
   // another study would lose the result
-  StudyFile const other = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
-  auto others = plan_study(other, "cpu");
-  EXPECT_THROW(write_plan(in("run"), other, others), OutputError);
+  StudyPlan const other = plan_study(study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n"), "cpu");
+  EXPECT_THROW(write_plan(in("run"), other), OutputError);
   EXPECT_EQ(read_manifest(in("run")).size(), 8u);
 
   // so would planning with another gladstone
   write("run/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
   try {
-    write_plan(in("run"), other, others);
+    write_plan(in("run"), other);
     ADD_FAILURE() << "overwritten";
   } catch (OutputError const& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("was planned by another gladstone (its manifest is of version 1"));
   }
   std::filesystem::remove(result_path(in("run"), 1));
-  EXPECT_EQ(write_plan(in("run"), other, others), Planned::replaced);
+  EXPECT_EQ(write_plan(in("run"), other), Planned::replaced);
 }
 
 TEST_F(Runs, AFolderOfSomethingElseIsLeftAlone) {
   std::filesystem::create_directory(in("thesis"));
   write("thesis/chapter1.tex", "precious");
-  StudyFile const file = study(two_axes);
-  auto cases = plan_study(file, "cpu");
-  EXPECT_THROW(write_plan(in("thesis"), file, cases), OutputError);
+  StudyPlan const plan = plan_study(study(two_axes), "cpu");
+  EXPECT_THROW(write_plan(in("thesis"), plan), OutputError);
   EXPECT_FALSE(std::filesystem::exists(in("thesis/manifest.jsonl")));
 }
 
 TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
-  StudyFile const file = study(two_axes);
-  auto cases = plan_study(file, "cpu");
+  StudyPlan const plan = plan_study(study(two_axes), "cpu");
   std::filesystem::create_directories(in("cut"));
   std::string const partial = leave_partial(in("cut"), stem_beside(run_file::manifest));
   write("cut/study.toml", "of somebody else");
-  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+  EXPECT_THROW(write_plan(in("cut"), plan), OutputError);
   EXPECT_EQ(content("cut/study.toml"), "of somebody else");
 
   std::filesystem::create_directories(in("cut/cases"));
   write("cut/claims", "");
   write("cut/cases/notes.txt", "precious");
-  EXPECT_THROW(write_plan(in("cut"), file, cases), OutputError);
+  EXPECT_THROW(write_plan(in("cut"), plan), OutputError);
 
   std::filesystem::remove(in("cut/cases/notes.txt"));
-  EXPECT_EQ(write_plan(in("cut"), file, cases), Planned::fresh);
+  EXPECT_EQ(write_plan(in("cut"), plan), Planned::fresh);
   EXPECT_EQ(read_manifest(in("cut")).size(), 4u);
   EXPECT_FALSE(std::filesystem::exists(partial));
 }
 
 TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   std::filesystem::create_directory(in("package"));
-  StudyFile const file = study(two_axes);
-  auto cases = plan_study(file, "cpu");
+  StudyPlan const plan = plan_study(study(two_axes), "cpu");
   for (std::string const foreign : {"{\"name\":\"a package\",\"version\":3}\n", "first line\nsecond line\n", ""}) {
     write("package/manifest.jsonl", foreign);
     try {
-      write_plan(in("package"), file, cases);
+      write_plan(in("package"), plan);
       ADD_FAILURE() << "overwritten: " << foreign;
     } catch (OutputError const& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("package/manifest.jsonl: is no gladstone manifest"));
@@ -258,7 +250,21 @@ TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   }
   // of another gladstone, and nothing computed: planned anew
   write("package/manifest.jsonl", "{\"manifest\":1,\"index\":0}\n");
-  EXPECT_EQ(write_plan(in("package"), file, cases), Planned::replaced);
+  EXPECT_EQ(write_plan(in("package"), plan), Planned::replaced);
+}
+
+// Brackets within brackets take no stack, whatever their number.
+TEST_F(Runs, DeeplyNestedTextIsRefused) {
+  auto const cases = planned();
+  std::size_t const many = 200000;
+  std::string const deep = std::string(many, '[') + std::string(many, ']');
+  write("run/manifest.jsonl", deep + '\n');
+  EXPECT_THAT(reading_fails(), testing::HasSubstr("manifest.jsonl:1: "));
+  write("run/manifest.jsonl", "{\"manifest\":2,\"index\":0,\"setup\":" + deep + "}\n");
+  EXPECT_THROW(read_manifest(in("run"))[0], DataError);
+  std::string const rest = "\"result\":2,\"index\":1,\"measures\":" + deep + "}\n";
+  write("run/cases/1.json", "{\"hash\":\"" + content_hash(rest) + "\"," + rest);
+  EXPECT_FALSE(read_result(in("run"), 1, cases[1].line_hash).has_value());
 }
 
 TEST_F(Runs, AResultIsWholeOrNone) {
@@ -298,13 +304,13 @@ TEST_F(Runs, AResultOfAnotherVersionIsNeitherDamagedNorThrownAway) {
   rest.replace(0, rest.find(','), "\"result\":1");
   std::string const older = "{\"hash\":\"" + content_hash(rest) + "\"," + rest;
   write("run/cases/2.json", older);
-  StudyFile const file = study(two_axes);
+  StudyPlan const plan = plan_study(study(two_axes), "cpu");
   std::vector<std::function<void()>> const uses{[&] { read_result(in("run"), 2, cases[2].line_hash); },
                                                 [&] {
                                                   state_of(in("run"), read_manifest(in("run")), {0, 1, 2, 3});
                                                 },
                                                 [&] { read_study_table(in("run")); },
-                                                [&] { write_plan(in("run"), file, cases); }};
+                                                [&] { write_plan(in("run"), plan); }};
   for (std::function<void()> const& use : uses) {
     try {
       use();

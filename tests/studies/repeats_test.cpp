@@ -84,15 +84,15 @@ class Repeats : public StudyFolder {
   /// A study of two f-numbers and three repeats whose results are made up: errors 0.01 (1 + point + 2 repeat) px, every
   /// vector 0.03 px off in all repeats and -0.01, 0, 0.01 px beside that.
   std::vector<ManifestCase> made_up_study() const {
-    StudyFile const file = study(R"(base = "base.toml"
+    StudyPlan const plan = plan_study(study(R"(base = "base.toml"
 [axes]
 "lens.f_number" = [8, 16]
 [study]
 repeats = 3
-)");
-    std::vector<ManifestCase> cases = plan_study(file, "cpu");
-    write_plan(in("run"), file, cases);
-    return cases;
+)"),
+                                      "cpu");
+    write_plan(in("run"), plan);
+    return all_cases(plan);
   }
   void write_made_up(ManifestCase const& one) const {
     CaseResult result;

@@ -29,7 +29,7 @@ TEST(ShippedStudies, CanBePlannedAndAreSmall) {
   auto const studies = shipped_studies();
   EXPECT_GE(studies.size(), 10u);
   for (auto const& [name, path] : studies) {
-    std::vector<ManifestCase> const cases = plan_study(read_study(path), "cpu");
+    StudyPlan const cases = plan_study(read_study(path), "cpu");
     EXPECT_GT(cases.size(), 1u) << name;
     EXPECT_LT(cases.size(), 100u) << name;
   }

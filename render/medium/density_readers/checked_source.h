@@ -16,14 +16,20 @@ class CheckedSource : public FieldSource {
   FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
   void read_planes(int first_plane, int count, std::span<double> out) final;
+  void read_rows(int plane, int first_row, int count, std::span<double> out) final;
 
  protected:
   virtual void read_raw_planes(int first_plane, int count, std::span<double> out) = 0;
+  virtual void read_raw_rows(int plane, int first_row, int count, std::span<double> out) = 0;
 
   std::string path_;
   std::string name_;
   RegularGrid grid_;
   FieldUnits units_;
+
+ private:
+  /// Where one of the values is bad, reads the field once more, to say how many are.
+  void refuse_bad_values(std::span<double const> read);
 };
 
 }  // namespace gladstone

@@ -139,6 +139,11 @@ class JhtdbSource final : public CheckedSource {
     file_.read_rows(name_, static_cast<std::size_t>(first_plane), static_cast<std::size_t>(count), out);
   }
 
+  void read_raw_rows(int plane, int first_row, int count, std::span<double> out) override {
+    file_.read_rows_of(name_, static_cast<std::size_t>(plane), static_cast<std::size_t>(first_row),
+                       static_cast<std::size_t>(count), out);
+  }
+
   Hdf5Reader file_;
 };
 

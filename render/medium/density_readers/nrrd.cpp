@@ -1,18 +1,17 @@
 #include "render/medium/density_readers/nrrd.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/input_file.h"
+#include "render/base/interrupt.h"
 #include "render/medium/density_readers/checked_source.h"
 #include "render/medium/density_readers/nrrd_header.h"
 
@@ -22,11 +21,7 @@ namespace {
 /// The data section as a stream of bytes: raw through pread, gzip through zlib.
 class NrrdBytes {
  public:
-  explicit NrrdBytes(NrrdHeader const& header) : header_(header) {
-    descriptor_ = ::open(header_.data_path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor_ < 0) {
-      throw DataError(header_.data_path, std::string("cannot be opened (") + std::strerror(errno) + ')');
-    }
+  explicit NrrdBytes(NrrdHeader const& header) : header_(header), file_(header.data_path, "the data of a field") {
     try {
       offset_ = header_.data_offset;
       skip_lines();
@@ -43,7 +38,7 @@ class NrrdBytes {
   /// Bytes [first, first + size) of the field.
   void read(std::size_t first, void* out, std::size_t size) {
     if (header_.encoding == NrrdHeader::Encoding::raw) {
-      std::size_t const got = read_at(offset_ + first, static_cast<char*>(out), size);
+      std::size_t const got = file_.read(offset_ + first, out, size);
       if (got < size) cut_short(first + got);
       return;
     }
@@ -60,29 +55,13 @@ class NrrdBytes {
 
  private:
   void close() {
-    if (stream_) {
-      gzclose_r(stream_);
-    } else if (descriptor_ >= 0) {
-      ::close(descriptor_);
-    }
-  }
-
-  std::size_t read_at(std::size_t offset, char* out, std::size_t size) const {
-    std::size_t done = 0;
-    while (done < size) {
-      ssize_t const got = ::pread(descriptor_, out + done, size - done, static_cast<off_t>(offset + done));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw DataError(header_.data_path, std::string("cannot be read (") + std::strerror(errno) + ')');
-      if (got == 0) break;
-      done += static_cast<std::size_t>(got);
-    }
-    return done;
+    if (stream_) gzclose_r(stream_);
   }
 
   void skip_lines() {
     std::vector<char> block(64 * 1024);
     for (long lines = header_.line_skip; lines > 0;) {
-      std::size_t const got = read_at(offset_, block.data(), block.size());
+      std::size_t const got = file_.read(offset_, block.data(), block.size());
       if (got == 0) throw DataError(header_.data_path, "ends before the lines that \"line skip\" leaves out");
       std::size_t used = 0;
       while (used < got && lines > 0) lines -= block[used++] == '\n';
@@ -91,7 +70,7 @@ class NrrdBytes {
   }
 
   void prepare_raw() {
-    std::size_t const size = std::filesystem::file_size(header_.data_path);
+    std::size_t const size = file_.size();
     std::size_t const needed = header_.data_bytes();
     if (header_.byte_skip >= 0) offset_ += static_cast<std::size_t>(header_.byte_skip);
     std::size_t const there = size > offset_ ? size - offset_ : 0;
@@ -100,9 +79,13 @@ class NrrdBytes {
   }
 
   void prepare_gzip() {
-    ::lseek(descriptor_, static_cast<off_t>(offset_), SEEK_SET);
-    stream_ = gzdopen(descriptor_, "rb");
-    if (!stream_) throw DataError(header_.data_path, "cannot be decompressed (out of memory)");
+    int const descriptor = ::dup(file_.descriptor());  // gzclose closes its own
+    ::lseek(descriptor, static_cast<off_t>(offset_), SEEK_SET);
+    stream_ = gzdopen(descriptor, "rb");
+    if (!stream_) {
+      ::close(descriptor);
+      throw MemoryError(header_.data_path, "cannot be decompressed (out of memory)");
+    }
     gzbuffer(stream_, 256 * 1024);
     skipped_ = static_cast<std::size_t>(header_.byte_skip);
     char first = 0;
@@ -118,6 +101,7 @@ class NrrdBytes {
   void inflate(char* out, std::size_t size) {
     constexpr std::size_t most = 64 * 1024 * 1024;
     while (size > 0) {
+      throw_if_interrupted();
       int const got = gzread(stream_, out, static_cast<unsigned>(std::min(size, most)));
       if (got <= 0) {
         int problem = Z_OK;
@@ -162,7 +146,7 @@ class NrrdBytes {
   }
 
   NrrdHeader const& header_;
-  int descriptor_ = -1;
+  InputFile file_;
   gzFile stream_ = nullptr;
   std::size_t offset_ = 0;    ///< of the first value, in the stored file
   std::size_t skipped_ = 0;   ///< decompressed bytes before the first value
@@ -221,18 +205,25 @@ class NrrdSource final : public CheckedSource {
   int significant_bits() const override { return header_.significant_bits(); }
 
   void read_raw_planes(int first_plane, int count, std::span<double> out) override {
-    std::size_t const plane_bytes = header_.plane_bytes();
-    std::size_t const plane = plane_bytes / header_.value_bytes();
-    bool const swap = header_.big_endian != (std::endian::native == std::endian::big);
-    std::vector<char> stored(plane_bytes);
-    for (std::size_t z = 0; z < static_cast<std::size_t>(count); ++z) {
-      bytes_.read((static_cast<std::size_t>(first_plane) + z) * plane_bytes, stored.data(), plane_bytes);
-      convert(header_.type, stored, swap, out.subspan(z * plane, plane));
+    std::size_t const plane = header_.plane_bytes() / header_.value_bytes();
+    for (int z = 0; z < count; ++z) {
+      read_raw_rows(first_plane + z, 0, header_.sizes[1], out.subspan(static_cast<std::size_t>(z) * plane, plane));
     }
+  }
+
+  void read_raw_rows(int plane, int first_row, int count, std::span<double> out) override {
+    std::size_t const row_bytes = header_.value_bytes() * static_cast<std::size_t>(header_.sizes[0]);
+    std::size_t const first =
+        static_cast<std::size_t>(plane) * header_.plane_bytes() + static_cast<std::size_t>(first_row) * row_bytes;
+    bool const swap = header_.big_endian != (std::endian::native == std::endian::big);
+    stored_.resize(row_bytes * static_cast<std::size_t>(count));
+    bytes_.read(first, stored_.data(), stored_.size());
+    convert(header_.type, stored_, swap, out);
   }
 
   NrrdHeader header_;
   NrrdBytes bytes_;
+  std::vector<char> stored_;  ///< kept, so that its memory is asked for once
 };
 
 }  // namespace

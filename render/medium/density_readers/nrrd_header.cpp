@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
@@ -70,23 +70,27 @@ class Fields {
   explicit Fields(std::string path) : path_(std::move(path)) {}
 
   /// Reads up to the empty line that ends an attached header, or the end of a detached one.
-  void read(std::istream& file) {
-    for (std::string line; std::getline(file, line);) {
-      line = trimmed(line);
-      if (line.empty()) return;
+  /// @return whether the empty line was there
+  bool read(LineReader& file) {
+    constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
+    while (auto const text = file.next()) {
+      if (file.offset() > most_bytes) throw DataError(path_, "has a header of more than 16 MiB, as no NRRD file has");
+      std::string const line = trimmed(std::string(*text));
+      if (line.empty()) return true;
       if (line.front() == '#' || line.find(":=") != std::string::npos) continue;
       auto const colon = line.find(": ");
       if (colon == std::string::npos && line.back() != ':') {
-        throw DataError(path_, "header line \"" + line.substr(0, 40) + "\" is no NRRD field");
+        throw DataError(path_, "header line \"" + excerpt(line) + "\" is no NRRD field");
       }
       std::string const key = lower(line.substr(0, std::min(colon, line.size() - 1)));
       values_[canonical(key)] = colon == std::string::npos ? std::string() : trimmed(line.substr(colon + 2));
     }
+    return false;
   }
 
   [[noreturn]] void refuse(std::string const& key, std::string const& why) const {
     auto const found = values_.find(key);
-    std::string const value = found == values_.end() ? "" : ": " + found->second;
+    std::string const value = found == values_.end() ? "" : ": " + excerpt(found->second);
     throw DataError(path_, "NRRD field \"" + key + value + "\" " + why);
   }
 
@@ -265,13 +269,14 @@ std::size_t NrrdHeader::plane_bytes() const {
 }
 
 NrrdHeader read_nrrd_header(std::string const& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw DataError(path, "cannot be opened; check the name and the permissions");
-  std::string magic;
-  std::getline(file, magic);
-  if (!magic.starts_with("NRRD000")) throw DataError(path, "is not a NRRD file (it does not begin with NRRD000)");
+  LineReader file(path, "a field file");
+  char magic[7] = {};
+  bool const nrrd = InputFile(path).read(0, magic, sizeof magic) == sizeof magic &&
+                    std::string_view(magic, sizeof magic) == "NRRD000";
+  if (!nrrd) throw DataError(path, "is not a NRRD file (it does not begin with NRRD000)");
+  file.next();
   Fields fields(path);
-  fields.read(file);
+  bool const attached = fields.read(file);
 
   NrrdHeader header;
   read_type(fields, header);
@@ -284,10 +289,10 @@ NrrdHeader read_nrrd_header(std::string const& path) {
     fields.refuse("byte skip", "goes with encoding raw only");
   }
   if (!fields.has("data file")) {
-    if (!file)
+    if (!attached)
       throw DataError(path, "has no data: an empty line after the header, or a field \"data file\", is missing");
     header.data_path = path;
-    header.data_offset = static_cast<std::size_t>(file.tellg());
+    header.data_offset = static_cast<std::size_t>(file.offset());
     return header;
   }
   std::string const data = fields.text("data file");

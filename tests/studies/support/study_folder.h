@@ -29,6 +29,12 @@ rays_per_dot = 32
 window_px = [32, 16]
 )";
 
+inline std::vector<ManifestCase> all_cases(StudyPlan const& plan) {
+  std::vector<ManifestCase> cases;
+  for (std::size_t i = 0; i < plan.size(); ++i) cases.push_back(plan[i]);
+  return cases;
+}
+
 /// A fresh folder for each test, with a base setup in it.
 class StudyFolder : public testing::Test {
  protected:
@@ -50,7 +56,7 @@ class StudyFolder : public testing::Test {
     write("study.toml", text);
     return read_study(in("study.toml"));
   }
-  std::vector<ManifestCase> plan(std::string const& text) const { return plan_study(study(text), "cpu"); }
+  std::vector<ManifestCase> plan(std::string const& text) const { return all_cases(plan_study(study(text), "cpu")); }
 
   /// What planning the study complains of.
   std::string complaint(std::string const& text) const {

@@ -1,0 +1,53 @@
+#include "studies/field_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "render/base/available_memory.h"
+#include "render/base/interrupt.h"
+#include "render/base/progress.h"
+
+namespace gladstone {
+
+FieldStatistics field_statistics(FieldSource& source) {
+  RegularGrid const& grid = source.grid();
+  auto const width = static_cast<std::size_t>(grid.nodes[0]);
+  constexpr std::size_t values_at_once = std::size_t{1} << 22;
+  int const rows =
+      static_cast<int>(std::clamp<std::size_t>(values_at_once / width, 1, static_cast<std::size_t>(grid.nodes[1])));
+  require_memory(source.name(), "a row of " + std::to_string(width) + " values",
+                 4.0 * sizeof(double) * static_cast<double>(width * (static_cast<std::size_t>(rows) + 1)));
+  auto const blocks = (static_cast<std::size_t>(grid.nodes[1]) + rows - 1) / static_cast<std::size_t>(rows);
+  Progress progress("reading " + source.name(), blocks * static_cast<std::size_t>(grid.nodes[2]));
+
+  FieldStatistics seen{HUGE_VAL, -HUGE_VAL, {}};
+  std::vector<double> values, before;
+  for (int first = 0; first < grid.nodes[1]; first += rows) {
+    int const last = std::min(first + rows, grid.nodes[1]);
+    int const from = std::max(first - 1, 0);  // the row before is the first one's neighbour
+    before.clear();
+    for (int k = 0; k < grid.nodes[2]; ++k) {
+      throw_if_interrupted();
+      values.resize(width * static_cast<std::size_t>(last - from));
+      source.read_rows(k, from, last - from, values);
+      double steepest[3] = {};
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        double const here = values[i];
+        seen.minimum = std::min(seen.minimum, here);
+        seen.maximum = std::max(seen.maximum, here);
+        if (i % width != 0) steepest[0] = std::max(steepest[0], std::abs(here - values[i - 1]));
+        if (i >= width) steepest[1] = std::max(steepest[1], std::abs(here - values[i - width]));
+        if (!before.empty()) steepest[2] = std::max(steepest[2], std::abs(here - before[i]));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        seen.steepest[axis] = std::max(seen.steepest[axis], steepest[axis] / grid.spacing[axis]);
+      }
+      std::swap(before, values);
+      progress.advance();
+    }
+  }
+  return seen;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,244 @@
+#include <OpenImageIO/imageio.h>
+#include <sys/stat.h>
+
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// The small setup with another field or target.
+std::string with_field(std::string const& file) {
+  return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+              "kind = \"file\"\nfile = \"" + file + "\"");
+}
+std::string with_target(std::string const& kind, std::string const& file) {
+  return with(small_setup, "dots_per_32px_window = 10.0", "kind = \"" + kind + "\"\nfile = \"" + file + "\"");
+}
+
+class Inputs : public Workplace {
+ protected:
+  void make_pipe(std::string const& name) const { ASSERT_EQ(::mkfifo(in(name).c_str(), 0600), 0) << name; }
+
+  /// Ends by itself as bad input, and says this; files are not compared: a pipe cannot be read.
+  void expect_told(std::vector<std::string> const& arguments, std::string const& piece) const {
+    Outcome const outcome = Program(arguments, folder_).finish(std::chrono::seconds(20));
+    EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err << outcome.signal;
+    EXPECT_THAT(outcome.err, HasSubstr(piece)) << testing::PrintToString(arguments);
+    // what libraries say of themselves
+    for (char const* library : {"std::", "what()", "json.exception", "filesystem error", "basic_", "OpenImageIO",
+                                "TIFF"
+                                "Open",
+                                "HDF5-DIAG", "Run with --help"}) {
+      EXPECT_THAT(outcome.err, Not(HasSubstr(library))) << testing::PrintToString(arguments);
+    }
+  }
+
+  /// Frames of dots that move by 2 px to the right, as floating-point numbers.
+  static Image<float> frame(double shift) {
+    Image<float> image(96, 96);
+    for (int dot = 0; dot < 120; ++dot) {
+      double const x = std::fmod(37.31 * dot, 96.0) + shift, y = std::fmod(59.77 * dot, 96.0);
+      for (int row = 0; row < 96; ++row) {
+        for (int column = 0; column < 96; ++column) {
+          double const r2 = (column - x) * (column - x) + (row - y) * (row - y);
+          image(column, row) += static_cast<float>(1000 * std::exp(-r2));
+        }
+      }
+    }
+    return image;
+  }
+  /// One TIFF with these pages.
+  void write_pages(std::string const& name, std::vector<Image<float>> const& pages) const {
+    auto const output = OIIO::ImageOutput::create("tif");
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+      OIIO::ImageSpec const spec(pages[page].columns(), pages[page].rows(), 1, OIIO::TypeDesc::FLOAT);
+      auto const mode = page == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage;
+      ASSERT_TRUE(output->open(in(name).string(), spec, mode) &&
+                  output->write_image(OIIO::TypeDesc::FLOAT, pages[page].data()));
+    }
+    ASSERT_TRUE(output->close());
+  }
+};
+
+// A pipe that nobody writes to would be waited for without end, whatever its name promises.
+TEST_F(Inputs, APipeInPlaceOfAnyFileIsRefusedByItsName) {
+  write_tiff(in("a.tif").string(), Image<std::uint16_t>(64, 64), {});
+  render("case");
+  for (char const* name : {"pipe", "pipe.h5", "pipe.nrrd", "pipe.csv", "pipe.tif", "pipe.toml"}) make_pipe(name);
+  expect_told({"render", "pipe.toml", "-o", "new"}, "pipe.toml: is a pipe");
+  for (char const* field : {"pipe.h5", "pipe.nrrd"}) {
+    write("field.toml", with_field(field));
+    expect_told({"render", "field.toml", "-o", "new"}, std::string(field) + ": is a pipe");
+  }
+  write("detached.nhdr",
+        "NRRD0004\ntype: float\ndimension: 2\nsizes: 4 4\nendian: little\nencoding: raw\ndata file: pipe\n");
+  expect_told({"info", "field", "detached.nhdr"}, "pipe: is a pipe");
+  write("points.toml", with_target("points", "pipe.csv"));
+  expect_told({"render", "points.toml", "-o", "new"}, "pipe.csv: is a pipe");
+  write("picture.toml", with_target("image", "pipe.tif"));
+  expect_told({"render", "picture.toml", "-o", "new"}, "pipe.tif: is a pipe");
+  expect_told({"correlate", "a.tif", "pipe.tif", "-o", "v.csv"}, "pipe.tif: is a pipe");
+  expect_told({"correlate", "pipe.tif", "-o", "v.csv"}, "pipe.tif: is a pipe");
+  expect_told({"correlate", "case", "--config", "pipe.toml"}, "pipe.toml: is a pipe");
+  for (char const* vectors : {"pipe.csv", "pipe.h5"}) {
+    expect_told({"compare", "case", "--vectors", vectors}, std::string(vectors) + ": is a pipe");
+  }
+  expect_told({"trace", "setup.toml", "--rays", "pipe.csv", "-o", "out.csv"}, "pipe.csv: is a pipe");
+  expect_told({"info", "image", "pipe.tif"}, "pipe.tif: is a pipe");
+  expect_told({"info", "field", "pipe.h5"}, "pipe.h5: is a pipe");
+  expect_told({"sweep", "plan", "pipe.toml", "-o", "run"}, "pipe.toml: is a pipe");
+  write("study.toml", "base = \"pipe.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  expect_told({"sweep", "plan", "study.toml", "-o", "run"}, "pipe.toml: is a pipe");
+  std::filesystem::create_directory(in("run"));
+  make_pipe("run/manifest.jsonl");
+  for (char const* command : {"status", "run", "collect"}) {
+    expect_told({"sweep", command, "run"}, "manifest.jsonl: is a pipe");
+  }
+}
+
+TEST_F(Inputs, ADeviceHasNoEndAndIsRefused) {
+  for (std::vector<std::string> const& command : {std::vector<std::string>{"render", "/dev/zero", "-o", "case"},
+                                                  {"info", "image", "/dev/zero"},
+                                                  {"trace", "setup.toml", "--rays", "/dev/zero", "-o", "out.csv"},
+                                                  {"sweep", "plan", "/dev/zero", "-o", "run"}}) {
+    expect_refused(command, 2, {"/dev/zero: is a device", "regular files"});
+  }
+}
+
+TEST_F(Inputs, NamesThatNoFileSystemTakesAreToldAsSuch) {
+  std::string const name(5000, 'n');
+  for (std::vector<std::string> const& command : {std::vector<std::string>{"render", name, "-o", "case"},
+                                                  {"correlate", name},
+                                                  {"correlate", name, name, "-o", "v.csv"},
+                                                  {"compare", name},
+                                                  {"info", "field", name},
+                                                  {"info", "image", name},
+                                                  {"trace", "setup.toml", "--rays", name, "-o", "out.csv"},
+                                                  {"sweep", "plan", name, "-o", "run"},
+                                                  {"sweep", "status", name}}) {
+    expect_told(command, name);
+  }
+  write("field.toml", with_field(name));
+  expect_told({"render", "field.toml", "-o", "case"}, "field.toml:16:1");
+}
+
+TEST_F(Inputs, CommandLinesAreRefusedInOurWords) {
+  expect_told({"render"}, "is required. See gladstone render --help");
+  expect_told({"render", "setup.toml", "-o"}, "--output needs a value. See gladstone render --help");
+  expect_told({"render", "setup.toml", "-o", "case", "--threads", "many"},
+              "--threads: \"many\" is no whole number from 0 to 4096");
+  expect_told({"render", "setup.toml", "-o", "case", "--threads", "-1"}, "--threads: \"-1\" is no whole number");
+  expect_told({"render", "setup.toml", "-o", "case", "--device", "cud"}, "did you mean \"cuda\"?");
+  expect_told({"sweep", "run", "run", "--jobs", "0"},
+              "is no whole number from 1 to 4096. See gladstone sweep run --help");
+}
+
+TEST_F(Inputs, DamagedFilesAreToldInOurWords) {
+  write("damaged.h5", "\x89HDF\r\n\x1a\n" + std::string(400, '\xff'));
+  expect_told({"info", "field", "damaged.h5"}, "damaged.h5: ");
+  write("damaged.tif", std::string("II*\0\x08\0\0\0\xff\xff", 10) + std::string(400, '\xff'));
+  expect_told({"info", "image", "damaged.tif"}, "damaged.tif: ");
+  write("damaged.png", "\x89PNG\r\n\x1a\n" + std::string(400, '\xff'));
+  expect_told({"info", "image", "damaged.png"}, "damaged.png: ");
+  write("damaged.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n" + std::string(2 << 20, '1'));
+  expect_told({"trace", "setup.toml", "--rays", "damaged.csv", "-o", "out.csv"}, "damaged.csv:2: ");
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  write("run/manifest.jsonl", "{\"manifest\":2,\"index\":0,\"no\":1}\n");
+  expect_told({"sweep", "run", "run"}, "manifest.jsonl:1: is damaged");
+  write("run/manifest.jsonl", std::string(200000, '[') + std::string(200000, ']') + '\n');
+  expect_told({"sweep", "status", "run"}, "manifest.jsonl:1: ");
+}
+
+TEST_F(Inputs, AnEmptySetupIsToldAndTheHelpShowsOneToBeginWith) {
+  write("empty.toml", "# nothing yet\n");
+  expect_refused({"render", "empty.toml", "-o", "case"}, 2,
+                 {"empty.toml: is empty (no key is set); gladstone render --help shows a setup to begin with"});
+  write("study.toml", "");
+  expect_refused({"sweep", "plan", "study.toml", "-o", "run"}, 2,
+                 {"study.toml: is empty (no key is set); gladstone sweep plan --help"});
+  write("study.toml", "base = \"empty.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  expect_refused({"sweep", "plan", "study.toml", "-o", "run"}, 2, {"empty.toml: is empty (no key is set)"});
+
+  auto const example = [&](std::vector<std::string> const& command, std::string const& heading) {
+    std::istringstream help(succeed(command));
+    std::string text;
+    bool within = false;
+    for (std::string line; std::getline(help, line);) {
+      if (within && !line.empty() && !line.starts_with("  ")) break;
+      if (within) text += line + '\n';
+      within = within || line.starts_with(heading);
+    }
+    return text;
+  };
+  write("setup.toml", example({"render", "--help"}, "A setup to begin with"));
+  render("case",
+         {"--set", "camera.pixels=[64,64]", "--set", "correlate.window_px=[32,16]", "--set", "render.rays_per_dot=32"});
+  write("study.toml", example({"sweep", "plan", "--help"}, "A study to begin with"));
+  EXPECT_EQ(json_of({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"})["cases"], 3 * 10 * 3);
+}
+
+// Cameras for PIV write both frames into one file.
+TEST_F(Inputs, AFileOfTwoPagesIsAPairAndNoPicture) {
+  write_pages("a.tif", {frame(0)});
+  write_pages("b.tif", {frame(2)});
+  write_pages("pair.tif", {frame(0), frame(2)});
+  std::vector<std::string> const settings{"--set", "correlate.window_px=[32]"};
+  auto const correlate = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), settings.begin(), settings.end());
+    arguments.insert(arguments.begin(), "correlate");
+    return succeed(arguments);
+  };
+  correlate({"a.tif", "b.tif", "-o", "two.csv"});
+  correlate({"pair.tif", "-o", "one.csv"});
+  EXPECT_EQ(read("one.csv"), read("two.csv"));
+  expect_refused({"correlate", "pair.tif", "b.tif", "-o", "v.csv"}, 2, {"pair.tif: has 2 pages"});
+  expect_refused({"correlate", "a.tif", "-o", "v.csv"}, 2, {"a.tif: has 1 page, "});
+  expect_refused({"info", "image", "pair.tif"}, 2, {"pair.tif: has 2 pages"});
+}
+
+// What a window has left decides: a hole of one pixel moves a vector by far less than its noise, 0.02 px.
+TEST_F(Inputs, PixelsThatAreNoNumbersAreCountedAndLeftOut) {
+  Image<float> holed = frame(0), empty(96, 96, std::nanf(""));
+  for (std::size_t i = 40; i < holed.size(); i += 400) holed.data()[i] = i % 800 < 400 ? std::nanf("") : HUGE_VALF;
+  write_pages("holed.tif", {holed});
+  write_pages("empty.tif", {empty});
+  write_pages("b.tif", {frame(2)});
+  Outcome const outcome =
+      gladstone({"correlate", "holed.tif", "b.tif", "-o", "v.csv", "--set", "correlate.window_px=[32]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("holed.tif: 23 of 9216 pixels are nan or infinite"));
+  expect_refused({"correlate", "empty.tif", "b.tif", "-o", "w.csv"}, 2, {"empty.tif: all of its 9216 pixels are nan"});
+
+  auto const told = json_of({"info", "image", "holed.tif"});
+  EXPECT_EQ(told["not_finite"], 23);
+  EXPECT_TRUE(told["maximum"].is_number() && told["mean"].is_number() && told["noise"].is_number());
+  expect_refused({"info", "image", "empty.tif"}, 2, {"empty.tif: all of its 9216 pixels"});
+  write("picture.toml", with_target("image", "holed.tif"));
+  expect_refused({"render", "picture.toml", "-o", "case"}, 2, {"holed.tif: 23 of 9216 pixels are nan or infinite"});
+}
+
+TEST_F(Inputs, SaturatedPixelsAreToldWithTheirCure) {
+  auto const warning = [&](std::string const& noise, std::vector<std::string> arguments = {}) {
+    write("noisy.toml", with(small_setup, "[lens]", "[camera.noise]\n" + noise + "[lens]"));
+    arguments.insert(arguments.begin(), {"render", "noisy.toml", "-o", "case"});
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(warning("read_noise_e = 20000.0\n"),
+              HasSubstr("lower camera.noise.read_noise_e: 2e+04 electrons are 0.67"));
+  EXPECT_THAT(warning("", {"--set", "camera.exposure=90000"}), HasSubstr("lower camera.exposure"));
+  EXPECT_THAT(warning("dark_current_e = 1e5\n"), HasSubstr("lower camera.noise.dark_current_e"));
+
+  std::string const text = with(small_setup, "[lens]", "[camera.noise]\nread_noise_e = 1e6\n[lens]");
+  expect_setup_refused(text, {"setup.toml:" + place_of(text, "read_noise_e"), "more than the full well of 30000"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,63 @@
+#include "studies/field_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace gladstone {
+namespace {
+
+/// A field that no file holds: v = 1 everywhere, and 4 in one node.
+class OneNode final : public FieldSource {
+ public:
+  OneNode(std::array<int, 3> nodes, std::array<int, 3> node) : node_(node) {
+    grid_.nodes = nodes;
+    grid_.spacing = {1.0, 0.5, 0.25};
+  }
+  RegularGrid const& grid() const override { return grid_; }
+  std::string const& name() const override { return name_; }
+  int significant_bits() const override { return 53; }
+  void read_planes(int, int, std::span<double>) override { FAIL() << "whole planes were asked for"; }
+  void read_rows(int plane, int first_row, int count, std::span<double> out) override {
+    most_ = std::max(most_, out.size());
+    std::fill(out.begin(), out.end(), 1.0);
+    if (plane != node_[2] || node_[1] < first_row || node_[1] >= first_row + count) return;
+    out[static_cast<std::size_t>(node_[1] - first_row) * static_cast<std::size_t>(grid_.nodes[0]) +
+        static_cast<std::size_t>(node_[0])] = 4.0;
+  }
+  /// Most values that were asked for at once.
+  std::size_t most() const { return most_; }
+
+ private:
+  RegularGrid grid_;
+  std::string name_ = "one node";
+  std::array<int, 3> node_;
+  std::size_t most_ = 0;
+};
+
+// Planes of 9 Mi values are read in three blocks of four rows or fewer; the node lies in the first row of a block, in
+// the last, and in between: its neighbours in the next block are seen all the same.
+TEST(FieldStatistics, OfPlanesTooLargeToBeHeldAreThoseOfTheWhole) {
+  for (int const row : {3, 4, 8}) {
+    OneNode field({1 << 20, 9, 2}, {1000, row, 1});
+    FieldStatistics const seen = field_statistics(field);
+    EXPECT_EQ(seen.minimum, 1.0);
+    EXPECT_EQ(seen.maximum, 4.0);
+    EXPECT_EQ(seen.steepest.x, 3.0);
+    EXPECT_EQ(seen.steepest.y, 6.0);
+    EXPECT_EQ(seen.steepest.z, 12.0);
+    EXPECT_LE(field.most(), std::size_t{5} << 20);
+  }
+}
+
+// Neighbours in y alone, across two blocks: the node is in the last row of one, and a plane has nothing beside it.
+TEST(FieldStatistics, OfASinglePlane) {
+  OneNode field({1 << 20, 9, 1}, {0, 3, 0});
+  FieldStatistics const seen = field_statistics(field);
+  EXPECT_EQ(seen.steepest.x, 3.0);
+  EXPECT_EQ(seen.steepest.y, 6.0);
+  EXPECT_EQ(seen.steepest.z, 0.0);
+}
+
+}  // namespace
+}  // namespace gladstone
