@@ -1,0 +1,182 @@
+#include "render/optics/field_analysis.h"
+
+#include <cmath>
+
+#include "render/base/interrupt.h"
+#include "render/base/units.h"
+#include "render/optics/aim_disc.h"
+
+namespace gladstone {
+namespace {
+
+/// A plane across the light behind the last surface.
+class ImagePlane {
+ public:
+  ImagePlane(Lens const& lens, double distance) : pose_(lens.poses.back().moved({0, 0, distance})) {}
+
+  Ray<double> in_its_frame(Ray<double> const& ray) const { return pose_.inwards(ray); }
+  static Vec2d meets(Ray<double> const& local, double z) {
+    double const way = (z - local.position.z) / local.direction.z;
+    return {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
+  }
+  Vec3d outwards(Vec2d p) const { return pose_.point_outwards({p.x, p.y, 0}); }
+
+ private:
+  Pose<double> pose_;
+};
+
+Vec2d slope(Ray<double> const& ray) { return {ray.direction.x / ray.direction.z, ray.direction.y / ray.direction.z}; }
+
+/// Even spread over the unit disc.
+Vec2d sunflower(int k, int count) {
+  double const golden_angle = pi * (3 - std::sqrt(5.0));
+  double const r = std::sqrt((k + 0.5) / count);
+  return {r * std::cos(k * golden_angle), r * std::sin(k * golden_angle)};
+}
+
+class FieldTracer {
+ public:
+  FieldTracer(Lens const& lens, ParaxialLens const& paraxial, double image_plane, int rays)
+      : lens_(lens), paraxial_(paraxial), plane_(lens, image_plane), image_plane_(image_plane), rays_(rays) {}
+
+  FieldPoint at(double angle) const {
+    FieldPoint point;
+    point.angle = angle;
+    RayOrigin const origin = origin_of(angle);
+    auto const disc = find_aim_disc(lens_, origin);
+    if (!disc) return point;
+    trace_spot(origin, *disc, point);
+    trace_chief(origin, *disc, point);
+    return point;
+  }
+
+ private:
+  RayOrigin origin_of(double angle) const {
+    double const distance = lens_.prescription.object_distance;
+    if (!std::isfinite(distance)) return RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
+    // a field angle is seen from the entrance pupil
+    double const from_pupil =
+        distance + (std::isfinite(paraxial_.entrance.position) ? paraxial_.entrance.position : 0.0);
+    return RayOrigin::point({0, -from_pupil * std::tan(angle), -distance});
+  }
+
+  void trace_spot(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {
+    int through_stop = 0;
+    std::vector<Ray<double>> arrived;
+    for (int k = 0; k < rays_; ++k) {
+      Ray<double> ray = origin.ray_through(disc.at(sunflower(k, rays_)));
+      auto const in_stop = place_in_stop(lens_, ray);
+      if (!in_stop || length(*in_stop) > lens_.stop_radius) continue;
+      ++through_stop;
+      RayAccount<double> account;
+      if (lens_.view().carry(ray, account) != RayStatus::alive) continue;
+      arrived.push_back(plane_.in_its_frame(ray));
+    }
+    if (arrived.empty()) return;
+    point.imaged = true;
+    point.vignetting = 1 - static_cast<double>(arrived.size()) / through_stop;
+    auto const count = static_cast<double>(arrived.size());
+    Vec2d mean_slope{};
+    for (auto const& ray : arrived) {
+      point.spot.push_back(ImagePlane::meets(ray, 0));
+      point.centroid += point.spot.back() / count;
+      mean_slope += slope(ray) / count;
+    }
+    // the rms radius is a parabola along the axis: <p p> + 2 z <p s> + z^2 <s s>, about the means
+    double pp = 0, ps = 0, ss = 0;
+    for (std::size_t i = 0; i < arrived.size(); ++i) {
+      Vec2d const p = point.spot[i] - point.centroid, s = slope(arrived[i]) - mean_slope;
+      pp += dot(p, p) / count;
+      ps += dot(p, s) / count;
+      ss += dot(s, s) / count;
+    }
+    point.spot_rms = std::sqrt(pp);
+    point.best_focus = ss > 0 ? -ps / ss : 0;
+    point.best_spot_rms = std::sqrt(std::max(0.0, pp + point.best_focus * ps));
+  }
+
+  void trace_chief(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {
+    auto const through = [&](Vec2d p) {
+      Ray<double> ray = origin.ray_through(disc.at(p));
+      RayAccount<double> account;
+      lens_.view().carry(ray, account);
+      return plane_.in_its_frame(ray);
+    };
+    Ray<double> const chief = through({});
+    point.chief = ImagePlane::meets(chief, 0);
+    RayTransfer const m = ray_transfer(lens_, 0, static_cast<int>(lens_.paraxial.size()));
+    // the paraxial chief ray: through the middle of the entrance pupil
+    double const u = std::tan(point.angle);
+    double const y0 = std::isfinite(paraxial_.entrance.position) ? -paraxial_.entrance.position * u : 0;
+    double const n_image = lens_.paraxial.back().n_after;
+    double const y = m.a * y0 + m.b * u, slope_out = (m.c * y0 + m.d * u) / n_image;
+    double const ideal = y + slope_out * image_plane_;
+    if (ideal != 0) point.distortion = point.chief.y / ideal - 1;
+    // two neighbours on either side, near enough for the difference to be the derivative
+    constexpr double near = 1e-3;
+    auto const focus = [&](Vec2d towards, double Vec2d::*component) {
+      Ray<double> const one = through(near * towards), other = through(-near * towards);
+      double const apart = ImagePlane::meets(one, 0).*component - ImagePlane::meets(other, 0).*component;
+      double const closing = slope(one).*component - slope(other).*component;
+      return -apart / closing;
+    };
+    point.tangential_focus = focus(along(disc, {0, 1}), &Vec2d::y);
+    point.sagittal_focus = focus(along(disc, {1, 0}), &Vec2d::x);
+  }
+
+  /// The point of the unit disc whose place lies in a direction from the centre.
+  static Vec2d along(AimDisc const& disc, Vec2d direction) {
+    double const determinant = disc.a.x * disc.b.y - disc.a.y * disc.b.x;
+    Vec2d const p{(direction.x * disc.b.y - direction.y * disc.b.x) / determinant,
+                  (disc.a.x * direction.y - disc.a.y * direction.x) / determinant};
+    return p / length(p);
+  }
+
+  Lens const& lens_;
+  ParaxialLens const& paraxial_;
+  ImagePlane plane_;
+  double image_plane_;
+  int rays_;
+};
+
+/// Where the lens images its object, behind the last vertex.
+double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
+  double const distance = lens.prescription.object_distance;
+  if (!std::isfinite(distance)) return paraxial.back_focal_length;
+  RayTransfer const m = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
+  // from the axis point of the object: y = distance, n u = 1
+  return -(m.a * distance + m.b) / (m.c * distance + m.d);
+}
+
+}  // namespace
+
+FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int rays) {
+  FieldAnalysis analysis;
+  analysis.image_plane = lens.image_distance != 0 ? lens.image_distance : paraxial_image(lens, paraxial);
+  FieldTracer const tracer(lens, paraxial, analysis.image_plane, rays);
+  std::vector<double> angles = lens.prescription.field_angles;
+  if (angles.empty()) angles.push_back(0);
+  for (double const angle : angles) {
+    throw_if_interrupted();
+    analysis.points.push_back(tracer.at(angle));
+  }
+  return analysis;
+}
+
+std::vector<Vec3d> follow_ray(Lens const& lens, Ray<double> ray, double image_plane) {
+  std::vector<Vec3d> points{ray.position};
+  LensView<double> const view = lens.view();
+  for (int i = 0; i < view.count; ++i) {
+    RayAccount<double> account;
+    int failed_at;
+    RayStatus const status = view.carry(ray, account, i, i + 1, failed_at);
+    if (status != RayStatus::alive && status != RayStatus::vignetted) return points;
+    points.push_back(ray.position);
+    if (status == RayStatus::vignetted) return points;
+  }
+  ImagePlane const plane(lens, image_plane);
+  points.push_back(plane.outwards(ImagePlane::meets(plane.in_its_frame(ray), 0)));
+  return points;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,117 @@
+#include "render/optics/glass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+/// Coefficient k, 0 where the catalogue stops before it.
+struct Coefficients {
+  std::span<double const> values;
+  double operator[](std::size_t k) const { return k < values.size() ? values[k] : 0.0; }
+};
+
+/// Sum of B L^2 / (L^2 - C) over pairs B, C.
+double sellmeier_sum(Coefficients c, int pairs, double l2) {
+  double sum = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(pairs); ++k) sum += c[2 * k] * l2 / (l2 - c[2 * k + 1]);
+  return sum;
+}
+
+/// Sum of c[k] L^power[k].
+double power_sum(Coefficients c, std::span<int const> powers, double l) {
+  double sum = 0;
+  for (std::size_t k = 0; k < powers.size(); ++k) sum += c[k] * std::pow(l, powers[k]);
+  return sum;
+}
+
+constexpr std::array schott_powers{0, 2, -2, -4, -6, -8};
+constexpr std::array extended1_powers{0, 2, -2, -4, -6, -8, -10, -12};
+constexpr std::array extended2_powers{0, 2, -2, -4, -6, -8, 4, 6};
+constexpr std::array extended3_powers{0, 2, 4, -2, -4, -6, -8, -10, -12};
+
+/// @param l wavelength [um]
+double index_by(DispersionFormula formula, Coefficients c, double l) {
+  using std::sqrt;
+  double const l2 = l * l;
+  switch (formula) {
+    case DispersionFormula::schott:
+      return sqrt(power_sum(c, schott_powers, l));
+    case DispersionFormula::sellmeier1:
+      return sqrt(1 + sellmeier_sum(c, 3, l2));
+    case DispersionFormula::herzberger: {
+      double const w = 1 / (l2 - 0.028);
+      return c[0] + c[1] * w + c[2] * w * w + c[3] * l2 + c[4] * l2 * l2 + c[5] * l2 * l2 * l2;
+    }
+    case DispersionFormula::sellmeier2:
+      return sqrt(1 + c[0] + c[1] * l2 / (l2 - c[2] * c[2]) + c[3] / (l2 - c[4] * c[4]));
+    case DispersionFormula::conrady:
+      return c[0] + c[1] / l + c[2] / std::pow(l, 3.5);
+    case DispersionFormula::sellmeier3:
+      return sqrt(1 + sellmeier_sum(c, 4, l2));
+    case DispersionFormula::handbook_of_optics1:
+      return sqrt(c[0] + c[1] / (l2 - c[2]) - c[3] * l2);
+    case DispersionFormula::handbook_of_optics2:
+      return sqrt(c[0] + c[1] * l2 / (l2 - c[2]) - c[3] * l2);
+    case DispersionFormula::sellmeier4:
+      return sqrt(c[0] + c[1] * l2 / (l2 - c[2]) + c[3] * l2 / (l2 - c[4]));
+    case DispersionFormula::extended1:
+      return sqrt(power_sum(c, extended1_powers, l));
+    case DispersionFormula::sellmeier5:
+      return sqrt(1 + sellmeier_sum(c, 5, l2));
+    case DispersionFormula::extended2:
+      return sqrt(power_sum(c, extended2_powers, l));
+    case DispersionFormula::extended3:
+      return sqrt(power_sum(c, extended3_powers, l));
+  }
+  return 1;
+}
+
+}  // namespace
+
+double Glass::index(double wavelength) const { return index_by(formula, {coefficients}, wavelength * 1e6); }
+
+double Glass::absorption(double wavelength) const {
+  auto const loss = [](Transmission const& t) { return -std::log(std::max(t.transmission, 1e-30)) / t.thickness; };
+  auto const after = std::find_if(transmission.begin(), transmission.end(),
+                                  [&](Transmission const& t) { return t.wavelength >= wavelength; });
+  if (transmission.empty()) return 0;
+  if (after == transmission.begin()) return loss(transmission.front());
+  if (after == transmission.end()) return loss(transmission.back());
+  auto const before = after - 1;
+  double const share = (wavelength - before->wavelength) / (after->wavelength - before->wavelength);
+  return (1 - share) * loss(*before) + share * loss(*after);
+}
+
+double Glass::vd() const { return (nd() - 1) / (index(spectral_line::F) - index(spectral_line::C)); }
+
+Glass Glass::from_nd_vd(double nd, double vd) {
+  // Schott's formula gives n^2 = (A + B/l^2)^2 = A^2 + 2 A B l^-2 + B^2 l^-4
+  auto const inverse_square = [](double wavelength) { return 1e-12 / (wavelength * wavelength); };
+  double const b = (nd - 1) / (vd * (inverse_square(spectral_line::F) - inverse_square(spectral_line::C)));
+  double const a = nd - b * inverse_square(spectral_line::d);
+  Glass glass;
+  glass.name = fmt::format("nd {:.5f}, Vd {:.2f}", nd, vd);
+  glass.coefficients = {a * a, 0, 2 * a * b, b * b};
+  glass.shortest = 0.3e-6;
+  glass.longest = 2.5e-6;
+  return glass;
+}
+
+Glass Glass::constant(double index) {
+  Glass glass;
+  glass.name = fmt::format("index {:.6f}", index);
+  glass.coefficients = {index * index};
+  glass.shortest = 0;
+  glass.longest = 1;
+  return glass;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "render/base/one_of.h"
+#include "render/base/pose.h"
+#include "render/optics/even_asphere.h"
+#include "render/optics/quadric.h"
+#include "render/optics/refraction.h"
+
+namespace gladstone {
+
+/// What a surface does to a ray that meets it.
+enum class SurfaceAction : int {
+  pass,     ///< lets it through: a stop, a plane of reference
+  refract,  ///< Snell's law
+  reflect,  ///< a mirror
+};
+
+/// What a ray carries through a train of surfaces besides its place and direction.
+template <class T>
+struct RayAccount {
+  T weight = T(1);   ///< share of its light that is left [1]
+  T optical_path{};  ///< [m]
+};
+
+/// One surface of a lens: a shape in its own pose, and what lies on either side. Takes rays of any direction.
+template <class T, class Shape>
+struct ShapedSurface {
+  Pose<T> pose;  ///< of the vertex, in the lens' frame
+  Shape shape;
+  T semi_diameter{};  ///< rays that meet it further from its axis are vignetted [m]
+  T n_before = T(1);  ///< index on the side that light comes from [1]
+  T n_after = T(1);
+  T absorption{};  ///< of the medium before it, in light per length [1/m]
+  SurfaceAction action = SurfaceAction::refract;
+  bool fresnel = false;  ///< whether a bare surface's reflection is taken off the light
+
+  /// Moves a ray to the surface and turns it. @return alive, vignetted (the ray goes on all the same),
+  /// total_internal_reflection, or missed_lens where it does not meet the surface
+  GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {
+    using std::exp;
+    Ray<T> local = pose.inwards(ray);
+    T way;
+    if (!shape.intersect(local, way)) return RayStatus::missed_lens;
+    local.position = local.position + way * local.direction;
+    account.optical_path = account.optical_path + n_before * way;
+    if (absorption > T(0)) account.weight = account.weight * exp(-absorption * way);
+    RayStatus status = RayStatus::alive;
+    T const r2 = local.position.x * local.position.x + local.position.y * local.position.y;
+    if (r2 > semi_diameter * semi_diameter) status = RayStatus::vignetted;
+    if (action != SurfaceAction::pass) {
+      Vec3<T> const normal = shape.normal(local.position);
+      if (action == SurfaceAction::reflect) {
+        reflect(local.direction, normal);
+      } else {
+        T const before = dot(local.direction, normal);
+        if (!refract(local.direction, normal, n_before, n_after)) return RayStatus::total_internal_reflection;
+        if (fresnel) {
+          T const after = dot(local.direction, normal);
+          account.weight = account.weight * fresnel_transmittance(n_before, n_after, before < T(0) ? -before : before,
+                                                                  after < T(0) ? -after : after);
+        }
+      }
+    }
+    ray = pose.outwards(local);
+    return status;
+  }
+};
+
+/// Every shape that a surface of a lens can have. Adding one: its struct, and its name here.
+template <class T>
+using LensSurface = OneOf<ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>>;
+
+}  // namespace gladstone

@@ -1,0 +1,51 @@
+#include "render/optics/paraxial.h"
+
+#include <cmath>
+#include <limits>
+
+namespace gladstone {
+
+RayTransfer ray_transfer(Lens const& lens, int first, int last) {
+  RayTransfer m;
+  for (int i = first; i < last; ++i) {
+    ParaxialSurface const& s = lens.paraxial[static_cast<std::size_t>(i)];
+    double const power = s.curvature * (s.n_after - s.n_before);
+    m.c -= power * m.a;
+    m.d -= power * m.b;
+    if (i + 1 == static_cast<int>(lens.paraxial.size())) break;  // the image is not part of the lens
+    double const way = s.to_next / s.n_after;
+    m.a += way * m.c;
+    m.b += way * m.d;
+  }
+  return m;
+}
+
+ParaxialLens paraxial_lens(Lens const& lens) {
+  int const count = static_cast<int>(lens.paraxial.size());
+  RayTransfer const all = ray_transfer(lens, 0, count);
+  double const infinite = std::numeric_limits<double>::infinity();
+  ParaxialLens result;
+  // rounding of a sum of powers, each of which is at most c (n' - n)
+  double largest = 0;
+  for (ParaxialSurface const& s : lens.paraxial) largest += std::abs(s.curvature * (s.n_after - s.n_before));
+  bool const afocal = std::abs(all.c) <= 1e-12 * largest;
+  double const f = afocal ? infinite : -1 / all.c;
+  result.effective_focal_length = f;
+  result.back_focal_length = afocal ? infinite : -all.a / all.c;
+  result.front_focal_length = afocal ? infinite : all.d / all.c;
+  result.front_principal_plane = afocal ? infinite : result.front_focal_length + f;
+  result.rear_principal_plane = afocal ? infinite : result.back_focal_length - f;
+
+  RayTransfer const before = ray_transfer(lens, 0, lens.stop), after = ray_transfer(lens, lens.stop, count);
+  double const diameter = 2 * lens.paraxial_stop_radius;
+  auto const finite = [infinite](double over, double under, double scale) {
+    return std::abs(under) <= 1e-12 * scale ? infinite : over / under;
+  };
+  // through the stop's centre: a y + b n u = 0 before it; y = b, n u = d behind the last surface
+  result.entrance = {finite(before.b, before.a, 1), std::abs(finite(diameter, before.a, 1))};
+  result.exit = {finite(-after.b, after.d, 1), std::abs(finite(diameter, after.d, 1))};
+  result.f_number = std::abs(f) / result.entrance.diameter;
+  return result;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,130 @@
+#include "render/optics/prescription.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/lens.h"
+#include "render/optics/prescription_readers/readers.h"
+
+namespace gladstone {
+namespace {
+
+struct PrescriptionFormat {
+  char const* extension;
+  Prescription (*read)(std::string const& path);
+};
+
+/// One row per format: its reader and how its files are called.
+constexpr std::array formats{
+    PrescriptionFormat{".toml", read_toml_prescription},
+    PrescriptionFormat{".zmx", read_zmx_prescription},
+    PrescriptionFormat{".seq", read_seq_prescription},
+};
+
+constexpr double longest = 1e3;  // [m]; of any length of a lens
+
+/// Whether light is changed here; a plane of reference or a bare stop is not there to overlap.
+bool is_real(Prescription const& lens, std::size_t i) {
+  return !lens.surfaces[i].after.is_air() || (i > 0 && !lens.surfaces[i - 1].after.is_air());
+}
+
+/// Sag of a prescribed surface at a height [m].
+double sag(PrescribedSurface const& surface, double height) {
+  Quadric<double> const conic{surface.curvature, surface.conic};
+  if (surface.asphere.empty()) return conic.sag(height, 0);
+  EvenAsphere<double> asphere{conic, {}};
+  std::copy(surface.asphere.begin(), surface.asphere.end(), asphere.a);
+  return asphere.sag(height, 0);
+}
+
+/// Refuses surfaces that run through each other within their edges. Where an edge is but the width of a beam, a lens
+/// ends where its surfaces meet.
+void refuse_overlap(PrescribedSurface const& one, PrescribedSurface const& next) {
+  double const height = std::min(one.semi_diameter, next.semi_diameter);
+  bool const edges = one.semi_diameter_is_an_edge && next.semi_diameter_is_an_edge;
+  if (!std::isfinite(height) || !next.before.empty() || !edges) return;
+  double const forwards = one.thickness < 0 ? -1.0 : 1.0;
+  for (int i = 0; i <= 32; ++i) {
+    double const r = height * i / 32;
+    double const gap = forwards * (one.thickness + sag(next, r) - sag(one, r));
+    if (gap >= -1e-9 * std::max(height, 1e-3)) continue;
+    throw DataError(next.where,
+                    fmt::format("this surface and the one before it overlap by {:.4g} mm at a height of {:.4g} "
+                                "mm (check radius, thickness and semi-diameter)",
+                                -gap / unit::millimetre, r / unit::millimetre));
+  }
+}
+
+}  // namespace
+
+Prescription read_prescription(std::string const& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string known;
+  for (auto const& format : formats) {
+    if (extension == format.extension) {
+      Prescription prescription = format.read(path);
+      check_prescription(prescription);
+      return prescription;
+    }
+    known += (known.empty() ? "" : ", ") + std::string(format.extension);
+  }
+  throw DataError(path, "is of no format of lens prescriptions that is read here; known are " + known);
+}
+
+void check_prescription(Prescription const& lens) {
+  if (lens.surfaces.empty()) throw DataError(lens.file, "has no surface; a lens needs at least one");
+  constexpr std::size_t most_surfaces = 1000;
+  if (lens.surfaces.size() > most_surfaces) {
+    throw DataError(lens.file,
+                    fmt::format("has {} surfaces (at most {} are read)", lens.surfaces.size(), most_surfaces));
+  }
+  std::string stop;
+  bool any_real = false;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    PrescribedSurface const& surface = lens.surfaces[i];
+    bool const last = i + 1 == lens.surfaces.size();
+    any_real = any_real || is_real(lens, i);
+    if (surface.stop) {
+      if (!stop.empty()) throw DataError(surface.where, "a second stop (the first stands at " + stop + "); remove one");
+      stop = surface.where;
+    }
+    if (!(std::abs(surface.thickness) <= longest) && !last) {
+      throw DataError(surface.where, fmt::format("a thickness of {:.4g} mm is no distance within a lens",
+                                                 surface.thickness / unit::millimetre));
+    }
+    if (!(surface.semi_diameter > 0)) throw DataError(surface.where, "the semi-diameter is not positive");
+    if (std::isfinite(surface.semi_diameter) && !std::isfinite(sag(surface, surface.semi_diameter))) {
+      throw DataError(surface.where,
+                      fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm",
+                                  1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre));
+    }
+    if (auto const* const index = std::get_if<PrescribedMedium::Described>(&surface.after.is)) {
+      if (!(index->nd > 1 && index->nd < 5 && index->vd > 0)) {
+        throw DataError(surface.where, fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass", index->nd, index->vd));
+      }
+    }
+    if (!last && is_real(lens, i) && is_real(lens, i + 1)) refuse_overlap(surface, lens.surfaces[i + 1]);
+  }
+  if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
+  if (stop.empty())
+    throw DataError(lens.file, "has no stop; mark the surface that limits the light (stop = true, STOP, STO)");
+  auto const& aperture = lens.aperture;
+  if (aperture.kind != PrescribedAperture::Kind::stop && !(aperture.value > 0)) {
+    throw DataError(lens.file, "its aperture is not positive");
+  }
+  auto const at = std::find_if(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
+  if (aperture.kind == PrescribedAperture::Kind::stop && !std::isfinite(at->semi_diameter)) {
+    throw DataError(at->where, "the stop has no semi-diameter, and nothing else sets it (entrance pupil, f-number)");
+  }
+}
+
+}  // namespace gladstone

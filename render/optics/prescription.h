@@ -1,0 +1,88 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+/// What stands behind a surface, as a prescription says it.
+struct PrescribedMedium {
+  struct Air {};
+  struct Mirror {};  ///< the surface reflects
+  struct Named {
+    std::string glass;  ///< in a catalogue
+  };
+  struct Index {
+    double n;  ///< at every wavelength [1]
+  };
+  struct Described {
+    double nd, vd;
+  };
+  std::variant<Air, Mirror, Named, Index, Described> is = Air{};
+
+  bool is_mirror() const { return std::holds_alternative<Mirror>(is); }
+  bool is_air() const { return std::holds_alternative<Air>(is); }
+};
+
+/// How the frame moves ahead of a surface: by a decentre along x and y and turns about x, y, z, and then along its z.
+struct CoordinateBreak {
+  Vec2d decentre{};         ///< [m]
+  Vec3d tilt{};             ///< right-handed, about x, then the turned y, then the turned z [rad]
+  bool tilt_first = false;  ///< turns about z, y, x, and decentres after them: what undoes a break of opposite signs
+  double advance = 0;       ///< along the turned axis [m]
+};
+
+/// One surface of a prescription.
+struct PrescribedSurface {
+  enum class Shape { conic, cylinder };
+  std::string where;  ///< file:line, for messages
+  Shape shape = Shape::conic;
+  double curvature = 0;         ///< [1/m]
+  double conic = 0;             ///< [1]
+  std::vector<double> asphere;  ///< of r^2, r^4, ... [m^-1, m^-3, ...]
+  double thickness = 0;         ///< along the axis to the next surface; negative behind a mirror [m]
+  PrescribedMedium after;
+  double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
+  bool semi_diameter_is_an_edge = true;  ///< false: the width of some beam, as design programs fill it in
+  bool stop = false;
+  std::vector<CoordinateBreak> before;  ///< breaks in the frame ahead of it
+};
+
+/// What sets the width of the stop.
+struct PrescribedAperture {
+  enum class Kind {
+    stop,            ///< the stop surface's own semi-diameter
+    entrance_pupil,  ///< diameter of the entrance pupil [m]
+    f_number,        ///< effective focal length over that diameter [1]
+    object_na,       ///< numerical aperture on the object's side [1]
+  };
+  Kind kind = Kind::stop;
+  double value = 0;
+};
+
+/// A lens as its file describes it, in SI. The frame's origin is the vertex of the first surface, light comes from -z.
+struct Prescription {
+  std::string file;
+  std::string title;
+  std::string source;  ///< where it was published
+  std::vector<PrescribedSurface> surfaces;
+  double object_distance = std::numeric_limits<double>::infinity();  ///< to the first surface [m]
+  PrescribedAperture aperture;
+  double primary_wavelength = 0;     ///< [m]; 0: the file says none
+  std::vector<double> field_angles;  ///< of the object at infinity, against the axis, in the y-z plane [rad]
+};
+
+/// Reads a prescription: one row per format in prescription.cpp (.toml, Zemax .zmx, CODE V .seq), and checks that it
+/// describes a lens: a surface or more, one stop, finite numbers, glass that does not overlap.
+/// @throws SetupError or DataError with file and line
+Prescription read_prescription(std::string const& path);
+
+/// The checks of read_prescription, for a reader's result. @throws DataError
+void check_prescription(Prescription const& prescription);
+
+}  // namespace gladstone

@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "render/base/error.h"
+#include "render/base/text_encoding.h"
+#include "render/base/text_file.h"
+#include "render/base/units.h"
+#include "render/optics/even_asphere.h"
+#include "render/optics/prescription_readers/lines.h"
+#include "render/optics/prescription_readers/readers.h"
+
+namespace gladstone {
+namespace {
+
+/// Block SURF of a file: the surface, and what COORDBRK makes of its parameters.
+struct ZmxSurface {
+  PrescribedSurface surface;
+  std::string type = "STANDARD";
+  bool has_glass = false;
+  std::map<int, double> parameters;  // lengths in the file's unit
+};
+
+class ZmxReader {
+ public:
+  explicit ZmxReader(std::string const& path) : path_(path) { result_.file = path; }
+
+  void read_line(PrescriptionLine const& line) {
+    if (line.words.empty()) return;
+    std::string const& key = line[0];
+    if (key == "SURF") {
+      if (line.integer(1) != static_cast<int>(surfaces_.size())) {
+        throw DataError(line.where, fmt::format("surface {} comes after {}; the file is damaged", line[1],
+                                                static_cast<int>(surfaces_.size()) - 1));
+      }
+      surfaces_.emplace_back();
+      surfaces_.back().surface.where = line.where;
+    } else if (surfaces_.empty()) {
+      read_system(line);
+    } else {
+      read_surface(line, surfaces_.back());
+    }
+  }
+
+  Prescription finish() {
+    if (surfaces_.size() < 3) {
+      throw DataError(path_,
+                      "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
+    }
+    result_.object_distance = surfaces_.front().surface.thickness;
+    if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
+      result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
+    }
+    if (angles_are_fields_) result_.field_angles = fields_;
+    std::vector<CoordinateBreak> breaks;
+    for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
+      ZmxSurface& zmx = surfaces_[i];
+      PrescribedSurface& surface = zmx.surface;
+      if (zmx.type == "COORDBRK") {
+        breaks.push_back(break_of(zmx));
+        continue;
+      }
+      if (zmx.type == "EVENASPH") {
+        surface.asphere.assign(EvenAsphere<double>::terms, 0.0);
+        for (auto const& [i_parameter, value] : zmx.parameters) {
+          if (value == 0) continue;
+          if (i_parameter < 1 || i_parameter > EvenAsphere<double>::terms) {
+            throw DataError(surface.where, fmt::format("EVENASPH has no parameter {}", i_parameter));
+          }
+          surface.asphere[static_cast<std::size_t>(i_parameter - 1)] = value / std::pow(unit_, 2 * i_parameter - 1);
+        }
+      }
+      if (!zmx.has_glass) surface.after = {};
+      surface.before = std::move(breaks);
+      breaks.clear();
+      result_.surfaces.push_back(surface);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void read_system(PrescriptionLine const& line) {
+    std::string const& key = line[0];
+    if (key == "MODE" && line.size() > 1 && line[1] != "SEQ") {
+      throw DataError(line.where, fmt::format("mode {} is not read (sequential lenses, SEQ, are)", line[1]));
+    }
+    if (key == "NAME") {
+      for (std::size_t i = 1; i < line.size(); ++i) result_.title += (i > 1 ? " " : "") + line[i];
+    }
+    if (key == "UNIT") {
+      static std::map<std::string, double> const lengths{
+          {"MM", 1e-3}, {"CM", 1e-2}, {"IN", 25.4e-3}, {"METER", 1.0}, {"M", 1.0}};
+      auto const found = line.size() > 1 ? lengths.find(line[1]) : lengths.end();
+      if (found == lengths.end()) throw DataError(line.where, "UNIT names no known unit (MM, CM, IN or METER)");
+      unit_ = found->second;
+    }
+    using Kind = PrescribedAperture::Kind;
+    if (key == "ENPD") result_.aperture = {Kind::entrance_pupil, line.number(1) * unit_};
+    if (key == "FNUM") result_.aperture = {Kind::f_number, line.number(1)};
+    if (key == "OBNA") result_.aperture = {Kind::object_na, line.number(1)};
+    if (key == "FLOA") result_.aperture = {};
+    if (key == "FTYP") angles_are_fields_ = line.integer(1) == 0;
+    if (key == "YFLN" || key == "YFLD") {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        double const angle = line.number(i) * unit::degree;
+        if (angle != 0 || fields_.empty()) fields_.push_back(angle);
+      }
+    }
+    if (key == "WAVL") {
+      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back(line.number(i) * unit::micrometre);
+    }
+    if (key == "WAVM") {
+      line.integer(1);
+      wavelengths_.push_back(line.number(2) * unit::micrometre);
+    }
+    if (key == "PWAV") primary_ = line.integer(1);
+  }
+
+  void read_surface(PrescriptionLine const& line, ZmxSurface& zmx) {
+    PrescribedSurface& surface = zmx.surface;
+    std::string const& key = line[0];
+    if (key == "TYPE") {
+      static std::vector<std::string> const known{"STANDARD", "EVENASPH", "COORDBRK"};
+      zmx.type = line.size() > 1 ? line[1] : "";
+      if (std::find(known.begin(), known.end(), zmx.type) == known.end()) {
+        throw DataError(line.where, fmt::format("surface {}: type {} is not read (STANDARD, EVENASPH and COORDBRK are)",
+                                                surfaces_.size() - 1, zmx.type));
+      }
+    }
+    if (key == "STOP") surface.stop = true;
+    if (key == "CURV") surface.curvature = line.number(1) / unit_;
+    if (key == "CONI") surface.conic = line.number(1);
+    if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
+    if (key == "DISZ") {
+      bool const infinite = line.size() > 1 && line[1] == "INFINITY";
+      surface.thickness = infinite ? std::numeric_limits<double>::infinity() : line.number(1) * unit_;
+    }
+    if (key == "DIAM" && line.number(1) > 0) {
+      surface.semi_diameter = line.number(1) * unit_;
+      surface.semi_diameter_is_an_edge = line.size() > 2 && line.integer(2) != 0;
+    }
+    if (key == "GLAS") {
+      if (line.size() < 2) throw DataError(line.where, "GLAS names no glass; the line is cut short");
+      zmx.has_glass = true;
+      bool const described = line[1] == "___BLANK" || (line.size() > 2 && line[2] == "1");
+      if (line[1] == "MIRROR") {
+        surface.after.is = PrescribedMedium::Mirror{};
+      } else if (described && line.size() > 5) {
+        surface.after.is = PrescribedMedium::Described{line.number(4), line.number(5)};
+      } else {
+        surface.after.is = PrescribedMedium::Named{line[1]};
+      }
+    }
+    if (key == "XDAT" && line.size() > 2 && line.number(2) != 0) {
+      throw DataError(line.where, "extra data (XDAT) change the surface and are not read");
+    }
+  }
+
+  CoordinateBreak break_of(ZmxSurface const& zmx) const {
+    auto const parameter = [&](int i) {
+      auto const found = zmx.parameters.find(i);
+      return found == zmx.parameters.end() ? 0.0 : found->second;
+    };
+    return {{parameter(1) * unit_, parameter(2) * unit_},
+            Vec3d{parameter(3), parameter(4), parameter(5)} * unit::degree,
+            parameter(6) != 0,
+            zmx.surface.thickness};
+  }
+
+  std::string path_;
+  Prescription result_;
+  std::vector<ZmxSurface> surfaces_;
+  std::vector<double> wavelengths_, fields_;
+  double unit_ = 1e-3;
+  int primary_ = 1;
+  bool angles_are_fields_ = true;
+};
+
+}  // namespace
+
+Prescription read_zmx_prescription(std::string const& path) {
+  std::string const text = decoded_text(read_text_file(path), path);
+  ZmxReader reader(path);
+  std::string_view rest = text;
+  for (int number = 1; !rest.empty(); ++number) {
+    std::size_t const end = std::min(rest.find('\n'), rest.size());
+    reader.read_line({fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))});
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return reader.finish();
+}
+
+}  // namespace gladstone

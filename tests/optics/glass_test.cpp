@@ -1,0 +1,140 @@
+#include "render/optics/glass.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/optics/glass_catalogue.h"
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+Glass const& glass(std::string const& name) { return GlassCatalogue::shipped().find(name, 550e-9, "test:1"); }
+
+template <class Action>
+std::string error_of(Action const& action) {
+  try {
+    action();
+  } catch (DataError const& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Schott's data sheet of N-BK7: nF, nd, nC, Vd; at 532 and 632.8 nm by the same formula to nine digits.
+TEST(Glass, BK7HasItsDataSheetsIndices) {
+  Glass const& bk7 = glass("N-BK7");
+  EXPECT_NEAR(bk7.index(486.1327e-9), 1.52237629, 5e-9);
+  EXPECT_NEAR(bk7.index(532e-9), 1.519472583, 5e-10);
+  EXPECT_NEAR(bk7.nd(), 1.516800035, 5e-10);
+  EXPECT_NEAR(bk7.index(632.8e-9), 1.515089198, 5e-10);
+  EXPECT_NEAR(bk7.index(656.2725e-9), 1.514322347, 5e-10);
+  EXPECT_NEAR(bk7.vd(), 64.167336, 5e-6);
+}
+
+// I. H. Malitson, J. Opt. Soc. Am. 55 (1965) 1205.
+TEST(Glass, FusedSilicaHasMalitsonsIndices) {
+  EXPECT_NEAR(glass("SILICA").index(532e-9), 1.460706345, 5e-10);
+  EXPECT_NEAR(glass("silica").nd(), 1.458463687, 5e-10);
+}
+
+// Every catalogue line prints nd and Vd, rounded: the formula must give them, or one was copied wrongly.
+TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
+  EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 150u);
+  for (Glass const& g : GlassCatalogue::shipped().glasses()) {
+    if (g.shortest > 486.1e-9 || g.longest < 656.3e-9) continue;
+    EXPECT_GT(g.nd(), 1.37) << g.name;
+    EXPECT_LT(g.nd(), 2.1) << g.name;
+    EXPECT_GT(g.vd(), 17) << g.name;
+    EXPECT_LT(g.vd(), 110) << g.name;
+  }
+}
+
+// n = A + B / lambda^2 has the nd and Vd that it was made from, and is within 1e-3 of the true glass in the visible.
+TEST(Glass, DescribedByNdAndVdReturnsThem) {
+  Glass const described = Glass::from_nd_vd(1.5168, 64.17);
+  EXPECT_NEAR(described.nd(), 1.5168, 1e-14);
+  EXPECT_NEAR(described.vd(), 64.17, 1e-9);
+  for (double const wavelength : {450e-9, 532e-9, 650e-9}) {
+    EXPECT_NEAR(described.index(wavelength), glass("N-BK7").index(wavelength), 1e-3);
+  }
+}
+
+// 10 mm of F2 pass what the catalogue says between its wavelengths too: Beer's law, linear in the loss.
+TEST(Glass, AbsorbsAsTheCatalogueSays) {
+  Glass const& bk7 = glass("N-BK7");
+  ASSERT_FALSE(bk7.transmission.empty());
+  for (auto const& t : bk7.transmission) {
+    EXPECT_NEAR(std::exp(-bk7.absorption(t.wavelength) * t.thickness), t.transmission, 1e-12);
+  }
+  EXPECT_GT(std::exp(-bk7.absorption(532e-9) * 10e-3), 0.995);
+}
+
+TEST(GlassCatalogue, FindsNamesAsProgramsWriteThem) {
+  for (char const* name : {"N-BK7", "n-bk7", "NBK7", "NBK7_SCHOTT", "SCHOTT:N-BK7"}) {
+    EXPECT_EQ(glass(name).name, "N-BK7") << name;
+  }
+}
+
+TEST(GlassCatalogue, NamesTheNearestGlassAndTheRange) {
+  EXPECT_THAT(error_of([] { glass("N-BK77"); }), AllOf(HasSubstr("test:1"), HasSubstr("did you mean N-BK7?")));
+  EXPECT_THAT(error_of([] { GlassCatalogue::shipped().find("N-BK7", 12e-6, "test:1"); }),
+              HasSubstr("300 to 2500 nm, not at 1.2e+04 nm"));
+}
+
+// Each dispersion formula against its definition, at one micrometre, where every power of the wavelength is one.
+TEST(GlassCatalogue, KnowsAllFormulasOfTheFormat) {
+  struct Row {
+    int formula;
+    char const* coefficients;
+    double index;
+  };
+  Row const rows[] = {
+      {1, "2 .1 .05 .02 .01 .005", std::sqrt(2.185)},
+      {2, "1 .01 .2 .02 .5 100", std::sqrt(1 + 1 / .99 + .2 / .98 - .5 / 99)},
+      {3, "1.5 .01 .001 .002 .003 .004", 1.5 + .01 / .972 + .001 / (.972 * .972) + .009},
+      {4, "1 .2 .1 .3 .2", std::sqrt(2 + .2 / .99 + .3 / .96)},
+      {5, "1.5 .01 .002", 1.512},
+      {6, "1 .01 .2 .02 .1 .03 .5 100", std::sqrt(1 + 1 / .99 + .2 / .98 + .1 / .97 - .5 / 99)},
+      {7, "2.5 .02 .1 .01", std::sqrt(2.5 + .02 / .9 - .01)},
+      {8, "1.5 1 .1 .01", std::sqrt(1.5 + 1 / .9 - .01)},
+      {9, "1.5 1 .1 .5 100", std::sqrt(1.5 + 1 / .9 - .5 / 99)},
+      {10, "2 .1 .05 .02 .01 .005 .001 .001", std::sqrt(2.187)},
+      {11, "1 .01 .2 .02 .1 .03 .05 .04 .5 100", std::sqrt(1 + 1 / .99 + .2 / .98 + .1 / .97 + .05 / .96 - .5 / 99)},
+      {12, "2 .1 .05 .02 .01 .005 .001 .001", std::sqrt(2.187)},
+      {13, "2 .1 .05 .02 .01 .005 .001 .001 .001", std::sqrt(2.188)}};
+  for (Row const& row : rows) {
+    GlassCatalogue catalogue;
+    catalogue.add("NM X " + std::to_string(row.formula) + " 0 0 0\nCD " + row.coefficients + "\nLD 0.9 1.1\n", "TEST",
+                  "test.agf");
+    EXPECT_NEAR(catalogue.find("X", 1e-6, "here").index(1e-6), row.index, 1e-14) << row.formula;
+  }
+}
+
+// A damaged catalogue is refused at its line.
+TEST(GlassCatalogue, RefusesWhatIsNoGlassAtItsLine) {
+  auto const refusal = [](char const* text) { return error_of([&] { GlassCatalogue().add(text, "TEST", "x.agf"); }); };
+  EXPECT_THAT(refusal("NM X 2 0\nCD 1 nan\nLD 0.4 0.7\n"), AllOf(HasSubstr("x.agf:2"), HasSubstr("finite number")));
+  EXPECT_THAT(refusal("\nNM X 99\nCD 1\nLD 0.4 0.7\n"), AllOf(HasSubstr("x.agf:2"), HasSubstr("formula 99")));
+  EXPECT_THAT(refusal("NM X 2\nLD 0.4 0.7\n"), HasSubstr("no coefficients"));
+  EXPECT_THAT(refusal("NM X 2\nCD 1 .01\n"), HasSubstr("no range"));
+  EXPECT_THAT(refusal("NM X 1\nCD 90\nLD 0.4 0.7\n"), HasSubstr("which no glass has"));
+  EXPECT_THAT(refusal("CC nothing here\n"), HasSubstr("holds no glass"));
+}
+
+TEST(GlassCatalogue, RefusesANameThatMeansDifferentGlasses) {
+  GlassCatalogue catalogue;
+  catalogue.add("NM X 1\nCD 2.25\nLD 0.4 0.7\n", "ONE", "one.agf");
+  catalogue.add("NM X 1\nCD 2.56\nLD 0.4 0.7\n", "TWO", "two.agf");
+  EXPECT_THAT(error_of([&] { catalogue.find("X", 5e-7, "here"); }), AllOf(HasSubstr("ONE:X"), HasSubstr("TWO:X")));
+  EXPECT_NEAR(catalogue.find("TWO:X", 5e-7, "here").index(5e-7), 1.6, 1e-15);
+  EXPECT_NEAR(catalogue.find("X_ONE", 5e-7, "here").index(5e-7), 1.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace gladstone

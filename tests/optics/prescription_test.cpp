@@ -1,0 +1,191 @@
+#include "render/optics/prescription.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/lens.h"
+#include "render/optics/paraxial.h"
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string file_of(std::string const& name, std::string const& bytes) {
+  char const* const given = std::getenv("TEST_TMPDIR");
+  std::string const path = std::string(given ? given : testing::TempDir()) + "/prescription_" + name;
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+/// Why a file is refused; empty: it is not.
+std::string refusal(std::string const& name, std::string const& bytes) {
+  try {
+    Prescription const lens = read_prescription(file_of(name, bytes));
+    build_lens(lens, GlassCatalogue::shipped(), spectral_line::d);
+  } catch (std::exception const& error) {
+    return error.what();
+  }
+  return "";
+}
+
+ParaxialLens paraxial_of(std::string const& name, std::string const& bytes) {
+  return paraxial_lens(
+      build_lens(read_prescription(file_of(name, bytes)), GlassCatalogue::shipped(), spectral_line::d));
+}
+
+std::string utf16(std::string const& text, bool little) {
+  std::string bytes = little ? "\xff\xfe" : "\xfe\xff";
+  for (char const c : text) bytes += little ? std::string{c, '\0'} : std::string{'\0', c};
+  return bytes;
+}
+
+char const* const toml = R"(schema = 1
+title = "singlet"
+f_number = 8.0
+[[surface]]
+radius_mm = 50.0
+thickness_mm = 6.0
+glass = "N-BK7"
+stop = true
+[[surface]]
+radius_mm = -50.0
+thickness_mm = 0.0
+)";
+
+char const* const zmx = R"(VERS 140730 201 26155
+MODE SEQ
+NAME a singlet
+UNIT MM X W X CM MR CPMM
+ENPD 6.0
+FTYP 0 0 2 1 0 0 0
+YFLN 0 5.0 0 0 0 0
+WAVM 1 0.48613270 1
+WAVM 2 0.58756180 1
+PWAV 2
+SURF 0
+  TYPE STANDARD
+  CURV 0.0 0 0 0 0 ""
+  DISZ INFINITY
+SURF 1
+  STOP
+  TYPE STANDARD
+  CURV 0.02 0 0 0 0 ""
+  DISZ 6.0
+  GLAS N-BK7 0 0 1.5 40 0 0 0 0 0 0
+  DIAM 8.0 1 0 0 1 ""
+SURF 2
+  TYPE STANDARD
+  CURV -0.02 0 0 0 0 ""
+  DISZ 47.0
+  DIAM 8.0 1 0 0 1 ""
+SURF 3
+  TYPE STANDARD
+  DISZ 0
+)";
+
+char const* const seq = R"(RDM;LEN  ! radii
+TITLE 'a singlet; with a semicolon'
+EPD 6.0
+DIM M
+WL 486.1 587.5618
+REF 2
+SO 0.0 1e13
+S 50.0 6.0 NBK7_SCHOTT
+  STO; CIR 8.0
+S -50.0 &
+  47.0
+SI 0.0 0.0
+GO
+)";
+
+// One lens in three formats is one lens: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
+TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
+  double const n = GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd();
+  double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));
+  EXPECT_NEAR(paraxial_of("one.toml", toml).effective_focal_length * 1e3, f, 1e-11);
+  EXPECT_NEAR(paraxial_of("one.zmx", zmx).effective_focal_length * 1e3, f, 1e-11);
+  EXPECT_NEAR(paraxial_of("one.seq", seq).effective_focal_length * 1e3, f, 1e-11);
+  EXPECT_NEAR(paraxial_of("one.toml", toml).f_number, 8, 1e-14);
+  EXPECT_NEAR(paraxial_of("one.zmx", zmx).entrance.diameter * 1e3, 6, 1e-13);
+  EXPECT_NEAR(paraxial_of("one.seq", seq).entrance.diameter * 1e3, 6, 1e-13);
+  EXPECT_EQ(read_prescription(file_of("one.seq", seq)).title, "a singlet; with a semicolon");
+  EXPECT_NEAR(read_prescription(file_of("one.zmx", zmx)).primary_wavelength, 587.5618e-9, 1e-16);
+}
+
+// Design programs write UTF-16, UTF-8 with a mark or ISO-8859-1, with any line ends: the same lens.
+TEST(Prescription, EncodingDoesNotMatter) {
+  double const f = paraxial_of("utf8.zmx", zmx).effective_focal_length;
+  std::string windows;
+  for (char const c : std::string(zmx)) windows += c == '\n' ? std::string("\r\n") : std::string{c};
+  EXPECT_EQ(paraxial_of("le.zmx", utf16(zmx, true)).effective_focal_length, f);
+  EXPECT_EQ(paraxial_of("be.zmx", utf16(windows, false)).effective_focal_length, f);
+  EXPECT_EQ(paraxial_of("bom.zmx", "\xef\xbb\xbf" + windows).effective_focal_length, f);
+  EXPECT_EQ(paraxial_of("latin.zmx", "NOTE 0 f\xfcr\n" + std::string(zmx)).effective_focal_length, f);
+}
+
+// A coordinate break and its opposite in reversed order bring the frame back to where it was.
+TEST(Prescription, CoordinateBreaksUndoThemselves) {
+  std::string const there =
+      "SURF 1\n  TYPE COORDBRK\n  PARM 1 1.5\n  PARM 2 -0.7\n  PARM 3 12\n  PARM 4 -7\n  PARM 5 30\n"
+      "  PARM 6 0\n  DISZ 0\n";
+  std::string const back =
+      "SURF 2\n  TYPE COORDBRK\n  PARM 1 -1.5\n  PARM 2 0.7\n  PARM 3 -12\n  PARM 4 7\n  PARM 5 -30\n"
+      "  PARM 6 1\n  DISZ 0\n";
+  std::string text = zmx;
+  for (auto const& [from, to] : {std::pair{"SURF 3", "SURF 5"}, {"SURF 2", "SURF 4"}, {"SURF 1\n", "SURF 3\n"}}) {
+    text.replace(text.find(from), std::string(from).size(), to);
+  }
+  text.insert(text.find("SURF 3\n"), there + back);
+  Lens const lens =
+      build_lens(read_prescription(file_of("broken.zmx", text)), GlassCatalogue::shipped(), spectral_line::d);
+  EXPECT_LT(length(lens.poses[0].origin), 1e-15);
+  EXPECT_LT(length(lens.poses[0].x - Vec3d{1, 0, 0}), 1e-15);
+  EXPECT_LT(length(lens.poses[0].z - Vec3d{0, 0, 1}), 1e-15);
+}
+
+std::string changed(std::string text, std::string const& from, std::string const& to) {
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
+// What a user may hand over by mistake: each refusal names file, line and cause.
+TEST(Prescription, RefusesBadFilesByLineAndCause) {
+  EXPECT_THAT(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),
+              AllOf(HasSubstr("a.zmx:23"), HasSubstr("surface 2: type BINARY_2 is not read")));
+  EXPECT_THAT(refusal("b.zmx", changed(zmx, "N-BK7", "N-BK8")),
+              AllOf(HasSubstr("b.zmx:15"), HasSubstr("\"N-BK8\" is in no")));
+  EXPECT_THAT(refusal("c.zmx", changed(zmx, "CURV 0.02", "CURV nan")),
+              AllOf(HasSubstr("c.zmx:18"), HasSubstr("not a finite number")));
+  EXPECT_THAT(refusal("d.zmx", std::string(zmx).substr(0, 240)), HasSubstr("describes no lens"));
+  EXPECT_THAT(refusal("e.zmx", changed(zmx, "MODE SEQ", "MODE NSC")), HasSubstr("e.zmx:2"));
+  EXPECT_THAT(refusal("f.zmx", utf16(zmx, true).substr(0, 501)), HasSubstr("cut short"));
+  EXPECT_THAT(refusal("g.zmx", changed(zmx, "  STOP\n", "")), HasSubstr("has no stop"));
+  EXPECT_THAT(refusal("h.zmx", changed(zmx, "CURV 0.02", "CURV 0.2")), HasSubstr("does not reach its semi-diameter"));
+  EXPECT_THAT(refusal("i.zmx", changed(zmx, "DISZ 6.0", "DISZ 0.6")),
+              AllOf(HasSubstr("i.zmx:22"), HasSubstr("overlap")));
+  EXPECT_THAT(refusal("j.zmx", std::string(200, '\0')), HasSubstr("is no text"));
+  EXPECT_THAT(refusal("k.seq", changed(seq, "SI 0.0 0.0", "")), HasSubstr("no image surface"));
+  EXPECT_THAT(refusal("l.seq", changed(seq, "STO;", "STO; GRO 3;")), AllOf(HasSubstr("l.seq:9"), HasSubstr("GRO")));
+  EXPECT_THAT(refusal("m.seq", changed(seq, "CIR 8.0", "CIR OBS 2.0")),
+              AllOf(HasSubstr("m.seq:9"), HasSubstr("obscuration")));
+  EXPECT_THAT(refusal("n.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 0.0")),
+              AllOf(HasSubstr("n.toml:5"), HasSubstr("a radius of 0")));
+  EXPECT_THAT(refusal("o.toml", changed(toml, "glass", "glas")), HasSubstr("did you mean \"glass\"?"));
+  EXPECT_THAT(refusal("p.toml", changed(toml, "thickness_mm = 6.0", "thickness_mm = nan")), HasSubstr("p.toml:6"));
+  EXPECT_THAT(refusal("q.lens", toml), HasSubstr("known are .toml, .zmx, .seq"));
+  EXPECT_THAT(refusal("r.toml", "schema = 1\n"), HasSubstr("no surface"));
+  EXPECT_THAT(refusal("s.toml", changed(toml, "f_number = 8.0", "")), HasSubstr("the stop has no semi-diameter"));
+}
+
+}  // namespace
+}  // namespace gladstone

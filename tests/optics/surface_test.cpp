@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "render/base/units.h"
+#include "render/optics/lens_surface.h"
+
+namespace gladstone {
+namespace {
+
+using Flat = ShapedSurface<double, Quadric<double>>;
+
+Flat plane(double z, double n_before, double n_after, Vec3d tilt = {}) {
+  Flat surface;
+  surface.pose = Pose<double>{{0, 0, z}}.turned(tilt);
+  surface.semi_diameter = std::numeric_limits<double>::infinity();
+  surface.n_before = n_before;
+  surface.n_after = n_after;
+  return surface;
+}
+
+Ray<double> ray_at(double angle) { return {{0, 0, -0.01}, {0, std::sin(angle), std::cos(angle)}}; }
+
+// A plate of 10 mm, n = 1.5168: lateral shift t sin(i - i') / cos(i'), to all printed digits.
+TEST(Refraction, PlaneParallelPlateShiftsARaySideways) {
+  double const shifts[][2] = {
+      {10, 0.601580184310577}, {30, 1.97621122205116}, {45, 3.34499391487284}, {60, 5.18297750549795}};
+  for (auto const& [degrees, shift] : shifts) {
+    double const angle = degrees * unit::degree;
+    Ray<double> ray = ray_at(angle);
+    Vec3d const start = ray.position, direction = ray.direction;
+    RayAccount<double> account;
+    ASSERT_EQ(plane(0, 1, 1.5168).interact(ray, account), RayStatus::alive);
+    ASSERT_EQ(plane(0.01, 1.5168, 1).interact(ray, account), RayStatus::alive);
+    EXPECT_LT(length(ray.direction - direction), 1e-15);
+    Vec3d const aside = ray.position - start;
+    EXPECT_NEAR(length(aside - dot(aside, direction) * direction) * 1e3, shift, 1e-13);
+  }
+}
+
+// A prism of 60 degrees, n = 1.5168: deviation at three angles of incidence, the least at 49.32 degrees.
+TEST(Refraction, PrismDeviatesAsItsFormulaSays) {
+  double const deviations[][2] = {{49.3233477362499, 38.6466954724999}, {40, 40.2742311354229}, {60, 40.1969846970311}};
+  for (auto const& [incidence, deviation] : deviations) {
+    // normals of the faces turned by -+30 degrees; the ray meets the first one at the angle of incidence
+    double const half = 30 * unit::degree;
+    Flat const front = plane(0, 1, 1.5168, {half, 0, 0}), back = plane(0.02, 1.5168, 1, {-half, 0, 0});
+    double const angle = incidence * unit::degree - half;  // above the axis
+    Ray<double> ray{{0, 0, -0.01}, {0, std::sin(angle), std::cos(angle)}};
+    RayAccount<double> account;
+    ASSERT_EQ(front.interact(ray, account), RayStatus::alive);
+    ASSERT_EQ(back.interact(ray, account), RayStatus::alive);
+    double const turned = angle - std::atan2(ray.direction.y, ray.direction.z);
+    EXPECT_NEAR(turned / unit::degree, deviation, 1e-11) << incidence;
+  }
+}
+
+// From glass of 1.5168 to air nothing leaves beyond 41.2451903696126 degrees.
+TEST(Refraction, EndsAtTheCriticalAngle) {
+  for (double const beside : {-1e-9, 1e-9}) {
+    Ray<double> ray = ray_at(41.2451903696126 * unit::degree + beside);
+    RayAccount<double> account;
+    EXPECT_EQ(plane(0, 1.5168, 1).interact(ray, account),
+              beside < 0 ? RayStatus::alive : RayStatus::total_internal_reflection);
+  }
+}
+
+// Snell, whatever the ray's sense: a ray towards -z obeys it as one towards +z.
+TEST(Refraction, TakesRaysOfAnyDirection) {
+  Ray<double> ray{{0, 0, 0.01}, normalized(Vec3d{0.3, 0.1, -1})};
+  double const sine = std::hypot(ray.direction.x, ray.direction.y);
+  RayAccount<double> account;
+  ASSERT_EQ(plane(0, 1.33, 1).interact(ray, account), RayStatus::alive);
+  EXPECT_LT(ray.direction.z, 0);
+  EXPECT_NEAR(std::hypot(ray.direction.x, ray.direction.y), 1.33 * sine, 1e-15);
+  EXPECT_NEAR(length(ray.direction), 1, 1e-15);
+}
+
+// At normal incidence a bare surface passes 4 n / (n + 1)^2; at Brewster's angle one polarisation is not reflected.
+TEST(Fresnel, NormalIncidenceAndBrewster) {
+  double const n = 1.5;
+  EXPECT_NEAR(fresnel_transmittance(1.0, n, 1.0, 1.0), 4 * n / ((n + 1) * (n + 1)), 1e-15);
+  double const brewster = std::atan(n), after = std::asin(std::sin(brewster) / n);
+  double const s = std::pow((std::cos(brewster) - n * std::cos(after)) / (std::cos(brewster) + n * std::cos(after)), 2);
+  EXPECT_NEAR(fresnel_transmittance(1.0, n, std::cos(brewster), std::cos(after)), 1 - s / 2, 1e-15);
+}
+
+// A paraboloid mirror gathers parallel rays in its focus, whatever their height.
+TEST(Mirror, ParaboloidFocusesParallelRays) {
+  Flat mirror;
+  mirror.shape = {-1 / 0.2, -1};  // concave towards the light, focus 0.1 m in front of it
+  mirror.semi_diameter = 1;
+  mirror.action = SurfaceAction::reflect;
+  for (double const height : {0.01, 0.05, 0.15}) {
+    Ray<double> ray{{height, 0, -1}, {0, 0, 1}};
+    RayAccount<double> account;
+    ASSERT_EQ(mirror.interact(ray, account), RayStatus::alive);
+    EXPECT_LT(ray.direction.z, 0);
+    double const way = (-0.1 - ray.position.z) / ray.direction.z;
+    EXPECT_NEAR(ray.position.x + way * ray.direction.x, 0, 1e-15);
+    EXPECT_NEAR(account.optical_path + way, 1 + 0.1, 1e-15);  // as along the axis
+  }
+}
+
+template <class Shape>
+void expect_on_surface(Shape const& shape, double reach) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> pick(-1, 1);
+  for (int i = 0; i < 200; ++i) {
+    Vec3d const from{2 * reach * pick(engine), 2 * reach * pick(engine), pick(engine)};
+    Vec2d const to{reach * pick(engine), reach * pick(engine)};
+    Vec3d const target{to.x, to.y, shape.sag(to.x, to.y)};
+    Ray<double> const ray{from, normalized(target - from)};
+    double way = 0;
+    ASSERT_TRUE(shape.intersect(ray, way)) << i;
+    Vec3d const met = ray.position + way * ray.direction;
+    EXPECT_NEAR(met.z, shape.sag(met.x, met.y), 1e-14) << i;
+    // the normal is across the surface: its tangents by differences
+    Vec3d const normal = shape.normal(met);
+    double const h = 1e-6;
+    Vec3d const along_x{2 * h, 0, shape.sag(met.x + h, met.y) - shape.sag(met.x - h, met.y)};
+    Vec3d const along_y{0, 2 * h, shape.sag(met.x, met.y + h) - shape.sag(met.x, met.y - h)};
+    EXPECT_NEAR(dot(normal, along_x) / (2 * h), 0, 1e-8);
+    EXPECT_NEAR(dot(normal, along_y) / (2 * h), 0, 1e-8);
+  }
+}
+
+TEST(Quadric, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
+  expect_on_surface(Quadric<double>{0.0}, 0.02);
+  expect_on_surface(Quadric<double>{1 / 0.05}, 0.02);
+  expect_on_surface(Quadric<double>{-1 / 0.05, -2.3}, 0.02);
+  expect_on_surface(Quadric<double>{1 / 0.05, 0.7}, 0.02);
+  expect_on_surface(Quadric<double>{1 / 0.03, 0.0, 0.0}, 0.02);  // a cylinder
+}
+
+TEST(EvenAsphere, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
+  expect_on_surface(EvenAsphere<double>{{1 / 0.05, -0.6}, {0, 3e3, -2e6, 1e9}}, 0.015);
+  expect_on_surface(EvenAsphere<double>{{0, 0}, {2.0, -40.0}}, 0.015);
+}
+
+// A sphere written as an asphere: the sag of a sphere has r^2 / 2R as its first term, which the conic takes over.
+TEST(EvenAsphere, WithoutTermsIsItsConic) {
+  Quadric<double> const sphere{1 / 0.04};
+  EvenAsphere<double> const same{sphere, {}};
+  Ray<double> const ray{{0.001, -0.002, -0.1}, normalized(Vec3d{0.05, 0.07, 1})};
+  double one = 0, other = 0;
+  ASSERT_TRUE(sphere.intersect(ray, one) && same.intersect(ray, other));
+  EXPECT_NEAR(one, other, 1e-16);
+}
+
+// A sphere's far side is not the surface: rays that pass beside the sheet through the vertex miss it.
+TEST(Quadric, IsMissedBesideItsSheet) {
+  Quadric<double> const sphere{1 / 0.01};
+  double way;
+  EXPECT_FALSE(sphere.intersect({{0.0101, 0, -1}, {0, 0, 1}}, way));
+  EXPECT_TRUE(sphere.intersect({{0.0099, 0, -1}, {0, 0, 1}}, way));
+  EXPECT_NEAR(way, 1 + 0.01 - std::sqrt(0.01 * 0.01 - 0.0099 * 0.0099), 1e-15);
+}
+
+}  // namespace
+}  // namespace gladstone
