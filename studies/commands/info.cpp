@@ -11,6 +11,7 @@
 #include "render/medium/density_field.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/info_lens.h"
 #include "studies/field_place.h"
 #include "studies/field_statistics.h"
 #include "studies/image_statistics.h"
@@ -91,26 +92,33 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::string kind, file, dataset, setup, x, m;
+    LensQuestion lens;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("kind", arguments->kind, "field or image")
+  app.add_option("kind", arguments->kind, "field, image or lens")
       ->required()
       ->check(one_of({"field", "image", "lens", "mie"}));
   app.add_option("file", arguments->file, "The file");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");
+  app.add_option("--glass", arguments->lens.glasses, "Glass catalogue (AGF) of info lens beside the shipped ones");
+  app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength of info lens")
+      ->check(CLI::Range(100.0, 20000.0));
+  app.add_option("--figure", arguments->lens.figure, "Picture that info lens draws (.png or .svg)");
   app.add_option("--x", arguments->x)->group("");  // of info mie
   app.add_option("--m", arguments->m)->group("");
   return [arguments, &options] {
-    if (arguments->kind == "lens" || arguments->kind == "mie") {
-      throw DataError(
-          "info " + arguments->kind,
-          "is not available yet (this version simulates BOS with a thin lens); use info field or info image");
+    if (arguments->kind == "mie") {
+      throw DataError("info mie", "is not available yet (this version simulates BOS); use info field, image or lens");
     }
     if (!arguments->x.empty() || !arguments->m.empty()) {
       throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); leave them out");
     }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
+    if (arguments->kind == "lens") {
+      arguments->lens.file = arguments->file;
+      return describe_lens(arguments->lens, options);
+    }
     return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, arguments->setup, options)
                                       : describe_image(arguments->file, options);
   };

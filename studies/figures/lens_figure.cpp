@@ -1,0 +1,250 @@
+#include "studies/figures/lens_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+#include "render/optics/aim_disc.h"
+#include "studies/figures/gnuplot.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr int width = 1200, layout_height = 460, plots_height = 330, title_height = 40;
+
+struct Panel {
+  double left, right, top, bottom;  ///< [px] from the upper left
+};
+
+/// Polylines as two columns, broken by NaN.
+struct Lines {
+  std::vector<double> x, y;
+  void add(Vec3d p) {
+    x.push_back(p.z / unit::millimetre);
+    y.push_back(p.y / unit::millimetre);
+  }
+  void end() {
+    x.push_back(nan);
+    y.push_back(nan);
+  }
+};
+
+void place(GnuplotFigure& plot, Panel const& panel) {
+  double const w = plot.width_px(), h = plot.height_px();
+  plot.command(
+      fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", panel.left / w, panel.right / w));
+  plot.command(fmt::format("set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", 1 - panel.top / h,
+                           1 - panel.bottom / h));
+}
+
+/// Half the height that a surface is drawn with: its edge, else what the rays need.
+std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3d>> const& rays) {
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    double height = lens.prescription.surfaces[i].semi_diameter;
+    if (static_cast<int>(i) == lens.stop) height = lens.stop_radius;
+    if (!std::isfinite(height)) {
+      height = 0;
+      for (auto const& ray : rays) {
+        if (i + 1 < ray.size()) height = std::max(height, 1.05 * std::abs(lens.poses[i].point_inwards(ray[i + 1]).y));
+      }
+    }
+    heights.push_back(height);
+  }
+  return heights;
+}
+
+std::vector<Vec3d> outline(Lens const& lens, std::size_t i, double height) {
+  std::vector<Vec3d> points;
+  for (int k = -40; k <= 40; ++k) {
+    double const y = height * k / 40;
+    double const sag = lens.surfaces[i].visit([y](auto const& surface) { return surface.shape.sag(0.0, y); });
+    if (std::isfinite(sag)) points.push_back(lens.poses[i].point_outwards({0, y, sag}));
+  }
+  return points;
+}
+
+bool is_glass_behind(Lens const& lens, std::size_t i) {
+  auto const& after = lens.prescription.surfaces[i].after;
+  return !after.is_air() && !after.is_mirror();
+}
+
+void draw_layout(GnuplotFigure& plot, Lens const& lens, FieldAnalysis const& field, Panel const& panel) {
+  std::vector<std::vector<Vec3d>> rays;
+  std::vector<Lines> by_field;
+  double const total = std::abs(lens.poses.back().origin.z + field.image_plane) + 1e-3;
+  for (FieldPoint const& point : field.points) {
+    Lines lines;
+    RayOrigin const origin = RayOrigin::direction({0, std::sin(point.angle), std::cos(point.angle)});
+    if (auto const disc = find_aim_disc(lens, origin)) {
+      for (double const y : {-0.99, -0.5, 0.0, 0.5, 0.99}) {
+        double const across = std::hypot(disc->a.y, disc->b.y);
+        Ray<double> ray =
+            origin.ray_through(disc->at(across > 0 ? y * Vec2d{disc->a.y, disc->b.y} / across : Vec2d{0, y}));
+        double const back = (-0.25 * total - ray.position.z) / ray.direction.z;
+        ray.position = ray.position + back * ray.direction;
+        rays.push_back(follow_ray(lens, ray, field.image_plane));
+        for (Vec3d const p : rays.back()) lines.add(p);
+        lines.end();
+      }
+    }
+    by_field.push_back(lines);
+  }
+  std::vector<double> const heights = drawn_heights(lens, rays);
+  Lines glass, stop;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (static_cast<int>(i) == lens.stop && !is_glass_behind(lens, i)) {
+      for (double const side : {-1.0, 1.0}) {
+        stop.add(lens.poses[i].point_outwards({0, side * lens.stop_radius, 0}));
+        stop.add(lens.poses[i].point_outwards({0, side * 1.3 * lens.stop_radius, 0}));
+        stop.end();
+      }
+      continue;
+    }
+    double height = heights[i];
+    if (is_glass_behind(lens, i) && i + 1 < heights.size()) height = std::max(height, heights[i + 1]);
+    if (i > 0 && is_glass_behind(lens, i - 1)) height = std::max(height, heights[i - 1]);
+    std::vector<Vec3d> const front = outline(lens, i, height);
+    for (Vec3d const p : front) glass.add(p);
+    glass.end();
+    if (!is_glass_behind(lens, i) || i + 1 >= lens.surfaces.size() || front.empty()) continue;
+    std::vector<Vec3d> const back = outline(lens, i + 1, std::max(height, heights[i + 1]));
+    if (back.empty()) continue;
+    glass.add(front.front());
+    glass.add(back.front());
+    glass.end();
+    glass.add(front.back());
+    glass.add(back.back());
+    glass.end();
+  }
+  Lines image;
+  double tallest = 1e-4;
+  for (FieldPoint const& point : field.points) tallest = std::max(tallest, 1.1 * std::abs(point.chief.y));
+  Pose<double> const plane = lens.poses.back().moved({0, 0, field.image_plane});
+  image.add(plane.point_outwards({0, -tallest, 0}));
+  image.add(plane.point_outwards({0, tallest, 0}));
+
+  place(plot, panel);
+  plot.command("set size ratio -1; set xrange [*:*]; set yrange [*:*]; set xlabel 'z [mm]'; set ylabel 'y [mm]'");
+  std::string command = "plot ";
+  for (std::size_t i = 0; i < by_field.size(); ++i) {
+    if (by_field[i].x.empty()) continue;
+    command += fmt::format("{} using 1:2 with lines linewidth 1 linecolor '{}', ",
+                           plot.add_table({by_field[i].x, by_field[i].y}), house_colour(i));
+  }
+  command += fmt::format("{} using 1:2 with lines linewidth 2 linecolor '#202020'", plot.add_table({glass.x, glass.y}));
+  if (!stop.x.empty()) {
+    command +=
+        fmt::format(", {} using 1:2 with lines linewidth 4 linecolor '#202020'", plot.add_table({stop.x, stop.y}));
+  }
+  command +=
+      fmt::format(", {} using 1:2 with lines linewidth 2 linecolor '#808080'", plot.add_table({image.x, image.y}));
+  plot.command(command);
+  plot.command("set size noratio");
+}
+
+void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, Panel const& panel) {
+  double reach = 1e-9;
+  for (FieldPoint const& point : field.points) {
+    for (Vec2d const p : point.spot)
+      reach = std::max({reach, std::abs(p.x - point.centroid.x), std::abs(p.y - point.centroid.y)});
+  }
+  place(plot, panel);
+  double const apart = 2.4 * reach * 1e6;
+  plot.command("set xlabel 'spots about their centroids [um]'; set ylabel ''");
+  plot.command(fmt::format("set size ratio -1; set xrange [{0:.6g}:{1:.6g}]; set yrange [-{2:.6g}:{2:.6g}]", -apart / 2,
+                           apart * (static_cast<double>(field.points.size()) - 0.5), apart / 2));
+  std::string command = "plot ";
+  for (std::size_t i = 0; i < field.points.size(); ++i) {
+    FieldPoint const& point = field.points[i];
+    std::vector<double> x, y;
+    for (Vec2d const p : point.spot) {
+      x.push_back((p.x - point.centroid.x) * 1e6 + apart * static_cast<double>(i));
+      y.push_back((p.y - point.centroid.y) * 1e6);
+    }
+    if (x.empty()) x.push_back(nan), y.push_back(nan);
+    command +=
+        fmt::format("{}{} using 1:2 with dots linecolor '{}' title {}", i > 0 ? ", " : "", plot.add_table({x, y}),
+                    house_colour(i), GnuplotFigure::quoted(fmt::format("{:.3g} deg", point.angle / unit::degree)));
+  }
+  plot.command("set key at graph 0.99, graph 1.02 right bottom horizontal samplen 1 font 'DejaVu Sans,9'");
+  plot.command(command);
+  plot.command("unset key; set size noratio");
+}
+
+/// Quantities against the field angle, from the prescription's axis to its edge.
+void draw_curves(GnuplotFigure& plot, Panel const& panel, std::string const& label, FieldAnalysis const& curves,
+                 std::vector<std::pair<std::string, double (*)(FieldPoint const&)>> const& values) {
+  place(plot, panel);
+  plot.command("set xlabel 'field angle [deg]'; set autoscale y; set autoscale x");
+  plot.command(fmt::format("set ylabel {} offset 1,0", GnuplotFigure::quoted(label)));
+  std::string command = "plot ";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::vector<double> x, y;
+    for (FieldPoint const& point : curves.points) {
+      x.push_back(point.angle / unit::degree);
+      y.push_back(point.imaged ? values[i].second(point) : nan);
+    }
+    command += fmt::format("{}{} using 1:2 with lines linewidth 2 linecolor '{}' title {}", i > 0 ? ", " : "",
+                           plot.add_table({x, y}), house_colour(i), GnuplotFigure::quoted(values[i].first));
+  }
+  plot.command(values.size() > 1 ? "set key at graph 0.03, graph 0.03 left bottom Left reverse samplen 2"
+                                 : "unset key");
+  plot.command("set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  plot.command(command);
+  plot.command("unset grid; unset key");
+}
+
+/// The same lens at many angles between the axis and its widest field, for curves.
+FieldAnalysis between_fields(Lens const& lens, ParaxialLens const& paraxial) {
+  double widest = 0;
+  for (double const angle : lens.prescription.field_angles) widest = std::max(widest, std::abs(angle));
+  Lens fine = lens;
+  fine.prescription.field_angles.clear();
+  constexpr int angles = 24;
+  for (int i = 0; i <= angles; ++i) fine.prescription.field_angles.push_back(widest * i / angles);
+  return analyse_field(fine, paraxial, 400);
+}
+
+}  // namespace
+
+void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens const& paraxial,
+                       FieldAnalysis const& field) {
+  bool const off_axis =
+      std::any_of(field.points.begin(), field.points.end(), [](auto const& p) { return p.angle != 0; });
+  GnuplotFigure plot(width, title_height + layout_height + plots_height);
+  plot.command("set multiplot");
+  std::string const focal =
+      std::isfinite(paraxial.effective_focal_length)
+          ? fmt::format("f = {:.5g} mm, f/{:.3g}", paraxial.effective_focal_length * 1e3, paraxial.f_number)
+          : std::string("afocal");
+  plot.command(fmt::format(
+      "set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
+      GnuplotFigure::quoted(fmt::format("{}{}{}, {:.5g} nm", lens.prescription.title,
+                                        lens.prescription.title.empty() ? "" : ": ", focal, lens.wavelength * 1e9)),
+      1.0 - 24.0 / plot.height_px()));
+  draw_layout(plot, lens, field, {70, width - 20.0, title_height + 10, title_height + layout_height - 55.0});
+  plot.command("unset label 1");
+  double const top = title_height + layout_height + 10, bottom = title_height + layout_height + plots_height - 55;
+  if (!off_axis) {
+    draw_spots(plot, field, {70, width - 20.0, top, bottom});
+  } else {
+    draw_spots(plot, field, {50, 400, top, bottom});
+    FieldAnalysis const curves = between_fields(lens, paraxial);
+    draw_curves(plot, {480, 650, top, bottom}, "distortion [%]", curves,
+                {{"distortion", [](FieldPoint const& p) { return 100 * p.distortion; }}});
+    draw_curves(plot, {740, 910, top, bottom}, "focus from the image plane [mm]", curves,
+                {{"tangential", [](FieldPoint const& p) { return p.tangential_focus * 1e3; }},
+                 {"sagittal", [](FieldPoint const& p) { return p.sagittal_focus * 1e3; }}});
+    draw_curves(plot, {1000, 1180, top, bottom}, "light that no edge takes [%]", curves,
+                {{"light", [](FieldPoint const& p) { return 100 * (1 - p.vignetting); }}});
+  }
+  plot.command("unset multiplot");
+  plot.write(path);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,67 @@
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+
+/// gladstone info lens: a prescription's cardinal points and what it makes of its field.
+class InfoLens : public Workplace {
+ protected:
+  static constexpr char const* singlet = R"(schema = 1
+title = "plano-convex"
+f_number = 10.0
+field_deg = [0.0, 5.0]
+[[surface]]
+radius_mm = 51.5
+thickness_mm = 3.6
+index = 1.5168
+stop = true
+[[surface]]
+semi_diameter_mm = 12.7
+)";
+};
+
+// A plano-convex lens, curved side first: f = R / (n - 1), back focus f - t / n, entrance pupil f / 10 at its vertex.
+TEST_F(InfoLens, PrintsTheCardinalPointsOfASinglet) {
+  write("lens.toml", singlet);
+  auto const json = json_of({"info", "lens", "lens.toml"});
+  double const f = 51.5 / 0.5168;
+  EXPECT_NEAR(json["effective_focal_length_mm"], f, 1e-10);
+  EXPECT_NEAR(json["back_focal_length_mm"], f - 3.6 / 1.5168, 1e-10);
+  EXPECT_NEAR(json["f_number"], 10, 1e-12);
+  EXPECT_NEAR(json["entrance_pupil_mm"]["diameter"], f / 10, 1e-11);
+  EXPECT_NEAR(json["entrance_pupil_mm"]["position"], 0, 1e-15);
+  EXPECT_GT(json["spot_rms_um"]["5_deg"], json["spot_rms_um"]["on_axis"]);
+}
+
+// Spherical aberration of third order: the longitudinal aberration of a plano-convex lens, curved side first, makes the
+// rms spot in the narrowest cross section fall as the cube of the aperture.
+TEST_F(InfoLens, SpotFallsAsTheCubeOfTheAperture) {
+  double last = 0;
+  for (char const* number : {"10.0", "20.0", "40.0"}) {
+    write("lens.toml", with(singlet, "f_number = 10.0", std::string("f_number = ") + number));
+    double const spot = json_of({"info", "lens", "lens.toml"})["field"][0]["best_spot_rms_um"];
+    if (last > 0) {
+      EXPECT_NEAR(last / spot, 8, 0.2);
+    }
+    last = spot;
+  }
+}
+
+TEST_F(InfoLens, DrawsTheLens) {
+  write("lens.toml", singlet);
+  succeed({"info", "lens", "lens.toml", "--figure", "lens.png"});
+  EXPECT_THAT(read("lens.png"), HasSubstr("PNG"));
+}
+
+TEST_F(InfoLens, NamesFileLineAndCauseOfABadPrescription) {
+  write("lens.toml", with(singlet, "index = 1.5168", "glass = \"N-BK77\""));
+  Outcome const outcome = gladstone({"info", "lens", "lens.toml"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("lens.toml:5"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean N-BK7?"));
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
