@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "analysis/fft_correlation.h"
+#include "analysis/pattern_period.h"
 #include "analysis/standard_correlator.h"
 
 namespace gladstone {
@@ -16,8 +16,8 @@ namespace {
 
 /// Part of the windows with a signal that must be more than chance.
 constexpr double least_correlated = 0.25;
-/// Standard deviations by which correlation must be above chance: one in 740, were it normally distributed.
-constexpr double deviations = 3.0;
+/// Standard deviations by which correlation must be above chance: one in 44 is, were it normally distributed.
+constexpr double deviations = 2.0;
 /// Part of a measurement from which it is looked into, and from which it is spoken of.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
@@ -32,8 +32,8 @@ struct Tally {
       if (!has_signal(field.reason[i])) continue;
       ++signal;
       uncorrelated += field.reason[i] == VectorReason::uncorrelated;
-      ambiguous += field.ambiguous[i];
-      doubtful += field.ambiguous[i] != 0 || field.reason[i] != VectorReason::measured;
+      ambiguous += field.ambiguous[i] != Ambiguity::none;
+      doubtful += field.ambiguous[i] != Ambiguity::none || field.reason[i] != VectorReason::measured;
     }
   }
   double part(std::size_t count) const {
@@ -51,16 +51,6 @@ bool same_bits(Image<double> const& a, Image<double> const& b) {
 /// Whether every window's best peak is at no shift, up to what float leaves of it.
 bool stands_still(DisplacementField const& field) {
   return std::none_of(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return length(d) > 1e-2; });
-}
-
-/// Windows of a grid over the whole image, four on an axis at most.
-InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
-  int const room = std::max(columns, rows) - window_px;
-  InterrogationGrid grid = make_interrogation_grid(columns, rows, window_px, 0.5);
-  grid.spacing_px = std::max(grid.spacing_px, (room + 2) / 3);
-  grid.columns = (columns - window_px) / grid.spacing_px + 1;
-  grid.rows = (rows - window_px) / grid.spacing_px + 1;
-  return grid;
 }
 
 /// A mean, and how many independent windows it is of.
@@ -106,27 +96,6 @@ std::string uncorrelated_text(Tally const& tally, int range) {
 }
 
 }  // namespace
-
-std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings) {
-  int const most = std::min(image.columns(), image.rows()) / 2 * 2, window = std::min(2 * settings.window_px[0], most);
-  InterrogationGrid const grid = sampling_grid(image.columns(), image.rows(), window);
-  std::vector<WindowCorrelation> const windows =
-      correlate_windows(make_image_pair(image, image), grid, window_weighting(settings), window / 2, "period");
-  std::size_t repeating = 0;
-  PatternPeriod period{std::numeric_limits<double>::infinity(), 0.0};
-  for (WindowCorrelation const& one : windows) {
-    bool repeats = false;
-    for (int k = 1; k < one.peaks; ++k) {
-      if (one.coefficient[k] < nearly_as_high * one.coefficient[0]) continue;
-      repeats = true;
-      if (length(one.shift[k]) < period.pitch_px)
-        period = {length(one.shift[k]), one.coefficient[k] / one.coefficient[0]};
-    }
-    repeating += repeats;
-  }
-  if (repeating == 0 || 4 * repeating < windows.size()) return std::nullopt;
-  return period;
-}
 
 void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings) {
   InterrogationGrid const grid = final_grid(settings, settings.window_px.back(), settings.window_px.back());
@@ -179,6 +148,8 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
           period->pitch_px, period->height, range, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
     return;
   }
+  // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
+  std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
   leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
   Tally const left(field);
   if (left.part(left.uncorrelated) >= worth_a_warning) field.warnings.push_back(uncorrelated_text(left, range));

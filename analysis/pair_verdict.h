@@ -1,28 +1,16 @@
 #pragma once
 
-#include <optional>
-
 #include "analysis/correlator.h"
 
 /// What a measurement as a whole is worth.
 namespace gladstone {
-
-/// A pattern that repeats.
-struct PatternPeriod {
-  double pitch_px;  ///< shortest shift by which it matches itself
-  double height;    ///< of the autocorrelation there, 1 at no shift
-};
-
-/// The period of a pattern, from the autocorrelation of up to sixteen windows of twice the first pass' size; nothing
-/// where it has no side peak that is nearly as high as the main one (nearly_as_high) in a quarter of them.
-std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);
 
 /// Leaves out the vectors that cannot be told from chance, and all of them where fewer than a quarter can
 /// (VectorReason::uncorrelated). Chance is what the same correlator finds in frames that have the same dots, density
 /// and noise but nothing in common: the reference, and the flow frame turned upside down. There the correlation of
 /// single vectors has some mean and standard deviation s; the mean over the n independent windows within two windows of
 /// a place then scatters by s/sqrt(n), the overall mean over N by s/sqrt(N), and a place is more than chance where the
-/// pair's own mean is higher by three of their joint deviations. No level of correlation is set beforehand, since
+/// pair's own mean is higher by two of their joint deviations. No level of correlation is set beforehand, since
 /// noise, few dots and steep gradients lower both, and later passes sharpen chance peaks as they do others. A pattern
 /// that repeats correlates with itself upside down, too: it is not to be judged so.
 /// @param chance what the correlator gives for such frames, on the same grid

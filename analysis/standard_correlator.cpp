@@ -41,7 +41,7 @@ class StandardCorrelator final : public Correlator {
         vectors[i] = grid_vector(windows[i], predicted(i), schedule_.limit_px(), before.at(grid.centre(i)));
       ambiguous.resize(vectors.size());
       std::transform(vectors.begin(), vectors.end(), ambiguous.begin(),
-                     [](GridVector const& v) { return v.ambiguous; });
+                     [](GridVector const& v) { return v.ambiguous != Ambiguity::none; });
       grid_before = grid;
       // what a pass adds to its predictor is validated, not the sum: there steep gradients are already taken off
       validate_vectors(vectors, grid.columns, schedule_.rule(pass));
@@ -112,7 +112,7 @@ DisplacementField displacement_field(InterrogationGrid const& grid, std::span<Me
     field.raw_px.push_back(vectors[i].raw);
     field.correlation.push_back(vectors[i].correlation);
     field.reason.push_back(vectors[i].reason);
-    field.ambiguous.push_back(vectors[i].ambiguous ? 1 : 0);
+    field.ambiguous.push_back(vectors[i].ambiguous);
   }
   return field;
 }

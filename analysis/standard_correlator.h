@@ -71,7 +71,7 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   GridVector vector;
   vector.raw = {nan, nan};
-  vector.ambiguous = ambiguous;
+  if (ambiguous) vector.ambiguous = Ambiguity::earlier;
   if (window.outcome == WindowCorrelation::Outcome::masked) {
     vector.status = VectorStatus::masked;
     vector.reason = VectorReason::masked;
@@ -83,7 +83,7 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
     if (abs(whole.x) > limit_px || abs(whole.y) > limit_px) continue;
     if (vector.status == VectorStatus::valid) {
       vector.alternatives[vector.alternative_count++] = window.shift[k];
-      if (window.coefficient[k] >= nearly_as_high * vector.correlation) vector.ambiguous = true;
+      if (window.coefficient[k] >= nearly_as_high * vector.correlation) vector.ambiguous = Ambiguity::here;
       continue;
     }
     vector.status = VectorStatus::valid;
@@ -103,7 +103,7 @@ struct MeasuredVector {
   double correlation;
   VectorStatus status;
   VectorReason reason;
-  bool ambiguous;
+  Ambiguity ambiguous;
 };
 
 GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, WindowCorrelation const& window) {
@@ -116,7 +116,7 @@ GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, Win
   result.correlation = measured ? (vector.correlation < 1.0 ? vector.correlation : 1.0) : nan;
   result.status = vector.status;
   result.reason = vector.reason;
-  result.ambiguous = measured && vector.ambiguous;
+  result.ambiguous = measured ? vector.ambiguous : Ambiguity::none;
   return result;
 }
 

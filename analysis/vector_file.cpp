@@ -115,7 +115,9 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   auto const raw = [&](std::size_t i) { return field.raw_px.empty() ? field.displacement_px[i] : field.raw_px[i]; };
   auto const correlation = [&](std::size_t i) { return field.correlation.empty() ? nan : field.correlation[i]; };
   auto const reason = [&](std::size_t i) { return field.reason.empty() ? 0 : static_cast<int>(field.reason[i]); };
-  auto const ambiguous = [&](std::size_t i) { return field.ambiguous.empty() ? 0 : int{field.ambiguous[i]}; };
+  auto const ambiguous = [&](std::size_t i) {
+    return !field.ambiguous.empty() && field.ambiguous[i] != Ambiguity::none ? 1 : 0;
+  };
 
   if (path.ends_with(".csv")) {
     std::string text =

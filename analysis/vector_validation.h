@@ -71,7 +71,7 @@ struct GridVector {
   std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks
   int alternative_count = 0;
   double correlation = 0.0;  ///< coefficient of the peak that `raw` is [1]
-  bool ambiguous = false;    ///< in this pass or one before, another displacement fits (nearly) as well
+  Ambiguity ambiguous = Ambiguity::none;
   VectorStatus status = VectorStatus::invalid;
   VectorReason reason = VectorReason::no_signal;
 };

@@ -14,7 +14,7 @@ __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid
   Vec2d const centre = grid.centre(static_cast<std::size_t>(i));
   GridVector const vector = grid_vector(windows[i], predictor.at(centre), limit_px, before.at(centre));
   vectors[i] = vector;
-  ambiguous[i] = vector.ambiguous ? 1 : 0;
+  ambiguous[i] = vector.ambiguous != Ambiguity::none;
 }
 
 __global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Replacement* list,

@@ -9,6 +9,15 @@
 #include "render/base/progress.h"
 
 namespace gladstone {
+namespace {
+
+double largest_difference(double const* a, double const* b, std::size_t count) {
+  double largest = 0;
+  for (std::size_t i = 0; i < count; ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+}  // namespace
 
 FieldStatistics field_statistics(FieldSource& source) {
   RegularGrid const& grid = source.grid();
@@ -31,14 +40,15 @@ FieldStatistics field_statistics(FieldSource& source) {
       throw_if_interrupted();
       values.resize(width * static_cast<std::size_t>(last - from));
       source.read_rows(k, from, last - from, values);
-      double steepest[3] = {};
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        double const here = values[i];
-        seen.minimum = std::min(seen.minimum, here);
-        seen.maximum = std::max(seen.maximum, here);
-        if (i % width != 0) steepest[0] = std::max(steepest[0], std::abs(here - values[i - 1]));
-        if (i >= width) steepest[1] = std::max(steepest[1], std::abs(here - values[i - width]));
-        if (!before.empty()) steepest[2] = std::max(steepest[2], std::abs(here - before[i]));
+      Vec3d steepest{};
+      for (std::size_t row = 0; row < values.size(); row += width) {
+        double const* const here = values.data() + row;
+        auto const [least, most] = std::minmax_element(here, here + width);
+        seen.minimum = std::min(seen.minimum, *least);
+        seen.maximum = std::max(seen.maximum, *most);
+        steepest.x = std::max(steepest.x, largest_difference(here + 1, here, width - 1));
+        if (row > 0) steepest.y = std::max(steepest.y, largest_difference(here, here - width, width));
+        if (!before.empty()) steepest.z = std::max(steepest.z, largest_difference(here, before.data() + row, width));
       }
       for (int axis = 0; axis < 3; ++axis) {
         seen.steepest[axis] = std::max(seen.steepest[axis], steepest[axis] / grid.spacing[axis]);

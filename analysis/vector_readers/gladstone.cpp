@@ -32,7 +32,7 @@ void add_origin(DisplacementField& field, Column const& column, Place const& pla
     }
     field.raw_px.push_back({u[i], v[i]});
     field.reason.push_back(static_cast<VectorReason>(static_cast<int>(reason[i])));
-    field.ambiguous.push_back(ambiguous[i] != 0.0 ? 1 : 0);
+    field.ambiguous.push_back(ambiguous[i] != 0.0 ? Ambiguity::here : Ambiguity::none);
   }
 }
 

@@ -24,19 +24,26 @@ enum class VectorReason : int {
   uncorrelated = 7,   ///< invalid: no better than what windows give that have nothing in common
 };
 
+/// Whether another displacement fits (nearly) as well as a measured one. Files say 0 or 1.
+enum class Ambiguity : std::uint8_t {
+  none = 0,
+  here = 1,     ///< one does
+  earlier = 2,  ///< one did for the larger windows of an earlier pass, which this one started from
+};
+
 /// Displacements at scattered or gridded points: one type for truth, theory and measurement.
 /// Positions and displacements in px; column x to the right, row y downwards, displacement = flow - reference.
 struct DisplacementField {
   std::vector<Vec2d> position_px;
   std::vector<Vec2d> displacement_px;
-  std::vector<Vec2d> sigma_px;          ///< standard uncertainty, NaN where not estimated; empty: none
-  std::vector<double> peak_ratio;       ///< highest over second correlation peak; empty: none
-  std::vector<VectorStatus> status;     ///< empty: all valid
-  std::vector<Vec2d> raw_px;            ///< before replacement; NaN where nothing was measured; empty: not known
-  std::vector<double> correlation;      ///< coefficient of the peak that raw_px is, NaN as there; empty: not known
-  std::vector<VectorReason> reason;     ///< empty: not known
-  std::vector<std::uint8_t> ambiguous;  ///< 1 where another displacement fits (nearly) as well; empty: not known
-  int columns = 0;                      ///< vectors in a row of the interrogation grid, row by row; 0: scattered
+  std::vector<Vec2d> sigma_px;       ///< standard uncertainty, NaN where not estimated; empty: none
+  std::vector<double> peak_ratio;    ///< highest over second correlation peak; empty: none
+  std::vector<VectorStatus> status;  ///< empty: all valid
+  std::vector<Vec2d> raw_px;         ///< before replacement; NaN where nothing was measured; empty: not known
+  std::vector<double> correlation;   ///< coefficient of the peak that raw_px is, NaN as there; empty: not known
+  std::vector<VectorReason> reason;  ///< empty: not known
+  std::vector<Ambiguity> ambiguous;  ///< empty: not known
+  int columns = 0;                   ///< vectors in a row of the interrogation grid, row by row; 0: scattered
   int rows = 0;
   std::vector<std::string> warnings;  ///< about the measurement as a whole
 

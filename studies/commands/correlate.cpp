@@ -79,7 +79,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
     DisplacementField const& field = measurement.field;
-    auto const ambiguous = std::count(field.ambiguous.begin(), field.ambiguous.end(), 1);
+    auto const ambiguous =
+        field.ambiguous.size() - std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none);
     for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
     bool const any_valid = counts[0] + counts[1] > 0;
     if (!any_valid) {
