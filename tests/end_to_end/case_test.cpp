@@ -33,8 +33,8 @@ TEST_F(Case, RenderCorrelateCompareMakeTheFilesOfTheContract) {
 TEST_F(Case, SummaryHasItsKeysAndTheMagnificationOfTheThinLens) {
   render("case");
   auto const summary = nlohmann::json::parse(read("case/summary.json"));
-  for (char const* key :
-       {"magnification", "step_mm", "rays_per_dot", "exposure", "gladstone_dale", "device", "rays", "warnings"}) {
+  for (char const* key : {"magnification", "step_mm", "rays_per_dot", "exposure", "gladstone_dale", "device", "rays",
+                          "warnings", "truth_error_px", "estimator"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
   // f / (Z_B - f) = 105 / 895
