@@ -62,7 +62,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
              "dot, frame (reference, flow)");
   std::vector<std::int64_t> by_table;
-  for (TruthPath const path : truth.path) by_table.push_back(path == TruthPath::table ? 1 : 0);
+  for (TruthPath const by : truth.path) by_table.push_back(by == TruthPath::table ? 1 : 0);
   file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",
              "1: truth is a deflection table's integral over the dot's cone, corrected by its rays; 0: their centroids",
              "dot");

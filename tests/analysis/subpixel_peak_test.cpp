@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/window_ops.h"
+#include "analysis/peak_search.h"
 
 namespace gladstone {
 namespace {
@@ -15,19 +15,19 @@ TEST(GaussianPeak, IsExactForAGaussian) {
   for (double const sigma : {0.5, 1.0, 2.5})
     for (double shift = -0.5; shift <= 0.5; shift += 0.0625) {
       auto const value = [&](double s) { return 3.0 * std::exp(-0.5 * (s - shift) * (s - shift) / (sigma * sigma)); };
-      EXPECT_NEAR(gaussian_peak_offset(value(-1.0), value(0.0), value(1.0)), shift, 1e-14);
+      EXPECT_NEAR(gaussian_peak(value(-1.0), value(0.0), value(1.0)).offset, shift, 1e-14);
     }
 }
 
 TEST(GaussianPeak, FallsBackToTheParabolaWhereALogarithmIsMissing) {
-  EXPECT_DOUBLE_EQ(gaussian_peak_offset(-0.5, 1.0, 0.5), parabola_offset(-0.5, 1.0, 0.5));
+  EXPECT_DOUBLE_EQ(gaussian_peak(-0.5, 1.0, 0.5).offset, parabola_offset(-0.5, 1.0, 0.5));
   EXPECT_DOUBLE_EQ(parabola_offset(-0.5, 1.0, 0.5), 0.25);
-  EXPECT_DOUBLE_EQ(gaussian_peak_offset(0.0, 1.0, 0.0), 0.0);
+  EXPECT_DOUBLE_EQ(gaussian_peak(0.0, 1.0, 0.0).offset, 0.0);
 }
 
 TEST(GaussianPeak, StaysFiniteOnAFlatTop) {
-  EXPECT_EQ(gaussian_peak_offset(1.0, 1.0, 1.0), 0.0);
-  EXPECT_EQ(gaussian_peak_offset(1e-30, 1e-30, 1.0), 0.0) << "curved upwards: no peak";
+  EXPECT_EQ(gaussian_peak(1.0, 1.0, 1.0).offset, 0.0);
+  EXPECT_EQ(gaussian_peak(1e-30, 1e-30, 1.0).offset, 0.0) << "curved upwards: no peak";
 }
 
 class Plane {
@@ -54,6 +54,22 @@ TEST(PeakSearch, OrdersPeaksByHeightAcrossTheWrap) {
   EXPECT_EQ(found.peak[0].y, -6);
   EXPECT_EQ(found.peak[1].height, 0.6f);
   EXPECT_EQ(found.peak[2].height, 0.4f);
+}
+
+// A Gaussian of 1 px half a pixel off its samples shows 88 % of its height; another of 95 % of its height, on a sample,
+// is the lower one all the same, and is not as near to nothing.
+TEST(PeakSearch, RanksPeaksByTheirHeightBetweenSamples) {
+  Plane plane;
+  for (int y = -10; y <= 10; ++y)
+    for (int x = -10; x <= 10; ++x) {
+      auto const peak = [&](double at) { return std::exp(-0.5 * ((x - at) * (x - at) + y * y)); };
+      plane.set(x, y, static_cast<float>(0.95 * peak(-7.0) + peak(0.5)));
+    }
+  PeakList<float> const found = find_peaks(plane.view(), 9);
+  ASSERT_EQ(found.count, 2);
+  EXPECT_EQ(found.peak[0].x, 0);
+  EXPECT_NEAR(found.peak[0].height, 1.0, 1e-5);
+  EXPECT_NEAR(found.peak[1].height, 0.95, 1e-5);
 }
 
 TEST(PeakSearch, CountsARaggedPeakOnce) {
