@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/peak_search.h"
 #include "analysis/window_ops.h"
 #include "cuda/small_transform.h"
 

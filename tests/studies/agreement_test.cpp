@@ -30,7 +30,7 @@ Setup table1(std::string const& plane, int rays) {
 TEST(AgreementOverPlane, OfOneWaveIsTheConesTransfer) {
   std::string const path = testing::TempDir() + "gladstone_wave_plane.nrrd";
   write_plane(path, 64, 64, [](int i, int) { return 1.225 + 1e-3 * std::sin(2 * pi * i / 16); });
-  Setup setup = table1("hbdt512_late_slice.h5", 64);
+  gladstone::Setup setup = table1("hbdt512_late_slice.h5", 64);
   setup.medium.field.file = path;
   setup.medium.field.dataset = "";
   setup.medium.field.scale = 1;
@@ -59,7 +59,7 @@ class AgreementOfTurbulence : public testing::TestWithParam<PlaneCase> {};
 // in the reference, a few hundredths of the rays' rms (cone against rays, below).
 TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   auto const [file, nodes] = GetParam();
-  Setup const setup = table1(file, 64);
+  gladstone::Setup const setup = table1(file, 64);
   double const spacing = 32.7 * unit::millimetre / (nodes - 1);
   CpuRenderer renderer;
   PlaneAgreement const traced = agreement_over_plane(setup, nodes, spacing, renderer);

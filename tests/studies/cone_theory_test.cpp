@@ -67,7 +67,7 @@ Vec2d fundamental(std::vector<double> const& phase, std::vector<double> const& v
 
 // Table 1's bench, 10 mm thick: 0.620565 of a wave of 4 mm and 0.894131 of one of 8 mm, the formula in thirty digits.
 TEST(ConeTransfer, HasTheFormulasValuesAtTable1) {
-  Setup const setup;
+  gladstone::Setup const setup;
   EXPECT_NEAR(cone_transfer(setup, 4e-3), 0.620565, 1e-6);
   EXPECT_NEAR(cone_transfer(setup, 8e-3), 0.894131, 1e-6);
   EXPECT_NEAR(cone_width(setup), 2.386364e-3, 1e-9);
@@ -133,7 +133,7 @@ Setup points_on_axis() {
 // One wave keeps its shape: correlation is 1, or -1 beyond the cone's first zero, and the ratio the transfer itself.
 // The single pixel is 0.04 mrad wide, whose obliquity changes nothing of a ratio of the same wave.
 TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
-  Setup const setup = points_on_axis();
+  gladstone::Setup const setup = points_on_axis();
   for (double const wavelength_mm : {1.5, 4.0, 40.0}) {
     Agreement const predicted = predicted_agreement(shells({2}, {10}), wavelength_mm * 1e-4, setup);
     double const transfer = cone_transfer(setup, wavelength_mm * 1e-3);
@@ -147,7 +147,7 @@ TEST(PredictedAgreement, OfOneWaveIsItsTransfer) {
 // of a slice 5 mm from the middle is 2 % wider or narrower, which leaves the second wave |H'| 0.02 x = 0.4 * 0.02 * 3.8
 // at that slice, 0 to first order on average: 1e-3 of its amplitude.
 TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
-  Setup const setup = points_on_axis();
+  gladstone::Setup const setup = points_on_axis();
   double const killed = cone_width(setup) / 1.2196698912665;
   Agreement const predicted = predicted_agreement(shells({1, 3}, {400e-3 / killed, 1}), killed, setup);
   EXPECT_NEAR(predicted.correlation, 0.5, 2e-3);
@@ -157,7 +157,7 @@ TEST(PredictedAgreement, OfAWaveThatPassesAndOneThatDoesNot) {
 // Where structures are wide the size alone says what the cone takes: 1 - H = x^2 / 8 with x = pi D_c / wavelength, and
 // its mean over the spectrum contains the mean square wavenumber. Next come fourth powers of x, here below 0.13.
 TEST(PredictedAgreement, OfWideStructuresFollowsTheirSize) {
-  Setup setup = points_on_axis();
+  gladstone::Setup setup = points_on_axis();
   setup.medium.thickness = 1e-4;
   GradientSpectrum const spectrum = shells({1, 2, 1.5}, {70, 100, 300});
   double const spacing = cone_width(setup);

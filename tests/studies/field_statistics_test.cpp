@@ -15,6 +15,7 @@ class OneNode final : public FieldSource {
     grid_.spacing = {1.0, 0.5, 0.25};
   }
   RegularGrid const& grid() const override { return grid_; }
+  FieldUnits const& units() const override { return units_; }
   std::string const& name() const override { return name_; }
   int significant_bits() const override { return 53; }
   void read_planes(int, int, std::span<double>) override { FAIL() << "whole planes were asked for"; }
@@ -30,6 +31,7 @@ class OneNode final : public FieldSource {
 
  private:
   RegularGrid grid_;
+  FieldUnits units_;
   std::string name_ = "one node";
   std::array<int, 3> node_;
   std::size_t most_ = 0;
