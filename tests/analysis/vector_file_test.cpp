@@ -94,7 +94,9 @@ TEST_F(VectorFiles, CsvComesBackExactly) {
   std::ifstream csv(path("v.csv"));
   std::string header;
   std::getline(csv, header);
-  EXPECT_EQ(header, "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status");
+  EXPECT_EQ(
+      header,
+      "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,ambiguous");
 }
 
 TEST_F(VectorFiles, Hdf5ComesBackExactly) {
