@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "render/base/vec.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
