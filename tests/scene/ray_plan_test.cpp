@@ -221,7 +221,8 @@ TEST(MeasureRays, FindsTheScatterOfWholePictures) {
 
 // Where fronts fold the light of dots (the early plane four times as dense), a table leads truth astray by more than
 // its rays scatter, and the error that is told is the one that 65,536 rays of another seed find; these trace by
-// themselves (more than 16,384 do). Ten dots here and 24 others there: a factor of two is allowed.
+// themselves (more than 16,384 do). Eleven dots here and 24 others there: a factor of two is allowed. What is found is
+// some 5e-3 px, to a fifth of it for eleven dots, ten times what the rays of a dot scatter by on the plane itself.
 TEST(MeasureRays, TellsHowFarATableLeadsTruthAstray) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
@@ -246,7 +247,7 @@ TEST(MeasureRays, TellsHowFarATableLeadsTruthAstray) {
     square += dot(off, off) / (2.0 * static_cast<double>(some.centre.size()));
   }
   double const found = std::sqrt(square), told = measure_rays(scene).truth_error_px;
-  EXPECT_GT(found, 5e-3);
+  EXPECT_GT(found, 4e-3);
   EXPECT_GT(told, found / 2);
   EXPECT_LT(told, found * 2);
 }

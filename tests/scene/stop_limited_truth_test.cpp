@@ -158,10 +158,11 @@ TEST(StopLimitedTruth, AgreesWithStraightRaysOnTheLatePlane) {
 }
 
 // On the earlier plane rays are turned by 1.8e-4 rad rms (1.6e-3 at most) and leave the straight line by 1e-6 m, 1.5 %
-// of a cell: 1 % of the gradient where it changes over a front's width of a few cells.
+// of a cell: 1 % of the gradient where it changes over a front's width of a few cells. That leaves 1.5 % with points;
+// of dots 1.3 % are chance besides, and 4^(1/4) of that where rays are dealt to four independent sequences: 2.4 %.
 TEST(StopLimitedTruth, AgreesWithStraightRaysOnTheEarlierPlane) {
   EXPECT_LT(straight_ray_error("kepeak", 0), 0.015);
-  EXPECT_LT(straight_ray_error("kepeak", 3), 0.02);
+  EXPECT_LT(straight_ray_error("kepeak", 3), 0.024);
 }
 
 // Launching over the ambient pupil without clipping is off by about 25 % rms on the earlier plane and 2 % on the late
