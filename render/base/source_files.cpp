@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
-#include "render/base/interrupt.h"
-#include "render/base/output_place.h"
+#include "render/base/input_file.h"
 #include "render/base/sha256.h"
 
 namespace gladstone {
@@ -106,22 +101,13 @@ std::string dataset_sha256(std::string const& path) {
 }
 
 std::string byte_sha256(std::string const& path) {
-  if (std::string const kind = special_file(path); !kind.empty()) {
-    throw DataError(path, "cannot be read (it is " + kind + "); name a file");
-  }
-  auto const unreadable = [&path] {
-    return DataError(path, std::string("cannot be read (") + std::strerror(errno ? errno : EIO) + ')');
-  };
-  errno = 0;
-  std::unique_ptr<FILE, int (*)(FILE*)> const file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) throw unreadable();
+  InputFile const file(path);
   Sha256 hash;
   std::vector<char> piece(std::size_t{1} << 20);
-  while (true) {
-    throw_if_interrupted();
-    std::size_t const size = std::fread(piece.data(), 1, piece.size(), file.get());
-    if (std::ferror(file.get())) throw unreadable();
+  for (std::uint64_t offset = 0;;) {
+    std::size_t const size = file.read(offset, piece.data(), piece.size());
     hash.add(piece.data(), size);
+    offset += size;
     if (size < piece.size()) return hash.finish();
   }
 }

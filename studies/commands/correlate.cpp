@@ -10,6 +10,7 @@
 
 #include "analysis/vector_file.h"
 #include "render/base/error.h"
+#include "render/base/input_file.h"
 #include "render/base/output_file.h"
 #include "studies/case.h"
 #include "studies/commands/command.h"
@@ -56,8 +57,9 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       std::string const& folder = arguments->inputs[0];
       if (written.empty()) written = in_case(folder, case_file::vectors);
       inputs = rendered_files(folder);
-    } else if (output.empty()) {
-      throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
+    } else {
+      for (std::string const& name : inputs) require_input_file(name, "a picture, or a case folder");
+      if (output.empty()) throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
     refuse_inputs_as_outputs({written}, inputs);

@@ -55,8 +55,12 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
   if (not_finite > 0) {
     spdlog::warn("{}: {} of {} pixels are nan or infinite, and are left out", path, not_finite, image.size());
   }
-  auto const [least, most] = std::minmax_element(
-      image.begin(), image.end(), [](double a, double b) { return std::isfinite(a) && (!std::isfinite(b) || a < b); });
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (double const value : image) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
   ImageStatistics const seen = image_statistics(image);
   auto const known = [](double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
@@ -65,8 +69,8 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
                             {"rows", image.rows()},
                             {"bit_depth", metadata.bit_depth},
                             {"pixel_pitch_um", metadata.pixel_pitch_m * 1e6},
-                            {"minimum", *least},
-                            {"maximum", *most},
+                            {"minimum", least},
+                            {"maximum", most},
                             {"mean", seen.mean},
                             {"not_finite", not_finite},
                             {"dot_diameter_px", known(seen.dot_diameter_px)},
@@ -79,7 +83,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
       options, json_text(json),
       fmt::format("{}: {} x {} px, {} bits{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
                   path, image.columns(), image.rows(), metadata.bit_depth,
-                  metadata.channels >= 3 ? ", colour turned to luminance" : "", *least, *most, seen.mean,
+                  metadata.channels >= 3 ? ", colour turned to luminance" : "", least, most, seen.mean,
                   seen.dot_diameter_px,
                   std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})",
                                                           seen.snr(), seen.dot_height, seen.noise)

@@ -9,7 +9,6 @@ namespace gladstone::end_to_end {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 /// The small setup with another field or target.
 std::string with_field(std::string const& file) {
@@ -27,14 +26,15 @@ class Inputs : public Workplace {
   /// Ends by itself as bad input, and says this; files are not compared: a pipe cannot be read.
   void expect_told(std::vector<std::string> const& arguments, std::string const& piece) const {
     Outcome const outcome = Program(arguments, folder_).finish(std::chrono::seconds(20));
-    EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err << outcome.signal;
-    EXPECT_THAT(outcome.err, HasSubstr(piece)) << testing::PrintToString(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments[0] << outcome.err.substr(0, 400) << outcome.signal;
+    EXPECT_TRUE(outcome.err.find(piece) != std::string::npos)
+        << arguments[0] << ": " << outcome.err.substr(0, 400) << " instead of " << piece.substr(0, 100);
     // what libraries say of themselves
     for (char const* library : {"std::", "what()", "json.exception", "filesystem error", "basic_", "OpenImageIO",
                                 "TIFF"
                                 "Open",
                                 "HDF5-DIAG", "Run with --help"}) {
-      EXPECT_THAT(outcome.err, Not(HasSubstr(library))) << testing::PrintToString(arguments);
+      EXPECT_EQ(outcome.err.find(library), std::string::npos) << arguments[0] << ": " << outcome.err.substr(0, 400);
     }
   }
 
@@ -124,7 +124,7 @@ TEST_F(Inputs, NamesThatNoFileSystemTakesAreToldAsSuch) {
     expect_told(command, name);
   }
   write("field.toml", with_field(name));
-  expect_told({"render", "field.toml", "-o", "case"}, "field.toml:16:1");
+  expect_told({"render", "field.toml", "-o", "case"}, "field.toml:" + place_of(with_field(name), "file = "));
 }
 
 TEST_F(Inputs, CommandLinesAreRefusedInOurWords) {
