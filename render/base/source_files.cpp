@@ -7,6 +7,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
 #include "render/base/input_file.h"
+#include "render/base/interrupt.h"
 #include "render/base/sha256.h"
 
 namespace gladstone {
