@@ -128,7 +128,8 @@ std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) 
 }
 
 Verdict judge(ConventionFit const& best) {
-  if (best.rms_px < best.signal_px) return Verdict::fits;
+  // three standard errors, since the best of some sixty choices is judged
+  if (best.rms_px < best.signal_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
   if (!(best.signal_px >= telling_signal_px)) return Verdict::cannot_be_told;
   bool const follows = best.slope - 2.0 * best.slope_error > 0.5 && best.slope < 2.0;
   return follows ? Verdict::noisy : Verdict::fits_none;
@@ -170,9 +171,10 @@ std::string misfit_report(VectorFile const& file, DetectedConventions const& det
   }
   return fmt::format(
       "{} vectors fit no convention: at best they differ from the truth by {:.3g} px rms, where the truth itself is "
-      "{:.3g} px rms (they follow {:.0f} % of it). Tried, each with its best offset: {}. {}; mend the file, or say "
+      "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}. {}; mend the file, "
+      "or say "
       "with --conventions how it is to be read if it is as wrong as that",
-      file.format, best.rms_px, best.signal_px, 100.0 * best.slope, tried, cause);
+      file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried, cause);
 }
 
 std::string found_report(VectorFile const& file, DetectedConventions const& detected) {

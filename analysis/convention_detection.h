@@ -22,10 +22,10 @@ struct ConventionFit {
 /// What detect_conventions found.
 struct DetectedConventions {
   enum class Verdict {
-    fits,            ///< closer to the truth than vectors of no length would be
+    fits,            ///< closer to the truth than vectors of no length would be, and not by chance
     noisy,           ///< not closer, but they follow it: right axes, large errors
-    cannot_be_told,  ///< not closer, and the truth is too small to tell by: the format's own conventions were kept
-    fits_none,       ///< not closer, and they do not follow it
+    cannot_be_told,  ///< neither, and the truth is too small to tell by: the format's own conventions were kept
+    fits_none,       ///< neither
   };
   VectorConventions conventions;
   Verdict verdict = Verdict::fits;

@@ -84,11 +84,21 @@ class TruthMap {
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
         maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
-  /// The nearest lattice point's displacement; NaN outside the view.
+  /// Bilinear between the lattice's points, so that half a pixel shows; NaN beyond the view by more than what codes'
+  /// ways of counting pixels differ by.
   Vec2d at(Vec2d c) const {
-    int const column = static_cast<int>(std::lround(c.x / spacing)), row = static_cast<int>(std::lround(c.y / spacing));
-    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return {std::nan(""), std::nan("")};
-    return {maps_.u_px(column, row), maps_.v_px(column, row)};
+    Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
+    Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
+    if (!(length(c - inside) <= 2 * outside_margin_px)) return {std::nan(""), std::nan("")};
+    int const column = std::clamp(static_cast<int>(inside.x / spacing), 0, std::max(0, grid_.columns - 2));
+    int const row = std::clamp(static_cast<int>(inside.y / spacing), 0, std::max(0, grid_.rows - 2));
+    double const fx = inside.x / spacing - column, fy = inside.y / spacing - row;
+    int const right = std::min(column + 1, grid_.columns - 1), below = std::min(row + 1, grid_.rows - 1);
+    auto const blend = [&](Image<double> const& map) {
+      return (1 - fy) * ((1 - fx) * map(column, row) + fx * map(right, row)) +
+             fy * ((1 - fx) * map(column, below) + fx * map(right, below));
+    };
+    return {blend(maps_.u_px), blend(maps_.v_px)};
   }
 
  private:

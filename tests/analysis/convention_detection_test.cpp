@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace gladstone {
 namespace {
@@ -139,6 +140,7 @@ TEST(DetectConventions, RefusesWhatFitsNone) {
                  "with x and y, u and v exchanged they would fit"},
            Wrong{"in mm of the dots", [](Vec2d&p, Vec2d&) { p = 0.085 * p; }, "not in px"},
            Wrong{"no displacement", [](Vec2d&, Vec2d&d) { d = {}; }, "not in px"},
+           Wrong{"displacement in mm", [](Vec2d&, Vec2d&d) { d = 0.01 * d; }, "not in px"},
            Wrong{"ten times too long", [](Vec2d&, Vec2d&d) { d = 10.0 * d; }, "another unit than px"},
        }) {
     VectorFile file = waves_on_a_grid();
@@ -151,6 +153,22 @@ TEST(DetectConventions, RefusesWhatFitsNone) {
                 AllOf(HasSubstr("fit no convention"), HasSubstr("v-up,swapped"), HasSubstr("the truth itself is 0.0"),
                       HasSubstr("--conventions"), HasSubstr(wrong.cause)))
         << wrong.name;
+  }
+}
+
+// With few vectors the best of sixty choices comes closer to the truth than nothing does by chance: twenty of the
+// shifted field, or of noise, fit none; twenty right ones do.
+TEST(DetectConventions, DoesNotTakeChanceForAFit) {
+  VectorFile file = waves_on_a_grid();
+  std::vector<std::size_t> few;
+  for (std::size_t i = 0; i < 480; i += 24) few.push_back(i);
+  take_vectors(file.field, few);
+  EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits);
+  for (std::size_t trial = 0; trial < 20; ++trial) {
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      file.field.displacement_px[i] = 0.1 * noise(few.size() * trial + i);
+    }
+    EXPECT_NE(detect_conventions(file, waves, 200).verdict, Verdict::fits) << trial;
   }
 }
 
