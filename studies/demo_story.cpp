@@ -16,6 +16,12 @@ std::string each(std::vector<DemoInstant> const& instants, Part part) {
   return text;
 }
 
+/// A length in px with so many significant digits and no power of ten.
+std::string digits(double px, int significant) {
+  int const decimals = px > 0 ? significant - 1 - static_cast<int>(std::floor(std::log10(px))) : significant;
+  return fmt::format("{:.{}f}", px, std::max(0, decimals));
+}
+
 /// The largest difference between a traced point and its prediction.
 Agreement largest_miss(std::vector<DemoInstant> const& instants) {
   Agreement worst{};
@@ -68,13 +74,13 @@ std::string demo_story(Setup const& setup, std::vector<DemoInstant> const& insta
   Agreement const miss = largest_miss(instants);
   std::string const coarse = each(instants, [](DemoInstant const& instant) {
     auto const& sums = instant.paper.sums;
-    return fmt::format("{:.4f} against {:.4f} px rms, correlation {:.3f}, at {}", sums.eq9_px(), sums.rays_px(),
-                       sums.agreement().correlation, instant.time);
+    return fmt::format("{} against {} px rms, correlation {:.3f}, at {}", digits(sums.eq9_px(), 3),
+                       digits(sums.rays_px(), 3), sums.agreement().correlation, instant.time);
   });
-  std::string const cone = each(
-      instants, [](DemoInstant const& instant) { return fmt::format("{:.1g}", instant.paper.cone_minus_rays_px); });
-  std::string const measured = each(
-      instants, [](DemoInstant const& instant) { return fmt::format("{:.4f}", instant.paper.measured_minus_rays_px); });
+  std::string const cone =
+      each(instants, [](DemoInstant const& instant) { return digits(instant.paper.cone_minus_rays_px, 1); });
+  std::string const measured =
+      each(instants, [](DemoInstant const& instant) { return digits(instant.paper.measured_minus_rays_px, 2); });
   std::string const larger = each(instants, [](DemoInstant const& instant) {
     return fmt::format("{:.1f}", 1 / instant.planes.back().traced.sums.agreement().rms_ratio);
   });
