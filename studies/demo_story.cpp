@@ -57,10 +57,11 @@ std::string table(std::vector<DemoInstant> const& instants) {
   std::string rows;
   for (DemoInstant const& instant : instants) {
     auto const& paper = instant.paper;
-    rows +=
-        fmt::format("| {} | {:.4f} | {:.4f} | {:.4f} | {:.3f} | {:.4f} | {:.4f} | {:.4f} |\n", instant.time,
-                    paper.sums.eq9_px(), paper.sums.cone_px(), paper.sums.rays_px(), paper.sums.agreement().correlation,
-                    paper.cone_minus_rays_px, paper.measured_minus_rays_px, paper.measured_minus_window_px);
+    AgreementSums const& sums = paper.sums;
+    rows += fmt::format("| {} | {} | {} | {} | {:.3f} | {} | {} | {} |\n", instant.time, digits(sums.eq9_px(), 3),
+                        digits(sums.cone_px(), 3), digits(sums.rays_px(), 3), sums.agreement().correlation,
+                        digits(paper.cone_minus_rays_px, 2), digits(paper.measured_minus_rays_px, 2),
+                        digits(paper.measured_minus_window_px, 2));
   }
   return "| 64 nodes, rms in px per component | Eq. 9 | cone-averaged Eq. 9 | rays | correlation of Eq. 9 and rays | "
          "cone-averaged Eq. 9 - rays | measured - rays | measured - rays on the window |\n"
