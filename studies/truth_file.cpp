@@ -129,8 +129,9 @@ GroundTruth read_truth(std::string const& path) {
   }
   std::vector<std::int64_t> const by_table =
       with_errors ? file.read_integers("/dots/by_table") : std::vector<std::int64_t>(truth.size());
+  require_length(path, "/dots/by_table", by_table.size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    truth.path[i] = by_table.at(i) == 1 ? TruthPath::table : TruthPath::rays;
+    truth.path[i] = by_table[i] == 1 ? TruthPath::table : TruthPath::rays;
   }
   std::vector<std::int64_t> const rays = file.read_integers("/dots/rays");
   require_length(path, "/dots/rays", rays.size(), 2 * truth.size());

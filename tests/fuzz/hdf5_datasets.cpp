@@ -60,7 +60,9 @@ constexpr std::array names{"xcoor",
                            "field/spacing_px",
                            "field/density_kg_m3",
                            "field/density_gradient_kg_m4",
-                           "field/eq9_px"};
+                           "field/eq9_px",
+                           "dots/displacement_error_px",
+                           "dots/by_table"};
 
 /// A type on disk: numbers for the most part. The caller closes it.
 hid_t stored_type(std::size_t choice) {

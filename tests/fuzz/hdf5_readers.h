@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/vector_file.h"
+#include "render/base/source_files.h"
 #include "studies/truth_file.h"
 #include "tests/fuzz/fields.h"
 #include "tests/fuzz/input.h"
@@ -13,6 +14,7 @@ inline void read_hdf5(std::string_view input, std::string const& path) {
   read(input, [&] { read_vectors(path); });
   read(input, [&] { read_truth(path); });
   read(input, [&] { read_field_map(path); });
+  read(input, [&] { dataset_sha256(path); });
   read(input, [&] { Hdf5Reader(path).attribute("setup"); });
 }
 

@@ -11,5 +11,6 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     ImageMetadata metadata;
     read_image(path, &metadata);
   });
+  fuzz::read(input, [&] { read_frame_pair(path); });
   return 0;
 }

@@ -7,9 +7,10 @@ using namespace gladstone;
 // A study's manifest: every line is read.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
+  std::string const path = fuzz::file_of(input, "manifest.jsonl");
+  fuzz::read(input, [&] { version_of_manifest(InputFile(path, "a manifest")); });
   fuzz::read(input, [&] {
-    version_of_manifest(input);
-    Manifest const manifest("manifest.jsonl", std::string(input));
+    Manifest const manifest(path);
     for (std::size_t i = 0; i < manifest.size(); ++i) {
       manifest.line_hash(i);
       manifest[i].title();

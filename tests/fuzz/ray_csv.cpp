@@ -40,6 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   std::string_view const input = fuzz::text_of(data, size);
   static Scene const scene = gradient_scene();
   std::string const path = fuzz::file_of(input, "rays.csv");
-  fuzz::read(input, [&] { traced_rays_csv(trace_rays(scene, read_rays(path), Through::all)); });
+  fuzz::read(input, [&] {
+    traced_rays_csv(trace_rays(scene, read_rays(path, scene.setup.farthest_off_axis()), Through::all));
+  });
   return 0;
 }

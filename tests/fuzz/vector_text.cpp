@@ -1,7 +1,9 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/convention_detection.h"
 #include "analysis/vector_file.h"
+#include "analysis/vector_screening.h"
 #include "analysis/window_truth.h"
 #include "tests/fuzz/input.h"
 
@@ -23,9 +25,11 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   std::string const path = fuzz::file_of(input, "vectors.txt");
   fuzz::read(input, [&] {
     VectorFile file = read_vectors(path);
-    VectorConventions const conventions =
-        file.foreign ? detect_conventions(file, truth, 128).conventions : file.conventions;
-    DisplacementField const field = apply_conventions(std::move(file.field), conventions, 128);
+    LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, 128, 128);
+    if (!refusal_of_places(file.field, left_out, 128, 128).empty()) return;
+    doubt_about_places(file.field, 128, 128);
+    if (file.foreign) file.conventions = detect_conventions(file, truth, 128).conventions;
+    DisplacementField const field = apply_conventions(std::move(file.field), file.conventions, 128);
     std::vector<Vec2d> const dots{{10, 10}, {14, 10}, {10, 14}, {14, 14}, {100, 90}};
     std::vector<Vec2d> const moved(dots.size(), Vec2d{0.5, 0.25});
     window_truth(dots, moved, {}, field.position_px, top_hat_window(32));
