@@ -13,11 +13,13 @@ struct Said {
 
 class PaperCase : public Workplace {};
 
-// README's command and README's numbers. Those are means over vectors, these over the dots in view, rendered with fewer
-// rays: 64 rays leave 1e-3 of a displacement. The view holds some forty structures of ten nodes, which both sample
-// densely, but the vectors leave out half a window, 8 px of 512, at the edges: 6 % of the area, whose mean square may
-// differ by half of the whole's, 1.5 % in rms. Correlation is a ratio of such sums that vary together: 1 % of what it
-// lacks of one, and a tenth of that for the edges; 0.005 in all.
+// README's command and README's numbers. Those are over vectors, whose centres leave out 7.5 px at each edge of the
+// view, 6 % of it; over the view and over the vectors' places Eq. 9, from the plane's Fourier series, has rms 0.0733
+// and 0.0737 px at the earlier instant, 0.00513 and 0.00510 px at the later: 0.6 %, and README rounds to 1 %, hence 2 %
+// for the map of Eq. 9, which covers the view. Ratio and correlation are over some 5000 dots. Numerator and denominator
+// share what is steep, so that only the part of the rays that is not proportional to Eq. 9, 23 % of them, scatters
+// between samples: with a flatness of 7 by 0.23 sqrt(7 / 10,000) = 0.6 % of the ratio, three times that with 64 rays'
+// 0.1 %; and the correlation's deficit of 0.03 by some percent of itself, with the edges less than 0.005.
 TEST_F(PaperCase, IsWhatReadmeSays) {
   for (Said const& said : {Said{"kepeak", 0.0736, 0.0621, 0.973}, Said{"late", 0.0051, 0.0043, 0.979}}) {
     std::string const data = GLADSTONE_DATA_DIR;
@@ -26,20 +28,24 @@ TEST_F(PaperCase, IsWhatReadmeSays) {
             "medium.field.file=\"" + data + "/fields/hbdt512_" + said.plane + "_slice.h5\""},
            data + "/../studies/cases/table1.toml");
     Hdf5Reader const truth(in("case/truth.h5").string());
+    double map2 = 0;
+    auto const map = truth.read("/field/eq9_px");
+    for (double const value : map) map2 += value * value;
+    EXPECT_NEAR(std::sqrt(map2 / static_cast<double>(map.size())) / said.eq9_px, 1, 0.02) << said.plane;
+
     auto const place = truth.read("/dots/reference_px"), rays = truth.read("/dots/displacement_px"),
                eq9 = truth.read("/dots/eq9_px");
-    double count = 0, rays2 = 0, eq92 = 0, product = 0;
+    double rays2 = 0, eq92 = 0, product = 0;
     for (std::size_t i = 0; i < place.size(); i += 2) {
       if (!(place[i] >= 0 && place[i] <= 511 && place[i + 1] >= 0 && place[i + 1] <= 511)) continue;
       for (std::size_t c = i; c < i + 2; ++c) {
-        count += 1;
         rays2 += rays[c] * rays[c];
         eq92 += eq9[c] * eq9[c];
         product += rays[c] * eq9[c];
       }
     }
-    EXPECT_NEAR(std::sqrt(eq92 / count) / said.eq9_px, 1, 0.02) << said.plane;
-    EXPECT_NEAR(std::sqrt(rays2 / count) / said.rays_px, 1, 0.02) << said.plane;
+    // README's ratio is rounded in both of its numbers
+    EXPECT_NEAR(std::sqrt(rays2 / eq92) / (said.rays_px / said.eq9_px), 1, 0.02 + 0.01) << said.plane;
     EXPECT_NEAR(product / std::sqrt(eq92 * rays2), said.correlation, 0.005) << said.plane;
   }
 }
