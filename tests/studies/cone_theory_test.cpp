@@ -82,7 +82,7 @@ TEST(GradientSpectrum, OfWavesIsTheirEnergy) {
     int periods_x, periods_y;
   };
   constexpr int columns = 48, rows = 32;
-  std::vector<Wave> const waves{{3, 2, 0}, {0.7, 3, -4}, {0.2, 0, 9}};
+  std::vector<Wave> const waves{{3, 2, 1}, {0.7, 3, -4}, {0.2, 0, 9}};
   Image<double> plane(columns, rows);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {

@@ -11,6 +11,7 @@
 
 #include "render/base/error.h"
 #include "render/base/image_file.h"
+#include "studies/figures/agreement_figure.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/map_figures.h"
@@ -103,6 +104,15 @@ TEST_F(Figures, SeedFigure4HasFiveColumnsAndTwoRowsAnInstant) {
   EXPECT_EQ(one.columns(), two.columns());
   EXPECT_GT(one.columns(), 5 * 200);
   EXPECT_GT(two.rows() - one.rows(), 2 * 200);
+}
+
+TEST_F(Figures, AgreementHasAPanelForCorrelationAndOneForTheRatio) {
+  AgreementSeries series{"t = 1", {{0.5, 256, {0.5, 0.4}, {0.01, 0.02}}, {2, 64, {0.95, 0.8}, {0.01, 0.02}}}, {}};
+  for (double const size : agreement_sizes()) series.prediction.push_back({size, {size / 10, size / 12}});
+  write_agreement_figure(path("agreement.png"), {series, series}, std::vector<double>(agreement_sizes().size(), 0.5));
+  EXPECT_GT(read_image(path("agreement.png")).columns(), 1000);
+  EXPECT_DOUBLE_EQ(agreement_sizes().front(), 0.2);
+  EXPECT_NEAR(agreement_sizes().back(), 10, 1e-12);
 }
 
 TEST_F(Figures, ErrorFiguresAreDrawnAlsoOfNothing) {
