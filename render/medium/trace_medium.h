@@ -218,6 +218,10 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
 
   Vec3<T> const entry_point = start.position + start.direction * chord.enter;
   T const n_entry = T(1) + medium.sample(entry_point).refractivity;
+  if (!(n_entry > T(0))) {
+    way.status = RayStatus::lost_in_medium;  // far out in an endless gradient, where no step leads anywhere
+    return crossing;
+  }
   T const n_ambient = T(1) + options.ambient_refractivity;
   bool const refracting = options.faces == Faces::refract;
   T const n_straight = refracting && chord.entry_axis >= 0 ? n_ambient : n_entry;

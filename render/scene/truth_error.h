@@ -51,7 +51,9 @@ GLADSTONE_HD inline TruthErrors truth_errors(RaySums const* of, int scramblings,
     table2 += square((here.check.traced - here.check.expected - here.check.weight * miss) / check.weight);
   }
   double const factor = student_factor(scramblings), scale = factor * factor * scramblings / (scramblings - 1.0);
-  return {scale * rays2, scale * table2, check.miss2 / check.weight - square(miss)};
+  // the stop's smoothed edge lets some weights be negative, and so a variance of little but these
+  Vec2d const miss2 = check.miss2 / check.weight - square(miss);
+  return {scale * rays2, scale * table2, {miss2.x > 0 ? miss2.x : 0, miss2.y > 0 ? miss2.y : 0}};
 }
 
 }  // namespace gladstone

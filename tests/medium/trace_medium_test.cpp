@@ -393,6 +393,14 @@ TEST(TraceMedium, TrappedRayIsGivenUp) {
   EXPECT_EQ(trace_medium(eye, options(0.05), start).status, RayStatus::lost_in_medium);
 }
 
+// Far out in a gradient without end the index falls to zero: nothing goes on from there, and nothing is tried.
+TEST(TraceMedium, RayWhereNoMediumCanBeIsGivenUp) {
+  for (double const x : {-1.0, -1e3}) {
+    auto const way = trace_medium(slab({8e3, 0, 0}), options(1e-3), ray({x, 0, -0.1}, {0, 0, 1}));
+    EXPECT_EQ(way.status, RayStatus::lost_in_medium) << x;  // n = 1 + 2.26e-4 8e3 x < 0
+  }
+}
+
 // A slab has no end along x and y: a ray that runs within it must be given up, not followed for ever.
 TEST(TraceMedium, RayWithinAnEndlessSlabEnds) {
   Ray<double> const start = ray({-1, 0, 0}, {1, 0, 0});
