@@ -112,7 +112,8 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   render("case");
   succeed({"correlate", "case", "-o", "v.csv"});
   std::string const text = read("v.csv");
-  EXPECT_EQ(text.substr(0, text.find('\n')), "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,ambiguous");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 49);  // 16 px windows every 8 px: 7 x 7
   EXPECT_THAT(text, HasSubstr("\n7.5,7.5,"));                     // (ws - 1)/2 from the first pixel
   // two images with the same settings give the same vectors

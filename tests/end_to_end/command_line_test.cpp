@@ -56,7 +56,6 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
 }
 
 TEST_F(CommandLine, InfoThatIsDueLaterIsRefusedByName) {
-  expect_refused({"info", "lens", "a.zmx"}, 2, {"info lens: is not available yet", "use info field or info image"});
   expect_refused({"info", "mie"}, 2, {"info mie: is not available yet"});
   expect_refused({"info", "mie", "--x", "1", "--m", "1.33,0"}, 2, {"info mie: is not available yet"});
   expect_refused({"info", "image", "a.tif", "--x", "1"}, 2, {"info image: has no --x and --m"});

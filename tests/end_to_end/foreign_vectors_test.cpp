@@ -15,10 +15,11 @@ class ForeignVectors : public Workplace {
  protected:
   void SetUp() override {
     Workplace::SetUp();
-    // a wave, so that a place taken for another shows; its amplitude gives a few tenths of a pixel
+    // A wave, so that a place taken for another shows: its amplitude gives half a pixel, and half a pixel of place some
+    // hundredths of it. It runs so near to x that it does not look like itself with x and y exchanged.
     std::string const wave = with(
         with(small_setup, "[64, 64]", "[128, 128]"), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
-        "kind = \"sinusoid\"\namplitude_kg_m3 = 0.05\nwavelength_mm = 8.0\ndirection = [1, 0.6]");
+        "kind = \"sinusoid\"\namplitude_kg_m3 = 0.15\nwavelength_mm = 8.0\ndirection = [1, 0.3]");
     write("setup.toml", wave);
     render("case", {"--set", "target.dots_per_32px_window=25"});
     succeed({"correlate", "case"});

@@ -48,6 +48,7 @@ TEST_F(SetupErrors, AbsurdSizeIsRefusedWithItsMemoryBeforeItIsAllocated) {
   // 1e12 pixels, two frames of 18 bytes: 36 TB
   std::string text = with(small_setup, "[64, 64]", "[1000000, 1000000]");
   text = with(text, "dots_per_32px_window = 10.0", "dots_per_32px_window = 0.001");
+  text = with(text, "pixel_pitch_um = 10.0", "pixel_pitch_um = 1.0");
   auto const start = std::chrono::steady_clock::now();
   expect_setup_refused(text, {"needs 3.6e+04 GB of memory", "reduce camera.pixels"});
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));

@@ -57,7 +57,7 @@ TEST_F(SilentMistakes, APlumeIsNotCutOffUnlessToldAndThenWithAWarning) {
 }
 
 TEST_F(SilentMistakes, CoordinatesInMetresAreReadAsTheySayThemselves) {
-  write_plane("metres.h5", 8e-3, "m");
+  write_plane("metres.h5", 16e-3, "m");  // no ray meets its faces
   std::string const field = "kind = \"file\"\nfile = \"metres.h5\"\ndataset = \"density\"\nextrude = true";
   EXPECT_THAT(warnings(with_field(field)), IsEmpty());
   EXPECT_GT(largest_displacement(), 0.1);
@@ -76,12 +76,12 @@ TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf
 }
 
 TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
-  write_plane("plane.h5", 8e-3, "m");
+  write_plane("plane.h5", 16e-3, "m");
   std::string const field =
       "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
-      "spacing_mm = [0.25e-3, 0.25e-3, 0.25e-3]";
+      "spacing_mm = [0.5e-3, 0.5e-3, 0.5e-3]";
   EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("were its lengths in metres")));
-  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.25, 0.25, 0.25]"}), IsEmpty());
+  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.5, 0.5, 0.5]"}), IsEmpty());
 }
 
 TEST_F(SilentMistakes, AFieldThatMovesNothingIsWarnedOf) {
@@ -100,7 +100,7 @@ TEST_F(SilentMistakes, AThicknessThatAVolumeHasNoUseForIsWarnedOf) {
   Hdf5Writer file(in("volume.h5").string(), {"test field", 1, "", 0, "cpu"});
   file.write("density", values, {5, 9, 9}, "kg m-3", "a ramp", "z, y, x");
   file.close();
-  std::string const field = "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [1.0, 1.0, 1.0]";
+  std::string const field = "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, 2.0, 1.0]";
   EXPECT_THAT(warnings(with_field(field)), IsEmpty());
   EXPECT_THAT(read("case/setup.toml"), HasSubstr("thickness_mm = 4.0"));
   EXPECT_THAT(warnings(with_field(field), {"--set", "medium.thickness_mm=20"}),
