@@ -5,8 +5,9 @@ PREFIX ?= /usr/local
 WARNINGS_AS_ERRORS ?= $(if $(filter dev,$(PRESET)),ON,OFF)
 BUILD := $(if $(filter default,$(PRESET)),build,build/$(PRESET))
 
-# the rooms whose tests `make test` builds and runs; empty: all tests
+# the rooms whose tests `make test` builds and runs, empty: all tests; and which tests are left out, a regular expression
 TESTED ?=
+LEFT_OUT ?=
 
 # `make fuzz`: seconds in all; `make soak`: disturbed runs, and what they are drawn from
 FUZZ_SECONDS ?= 600
@@ -50,7 +51,8 @@ test: OPTIONAL_PACKAGES = $(TEST_PACKAGES)
 test: configure  ## build and run every test; of some rooms: TESTED='base medium'; once more: ctest --test-dir build -R medium/
 	cmake --build $(BUILD) --parallel $(JOBS) $(if $(TESTED),--target $(TESTED:%=%_tests))
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS) \
-		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$')
+		$(if $(TESTED),--label-regex '^($(subst $(space),|,$(strip $(TESTED))))$$') \
+		$(if $(LEFT_OUT),--exclude-regex '$(LEFT_OUT)')
 
 demo: build  ## the seed's experiment from setup to error report, into out/demo; README's passage and figures: DOCS=1
 	$(BUILD)/bin/gladstone demo -o out/demo
