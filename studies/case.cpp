@@ -105,7 +105,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  CaseSetup loaded{std::move(document), {}, {}, {}};
+  CaseSetup loaded{std::move(document), {}, {}, {}, {}};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
   loaded.correlate = read_correlation_settings(root.table("correlate"));
@@ -203,11 +203,8 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
   return picture;
 }
 
-/// Path to SHA-256 of the bytes, as JSON.
-std::string hashes_of(std::vector<std::string> const& files) {
-  nlohmann::json hashes = nlohmann::json::object();
-  for (std::string const& file : files) hashes[file] = byte_sha256(file);
-  return hashes.dump();
+void hash_inputs(CaseSetup& loaded) {
+  for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
 }
 
 /// The preview is the GPU's alone; the CPU gives better than was asked for.
@@ -255,6 +252,7 @@ RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& r
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
   OutputFolder output(folder, case_content());
   FinishedCase finished;
+  hash_inputs(loaded);
   finished.prepared = prepare_case(loaded);
   finished.rendered = render_case(finished.prepared, renderer, RenderTheory::yes);
   finished.frames = record_frames(finished.prepared, finished.rendered);
@@ -299,7 +297,9 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   };
   write_frame("reference", case_file::reference, levels->reference());
   write_frame("flow", case_file::flow, levels->flow());
-  origin.sources.add_known("inputs", hashes_of(loaded.document.file_names()));
+  if (loaded.input_hashes.empty()) hash_inputs(loaded);
+  for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
+  origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, map_field(scene, map_spacing_px),
               origin);
   OutputFile::write_text(place(case_file::setup), resolved);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,8 @@ struct CaseSetup {
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
+  /// SHA-256 of the files that it names, as they were before the scene was built from them; empty: not hashed yet.
+  std::map<std::string, std::string> input_hashes = {};
 };
 
 /// Reads and checks a setup. @throws SetupError with all problems together
@@ -78,6 +81,7 @@ struct FinishedCase {
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
 /// Writes these files for a case that is rendered already. @return the text of summary.json
+/// @throws DataError where a file that the setup names no longer holds what was hashed
 std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 

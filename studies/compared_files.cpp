@@ -31,11 +31,13 @@ std::string vectors_path(std::string const& folder, std::string const& given) {
 }
 
 /// The files that the setup names are read again: they must be those that the truth was traced through.
-void refuse_changed_inputs(std::string const& truth, std::string const& folder) {
+void add_inputs(SourceFiles& sources, std::string const& truth, std::string const& folder) {
   nlohmann::json const inputs = nlohmann::json::parse(Hdf5Reader(truth).attribute("inputs_sha256"), nullptr, false);
   if (!inputs.is_object()) return;
   for (auto const& [path, hash] : inputs.items()) {
-    if (!std::filesystem::exists(path) || hash == byte_sha256(path)) continue;  // its reader says what is missing
+    if (!std::filesystem::exists(path)) continue;  // its reader says what is missing
+    sources.add("", path, SourceFiles::Holds::bytes);
+    if (hash == sources.all().back().sha256) continue;
     throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); bring "
                                       "the old file back, or render the case again",
                                       folder));
@@ -55,7 +57,7 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   sources.add("", files.setup, SourceFiles::Holds::bytes);
   sources.add("truth", files.truth, SourceFiles::Holds::datasets);
   sources.add("vectors", files.vectors, hdf5 ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
-  refuse_changed_inputs(files.truth, folder);
+  add_inputs(sources, files.truth, folder);
   if (!hdf5) files.unverified = files.vectors;
   if (!hdf5) return files;
   Hdf5Reader const truth(files.truth), measured(files.vectors);

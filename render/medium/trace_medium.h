@@ -218,10 +218,6 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
 
   Vec3<T> const entry_point = start.position + start.direction * chord.enter;
   T const n_entry = T(1) + medium.sample(entry_point).refractivity;
-  if (!(n_entry > T(0))) {
-    way.status = RayStatus::lost_in_medium;  // far out in an endless gradient, where no step leads anywhere
-    return crossing;
-  }
   T const n_ambient = T(1) + options.ambient_refractivity;
   bool const refracting = options.faces == Faces::refract;
   T const n_straight = refracting && chord.entry_axis >= 0 ? n_ambient : n_entry;
@@ -247,6 +243,10 @@ GLADSTONE_HD Crossing<T> enter_medium(Medium const& medium, TracingOptions<T> co
   T const countable = T(1e6);
   crossing.dt = whole_steps < countable && rest > T(1e-6) * whole_step ? T(0.5) * rest : whole_step;
   crossing.steps_left = 64 + 16 * static_cast<int>(whole_steps < countable ? whole_steps : countable);
+  if (!(n_entry > T(0))) {  // far out in an endless gradient, where no step leads anywhere
+    way.status = RayStatus::lost_in_medium;
+    crossing.steps_left = 0;
+  }
   return crossing;
 }
 

@@ -46,6 +46,13 @@ double along(AxisPlan::Range const& range, double t) {
   return rounded(range.first * std::pow(range.last / range.first, t));
 }
 
+/// Whether steps are wider than twelve digits tell apart, 1e-11 of a number at most, wherever in the range.
+bool surely_tells_values_apart(AxisPlan::Range const& range) {
+  double const steps = static_cast<double>(range.count - 1);
+  if (range.logarithmic) return std::abs(std::log(range.last / range.first)) > 2e-11 * steps;
+  return std::abs(range.last - range.first) > 2e-11 * steps * std::max(std::abs(range.first), std::abs(range.last));
+}
+
 /// Collects the problems of a study file at their places.
 class StudyReader {
  public:
@@ -328,7 +335,8 @@ class StudyReader {
 
   /// A range so fine that two of its values are equal.
   void refuse_steps_of_nothing(AxisPlan const& axis) {
-    for (std::size_t i = 1; axis.range && i < axis.size(); ++i) {
+    if (!axis.range || surely_tells_values_apart(*axis.range)) return;
+    for (std::size_t i = 1; i < axis.size(); ++i) {
       ParameterValue const value = axis.value(i).parameter;
       if (value.number != axis.value(i - 1).parameter.number) continue;
       problem(axis.place, fmt::format("\"{}\" has the value {} twice (numbers of a range have twelve digits); give a "

@@ -146,6 +146,20 @@ TEST_F(Sources, AnInputThatHasChangedSinceTheCaseWasRenderedIsRefusedByName) {
                  {"dots.csv: has changed since case was rendered from it", "render the case again"});
 }
 
+TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
+  write("points.toml", with(with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""),
+                            "[64, 64]", "[64, 64]\nexposure = 1e4"));
+  Program program({"render", "points.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_);
+  program.wait_until_computed(0.8);  // the dots have been read by then
+  write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,-0.25\n");
+  Outcome const outcome = program.finish(60s);
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("dots.csv: has changed since it was read"), HasSubstr("nothing was written")));
+  EXPECT_FALSE(std::filesystem::exists(in("case")));
+}
+
 TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
   render("a", {"--set", "target.seed=8"});
   render("b", {"--set", "target.seed=9"});
