@@ -76,12 +76,12 @@ TEST_F(SilentMistakes, CoordinatesWithoutAUnitAndAFieldThatNobodySeesAreWarnedOf
 }
 
 TEST_F(SilentMistakes, ASpacingInMetresIsWarnedOf) {
-  write_plane("plane.h5", 16e-3, "m");
+  write_plane("plane.h5", 12e-3, "m");
   std::string const field =
       "kind = \"file\"\nfile = \"plane.h5\"\ndataset = \"density\"\nextrude = true\n"
-      "spacing_mm = [0.5e-3, 0.5e-3, 0.5e-3]";
+      "spacing_mm = [0.375e-3, 0.375e-3, 0.375e-3]";
   EXPECT_THAT(warnings(with_field(field)), Contains(HasSubstr("were its lengths in metres")));
-  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.5, 0.5, 0.5]"}), IsEmpty());
+  EXPECT_THAT(warnings(with_field(field), {"--set", "medium.field.spacing_mm=[0.375, 0.375, 0.375]"}), IsEmpty());
 }
 
 TEST_F(SilentMistakes, AFieldThatMovesNothingIsWarnedOf) {
