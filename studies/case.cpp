@@ -12,6 +12,7 @@
 #include "render/base/image_file.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
+#include "render/base/text_encoding.h"
 #include "render/base/units.h"
 #include "render/scene/field_coverage.h"
 #include "render/sensor/detector.h"

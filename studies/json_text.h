@@ -12,10 +12,4 @@ std::string json_text(Json const& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Whether a text is UTF-8: JSON and TOML hold no other.
-inline bool is_utf8(std::string const& text) {
-  nlohmann::json const json = text;
-  return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) == json;
-}
-
 }  // namespace gladstone

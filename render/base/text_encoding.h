@@ -5,7 +5,8 @@
 
 namespace gladstone {
 
-/// Whether bytes are well-formed UTF-8 (RFC 3629: no surrogates, no longer forms than needed).
+/// Whether bytes are well-formed UTF-8 (RFC 3629: no surrogates, no longer forms than needed): JSON and TOML hold no
+/// other.
 bool is_utf8(std::string_view bytes);
 
 /// The bytes of a text file as UTF-8, whatever they were: UTF-16 with a byte order mark, UTF-8 with or without one,
