@@ -42,6 +42,9 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
       table.number_or_word("max_displacement_px", {{}, "none"}, {"none"}, Range::positive(512.0)).number;
   settings.median_threshold = table.number("median_threshold", settings.median_threshold, Range::positive());
   settings.median_epsilon_px = table.number("median_epsilon_px", settings.median_epsilon_px, Range::positive());
+  settings.trusted_peak_ratio =
+      table.number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}}, {"none"}, Range::at_least(1.0))
+          .number;
   return settings;
 }
 

@@ -20,6 +20,9 @@ struct CorrelationSettings {
   std::optional<double> max_displacement_px;  ///< largest along either axis, (0, 512]; none: what the windows permit
   double median_threshold = 2.0;              ///< normalised median residual of a spurious vector
   double median_epsilon_px = 0.1;             ///< noise level in that residual [px]
+  /// Peak ratio from which a vector of the first pass may differ from its neighbours (is_trusted()); none: no vector
+  /// may
+  std::optional<double> trusted_peak_ratio = 2.0;
 };
 
 /// Reads the table [correlate]; problems are collected in its document.

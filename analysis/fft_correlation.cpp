@@ -147,7 +147,7 @@ class PairwiseCorrelation {
     PlaneView<float> const plane{values, x_.size, 2};
     PeakList<float> const found = find_peaks(plane, radius_);
     if (found.count == 0) {
-      result.outcome = WindowCorrelation::Outcome::no_signal;
+      result.outcome = WindowCorrelation::Outcome::no_peak;
       return;
     }
     result.outcome = WindowCorrelation::Outcome::measured;

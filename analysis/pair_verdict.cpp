@@ -32,14 +32,16 @@ struct Tally {
       if (!has_signal(field.reason[i])) continue;
       ++signal;
       uncorrelated += field.reason[i] == VectorReason::uncorrelated;
+      beyond += field.reason[i] == VectorReason::beyond_limit;
       ambiguous += field.ambiguous[i] != Ambiguity::none;
       doubtful += field.ambiguous[i] != Ambiguity::none || field.reason[i] != VectorReason::measured;
     }
   }
+  bool nothing_left() const { return uncorrelated + beyond == signal; }
   double part(std::size_t count) const {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
-  std::size_t signal = 0, uncorrelated = 0, ambiguous = 0, doubtful = 0;
+  std::size_t signal = 0, uncorrelated = 0, beyond = 0, ambiguous = 0, doubtful = 0;
 };
 
 bool same_bits(Image<double> const& a, Image<double> const& b) {
@@ -48,9 +50,11 @@ bool same_bits(Image<double> const& a, Image<double> const& b) {
   });
 }
 
-/// Whether every window's best peak is at no shift, up to what float leaves of it.
+/// Whether there are best peaks, and all are at no shift, up to what float leaves of it.
 bool stands_still(DisplacementField const& field) {
-  return std::none_of(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return length(d) > 1e-2; });
+  auto const still = std::count_if(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return length(d) <= 1e-2; });
+  auto const none = std::count_if(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return std::isnan(d.x); });
+  return still > 0 && still + none == static_cast<std::ptrdiff_t>(field.size());
 }
 
 /// A mean, and how many independent windows it is of.
@@ -79,20 +83,36 @@ Image<double> upside_down(Image<double> image) {
   return image;
 }
 
-std::string uncorrelated_text(Tally const& tally, int range) {
+/// How far a measurement looked, in words.
+struct Reach {
+  explicit Reach(CorrelationSettings const& settings) {
+    int const range = CorrelationSchedule(settings).search_radius_px(0);
+    bool const limited = settings.max_displacement_px && *settings.max_displacement_px <= range;
+    what = limited ? fmt::format("correlate.max_displacement_px = {:g}", *settings.max_displacement_px)
+                   : fmt::format("the search range of {} px", range);
+    remedy = limited ? "raise it" : "use a larger first window in correlate.window_px";
+  }
+  std::string what;
+  std::string remedy;  ///< what makes it longer
+};
+
+std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
   std::string const why = fmt::format(
-      "they agree no better than frames that have nothing in common: a shift beyond the search range of {} px, two "
-      "scenes, or noise alone",
-      range);
-  if (tally.uncorrelated == tally.signal)
-    return fmt::format(
-        "the frames do not correlate ({}); use a larger first window in correlate.window_px, or frames "
-        "that belong together",
-        why);
+      "they agree no better than frames that have nothing in common: a shift beyond {}, two scenes, or noise alone",
+      reach.what);
+  if (tally.nothing_left())
+    return fmt::format("the frames do not correlate ({}); {}, or give frames that belong together", why, reach.remedy);
   return fmt::format(
       "{:.0f} % of the windows do not correlate ({}), so that their vectors are invalid; use larger "
       "windows, or leave these vectors out",
       100.0 * tally.part(tally.uncorrelated), why);
+}
+
+std::string beyond_text(Tally const& tally, Reach const& reach) {
+  return fmt::format(
+      "{:.0f} % of the windows have no correlation peak within {} (displacements are larger, or these windows hold "
+      "noise), so that their vectors are invalid; {}, or leave these vectors out",
+      100.0 * tally.part(tally.beyond), reach.what, reach.remedy);
 }
 
 }  // namespace
@@ -122,6 +142,7 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
   double const correlated = static_cast<double>(signal.size() - uncorrelated.size());
   bool const hardly_any = correlated < least_correlated * static_cast<double>(signal.size());
   for (std::size_t const i : hardly_any ? signal : uncorrelated) {
+    if (field.reason[i] == VectorReason::beyond_limit) continue;
     field.displacement_px[i] = {nan, nan};
     field.status[i] = VectorStatus::invalid;
     field.reason[i] = VectorReason::uncorrelated;
@@ -130,7 +151,6 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings) {
-  int const range = CorrelationSchedule(settings).search_radius_px(0);
   if (stands_still(field) && same_bits(frames.reference(), frames.flow())) {
     field.warnings.emplace_back(
         "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
@@ -138,21 +158,24 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
   }
   Tally const found(field);
   if (found.part(found.doubtful) < suspicious) return;
-  std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings);
-  if (period) {
+  Reach const reach(settings);
+  if (std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings)) {
     if (found.part(found.ambiguous) >= worth_a_warning)
       field.warnings.push_back(fmt::format(
-          "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within the search range of {} "
-          "px: only a displacement below {:.2f} px can be trusted, a larger one comes back less by whole pitches; use "
-          "random dots, or set correlate.max_displacement_px below {:.2f} if no displacement is larger",
-          period->pitch_px, period->height, range, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
-    return;
+          "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within {}: only a displacement "
+          "below {:.2f} px can be trusted, a larger one comes back less by whole pitches; use random dots, or set "
+          "correlate.max_displacement_px below {:.2f} if no displacement is larger",
+          period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
+  } else {
+    // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
+    std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
+    leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
   }
-  // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
-  std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
-  leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
   Tally const left(field);
-  if (left.part(left.uncorrelated) >= worth_a_warning) field.warnings.push_back(uncorrelated_text(left, range));
+  bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
+  if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
+  if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
+    field.warnings.push_back(beyond_text(left, reach));
 }
 
 }  // namespace gladstone

@@ -63,6 +63,11 @@ class Autocorrelation {
   std::vector<std::complex<float>> values_, spectrum_;
 };
 
+/// Part of a window's autocorrelation at no shift that a pattern must reach one pixel beside it, else it is not seen.
+/// Noise, whose pixels have nothing in common, scatters by 1/window_px of it there (square root of the sum of w^8 over
+/// the sum of w^4 along both axes, w the Gaussian weights), and some thousand shifts reach five times that.
+double least_seen(int window_px) { return 8.0 / window_px; }
+
 /// Geometric mean of a peak's heights one pixel from its middle along either axis, on the Gaussian of its samples: that
 /// falls by the square root of what both samples beside the highest have fallen by together.
 /// @param fall_off of the plane that the weights cause, divided out
@@ -102,12 +107,15 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
         if (peak.x == 0 && peak.y == 0) continue;
         double const fall_off = x.autocorrelation(column, peak.x) * y.autocorrelation(row, peak.y) /
                                 (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
-        double const height = height_beside(plane, peak, fall_off);
-        if (!(height > 0.0) || height < nearly_as_high * main) continue;
+        double const whole = peak.height / fall_off / plane(0, 0);
+        double const beside =
+            main > least_seen(window) * plane(0, 0) ? height_beside(plane, peak, fall_off) / main : 0.0;
+        double const height = std::max(whole, beside);
+        if (height < nearly_as_high) continue;
         repeats = true;
         RefinedPeak<float> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
         double const pitch = std::hypot(at.x, at.y);
-        if (!period || pitch < period->pitch_px) period = {pitch, height / main};
+        if (!period || pitch < period->pitch_px) period = {pitch, height};
       }
       repeating += repeats;
     }

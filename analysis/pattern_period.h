@@ -17,6 +17,7 @@ struct PatternPeriod {
 /// 128 px, so that few dots do not match by chance. A window repeats where a side peak is nearly as high as the main
 /// one (nearly_as_high). Noise, which stands on the sample at no shift alone, is kept out by comparing them one pixel
 /// from their middles along the axes: at the samples of the main peak, on the Gaussian through those of the side peak.
+/// Points of one pixel have nothing there, and are compared at their middles.
 /// @return nothing where fewer than a quarter of the windows repeat within twice the first pass' search range: a shift
 ///         by less than that leads from one displacement within it to another
 std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);

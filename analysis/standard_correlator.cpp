@@ -45,7 +45,7 @@ class StandardCorrelator final : public Correlator {
       grid_before = grid;
       // what a pass adds to its predictor is validated, not the sum: there steep gradients are already taken off
       validate_vectors(vectors, grid.columns, schedule_.rule(pass));
-      for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i].displacement += predicted(i);
+      for (std::size_t i = 0; i < vectors.size(); ++i) add_predicted(vectors[i], predicted(i), schedule_.limit_px());
       if (schedule_.is_last(pass)) {
         std::vector<MeasuredVector> measured(windows.size());
         std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
@@ -66,7 +66,8 @@ class StandardCorrelator final : public Correlator {
 CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
     : windows_(settings.window_px),
       overlap_(settings.overlap),
-      last_rule_{settings.median_threshold, settings.median_epsilon_px},
+      last_rule_{settings.median_threshold, settings.median_epsilon_px,
+                 settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity())},
       weighting_(window_weighting(settings)),
       spline_degree_(settings.deformation == "cubic" ? 3 : 5),
       limit_px_(settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())) {
@@ -82,8 +83,10 @@ int CorrelationSchedule::search_radius_px(int pass) const {
 }
 
 ValidationRule CorrelationSchedule::rule(int pass) const {
-  if (is_last(pass)) return last_rule_;
-  return {last_rule_.threshold, std::max(last_rule_.epsilon_px, 0.5)};
+  ValidationRule rule = last_rule_;
+  if (!is_last(pass)) rule.epsilon_px = std::max(rule.epsilon_px, 0.5);
+  if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
+  return rule;
 }
 
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,

@@ -32,7 +32,8 @@ class CorrelationSchedule {
   /// Largest shift looked for along either axis.
   int search_radius_px(int pass) const;
   /// A predictor that is off by half a pixel does no harm, one that has lost a steep gradient does: only gross errors
-  /// are taken out between passes.
+  /// are taken out between passes. Only the first pass trusts windows against their neighbours: later ones look for
+  /// what is left over a few pixels far, where a chance peak has hardly room for rivals.
   ValidationRule rule(int pass) const;
   /// Largest displacement along either axis [px]; infinite where there is no limit but the windows'.
   double limit_px() const { return limit_px_; }
@@ -76,7 +77,8 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
     vector.status = VectorStatus::masked;
     vector.reason = VectorReason::masked;
   }
-  if (window.outcome != WindowCorrelation::Outcome::measured) return vector;
+  if (window.outcome == WindowCorrelation::Outcome::masked || window.outcome == WindowCorrelation::Outcome::no_signal)
+    return vector;
   vector.reason = VectorReason::beyond_limit;
   for (int k = 0; k < window.peaks; ++k) {
     Vec2d const whole = predictor + window.shift[k];
@@ -91,8 +93,20 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
     vector.displacement = window.shift[k];
     vector.raw = whole;
     vector.correlation = window.coefficient[k];
+    vector.peak_ratio = k == 0 ? window.peak_ratio : 0.0;
   }
   return vector;
+}
+
+/// Adds what a pass was deformed by to what it found. What replaced a vector was found elsewhere, with another
+/// predictor: where their sum is beyond the limit, it is taken out.
+GLADSTONE_HD inline void add_predicted(GridVector& vector, Vec2d predictor, double limit_px) {
+  using std::abs;
+  vector.displacement += predictor;
+  if (!is_sound(vector.status)) return;
+  if (!(abs(vector.displacement.x) > limit_px || abs(vector.displacement.y) > limit_px)) return;
+  vector.status = VectorStatus::invalid;
+  vector.reason = VectorReason::beyond_limit;
 }
 
 /// What a correlation tells of one vector; NaN where it is not known.

@@ -165,7 +165,7 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   write("/correlation", "1", "correlation coefficient of the peak that u_raw_px, v_raw_px is", correlation);
   write_codes("/reason",
               "0 as measured, 1 replaced by another peak, 2 replaced by the neighbours' median, 3 masked, 4 no signal, "
-              "5 spurious with too few sound neighbours, 6 beyond max_displacement_px, 7 uncorrelated",
+              "5 spurious with too few sound neighbours, 6 no peak in range, 7 uncorrelated",
               reason);
   write_codes("/ambiguous", "1 where another displacement fits (nearly) as well", ambiguous);
   file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));

@@ -15,7 +15,7 @@ namespace gladstone {
 
 /// What the correlation of one window gave.
 struct WindowCorrelation {
-  enum class Outcome { measured, no_signal, masked };
+  enum class Outcome { measured, no_signal, masked, no_peak };  ///< no_peak: none within the search range
   Outcome outcome = Outcome::no_signal;
   int peaks = 0;                 ///< candidates found, at most 3, in the order of PeakList
   std::array<Vec2d, 3> shift{};  ///< their positions between the pixels [px]

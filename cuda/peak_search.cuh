@@ -220,7 +220,7 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
 
 /// Writes what hangs on the heights in the plane alone.
 __device__ inline void write_outcome(int count, float const (&height)[3], double scale, WindowCorrelation& result) {
-  result.outcome = count > 0 ? WindowCorrelation::Outcome::measured : WindowCorrelation::Outcome::no_signal;
+  result.outcome = count > 0 ? WindowCorrelation::Outcome::measured : WindowCorrelation::Outcome::no_peak;
   result.peaks = count;
   result.peak_ratio = count > 0 ? peak_ratio(scale * height[0], count > 1 ? scale * height[1] : 0.0,
                                              count > 2 ? scale * height[2] : 0.0)

@@ -52,10 +52,11 @@ __global__ void __launch_bounds__(threads_of_rounds)
   }
 }
 
-__global__ void add_displacement(GridVector* vectors, InterrogationGrid grid, PredictorView predictor) {
+__global__ void add_displacement(GridVector* vectors, InterrogationGrid grid, PredictorView predictor,
+                                 double limit_px) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (i < static_cast<int>(grid.size()))
-    vectors[i].displacement += predictor.at(grid.centre(static_cast<std::size_t>(i)));
+    add_predicted(vectors[i], predictor.at(grid.centre(static_cast<std::size_t>(i))), limit_px);
 }
 
 __global__ void take_measured(WindowCorrelation const* windows, GridVector const* vectors, int size,
@@ -83,8 +84,9 @@ void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule
   check_launch("replace_spurious");
 }
 
-void add_predictor(GridVector* vectors, InterrogationGrid const& grid, PredictorView const& predictor) {
-  add_displacement<<<blocks(grid), threads>>>(vectors, grid, predictor);
+void add_predictor(GridVector* vectors, InterrogationGrid const& grid, PredictorView const& predictor,
+                   double limit_px) {
+  add_displacement<<<blocks(grid), threads>>>(vectors, grid, predictor, limit_px);
   check_launch("add_displacement");
 }
 

@@ -20,7 +20,7 @@ enum class VectorReason : int {
   masked = 3,         ///< half the window unknown
   no_signal = 4,      ///< invalid: nothing in the window to correlate
   no_neighbours = 5,  ///< invalid: disagreed with its neighbours, too few of which are sound to replace it
-  beyond_limit = 6,   ///< invalid: no peak within the largest displacement that was allowed
+  beyond_limit = 6,   ///< invalid: no peak within the search range, or the largest displacement that was allowed
   uncorrelated = 7,   ///< invalid: no better than what windows give that have nothing in common
 };
 

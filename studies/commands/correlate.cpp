@@ -85,7 +85,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
         field.ambiguous.size() - std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none);
     for (std::string const& warning : field.warnings) spdlog::warn("{}: {}", written, warning);
     bool const any_valid = counts[0] + counts[1] > 0;
-    if (!any_valid) {
+    if (!any_valid && field.warnings.empty()) {
       spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
                    written, field.size());
     }

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "analysis/standard_correlator.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
@@ -102,6 +105,129 @@ TEST(SinglePass, ExchangedImagesGiveTheOppositeVector) {
   DisplacementField const backward = correlator->correlate(pair.flow, pair.reference);
   for (std::size_t i = 0; i < forward.size(); ++i)
     EXPECT_LT(length(forward.displacement_px[i] + backward.displacement_px[i]), 1e-4);
+}
+
+/// A vortex' part of a wave along either axis, 1 px high.
+auto wave(double length_px) {
+  return [length_px](Vec2d p) {
+    return Vec2d{std::sin(2.0 * pi * p.y / length_px), std::sin(2.0 * pi * p.x / length_px)};
+  };
+}
+
+// Two windows a wave, four vectors: the median of a crest's neighbours is 0, which must not take its place. The window
+// itself averages: the Gaussian of 32 px leaves exp(-pi/2 (32/64)^2) = 0.68 of a wave of 64 px, so that no error is
+// above 0.32 sqrt(2) = 0.46 px but for noise and the peak's shape.
+TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
+  for (double const noise : {0.0, 0.05}) {
+    ParticlePair const pair = render_particle_pair({.noise = noise}, wave(64.0));
+    DisplacementField const field = make_correlator(with_windows({32}))->correlate(pair.reference, pair.flow);
+    Score const result = score(field, wave(64.0), 32.0);
+    EXPECT_LT(result.worst, 1.0);
+    EXPECT_LT(result.rms, 0.35);
+    auto const replaced = std::count(field.status.begin(), field.status.end(), VectorStatus::replaced);
+    EXPECT_LE(replaced, static_cast<std::ptrdiff_t>(field.size() / 100));
+
+    CorrelationSettings strict = with_windows({32});
+    strict.trusted_peak_ratio.reset();
+    DisplacementField const cut = make_correlator(strict)->correlate(pair.reference, pair.flow);
+    EXPECT_GT(std::count(cut.status.begin(), cut.status.end(), VectorStatus::replaced),
+              static_cast<std::ptrdiff_t>(cut.size() / 4))
+        << "the neighbours alone say otherwise";
+    EXPECT_EQ(std::memcmp(cut.raw_px.data(), field.raw_px.data(), cut.size() * sizeof(Vec2d)), 0);
+  }
+}
+
+// A chance peak within the 4 px that the last of three passes looks far has hardly room for a rival: with 5 % noise
+// trusting such windows would keep vectors 0.5 px off and more among those of 0.05 px.
+TEST(MultiPass, TrustsTheFirstPassAlone) {
+  CorrelationSettings const settings;
+  CorrelationSchedule const schedule(settings);
+  EXPECT_EQ(schedule.rule(0).trusted_ratio, 2.0);
+  EXPECT_EQ(schedule.rule(1).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(2).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(2).epsilon_px, settings.median_epsilon_px);
+}
+
+// What is measured is kept beside what replaces it.
+TEST(Correlator, KeepsTheRawVectorOfEveryWindow) {
+  auto const truth = constant(2.3, -0.2);
+  ParticlePair const pair = render_particle_pair({.particles_per_px = 6.0 / 1024.0, .noise = 0.1}, truth);
+  DisplacementField const field = make_correlator({})->correlate(pair.reference, pair.flow);
+  std::size_t replaced = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    bool const as_measured = field.reason[i] == VectorReason::measured;
+    EXPECT_EQ(as_measured, field.status[i] == VectorStatus::valid);
+    EXPECT_EQ(as_measured, field.counts(i) && field.raw_px[i] == field.displacement_px[i]) << i;
+    EXPECT_GT(field.correlation[i], 0.0);
+    EXPECT_LE(field.correlation[i], 1.0);
+    replaced += field.status[i] == VectorStatus::replaced;
+  }
+  EXPECT_GT(replaced, 0u);
+}
+
+// The square lattice matches itself at every whole pitch. Of all shifts that fit, the one nearest to none is taken: up
+// to 0.45 pitch along both axes it is the right one in every window, and each says that there are others.
+TEST(RegularDots, AreRightUpToNearlyHalfAPitch) {
+  for (double const pitch : {5.7, 7.155, 10.0, 13.3})
+    for (double const part : {0.07, 0.25, 0.45}) {
+      auto const truth = constant(part * pitch, -part * pitch);
+      ParticlePair const pair =
+          render_particle_pair({.columns = 128, .rows = 128, .noise = 0.02, .pitch_px = pitch}, truth);
+      for (std::vector<int> const& windows : {std::vector<int>{32}, {64, 32, 16}}) {
+        DisplacementField const field = make_correlator(with_windows(windows))->correlate(pair.reference, pair.flow);
+        Score const result = score(field, truth, 0.0, 128.0);
+        EXPECT_EQ(result.unknown, 0u);
+        EXPECT_LT(result.worst, 0.3) << pitch << ' ' << part << ' ' << windows.size() << " passes";
+        EXPECT_EQ(std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none), 0) << pitch;
+      }
+    }
+}
+
+// Beyond half a pitch an alias lies nearer. The vectors cannot know, but say so.
+TEST(RegularDots, AreAmbiguousBeyondHalfAPitch) {
+  ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128, .pitch_px = 7.155}, constant(4.3, 0.0));
+  DisplacementField const field = make_correlator({})->correlate(pair.reference, pair.flow);
+  EXPECT_EQ(std::count(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::none), 0);
+  EXPECT_LT(score(field, constant(4.3 - 7.155, 0.0), 0.0, 128.0).worst, 0.1);
+}
+
+TEST(MaxDisplacement, ChoosesAmongAliases) {
+  // 4.3 px is 0.6 pitch along x; only the alias at -2.855 px is within 3 px, and only 4.3 - 14.31 and so on beyond it
+  ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128, .pitch_px = 7.155}, constant(4.3, 0.0));
+  CorrelationSettings settings;
+  settings.max_displacement_px = 3.0;
+  DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    EXPECT_NEAR(field.displacement_px[i].x, 4.3 - 7.155, 0.1);
+    EXPECT_EQ(field.ambiguous[i], Ambiguity::none) << "one alone is allowed";
+  }
+}
+
+// Along either axis, the predictor of earlier passes included, in every pass.
+TEST(MaxDisplacement, IsHonouredByEveryVector) {
+  auto const truth = [](Vec2d p) { return Vec2d{0.04 * (p.x - 128.0), 3.0}; };  // -5.1 .. 5.1 px
+  ParticlePair const pair = render_particle_pair({}, truth);
+  CorrelationSettings settings;
+  settings.max_displacement_px = 3.6;
+  DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    Vec2d const raw = field.raw_px[i];
+    if (!std::isnan(raw.x)) {
+      EXPECT_LE(std::max(std::abs(raw.x), std::abs(raw.y)), 3.6);
+    }
+    if (field.counts(i)) {
+      EXPECT_LE(std::abs(field.displacement_px[i].x), 3.6);
+    }
+    double const expected = std::abs(truth(field.position_px[i]).x);
+    if (expected < 2.5) {
+      EXPECT_LT(length(field.displacement_px[i] - truth(field.position_px[i])), 0.2);
+    }
+    if (expected > 4.2) beyond += field.reason[i] == VectorReason::beyond_limit;
+  }
+  EXPECT_GT(beyond, 0u);
+  settings.max_displacement_px = 6.0;
+  EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).worst, 0.2);
 }
 
 // OpenPIV's default reaches 0.0083 px on such images; ours must do better, vectors at the image's border included.
@@ -294,6 +420,9 @@ TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {
   EXPECT_FALSE(document.has_problems());
   EXPECT_EQ(read.window_px, (std::vector<int>{64, 32, 16}));
   EXPECT_EQ(read.method, "scc");
+  EXPECT_FALSE(read.max_displacement_px);
+  EXPECT_EQ(read.trusted_peak_ratio, 2.0);
+  EXPECT_NE(document.resolved().find("max_displacement_px = \"none\""), std::string::npos);
   EXPECT_NE(document.resolved().find("window_px"), std::string::npos);
 }
 
@@ -301,7 +430,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   SetupDocument document = SetupDocument::from_text(
       "[correlate]\nwindow_px = [48, 24]\noverlap = 0.75\nmethod = \"scc\"\nsubpixel = \"gauss3\"\n"
       "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nmedian_threshold = 3\n"
-      "median_epsilon_px = 0.2\n",
+      "median_epsilon_px = 0.2\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n",
       "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
   document.finish();
@@ -312,6 +441,17 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   EXPECT_EQ(read.final_passes, 2);
   EXPECT_EQ(read.median_threshold, 3.0);
   EXPECT_EQ(read.median_epsilon_px, 0.2);
+  EXPECT_EQ(read.max_displacement_px, 7.5);
+  EXPECT_EQ(read.trusted_peak_ratio, 3.0);
+}
+
+TEST(CorrelationSettings, HaveWordsForNoLimit) {
+  SetupDocument document = SetupDocument::from_text(
+      "[correlate]\nmax_displacement_px = \"none\"\ntrusted_peak_ratio = \"none\"\n", "case.toml");
+  CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
+  document.finish();
+  EXPECT_FALSE(read.max_displacement_px);
+  EXPECT_FALSE(read.trusted_peak_ratio);
 }
 
 TEST(CorrelationSettings, RefusesWhatIsPlannedByNameAndWhatCannotBe) {
@@ -321,7 +461,15 @@ TEST(CorrelationSettings, RefusesWhatIsPlannedByNameAndWhatCannotBe) {
                                                         {"method = \"sc\"", "scc"},
                                                         {"window_px = [33]", "odd"},
                                                         {"window_px = [16, 32]", "large to small"},
-                                                        {"overlap = 0.99", "overlap"}}) {
+                                                        {"overlap = 0.99", "overlap"},
+                                                        {"max_displacement_px = 0", "greater than 0 and at most 512"},
+                                                        {"max_displacement_px = -3", "greater than 0"},
+                                                        {"max_displacement_px = 512.5", "at most 512"},
+                                                        {"max_displacement_px = nan", "nan"},
+                                                        {"max_displacement_px = inf", "finite"},
+                                                        {"max_displacement_px = \"all\"", "\"none\""},
+                                                        {"max_displacement_px = true", "number or \"none\""},
+                                                        {"trusted_peak_ratio = 0.9", "1"}}) {
     SetupDocument document = SetupDocument::from_text("[correlate]\n" + text + "\n", "case.toml");
     read_correlation_settings(document.root().table("correlate"));
     try {

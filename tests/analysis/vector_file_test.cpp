@@ -63,6 +63,10 @@ DisplacementField small_grid() {
       field.sigma_px.push_back({0.01, nan});
       field.peak_ratio.push_back(1.5 + column);
       field.status.push_back(static_cast<VectorStatus>((row * 3 + column) % 4));
+      field.raw_px.push_back({1.0 / 7.0 + column, row == 0 ? nan : 2.0});
+      field.correlation.push_back(0.9 - 0.1 * column);
+      field.reason.push_back(static_cast<VectorReason>(row * 3 + column + 2));
+      field.ambiguous.push_back(column == 1 ? Ambiguity::here : Ambiguity::none);
     }
   }
   field.columns = 3;
@@ -81,6 +85,11 @@ void expect_equal(DisplacementField const& a, DisplacementField const& b) {
     EXPECT_TRUE(std::isnan(b.sigma_px[i].y));
     EXPECT_EQ(a.peak_ratio[i], b.peak_ratio[i]);
     EXPECT_EQ(a.status[i], b.status[i]);
+    EXPECT_EQ(a.raw_px[i].x, b.raw_px[i].x);
+    EXPECT_TRUE(a.raw_px[i].y == b.raw_px[i].y || (std::isnan(a.raw_px[i].y) && std::isnan(b.raw_px[i].y)));
+    EXPECT_EQ(a.correlation[i], b.correlation[i]);
+    EXPECT_EQ(a.reason[i], b.reason[i]);
+    EXPECT_EQ(a.ambiguous[i], b.ambiguous[i]);
   }
 }
 
@@ -104,6 +113,40 @@ TEST_F(VectorFiles, Hdf5ComesBackExactly) {
   VectorFile const back = read_vectors(path("v.h5"));
   EXPECT_FALSE(back.foreign);
   expect_equal(small_grid(), back.field);
+}
+
+// Vectors that do not say how they came about are written as they are: measured, for all that is known.
+TEST_F(VectorFiles, VectorsWithoutAnOriginAreTheirOwnRawOnes) {
+  DisplacementField field = small_grid();
+  field.raw_px.clear();
+  field.correlation.clear();
+  field.reason.clear();
+  field.ambiguous.clear();
+  for (std::string const name : {"v.csv", "v.h5"}) {
+    write_vectors(path(name), field, origin());
+    DisplacementField const back = read_vectors(path(name)).field;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      EXPECT_EQ(back.raw_px[i], field.displacement_px[i]);
+      EXPECT_TRUE(std::isnan(back.correlation[i]));
+      EXPECT_EQ(back.reason[i], VectorReason::measured);
+      EXPECT_EQ(back.ambiguous[i], Ambiguity::none);
+    }
+  }
+}
+
+// Files know that a vector is ambiguous, not since when.
+TEST_F(VectorFiles, EveryAmbiguityIsWrittenAsOne) {
+  DisplacementField field = small_grid();
+  field.ambiguous[0] = Ambiguity::earlier;
+  write_vectors(path("v.h5"), field, origin());
+  EXPECT_EQ(Hdf5Reader(path("v.h5")).read_integers("/ambiguous"), (std::vector<std::int64_t>{1, 1, 0, 0, 1, 0}));
+}
+
+TEST_F(VectorFiles, WarningsAreKeptInHdf5) {
+  DisplacementField field = small_grid();
+  field.warnings = {"one", "two"};
+  write_vectors(path("v.h5"), field, origin());
+  EXPECT_EQ(Hdf5Reader(path("v.h5")).attribute("warnings"), "one\ntwo");
 }
 
 TEST_F(VectorFiles, OtherEndingsAreNotWritten) {
@@ -188,6 +231,10 @@ TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
   EXPECT_THAT(problem("x,y,u,v\n1,2,3,4\n\n1,2,3,4x\n"), AllOf(HasSubstr("bad.csv:4"), HasSubstr("v = \"4x\"")));
   EXPECT_THAT(problem("x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status\n1,2,3,4,nan,nan,nan,7\n"),
               AllOf(HasSubstr("bad.csv:2"), HasSubstr("status")));
+  EXPECT_THAT(
+      problem("x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,"
+              "ambiguous\n1,2,3,4,nan,nan,nan,0,3,4,0.5,8,0\n"),
+      AllOf(HasSubstr("bad.csv:2"), HasSubstr("reason = 8")));
   EXPECT_THROW(read_vectors(path("absent.csv")), DataError);
   EXPECT_THROW(read_vectors(path("absent.h5")), DataError);
 }

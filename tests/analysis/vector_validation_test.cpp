@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace gladstone {
 namespace {
@@ -60,6 +61,44 @@ TEST(NormalisedMedian, AcceptsTheRimOfASteepPlane) {
     grid[i].displacement = {1.5 * static_cast<double>(i / 10), -0.8 * static_cast<double>(i % 10)};
   validate_vectors(grid, 10, {});
   for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
+}
+
+// The crest of a wave of four grid steps: the median of its neighbours is 0.
+TEST(NormalisedMedian, KeepsACrestThatItsWindowSpeaksFor) {
+  auto const status_of = [](double height, double peak_ratio, Ambiguity ambiguous, double trusted_ratio) {
+    std::vector<GridVector> grid = smooth_grid(5, 5);
+    for (GridVector& vector : grid) vector.displacement = {};
+    grid[12].displacement = {height, 0.0};
+    grid[12].peak_ratio = peak_ratio;
+    grid[12].ambiguous = ambiguous;
+    ValidationRule rule;
+    rule.trusted_ratio = trusted_ratio;
+    validate_vectors(grid, 5, rule);
+    return grid[12].status;
+  };
+  EXPECT_EQ(status_of(1.0, 2.1, Ambiguity::none, 2.0), VectorStatus::valid);
+  EXPECT_EQ(status_of(1.0, 1.9, Ambiguity::none, 2.0), VectorStatus::replaced) << "chance has such peaks";
+  EXPECT_EQ(status_of(2.1, 9.0, Ambiguity::none, 2.0), VectorStatus::replaced) << "a speck on the window";
+  EXPECT_EQ(status_of(1.0, 9.0, Ambiguity::earlier, 2.0), VectorStatus::replaced) << "an alias";
+  EXPECT_EQ(status_of(1.0, 2.1, Ambiguity::none, 3.0), VectorStatus::replaced);
+  EXPECT_EQ(status_of(1.0, 1000.0, Ambiguity::none, std::numeric_limits<double>::infinity()), VectorStatus::replaced);
+}
+
+TEST(NormalisedMedian, SaysWhereAReplacementIsFrom) {
+  std::vector<GridVector> grid = smooth_grid(10, 6);
+  for (GridVector& vector : grid) {
+    vector.reason = VectorReason::measured;
+    vector.raw = vector.displacement;
+  }
+  Vec2d const truth = grid[33].displacement;
+  for (std::size_t const i : {33, 36}) grid[i].displacement = grid[i].raw = {9.0, 9.0};
+  grid[33].alternatives[0] = truth;
+  grid[33].alternative_count = 1;
+  validate_vectors(grid, 10, {});
+  EXPECT_EQ(grid[33].reason, VectorReason::other_peak);
+  EXPECT_EQ(grid[36].reason, VectorReason::neighbours);
+  EXPECT_EQ(grid[34].reason, VectorReason::measured);
+  for (std::size_t const i : {33, 36}) EXPECT_EQ(grid[i].raw, (Vec2d{9.0, 9.0})) << "as measured";
 }
 
 TEST(NormalisedMedian, LeavesVectorsWithoutNeighboursAlone) {

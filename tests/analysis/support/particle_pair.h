@@ -24,6 +24,7 @@ struct ParticleSettings {
   double particles_per_px = 20.0 / 1024.0;
   double noise = 0.0;  ///< standard deviation over the peak of the brightest particle
   std::uint64_t seed = 1;
+  double pitch_px = 0.0;  ///< of a square lattice of equal particles in their place; 0: at random, of any brightness
 };
 
 /// 8-bit images of Gaussian particles integrated over the pixels. Particles stand at -d/2 in the reference and +d/2 in
@@ -50,15 +51,23 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
       for (int i = std::max(0, column - half); i <= std::min(image.columns() - 1, column + half); ++i)
         image(i, j) += amplitude * x[i - column + half] * y[j - row + half];
   };
-  int const count =
-      static_cast<int>(settings.particles_per_px * (settings.columns + 2.0 * margin) * (settings.rows + 2.0 * margin));
-  for (int n = 0; n < count; ++n) {
-    double const x = uniform() * (settings.columns + 2.0 * margin) - margin - 0.5;
-    double const y = uniform() * (settings.rows + 2.0 * margin) - margin - 0.5;
-    double const amplitude = peak * (0.5 + 0.5 * uniform());
-    Vec2d const half_way = 0.5 * displacement({x, y});
-    draw(pair.reference, Vec2d{x, y} - half_way, amplitude);
-    draw(pair.flow, Vec2d{x, y} + half_way, amplitude);
+  auto const draw_in_both = [&](Vec2d at, double amplitude) {
+    Vec2d const half_way = 0.5 * displacement(at);
+    draw(pair.reference, at - half_way, amplitude);
+    draw(pair.flow, at + half_way, amplitude);
+  };
+  if (settings.pitch_px > 0.0) {
+    for (double y = -margin; y < settings.rows + margin; y += settings.pitch_px)
+      for (double x = -margin; x < settings.columns + margin; x += settings.pitch_px) draw_in_both({x, y}, peak);
+  } else {
+    int const count = static_cast<int>(settings.particles_per_px * (settings.columns + 2.0 * margin) *
+                                       (settings.rows + 2.0 * margin));
+    for (int n = 0; n < count; ++n) {
+      double const x = uniform() * (settings.columns + 2.0 * margin) - margin - 0.5;
+      double const y = uniform() * (settings.rows + 2.0 * margin) - margin - 0.5;
+      double const amplitude = peak * (0.5 + 0.5 * uniform());
+      draw_in_both({x, y}, amplitude);
+    }
   }
   for (Image<double>* image : {&pair.reference, &pair.flow})
     for (double& value : *image) {

@@ -1,0 +1,238 @@
+#include "analysis/pair_verdict.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "render/base/units.h"
+#include "tests/analysis/support/particle_pair.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::ParticlePair;
+using testing::ParticleSettings;
+using testing::render_particle_pair;
+
+auto everywhere(double u, double v) {
+  return [u, v](Vec2d) { return Vec2d{u, v}; };
+}
+
+/// What the user gets.
+DisplacementField judged(ParticlePair const& pair, CorrelationSettings const& settings = {}) {
+  auto const correlator = make_correlator(settings);
+  HostFrames const frames(pair.reference, pair.flow);
+  DisplacementField field = correlator->correlate_pair(frames);
+  judge_pair(field, frames, *correlator, settings);
+  return field;
+}
+
+CorrelationSettings within(double limit_px) {
+  CorrelationSettings settings;
+  settings.max_displacement_px = limit_px;
+  return settings;
+}
+
+std::size_t count(DisplacementField const& field, VectorReason reason) {
+  return static_cast<std::size_t>(std::count(field.reason.begin(), field.reason.end(), reason));
+}
+
+std::size_t counting(DisplacementField const& field) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) number += field.counts(i);
+  return number;
+}
+
+ParticlePair two_scenes(ParticleSettings settings) {
+  ParticlePair pair = render_particle_pair(settings, everywhere(0.0, 0.0));
+  settings.seed += 100;
+  pair.flow = render_particle_pair(settings, everywhere(0.0, 0.0)).flow;
+  return pair;
+}
+
+ParticlePair noise_alone(int pixels) {
+  ParticlePair pair{Image<double>(pixels, pixels, 0.0), Image<double>(pixels, pixels, 0.0)};
+  std::mt19937 bits(5);
+  for (Image<double>* image : {&pair.reference, &pair.flow})
+    for (double& value : *image) value = static_cast<double>(bits() % 256);
+  return pair;
+}
+
+// The first pass looks 32 px far.
+TEST(PairVerdict, TellsFramesThatDoNotCorrelate) {
+  std::vector<ParticlePair> const pairs{
+      render_particle_pair({.columns = 200, .rows = 200}, everywhere(40.0, 0.0)),
+      render_particle_pair({.columns = 200, .rows = 200, .noise = 0.05, .seed = 3}, everywhere(0.0, -40.0)),
+      render_particle_pair({.columns = 200, .rows = 200, .seed = 4}, everywhere(36.0, 36.0)),
+      two_scenes({.columns = 200, .rows = 200}),
+      two_scenes({.columns = 80, .rows = 80}),
+      two_scenes({.columns = 200, .rows = 200, .particles_per_px = 5.0 / 1024.0}),
+      noise_alone(200)};
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    DisplacementField const field = judged(pairs[k]);
+    EXPECT_EQ(counting(field), 0u) << k;
+    EXPECT_GT(count(field, VectorReason::uncorrelated), field.size() / 2) << k;
+    EXPECT_THAT(field.warnings, ElementsAre(HasSubstr("do not correlate"))) << k;
+    for (std::size_t i = 0; i < field.size(); ++i) EXPECT_TRUE(std::isnan(field.displacement_px[i].x));
+  }
+}
+
+TEST(PairVerdict, SaysNothingOfFramesThatCorrelate) {
+  auto const sine = [](Vec2d p) { return Vec2d{std::sin(2.0 * pi * p.y / 64.0), std::sin(2.0 * pi * p.x / 64.0)}; };
+  std::vector<ParticlePair> const pairs{
+      render_particle_pair({.columns = 200, .rows = 200}, everywhere(0.3, -0.2)),
+      render_particle_pair({.columns = 200, .rows = 200, .noise = 0.05}, everywhere(0.02, 0.0)),
+      render_particle_pair({.columns = 200, .rows = 200, .noise = 0.05}, everywhere(0.0, 0.0)),
+      render_particle_pair({.columns = 200, .rows = 200}, everywhere(20.0, 3.0)),
+      render_particle_pair({.columns = 64, .rows = 64, .noise = 0.05}, everywhere(1.3, -0.2)),
+      render_particle_pair({.columns = 96, .rows = 96, .noise = 0.05}, everywhere(12.3, -0.2)),
+      render_particle_pair({.columns = 200, .rows = 200, .noise = 0.05}, sine)};
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    DisplacementField const field = judged(pairs[k]);
+    EXPECT_THAT(field.warnings, IsEmpty()) << k;
+    EXPECT_EQ(count(field, VectorReason::uncorrelated), 0u) << k;
+    EXPECT_EQ(counting(field) + count(field, VectorReason::masked), field.size()) << k;
+  }
+}
+
+// Few dots in much noise: one vector in three is replaced, which is looked into; but what is left is more than chance.
+TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
+  DisplacementField const field = judged(render_particle_pair(
+      {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2)));
+  EXPECT_GT(count(field, VectorReason::neighbours) + count(field, VectorReason::other_peak), field.size() / 20);
+  EXPECT_LT(count(field, VectorReason::uncorrelated), field.size() / 10);
+  EXPECT_THAT(field.warnings, IsEmpty());
+}
+
+// Left half 0.4 px, right half 45 px: windows farther than their reach from the middle are either right or left out.
+TEST(PairVerdict, LeavesOutTheHalfThatDoesNotCorrelate) {
+  ParticlePair pair = render_particle_pair({}, everywhere(0.4, 0.0));
+  ParticlePair const other = render_particle_pair({.seed = 2}, everywhere(45.0, 0.0));
+  for (int j = 0; j < 256; ++j)
+    for (int i = 128; i < 256; ++i) {
+      pair.reference(i, j) = other.reference(i, j);
+      pair.flow(i, j) = other.flow(i, j);
+    }
+  DisplacementField const field = judged(pair);
+  EXPECT_THAT(field.warnings, ElementsAre(HasSubstr("% of the windows do not correlate")));
+  std::size_t right_half = 0, left_out = 0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field.position_px[i].x < 128.0 - 32.0) {
+      EXPECT_NEAR(field.displacement_px[i].x, 0.4, 0.3) << i;
+    }
+    if (field.position_px[i].x < 128.0 + 48.0) continue;
+    ++right_half;
+    left_out += !field.counts(i);
+  }
+  // a mean of windows is above chance by two deviations once in 44; neighbours have most of theirs in common
+  EXPECT_GT(left_out, right_half * 9 / 10);
+}
+
+TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
+  ParticlePair pair = render_particle_pair({.columns = 128, .rows = 128, .noise = 0.05}, everywhere(0.3, 0.0));
+  pair.flow = pair.reference;
+  EXPECT_THAT(judged(pair).warnings, ElementsAre(HasSubstr("same picture, bit for bit")));
+  pair.flow(60, 60) += 1.0;
+  EXPECT_THAT(judged(pair).warnings, IsEmpty()) << "another picture: a small real displacement looks like this";
+}
+
+TEST(PairVerdict, SaysNoDisplacementOfPicturesWithoutASignal) {
+  ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
+  EXPECT_THAT(judged(flat).warnings, IsEmpty());
+}
+
+// 0.3 pitch; every alias within 32 px matches as well.
+TEST(PairVerdict, WarnsOfAPatternThatRepeats) {
+  ParticlePair const pair = render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0));
+  DisplacementField const unbounded = judged(pair);
+  EXPECT_THAT(unbounded.warnings,
+              ElementsAre(AllOf(HasSubstr("the pattern repeats every 8.3"), HasSubstr("range of 32 px"),
+                                HasSubstr("max_displacement_px below 4.1"))));
+  EXPECT_EQ(counting(unbounded), unbounded.size()) << "it is said, not taken away";
+  DisplacementField const bounded = judged(pair, within(4.1));
+  EXPECT_THAT(bounded.warnings, IsEmpty()) << "no other displacement is within the limit";
+  EXPECT_EQ(std::count(bounded.ambiguous.begin(), bounded.ambiguous.end(), Ambiguity::none),
+            static_cast<std::ptrdiff_t>(bounded.size()));
+}
+
+// 6 px where 4 are allowed.
+TEST(PairVerdict, NamesTheLimitThatLeavesNothing) {
+  DisplacementField const regular = judged(render_particle_pair({.pitch_px = 12.5}, everywhere(6.0, 0.0)), within(4.0));
+  EXPECT_EQ(counting(regular), 0u);
+  EXPECT_EQ(count(regular, VectorReason::beyond_limit), regular.size());
+  EXPECT_THAT(regular.warnings, ElementsAre(AllOf(HasSubstr("100 % of the windows have no correlation peak within"),
+                                                  HasSubstr("correlate.max_displacement_px = 4"))));
+  DisplacementField const random = judged(render_particle_pair({}, everywhere(6.0, 0.0)), within(4.0));
+  EXPECT_EQ(counting(random), 0u);
+  ASSERT_FALSE(random.warnings.empty());
+  EXPECT_THAT(random.warnings[0],
+              AllOf(HasSubstr("do not correlate"), HasSubstr("max_displacement_px = 4"), HasSubstr("raise it")));
+}
+
+/// A grid of 10 x 10 windows of 32 px that share nothing, of that correlation.
+DisplacementField with_correlation(double mean, double scatter) {
+  DisplacementField field;
+  field.columns = field.rows = 10;
+  for (int i = 0; i < 100; ++i) {
+    field.position_px.push_back({15.5 + 32.0 * (i % 10), 15.5 + 32.0 * (i / 10)});
+    field.displacement_px.push_back({1.0, 2.0});
+    field.correlation.push_back(mean + (i % 2 == 0 ? scatter : -scatter));
+    field.reason.push_back(VectorReason::measured);
+    field.status.push_back(VectorStatus::valid);
+  }
+  return field;
+}
+
+CorrelationSettings windows_of_32() {
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  settings.overlap = 0.0;
+  return settings;
+}
+
+// Chance: 0.3 +- 0.1. Of 25 windows about a place the mean scatters by 0.02, at a corner, of 9, by 0.033; with that of
+// all 100, 0.01, two deviations are 0.045 and 0.07.
+TEST(Chance, IsWhatMeansOfFramesWithNothingInCommonReach) {
+  DisplacementField const chance = with_correlation(0.3, 0.1);
+  for (auto const& [mean, left_out] : {std::pair{0.30, 100u}, {0.34, 100u}, {0.39, 0u}, {0.90, 0u}}) {
+    DisplacementField field = with_correlation(mean, 0.0);
+    leave_out_chance(field, chance, windows_of_32());
+    EXPECT_EQ(count(field, VectorReason::uncorrelated), left_out) << mean;
+    EXPECT_EQ(counting(field), 100u - left_out) << mean;
+  }
+}
+
+// A corner of 4 x 4 good windows is less than a quarter of them: chance finds such a place, too.
+TEST(Chance, TakesAllWhereHardlyAnyIsBetter) {
+  for (auto const& [good, kept] : {std::pair{4, 0u}, {7, 49u}}) {
+    DisplacementField field = with_correlation(0.1, 0.0);
+    for (int j = 0; j < good; ++j)
+      for (int i = 0; i < good; ++i) field.correlation[static_cast<std::size_t>(10 * j + i)] = 0.9;
+    leave_out_chance(field, with_correlation(0.3, 0.1), windows_of_32());
+    EXPECT_GE(counting(field), kept) << good;
+    EXPECT_LE(counting(field), kept * 2) << "windows beside the good ones have them within reach";
+  }
+}
+
+TEST(Chance, LeavesOtherReasonsAlone) {
+  DisplacementField field = with_correlation(0.3, 0.0);
+  std::vector<VectorReason> const reasons{VectorReason::masked, VectorReason::no_signal, VectorReason::beyond_limit};
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    field.reason[i] = reasons[i];
+    field.correlation[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  leave_out_chance(field, with_correlation(0.3, 0.1), windows_of_32());
+  for (std::size_t i = 0; i < reasons.size(); ++i) EXPECT_EQ(field.reason[i], reasons[i]);
+  EXPECT_EQ(count(field, VectorReason::uncorrelated), 97u);
+}
+
+}  // namespace
+}  // namespace gladstone
