@@ -30,9 +30,10 @@ class Sources : public Workplace {
     return program;
   }
   /// A correlation or comparison of seconds, and while it goes on another rendering into the same case.
-  Outcome rendered_under(std::vector<std::string> arguments, std::string const& partial) const {
+  /// @param seconds of computing after which everything has been read
+  Outcome rendered_under(std::vector<std::string> arguments, std::string const& partial, double seconds) const {
     auto const program = start(std::move(arguments), partial);
-    program->wait_until_computed(0.4);  // everything has been read by then
+    program->wait_until_computed(seconds);
     program->send(SIGSTOP);
     render("case", {"--set", "target.seed=8"}, "large.toml");
     program->send(SIGCONT);
@@ -74,7 +75,7 @@ TEST_F(Sources, EqualContentGivesEqualHashes) {
 TEST_F(Sources, FramesThatAreReplacedWhileTheyAreCorrelatedGiveNoVectors) {
   write_large_setup();
   render("case", {}, "large.toml");
-  Outcome const outcome = rendered_under({"correlate", "case", "--threads", "1"}, ".vectors.h5.partial-");
+  Outcome const outcome = rendered_under({"correlate", "case", "--threads", "1"}, ".vectors.h5.partial-", 0.5);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("case/"), HasSubstr("has changed since it was read"),
                                  HasSubstr("run gladstone correlate case again")));
@@ -88,7 +89,7 @@ TEST_F(Sources, ACaseThatIsReplacedWhileItIsComparedGivesNoErrors) {
   render("case", {}, "large.toml");
   succeed({"correlate", "case"});
   Outcome const outcome =
-      rendered_under({"compare", "case", "--no-figures", "--threads", "1"}, ".errors.json.partial-");
+      rendered_under({"compare", "case", "--no-figures", "--threads", "1"}, ".errors.json.partial-", 1.2);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("has changed since it was read"));
   EXPECT_FALSE(std::filesystem::exists(in("case/errors.json")));
