@@ -369,6 +369,7 @@ TEST_F(Sweeps, ACaseThatLackedMemoryIsTriedOnceByEveryRunUntilThereIsEnough) {
 
 // What check_memory refuses before it is allocated lacks memory too: 10^11 px take 3.6 TB.
 TEST_F(Sweeps, APictureThatNoMachineHoldsLacksMemoryAndStopsNothing) {
+  write("setup.toml", with(read("setup.toml"), "pixel_pitch_um = 10.0", "pixel_pitch_um = 1.0"));
   write("study.toml", "base = \"setup.toml\"\n[axes]\n\"camera.pixels\" = [[64, 64], [48, 48]]\n");
   plan("run");
   // planning would have refused it on this machine
