@@ -57,7 +57,7 @@ void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) 
   std::size_t differing = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     EXPECT_EQ(field.position_px[i], expected.position_px[i]);
-    if (field.status[i] != expected.status[i]) {
+    if (field.status[i] != expected.status[i] || field.reason[i] != expected.reason[i]) {
       ++differing;
       continue;
     }
@@ -75,6 +75,15 @@ void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) 
 TEST_F(CudaCorrelation, OfTheDefaultPassesIsThatOfTheCpu) { expect_same({}, smooth_pair(512, 512)); }
 
 TEST_F(CudaCorrelation, OfNoisyImagesIsThatOfTheCpu) { expect_same({}, smooth_pair(500, 390, 0.1)); }
+
+// 0.7 to 2.7 px along x: vectors beyond the limit, and replacements that are.
+TEST_F(CudaCorrelation, WithinALimitIsThatOfTheCpu) {
+  CorrelationSettings settings;
+  settings.max_displacement_px = 1.8;
+  expect_same(settings, smooth_pair(512, 512));
+  settings.window_px = {32};
+  expect_same(settings, smooth_pair(512, 512, 0.05));
+}
 
 TEST_F(CudaCorrelation, WithUniformWindowsAndCubicSplinesIsThatOfTheCpu) {
   CorrelationSettings settings;
