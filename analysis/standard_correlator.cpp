@@ -43,9 +43,7 @@ class StandardCorrelator final : public Correlator {
       std::transform(vectors.begin(), vectors.end(), ambiguous.begin(),
                      [](GridVector const& v) { return v.ambiguous != Ambiguity::none; });
       grid_before = grid;
-      // what a pass adds to its predictor is validated, not the sum: there steep gradients are already taken off
       validate_vectors(vectors, grid.columns, schedule_.rule(pass));
-      for (std::size_t i = 0; i < vectors.size(); ++i) add_predicted(vectors[i], predicted(i), schedule_.limit_px());
       if (schedule_.is_last(pass)) {
         std::vector<MeasuredVector> measured(windows.size());
         std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
@@ -67,19 +65,19 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
     : windows_(settings.window_px),
       overlap_(settings.overlap),
       last_rule_{settings.median_threshold, settings.median_epsilon_px,
-                 settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity())},
+                 settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity()),
+                 settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())},
       weighting_(window_weighting(settings)),
-      spline_degree_(settings.deformation == "cubic" ? 3 : 5),
-      limit_px_(settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())) {
+      spline_degree_(settings.deformation == "cubic" ? 3 : 5) {
   GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
   windows_.insert(windows_.end(), static_cast<std::size_t>(settings.final_passes - 1), settings.window_px.back());
 }
 
 int CorrelationSchedule::search_radius_px(int pass) const {
   int const widest = windows_[pass] / (pass == 0 ? 2 : 4);
-  if (pass > 0 || limit_px_ >= widest) return widest;
+  if (pass > 0 || limit_px() >= widest) return widest;
   // CUDA's kernels search blocks of four; what lies beyond the limit grid_vector() leaves out
-  return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px_ / 4.0)));
+  return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px() / 4.0)));
 }
 
 ValidationRule CorrelationSchedule::rule(int pass) const {

@@ -36,7 +36,7 @@ class CorrelationSchedule {
   /// what is left over a few pixels far, where a chance peak has hardly room for rivals.
   ValidationRule rule(int pass) const;
   /// Largest displacement along either axis [px]; infinite where there is no limit but the windows'.
-  double limit_px() const { return limit_px_; }
+  double limit_px() const { return last_rule_.limit_px; }
   WindowWeighting weighting() const { return weighting_; }
   int spline_degree() const { return spline_degree_; }
 
@@ -46,7 +46,6 @@ class CorrelationSchedule {
   ValidationRule last_rule_;
   WindowWeighting weighting_;
   int spline_degree_;
-  double limit_px_;
 };
 
 /// Checks that a pair of images suits the settings. @throws DataError
@@ -68,9 +67,9 @@ struct AmbiguousPlaces {
 /// @param ambiguous whether the pass before was, here
 GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2d predictor, double limit_px,
                                            bool ambiguous) {
-  using std::abs;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   GridVector vector;
+  vector.predictor = predictor;
   vector.raw = {nan, nan};
   if (ambiguous) vector.ambiguous = Ambiguity::earlier;
   if (window.outcome == WindowCorrelation::Outcome::masked) {
@@ -82,31 +81,19 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
   vector.reason = VectorReason::beyond_limit;
   for (int k = 0; k < window.peaks; ++k) {
     Vec2d const whole = predictor + window.shift[k];
-    if (abs(whole.x) > limit_px || abs(whole.y) > limit_px) continue;
+    if (!is_within(whole, limit_px)) continue;
     if (vector.status == VectorStatus::valid) {
-      vector.alternatives[vector.alternative_count++] = window.shift[k];
+      vector.alternatives[vector.alternative_count++] = whole;
       if (window.coefficient[k] >= nearly_as_high * vector.correlation) vector.ambiguous = Ambiguity::here;
       continue;
     }
     vector.status = VectorStatus::valid;
     vector.reason = VectorReason::measured;
-    vector.displacement = window.shift[k];
-    vector.raw = whole;
+    vector.displacement = vector.raw = whole;
     vector.correlation = window.coefficient[k];
     vector.peak_ratio = k == 0 ? window.peak_ratio : 0.0;
   }
   return vector;
-}
-
-/// Adds what a pass was deformed by to what it found. What replaced a vector was found elsewhere, with another
-/// predictor: where their sum is beyond the limit, it is taken out.
-GLADSTONE_HD inline void add_predicted(GridVector& vector, Vec2d predictor, double limit_px) {
-  using std::abs;
-  vector.displacement += predictor;
-  if (!is_sound(vector.status)) return;
-  if (!(abs(vector.displacement.x) > limit_px || abs(vector.displacement.y) > limit_px)) return;
-  vector.status = VectorStatus::invalid;
-  vector.reason = VectorReason::beyond_limit;
 }
 
 /// What a correlation tells of one vector; NaN where it is not known.

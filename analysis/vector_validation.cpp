@@ -25,7 +25,7 @@ void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule
       else
         left.push_back(i);
     }
-    for (auto const& [i, found] : replaced) replace(vectors[i], found);
+    for (auto const& [i, found] : replaced) replace(vectors[i], found, rule);
     if (replaced.empty()) break;
     spurious = std::move(left);
   }

@@ -66,9 +66,10 @@ GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& n
 
 /// One vector of a grid under validation.
 struct GridVector {
-  Vec2d displacement;                   ///< [px]; means nothing where the status is masked or invalid
+  Vec2d displacement;                   ///< predictor included [px]; means nothing where masked or invalid
+  Vec2d predictor;                      ///< that the pass was deformed by, at the window's centre [px]
   Vec2d raw;                            ///< as measured, predictor included [px]; NaN where nothing was
-  std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks
+  std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks, predictor included
   int alternative_count = 0;
   double correlation = 0.0;  ///< coefficient of the peak that `raw` is [1]
   double peak_ratio = 0.0;   ///< its height over that of the next peak; 0 where it is not the highest
@@ -84,12 +85,18 @@ struct ValidationRule {
   double threshold = 2.0;      ///< of the normalised median residual
   double epsilon_px = 0.1;     ///< its noise level
   double trusted_ratio = 2.0;  ///< peak ratio from which a window is trusted against its neighbours
+  double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
 };
 
 /// Most by which a trusted window may differ from its neighbours' median [px]. Windows that overlap share dots: did
 /// their displacements differ by more than a dot's size, 2 to 4 px, the dots of either would not agree on one peak.
 /// What differs by more and has one clear peak is something else: a speck on the window, a reflection.
 constexpr double most_trusted_px = 2.0;
+
+GLADSTONE_HD inline bool is_within(Vec2d displacement, double limit_px) {
+  using std::abs;
+  return abs(displacement.x) <= limit_px && abs(displacement.y) <= limit_px;
+}
 
 /// The neighbours of vector i of a grid for which usable(index) holds, in reading order.
 /// @param displacement of a vector by its index
@@ -108,13 +115,6 @@ GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Disp
       result.append(displacement(k));
     }
   return result;
-}
-
-template <class Displacement, class Usable>
-GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Displacement const& displacement,
-                                              Usable const& usable) {
-  Neighbours<double> offset;
-  return neighbours_of(i, columns, rows, displacement, usable, offset);
 }
 
 /// The neighbours less the slopes of the plane that fits them best (least squares); as they are where all lie in one
@@ -160,22 +160,52 @@ GLADSTONE_HD inline bool is_sound(VectorStatus status) {
 GLADSTONE_HD inline bool is_trusted(GridVector const& vector, Neighbours<double> const& neighbours,
                                     ValidationRule const& rule) {
   return vector.peak_ratio >= rule.trusted_ratio && vector.ambiguous == Ambiguity::none &&
-         length(vector.displacement - neighbours.median()) <= most_trusted_px;
+         length(vector.displacement - vector.predictor - neighbours.median()) <= most_trusted_px;
+}
+
+/// A vector's usable neighbours, as what their pass added to its predictor and as displacements.
+struct Surroundings {
+  Neighbours<double> offset;  ///< on the grid; filled while the next is made
+  Neighbours<double> increment;
+  Neighbours<double> displacement;  ///< only where some are missing
+
+  template <class Usable>
+  GLADSTONE_HD Surroundings(GridVector const* vectors, int i, int columns, int rows, Usable const& usable)
+      : increment(neighbours_of(
+            i, columns, rows, [&](int k) { return vectors[k].displacement - vectors[k].predictor; }, usable, offset)) {
+    if (is_whole()) return;
+    Neighbours<double> again;
+    displacement = neighbours_of(
+        i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, again);
+  }
+
+  GLADSTONE_HD bool is_whole() const { return increment.count == Neighbours<double>::capacity; }
+};
+
+/// Whether a displacement agrees with those around it: what the pass added does. Where neighbours are missing (at the
+/// rim), their median is off by the local gradient, and the predictor is continued from further inside: there it also
+/// agrees that agrees with the neighbours' displacements, or lies on the plane of either.
+GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surroundings const& around,
+                                ValidationRule const& rule) {
+  auto const is_near = [&](Vec2d value, Neighbours<double> const& neighbours) {
+    return normalised_median_residual(value, neighbours, rule.epsilon_px) <= rule.threshold;
+  };
+  Vec2d const increment = displacement - predictor;
+  if (is_near(increment, around.increment)) return true;
+  return !around.is_whole() && (is_near(displacement, around.displacement) ||
+                                is_near(increment, without_slope(around.increment, around.offset)) ||
+                                is_near(displacement, without_slope(around.displacement, around.offset)));
 }
 
 /// Whether vector i is valid but does not agree with its valid neighbours (validate_vectors).
 GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
                                      ValidationRule const& rule) {
-  if (vectors[i].status != VectorStatus::valid) return false;
-  Neighbours<double> offset;
-  Neighbours<double> const around = neighbours_of(
-      i, columns, rows, [&](int k) { return vectors[k].displacement; },
-      [&](int k) { return vectors[k].status == VectorStatus::valid; }, offset);
-  auto const agrees = [&](Neighbours<double> const& neighbours) {
-    return normalised_median_residual(vectors[i].displacement, neighbours, rule.epsilon_px) <= rule.threshold;
-  };
-  if (around.count < fewest_neighbours || agrees(around) || is_trusted(vectors[i], around, rule)) return false;
-  return !(around.count < Neighbours<double>::capacity && agrees(without_slope(around, offset)));
+  GridVector const& vector = vectors[i];
+  if (vector.status != VectorStatus::valid) return false;
+  Surroundings const around(vectors, i, columns, rows,
+                            [&](int k) { return vectors[k].status == VectorStatus::valid; });
+  return around.increment.count >= fewest_neighbours &&
+         !agrees(vector.displacement, vector.predictor, around, rule) && !is_trusted(vector, around.increment, rule);
 }
 
 /// What a spurious vector is replaced by, and where it is from.
@@ -187,33 +217,36 @@ struct VectorReplacement {
 /// Finds what replaces the spurious vector i. @return false where too few neighbours are sound
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, VectorReplacement& found) {
-  Neighbours<double> const around = neighbours_of(
-      i, columns, rows, [&](int k) { return vectors[k].displacement; },
-      [&](int k) { return is_sound(vectors[k].status); });
-  if (around.count < fewest_neighbours) return false;
-  found = {around.median(), VectorReason::neighbours};
-  for (int k = vectors[i].alternative_count - 1; k >= 0; --k)
-    if (normalised_median_residual(vectors[i].alternatives[k], around, rule.epsilon_px) <= rule.threshold)
-      found = {vectors[i].alternatives[k], VectorReason::other_peak};
+  GridVector const& vector = vectors[i];
+  Surroundings const around(vectors, i, columns, rows, [&](int k) { return is_sound(vectors[k].status); });
+  if (around.increment.count < fewest_neighbours) return false;
+  found = {around.is_whole() ? vector.predictor + around.increment.median()
+                             : without_slope(around.displacement, around.offset).median(),
+           VectorReason::neighbours};
+  for (int k = vector.alternative_count - 1; k >= 0; --k)
+    if (agrees(vector.alternatives[k], vector.predictor, around, rule))
+      found = {vector.alternatives[k], VectorReason::other_peak};
   return true;
 }
 
-/// Takes a spurious vector out, and puts what replaces it in its place.
+/// Takes a spurious vector out, and puts what replaces it in its place. The limit binds replacements, too.
 GLADSTONE_HD inline void take_out(GridVector& vector) {
   vector.status = VectorStatus::invalid;
   vector.reason = VectorReason::no_neighbours;
 }
-GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by) {
+GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by, ValidationRule const& rule) {
+  bool const allowed = is_within(by.value, rule.limit_px);
   vector.displacement = by.value;
-  vector.status = VectorStatus::replaced;
-  vector.reason = by.reason;
+  vector.status = allowed ? VectorStatus::replaced : VectorStatus::invalid;
+  vector.reason = allowed ? by.reason : VectorReason::beyond_limit;
 }
 
 /// Finds what fills the unknown node i from the known around it. @return false where there is none
 template <class Known>
 GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
+  Neighbours<double> offset;
   Neighbours<double> const around = neighbours_of(
-      i, columns, rows, [&](int k) { return nodes[k]; }, known);
+      i, columns, rows, [&](int k) { return nodes[k]; }, known, offset);
   if (around.count == 0) return false;
   value = around.median();
   return true;
@@ -226,10 +259,11 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after) {
 
 /// Finds spurious vectors among the valid ones of a grid, row by row, and replaces them: by the next correlation peak
 /// that agrees with the sound neighbours, else by their median (status replaced); where too few neighbours are sound,
-/// invalid. A vector with fewer than three neighbours is left as it is, and so is one whose window is_trusted(): where
-/// structures are as fine as the grid, the median cuts their crests off. Where neighbours are missing (at the rim),
-/// their median is off by the local gradient; there a vector also passes that agrees once the neighbours' plane is
-/// subtracted. The result does not depend on any order.
+/// or the median is beyond the limit, invalid. What is judged is what a pass adds to its predictor: there steep
+/// gradients are already taken off; at the rim, where the predictor is continued from further inside, also the sum
+/// (agrees()), and the median there is that of the displacements less their plane. A vector with fewer than three
+/// neighbours is left as it is, and so is one whose window is_trusted(): where structures are as fine as the grid, the
+/// median cuts their crests off. The result does not depend on any order.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Displacement at every node, for a predictor: masked and invalid ones are filled from their neighbours' medians, from

@@ -121,8 +121,6 @@ void take_vectors(WindowCorrelation const* windows, GridVector* vectors, Interro
 /// Validates the vectors of a pass. @param list, count scratch: a place for every vector
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count);
-/// Adds to every vector what its pass was deformed by.
-void add_predictor(GridVector* vectors, InterrogationGrid const& grid, PredictorView const& predictor, double limit_px);
 /// What the last pass tells of every vector.
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,
             MeasuredVector* measured);

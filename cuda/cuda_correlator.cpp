@@ -110,7 +110,6 @@ class CorrelationPlan {
       take_vectors(windows_.data(), vectors_.data(), now.grid, deformed_by(pass), schedule_.limit_px(), before(pass),
                    ambiguous_[pass % 2].data());
       validate(vectors_.data(), now.grid, schedule_.rule(pass), list_.data(), list_size_.data());
-      if (pass > 0) add_predictor(vectors_.data(), now.grid, predictor(pass - 1), schedule_.limit_px());
       if (schedule_.is_last(pass)) return download(now.grid);
       make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
                      predictor(pass), extended_.data());

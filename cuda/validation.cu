@@ -44,19 +44,12 @@ __global__ void __launch_bounds__(threads_of_rounds)
     for (int n = first; n < *count; n += step) {
       Replacement& spurious = list[n];
       if (spurious.state != Replacement::found) continue;
-      replace(vectors[spurious.index], spurious.by);
+      replace(vectors[spurious.index], spurious.by, rule);
       spurious.state = Replacement::done;
       progress = 1;
     }
     progress = __syncthreads_or(progress);
   }
-}
-
-__global__ void add_displacement(GridVector* vectors, InterrogationGrid grid, PredictorView predictor,
-                                 double limit_px) {
-  int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < static_cast<int>(grid.size()))
-    add_predicted(vectors[i], predictor.at(grid.centre(static_cast<std::size_t>(i))), limit_px);
 }
 
 __global__ void take_measured(WindowCorrelation const* windows, GridVector const* vectors, int size,
@@ -82,12 +75,6 @@ void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule
   check_launch("find_spurious");
   replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
   check_launch("replace_spurious");
-}
-
-void add_predictor(GridVector* vectors, InterrogationGrid const& grid, PredictorView const& predictor,
-                   double limit_px) {
-  add_displacement<<<blocks(grid), threads>>>(vectors, grid, predictor, limit_px);
-  check_launch("add_displacement");
 }
 
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,

@@ -293,6 +293,31 @@ TEST(MultiPass, KeepsTheAmplitudeOfASineOfFourWindows) {
   EXPECT_LT(product / square, 1.02);
 }
 
+// A wave of four windows, 1.5 px high: at the rim the predictor is continued from further inside, so that right vectors
+// stand out by what they add to it. Replacing loses no more than chance gives: 3 % of the rms error (29 % where sums
+// are not looked at), and no vector is grossly wrong that was not.
+TEST(MultiPass, LosesNothingByReplacingAtTheRimOfASine) {
+  auto const truth = [](Vec2d p) {
+    return Vec2d{1.5 * std::sin(2.0 * pi * p.y / 64.0), 1.5 * std::sin(2.0 * pi * p.x / 64.0)};
+  };
+  double raw = 0.0, given = 0.0;
+  int raw_gross = 0, given_gross = 0;
+  for (std::uint64_t const seed : {1, 2, 3, 4}) {
+    ParticlePair const pair = render_particle_pair({.columns = 200, .rows = 200, .seed = seed}, truth);
+    DisplacementField const field = make_correlator({})->correlate(pair.reference, pair.flow);
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      Vec2d const right = truth(field.position_px[i]);
+      double const raw_error = length(field.raw_px[i] - right), error = length(field.displacement_px[i] - right);
+      raw += raw_error * raw_error;
+      given += error * error;
+      raw_gross += raw_error > 1.0;
+      given_gross += error > 1.0;
+    }
+  }
+  EXPECT_LT(std::sqrt(given / raw), 1.06);
+  EXPECT_LE(given_gross, raw_gross + 3);
+}
+
 TEST(Correlator, GivesTheSameBitsForAnyNumberOfThreads) {
   ParticlePair const pair = render_particle_pair({.columns = 200, .rows = 168, .noise = 0.05}, constant(2.3, -1.1));
   auto const correlator = make_correlator({});

@@ -63,6 +63,44 @@ TEST(NormalisedMedian, AcceptsTheRimOfASteepPlane) {
   for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
 }
 
+// The predictor of the first column is off by 2 px, as one that is continued straight past a crest is.
+TEST(NormalisedMedian, AcceptsARightVectorWhosePredictorIsWrongAtTheRim) {
+  std::vector<GridVector> grid = smooth_grid(10, 6);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    grid[i].predictor = grid[i].displacement;
+    if (i % 10 == 0) grid[i].predictor += Vec2d{i % 20 == 0 ? 2.0 : -1.0, 0.0};
+  }
+  validate_vectors(grid, 10, {});
+  for (GridVector const& vector : grid) EXPECT_EQ(vector.status, VectorStatus::valid);
+}
+
+// ... and what replaces a wrong one there owes nothing to that predictor.
+TEST(NormalisedMedian, ReplacesAtTheRimByThePlaneOfTheNeighbours) {
+  for (std::size_t const planted : {std::size_t{0}, std::size_t{20}, std::size_t{29}, std::size_t{33}}) {
+    std::vector<GridVector> grid = smooth_grid(10, 6);
+    Vec2d const truth = grid[planted].displacement;
+    for (GridVector& vector : grid) vector.predictor = vector.displacement;
+    bool const at_rim = planted != 33;
+    if (at_rim) grid[planted].predictor += Vec2d{2.0, 1.0};
+    grid[planted].displacement += Vec2d{3.0, -2.0};
+    validate_vectors(grid, 10, {});
+    EXPECT_EQ(grid[planted].status, VectorStatus::replaced);
+    // the unevenness, 0.02 px, continued by one step beyond its neighbours: at most 1 + 1 + 1 of it at a corner
+    EXPECT_NEAR(grid[planted].displacement.x, truth.x, at_rim ? 0.08 : 1e-12) << planted;
+    EXPECT_NEAR(grid[planted].displacement.y, truth.y, at_rim ? 0.08 : 1e-12) << planted;
+  }
+}
+
+TEST(NormalisedMedian, LetsTheLimitBindReplacements) {
+  std::vector<GridVector> grid = smooth_grid(10, 6);
+  grid[33].displacement = {9.0, 9.0};
+  ValidationRule rule;
+  rule.limit_px = 1.2;  // below the neighbours' median along y, -1.3
+  validate_vectors(grid, 10, rule);
+  EXPECT_EQ(grid[33].status, VectorStatus::invalid);
+  EXPECT_EQ(grid[33].reason, VectorReason::beyond_limit);
+}
+
 // The crest of a wave of four grid steps: the median of its neighbours is 0.
 TEST(NormalisedMedian, KeepsACrestThatItsWindowSpeaksFor) {
   auto const status_of = [](double height, double peak_ratio, Ambiguity ambiguous, double trusted_ratio) {

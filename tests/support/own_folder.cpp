@@ -10,10 +10,10 @@ namespace {
 
 /// ctest runs tests of one fixture side by side, each in a process of its own: gives this process a TempDir() of its
 /// own, and removes it at the end.
-class OwnFolder final : public testing::Environment {
+class OwnFolder final : public ::testing::Environment {
  public:
   void SetUp() override {
-    folder_ = testing::TempDir() + "XXXXXX";
+    folder_ = ::testing::TempDir() + "XXXXXX";
     if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error(folder_ + ": cannot be made");
     ::setenv("TEST_TMPDIR", folder_.c_str(), 1);
   }
@@ -26,7 +26,7 @@ class OwnFolder final : public testing::Environment {
   std::string folder_;
 };
 
-[[maybe_unused]] testing::Environment* const own_folder = testing::AddGlobalTestEnvironment(new OwnFolder);
+[[maybe_unused]] ::testing::Environment* const own_folder = ::testing::AddGlobalTestEnvironment(new OwnFolder);
 
 }  // namespace
 }  // namespace gladstone
