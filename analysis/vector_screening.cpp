@@ -98,6 +98,13 @@ std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors 
         "export them so, or say what is to be added to them with --conventions offset=NUMBER",
         left_out.all(), image, where, left_out.text());
   }
+  if (left_out.outside_image > screened.size()) {
+    return fmt::format(
+        "{} of {} vectors lie outside {} ({}), as places from another origin do; places are taken in px from the first "
+        "pixel's centre, export them so, or say what is to be added to them with --conventions offset=NUMBER",
+        left_out.outside_image, left_out.outside_image + screened.size(), image,
+        Extent{left_out.low_px, left_out.high_px}.text());
+  }
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;
   if (static_cast<double>(screened.size()) > 2.0 * (size.x + 1.0) * (size.y + 1.0)) {

@@ -308,10 +308,17 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   auto const unseen = std::count_if(rendering.truth.displacement_px.begin(), rendering.truth.displacement_px.end(),
                                     [](Vec2d d) { return std::isnan(d.x); });
   if (unseen > 0) {
-    warn(warnings,
-         fmt::format("{} of {} dots are not seen in one of the frames: the flow bends their rays past the lens "
-                     "(their truth is nan); reduce the gradients or Z_D",
-                     unseen, scene.dots.centre.size()));
+    double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
+    double const passing = static_cast<double>(scene.rays_per_dot) * (stop * stop) / (disc * disc);
+    constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
+    std::string const why =
+        !scene.chief_rays_only() && passing < few
+            ? fmt::format("some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
+                          "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
+                          passing, scene.rays_per_dot, scene.pupil_margin / unit::millimetre)
+            : "the flow bends their rays past the lens; reduce the gradients or Z_D";
+    warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
+                               scene.dots.centre.size(), why));
   }
   TruthAccuracy const accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
   warn_of_truth(warnings, rendering, accuracy, prepared.rays.rays);

@@ -148,6 +148,8 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
     vectors.report = vectors.detected->report;
     if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, vectors.report);
     file.conventions = vectors.detected->conventions;
+    bool const told = vectors.detected->verdict != DetectedConventions::Verdict::cannot_be_told;
+    if (!told || vectors.detected->ambiguous) spdlog::warn("{}: {}", path, vectors.report);
   }
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
   if (!file.foreign && path.ends_with(".h5")) {

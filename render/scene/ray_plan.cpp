@@ -457,7 +457,7 @@ StepPlan plan_step(Scene& scene) {
 
 void use_step(Scene& scene, StepPlan const& plan) {
   scene.step = plan.step_mm * unit::millimetre;
-  scene.pupil_margin = 1.25 * plan.largest_bend;
+  scene.widen_pupil(1.25 * plan.largest_bend);
 }
 
 RaysPlan measure_rays(Scene const& scene) { return RayErrors(scene).measure(); }

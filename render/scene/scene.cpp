@@ -102,9 +102,19 @@ TheoryModel Scene::theory_model() const {
           imaging.entrance_pupil / 2};
 }
 
+void Scene::widen_pupil(double margin) {
+  if (!(margin <= setup.z_b())) {
+    throw DataError("medium.field",
+                    fmt::format("bends rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which no "
+                                "bench does; reduce its gradients, or check their unit",
+                                margin / unit::millimetre, setup.z_b() / unit::millimetre));
+  }
+  pupil_margin = margin;
+}
+
 bool Scene::covers_bend(double largest_bend) {
   if (chief_rays_only() || largest_bend <= pupil_margin) return true;
-  pupil_margin = 1.02 * largest_bend;
+  widen_pupil(1.02 * largest_bend);
   return false;
 }
 

@@ -35,6 +35,10 @@ struct Scene {
   ApertureStop<double> aperture_stop() const;
   /// What Eq. 9 takes.
   TheoryModel theory_model() const;
+  /// Widens the pupil by a margin [m].
+  /// @throws DataError where rays are bent by more than 45 degrees on their way: no bench sees those, and the search for
+  ///                   a margin that loses none of them would not end
+  void widen_pupil(double margin);
   /// Whether the pupil is wide enough for rays that the medium moves this far on the lens plane [m]; if not, it is
   /// widened, and the scene is to be traced again.
   bool covers_bend(double largest_bend);

@@ -104,6 +104,16 @@ TEST(ScreenVectors, SaysWhereTheyAreWhenNoneIsLeft) {
                     HasSubstr("1 with a place that is nan"), HasSubstr("px")));
 }
 
+// Counted from another corner: the grid of 5 x 11 vectors stands half outside.
+TEST(ScreenVectors, RefusesAFileWhoseVectorsLieMostlyOutside) {
+  DisplacementField field = lattice();
+  for (Vec2d& p : field.position_px) p.x += 120.0;
+  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  ASSERT_GT(field.size(), 0u);
+  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+              AllOf(HasSubstr("of 55 vectors lie outside the image of 200 x 100 px"), HasSubstr("another origin")));
+}
+
 // Windows every 16 px of 10 um are 0.16 mm apart: 55 vectors on 1.6 x 0.64 "px".
 TEST(ScreenVectors, RefusesPlacesCloserThanPixels) {
   DisplacementField field = lattice();

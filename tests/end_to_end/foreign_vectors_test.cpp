@@ -154,6 +154,16 @@ TEST_F(ForeignVectors, ImpossibleOnesOfOurOwnFilesAreLeftOutToo) {
   EXPECT_EQ(errors["vectors"]["total"], x_.size());
 }
 
+// A thousandth of the wave moves dots by less than tells one choice of axes from another.
+TEST_F(ForeignVectors, WhoseConventionsCannotBeToldAreWarnedOf) {
+  render("quiet", {"--set", "medium.field.amplitude_kg_m3=1e-4"});
+  write_changed("still.csv", [](std::size_t, Vec2d&, Vec2d& displacement) { displacement = {}; });
+  Outcome const told = gladstone({"compare", "quiet", "--no-figures", "--vectors", "still.csv"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_THAT(told.err, testing::HasSubstr("warning: still.csv: "));
+  EXPECT_THAT(told.err, testing::HasSubstr("conventions cannot be told"));
+}
+
 TEST_F(ForeignVectors, AreRefusedWhereNoneLiesInTheImage) {
   write_changed("far.csv", [](std::size_t, Vec2d& place, Vec2d&) { place = 1000.0 * place; });
   expect_refused({"compare", "case", "--vectors", "far.csv"}, 2,

@@ -279,11 +279,23 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
   for (double const by_table : dataset("/dots/by_table", "focused")) EXPECT_EQ(by_table, 1);
 }
 
+// The wider the pupil is made, the steeper are the rays, and the further the flow bends them.
+TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
+  for (std::string const steep : {"[5e4, 0, 0]", "[0, -1e5, 0]", "[3e5, 0, 0]"}) {
+    Outcome const outcome =
+        gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=" + steep});
+    EXPECT_EQ(outcome.exit_code, 2) << steep;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field: bends rays by more than"));
+    EXPECT_FALSE(std::filesystem::exists(in("case")));
+  }
+}
+
 TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
   Outcome const outcome =
       gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[2e4, 0, 0]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("dots are not seen in one of the frames"));
+  EXPECT_THAT(outcome.err, testing::HasSubstr("of a dot's 32 rays pass the stop"));
   EXPECT_THAT(outcome.err, testing::HasSubstr("medium.field.gradient_kg_m4: the density is negative"));
 }
 
