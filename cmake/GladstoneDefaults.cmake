@@ -12,6 +12,9 @@ if(EXISTS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/.git/logs/HEAD)
 endif()
 
+# Libraries that a program does not call need not be loaded: OpenImageIO brings 250, a third of a second at every start.
+add_link_options($<$<PLATFORM_ID:Linux>:LINKER:--as-needed>)
+
 # What changes results or the layout of Eigen's types: the same for the libraries and for whoever uses their headers.
 set(GLADSTONE_USAGE_FLAGS -fno-math-errno)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND GLADSTONE_ARCHITECTURE)

@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "render/base/output_file.h"
+#include "render/base/output_folder.h"
 #include "render/base/partial.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
@@ -20,31 +22,65 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes errors.json and the figures: all of them or, where one cannot be made, none.
+/// Draws the figures into a folder that moves to its place later. Without gnuplot there are none.
+/// @param place where they will stand, for messages
+void draw_if_possible(fs::path const& folder, std::string const& place, Comparison const& comparison) {
+  try {
+    name_final_place(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); });
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+  }
+}
+
+std::vector<fs::path> figures_in(fs::path const& folder) {
+  std::vector<fs::path> figures;
+  for (auto const& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".png") figures.push_back(entry.path().filename());
+  }
+  std::sort(figures.begin(), figures.end());
+  return figures;
+}
+
+/// Writes errors.json and the figures into the case: all of them or, where one cannot be made, none.
 /// @return what was drawn
-std::vector<fs::path> write_results(std::string const& place, Comparison const& comparison, std::string const& json,
-                                    bool figures) {
+std::vector<fs::path> write_beside(std::string const& place, Comparison const& comparison, std::string const& json,
+                                   bool figures) {
   remove_leftovers(place, stem_beside("comparison"));
   Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
   fs::path const made = fs::path(staging.path()) / "figures";
   fs::create_directory(made);
-  try {
-    if (figures) name_final_place(made.string(), place, [&] { draw_comparison(made.string(), comparison); });
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
-  std::vector<fs::path> written;
-  for (auto const& entry : fs::directory_iterator(made)) written.push_back(place / entry.path().filename());
-  std::sort(written.begin(), written.end());
+  if (figures) draw_if_possible(made, place, comparison);
+  std::vector<fs::path> const drawn = figures_in(made);
   OutputFile errors((fs::path(place) / case_file::errors).string());
   errors.write(json.data(), json.size());
   comparison.sources.check();
-  for (auto const& path : written) fs::rename(made / path.filename(), path);
+  for (auto const& name : drawn) fs::rename(made / name, place / name);
   errors.commit();
-  return written;
+  return drawn;
 }
 
-/// What write_results() may write over.
+/// The same, as a folder of their own.
+std::vector<fs::path> write_folder(OutputFolder& output, std::string const& place, Comparison const& comparison,
+                                   std::string const& json, bool figures) {
+  fs::path const made = output.temporary_path();
+  if (figures) draw_if_possible(made, place, comparison);
+  std::vector<fs::path> const drawn = figures_in(made);
+  output.fill([&](std::string const& folder) {
+    OutputFile::write_text((fs::path(folder) / case_file::errors).string(), json);
+  });
+  comparison.sources.check();
+  output.commit();
+  return drawn;
+}
+
+/// What a folder of results holds besides errors.json.
+std::vector<std::string> figure_names() {
+  std::vector<std::string> names(case_file::derived.begin(), case_file::derived.end());
+  std::erase_if(names, [](std::string const& name) { return fs::path(name).extension() != ".png"; });
+  return names;
+}
+
+/// What write_beside() may write over.
 std::vector<std::string> results_of_comparison(std::string const& folder) {
   std::vector<std::string> paths = derived_files(folder);
   std::erase_if(paths, [](std::string const& path) {
@@ -58,7 +94,7 @@ std::vector<std::string> results_of_comparison(std::string const& folder) {
 
 CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string folder, truth_at = "mid", conventions;
+    std::string folder, truth_at = "mid", conventions, output;
     CompareOptions compare;
     bool no_figures = false;
   };
@@ -67,6 +103,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--vectors", arguments->compare.vectors,
                  "Vectors of ours, OpenPIV, PIVlab or any x,y,u,v in px, default CASE/vectors.h5; those outside the "
                  "image or longer than it are left out");
+  app.add_option("-o,--output", arguments->output, "Folder for errors.json and the figures, default CASE");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
       ->check(one_of({"mid", "reference"}));
@@ -83,13 +120,23 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     std::string const& folder = arguments->folder;
     std::vector<std::string> inputs = rendered_files(folder);
     inputs.push_back(compare.vectors.empty() ? in_case(folder, case_file::vectors) : compare.vectors);
-    refuse_inputs_as_outputs(results_of_comparison(folder), inputs);
-    OutputFile const tried(in_case(folder, case_file::errors));
+    std::error_code missing;
+    bool const apart = !arguments->output.empty() && !fs::equivalent(arguments->output, folder, missing);
+    std::string const& place = apart ? arguments->output : folder;
+    refuse_inputs_as_outputs(results_of_comparison(place), inputs);
+    std::optional<OutputFolder> output;
+    if (apart) {
+      output.emplace(place, FolderContent{case_file::errors, figure_names()});
+    } else {
+      OutputFile const tried(in_case(folder, case_file::errors));
+    }
     Comparison const comparison = compare_case(folder, device, compare);
     std::string const json = errors_json(comparison);
-    auto const figures = write_results(folder, comparison, json, !arguments->no_figures);
+    bool const draw = !arguments->no_figures;
+    auto const figures = apart ? write_folder(*output, place, comparison, json, draw)
+                               : write_beside(place, comparison, json, draw);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
-    for (auto const& path : figures) spdlog::info("drew {}", path.string());
+    for (auto const& name : figures) spdlog::info("drew {}", (place / name).string());
     print_result(options, json, error_report(comparison));
     return ok;
   };

@@ -132,6 +132,31 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   expect_refused({"correlate", "case", "--config", "s.toml"}, 2, {"s.toml:1:2: unknown table [corelate]"});
 }
 
+TEST_F(Case, ComparisonsCanBeWrittenApart) {
+  namespace fs = std::filesystem;
+  render("case");
+  succeed({"correlate", "case"});
+  succeed({"compare", "case"});
+  std::string const beside = read("case/errors.json");
+  fs::remove(in("case/errors.json"));
+  for (std::string const again : {"results/of one", "results/of one/"}) {
+    succeed({"compare", "case", "-o", again});
+    EXPECT_EQ(read("results/of one/errors.json"), beside);
+    EXPECT_TRUE(fs::exists(in("results/of one/error_budget.png")));
+  }
+  EXPECT_FALSE(fs::exists(in("case/errors.json"))) << "the case is left as it was";
+  succeed({"compare", "case", "--no-figures", "-o", "results/of one"});
+  EXPECT_FALSE(fs::exists(in("results/of one/error_budget.png"))) << "a figure of an earlier comparison";
+  succeed({"compare", "case", "-o", "case/"});
+  EXPECT_EQ(read("case/errors.json"), beside);
+  EXPECT_TRUE(fs::exists(in("case/vectors.h5")));
+  expect_refused({"compare", "case", "-o", "setup.toml"}, 2, {"setup.toml: is a file"});
+  fs::create_directory(in("mine"));
+  write("mine/notes.txt", "notes");
+  expect_refused({"compare", "case", "-o", "mine"}, 2, {"mine"});
+  EXPECT_EQ(read("mine/notes.txt"), "notes");
+}
+
 TEST_F(Case, ColourPicturesAreSaidToBeTurnedToGrey) {
   std::string picture = "P6\n64 64\n255\n";
   for (unsigned i = 0; i < 3 * 64 * 64; ++i) picture += static_cast<char>(i * 2654435761u >> 24);
