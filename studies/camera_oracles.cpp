@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/base/units.h"
+#include "render/scene/build_camera.h"
 #include "render/scene/ray_plan.h"
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
@@ -24,6 +25,7 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
   Scene scene;
   scene.setup = setup;
   scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
   scene.dots.centre = points;
   scene.medium = build_medium(setup.medium);
   plan_step(scene);

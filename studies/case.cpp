@@ -15,8 +15,10 @@
 #include "render/base/text_encoding.h"
 #include "render/base/units.h"
 #include "render/scene/field_coverage.h"
+#include "render/scene/focused_dots.h"
 #include "render/sensor/detector.h"
 #include "studies/json_text.h"
+#include "studies/scene_renderer.h"
 #include "studies/truth_file.h"
 
 namespace gladstone {
@@ -56,6 +58,15 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     place("target.dots_per_32px_window", {});
     place("render.rays_per_dot", {});
   }
+}
+
+/// Refuses the fast renderer where it does not hold.
+void cross_check_method(CaseSetup& loaded) {
+  if (loaded.setup.render.method != RenderMethod::focused_dots) return;
+  std::string const reason = reason_against_focused_dots(loaded.setup);
+  if (reason.empty()) return;
+  loaded.document.root().table("render").problem("method",
+                                                 "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
 }
 
 void warn(std::vector<std::string>& warnings, std::string text) {
@@ -120,6 +131,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
     cross_check_windows(loaded);
+    cross_check_method(loaded);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   loaded.document.finish();
@@ -137,7 +149,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
     prepared.step = *known.step;
     use_step(scene, prepared.step);
   } else {
-    prepared.step = plan_step(scene);
+    prepared.step = plan_step_of(scene);
   }
   if (prepared.step.change_px >= 1e-4) {
     warn(
@@ -145,7 +157,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
         fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
-  auto const in_view = [&scene](Vec2d centre) { return scene.view().sensor.covers(scene.to_pixel(centre)); };
+  auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
   if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
     warn(prepared.warnings,
          fmt::format("none of {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be empty; "
@@ -154,7 +166,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
                      loaded.setup.camera.columns * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
                      loaded.setup.camera.rows * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
   }
-  prepared.rays = known.rays ? *known.rays : plan_rays(scene);
+  prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
   if (!prepared.rays.converged) {
     warn(prepared.warnings,
@@ -166,7 +178,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
                      prepared.rays.rays_wanted, rays_seconds(scene) * prepared.rays.rays_wanted, rays_budget_s));
   }
   if (loaded.setup.medium.field.kind != FieldKind::none) {
-    prepared.strain = known.strain ? *known.strain : map_strain(scene);
+    prepared.strain = known.strain ? *known.strain : strain_of(scene);
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
     std::string const coverage = field_coverage(box, loaded.setup).warning();
     if (!coverage.empty()) warn(prepared.warnings, coverage);
@@ -279,6 +291,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   scene.pupil_margin = rendered.pupil_margin;
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = scene.setup.camera;
+  std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
   loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   std::string const resolved = loaded.document.resolved();
@@ -290,7 +303,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   }
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
-  FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, renderer.device()};
+  FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, device};
   auto const write_frame = [&](char const* name, char const* file, Image<double> const& frame) {
     Image<std::uint16_t> const picture = picture_of(frame);
     write_tiff(place(file), picture, metadata);
@@ -301,8 +314,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (loaded.input_hashes.empty()) hash_inputs(loaded);
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
-  write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, map_field(scene, map_spacing_px),
-              origin);
+  write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
+              rendering.method, origin);
   OutputFile::write_text(place(case_file::setup), resolved);
 
   auto const unseen = std::count_if(rendering.truth.displacement_px.begin(), rendering.truth.displacement_px.end(),
@@ -345,7 +358,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
        {{"dots_by_table", accuracy.by_table},
         {"dots_by_rays", scene.dots.centre.size() - accuracy.by_table},
         {"no_table_since", to_string(rendering.table)}}},
-      {"device", renderer.device()},
+      {"method", to_string(rendering.method)},
+      {"device", device},
       {"precision", single_precision(scene.setup, renderer) ? "single (preview)" : "double"},
       {"rays",
        {{"traced", rendering.rays},

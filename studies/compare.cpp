@@ -14,11 +14,13 @@
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/input_file.h"
+#include "render/rays/rays_renderer.h"
 #include "render/sensor/detector.h"
 #include "studies/correlate.h"
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 #include "studies/json_text.h"
+#include "studies/scene_renderer.h"
 #include "studies/truth_file.h"
 
 namespace gladstone {
@@ -182,7 +184,8 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
       Vec2d const shift = at == TruthAt::mid_position ? 0.5 * truth.displacement_px[i] : Vec2d{};
       Vec2d const miss = centres_px[i] - (truth.reference_px[i] + shift);
       if (!std::isfinite(miss.x) || !std::isfinite(miss.y)) continue;
-      virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(miss) - scene.to_target({0, 0}));
+      Vec2d const seen = truth.reference_px[i];
+      virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(seen + miss) - scene.to_target(seen));
     }
   };
   // a point is where its dot is, but for a little that the second round takes off
@@ -196,14 +199,18 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
 }
 
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point) {
-  if (scene.setup.lens.focus == Focus::target) return point.displacement_px;
-  // the sensor stays where it is, and with it the magnification; the lens is made to image the target on it
-  scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
-  scene.setup.lens.focus = Focus::target;
+  if (method_of(scene) == RenderMethod::focused_dots && scene.setup.lens.focus == Focus::target)
+    return point.displacement_px;
   DotPattern virtual_dots;
   virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
+  // on the bench the ideal lens is one that the fast renderer takes, unless rays are asked for
+  bool const focusable = scene.setup.on_bench() && !scene.chief_rays_only();
+  if (!focusable || scene.setup.render.method == RenderMethod::rays) return ideal_displacements(scene, virtual_dots);
+  // the sensor stays where it is, and with it the magnification; the lens is made to image the target on it
+  scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
+  scene.setup.lens.focus = Focus::target;
   return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 

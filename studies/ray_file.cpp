@@ -12,7 +12,7 @@
 #include "render/base/parallel.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
-#include "render/scene/trace_pair.h"
+#include "render/scene/trace_ray.h"
 
 namespace gladstone {
 namespace {
@@ -27,34 +27,48 @@ Vec3d unit_direction(Vec3d d) {
 
 TracedRay dead(RayStatus status) { return {status, {nan, nan, nan}, {nan, nan, nan}, nan, {nan, nan}}; }
 
+/// Whether a ray has an element still before it.
+bool runs_to(CameraElement<double> const& element, Ray<double> const& ray) {
+  return element.visit([&](auto const& held) { return held.pose.point_inwards(ray.position).z < 0; });
+}
+
 template <class Medium>
-TracedRay trace_one(SceneView<double> const& view, Medium const& medium, Ray<double> const& start, Through through) {
-  MediumPassage<double> const way = trace_medium(medium, view.tracing, start);
-  if (way.status != RayStatus::alive) return dead(way.status);
+TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, Medium const& medium,
+                    Ray<double> const& start, Through through) {
+  CameraView<double> const camera = scene.camera.view();
   TracedRay traced{RayStatus::alive, start.position, start.direction, 0.0, {nan, nan}};
-  if (way.crossed) {
-    traced.position = exit_position(start, way);
-    // along a slab without end there is no face to leave by
-    if (std::max(std::abs(traced.position.x), std::abs(traced.position.y)) >= unbounded) {
-      return dead(RayStatus::lost_in_medium);
-    }
-    traced.direction = exit_direction(start, way);
-    traced.optical_path = way.optical_path;
+  Ray<double> ray = start;
+  RayAccount<double> account;
+  for (int i = 0; i < camera.before_medium; ++i) {
+    if (!runs_to(camera.elements[i], ray)) continue;
+    RayStatus const status = pass_element(camera.elements[i], ray, account);
+    if (status != RayStatus::alive) return dead(status);
   }
+  MediumPassage<double> const way = trace_medium(medium, options, ray);
+  if (way.status != RayStatus::alive) return dead(way.status);
+  if (way.crossed) {
+    Vec3d const left = exit_position(ray, way);
+    // along a slab without end there is no face to leave by
+    if (std::max(std::abs(left.x), std::abs(left.y)) >= unbounded) return dead(RayStatus::lost_in_medium);
+    ray = {left, exit_direction(ray, way)};
+    account.optical_path += way.optical_path;
+  }
+  traced = {RayStatus::alive, ray.position, ray.direction, account.optical_path, {nan, nan}};
   if (through == Through::medium) return traced;
-  Ray<double> ray{traced.position, traced.direction};
-  if (ray.position.z > view.bundle.lens_z) return dead(RayStatus::missed_lens);
-  double weight = 1;
-  RayStatus const status = view.train.carry(ray, weight);
-  if (status != RayStatus::alive) return dead(status);
-  traced.position = ray.position;
-  traced.direction = ray.direction;
-  traced.optical_path = nan;  // a thin lens has no optical path of its own
+  if (camera.aim_plane.point_inwards(ray.position).z > 0) return dead(RayStatus::missed_lens);
+  for (int i = camera.before_medium; i < camera.count; ++i) {
+    RayStatus const status = pass_element(camera.elements[i], ray, account);
+    if (status != RayStatus::alive) return dead(status);
+  }
+  bool const thin = !scene.setup.lens.prescription;  // which has no optical path of its own
+  traced = {RayStatus::alive, ray.position, ray.direction, thin ? nan : account.optical_path, {nan, nan}};
   if (through == Through::optics) return traced;
-  double const s = (view.sensor.z - ray.position.z) / ray.direction.z;
-  traced.position = ray.position + ray.direction * s;
-  traced.pixel = view.sensor.to_pixel(traced.position.x, traced.position.y);
-  if (!view.sensor.covers(traced.pixel)) traced.status = RayStatus::missed_sensor;
+  Vec2d place;
+  if (!camera.sensor.meet(ray, place)) return dead(RayStatus::missed_lens);
+  traced.position = camera.sensor.pose.point_outwards({place.x, place.y, 0});
+  if (!thin) traced.optical_path += dot(traced.position - ray.position, ray.direction);
+  traced.pixel = camera.sensor.to_pixel(place.x, place.y);
+  if (!camera.sensor.covers(traced.pixel)) traced.status = RayStatus::missed_sensor;
   return traced;
 }
 
@@ -100,13 +114,14 @@ std::vector<Ray<double>> read_rays(std::string const& path, double farthest) {
 
 std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through) {
   std::vector<TracedRay> traced(rays.size());
-  SceneView<double> const view = scene.view();
+  TracingOptions<double> const options{scene.step, scene.setup.medium.ambient_refractivity(),
+                                       scene.setup.medium.integrator, scene.setup.medium.faces};
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(rays.size(), 256, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             throw_if_interrupted();
-            traced[i] = trace_one(view, medium, rays[i], through);
+            traced[i] = trace_one(scene, options, medium, rays[i], through);
           }
         });
       },

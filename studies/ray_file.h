@@ -15,7 +15,7 @@ struct TracedRay {
   RayStatus status = RayStatus::alive;
   Vec3d position;           ///< [m]
   Vec3d direction;          ///< unit length
-  double optical_path = 0;  ///< from the start [m]; NaN beyond a thin lens
+  double optical_path = 0;  ///< from the start [m]; NaN behind a thin lens
   Vec2d pixel;              ///< on the sensor
 };
 

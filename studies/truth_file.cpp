@@ -3,6 +3,8 @@
 #include <array>
 #include <limits>
 
+#include "studies/scene_renderer.h"
+
 namespace gladstone {
 namespace {
 
@@ -45,7 +47,7 @@ constexpr std::array<PairDataset, 8> pair_datasets{{
 }  // namespace
 
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, FileOrigin const& origin) {
+                 FieldMap const& field, RenderMethod method, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   std::vector<double> position;
@@ -91,6 +93,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
       "/dots", "conventions",
       "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
       "appear displaced against grad n");
+  file.attribute("/", "method", to_string(method));
   file.attribute("/dots", "step_mm", scene.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);
   file.close();

@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, FileOrigin const& origin);
+                 FieldMap const& field, RenderMethod method, FileOrigin const& origin);
 
 /// Reads the dots of a truth.h5 back. @throws DataError
 GroundTruth read_truth(std::string const& path);

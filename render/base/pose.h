@@ -25,6 +25,11 @@ struct Pose {
     return {point_outwards(ray.position), direction_outwards(ray.direction)};
   }
 
+  /// The same place in the frame that `outer` is given in, where this one is given in outer's.
+  Pose within(Pose const& outer) const {
+    return {outer.point_outwards(origin), outer.direction_outwards(x), outer.direction_outwards(y),
+            outer.direction_outwards(z)};
+  }
   /// Moved by a vector given in its own axes.
   Pose moved(Vec3<T> by) const { return {point_outwards(by), x, y, z}; }
   /// Turned about its own axes, right-handed: about x, then about the turned y, then about the turned z.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"
@@ -10,57 +10,19 @@
 namespace gladstone {
 namespace {
 
-constexpr double ahead = 1;  // where parallel rays begin, in front of the first vertex [m]
+constexpr double near_enough = 1e-3;  // that rim points are found to, of the stop's radius; the margin is wider
+constexpr double ahead = 1;           // where parallel rays begin, in front of the first vertex [m]
 
-/// Solves place_in_stop(origin.ray_through(p)) = target for p by Newton's method with differences.
-class StopAim {
- public:
-  StopAim(Lens const& lens, RayOrigin const& origin) : lens_(lens), origin_(origin) {
-    double const scale = std::abs(ray_transfer(lens, 0, lens.stop).a);
-    step_ = 1e-4 * lens.stop_radius / std::max(scale, 0.05);
-  }
-
-  std::optional<Vec2d> place(Vec2d p) const { return place_in_stop(lens_, origin_.ray_through(p)); }
-
-  /// @param p the first guess; becomes the solution
-  bool solve(Vec2d target, Vec2d& p) const {
-    auto here = place(p);
-    if (!here) return false;
-    for (int iteration = 0; iteration < 40; ++iteration) {
-      Vec2d const miss = target - *here;
-      if (length(miss) < 1e-10 * lens_.stop_radius) return true;
-      auto const change = newton_step(p, miss);
-      if (!change) return false;
-      // half a step, and half of that, where the whole one loses the ray or gains nothing
-      bool better = false;
-      for (double share = 1; share > 1e-3 && !better; share /= 2) {
-        Vec2d const tried = p + share * *change;
-        auto const there = place(tried);
-        if (!there || length(target - *there) >= length(miss)) continue;
-        p = tried;
-        here = there;
-        better = true;
-      }
-      if (!better) return length(miss) < 1e-7 * lens_.stop_radius;
-    }
-    return false;
-  }
-
- private:
-  std::optional<Vec2d> newton_step(Vec2d p, Vec2d miss) const {
-    auto const right = place(p + Vec2d{step_, 0}), left = place(p - Vec2d{step_, 0});
-    auto const up = place(p + Vec2d{0, step_}), down = place(p - Vec2d{0, step_});
-    if (!right || !left || !up || !down) return std::nullopt;
-    Vec2d const dx = (*right - *left) / (2 * step_), dy = (*up - *down) / (2 * step_);
-    double const determinant = dx.x * dy.y - dx.y * dy.x;
-    if (determinant == 0) return std::nullopt;
-    return Vec2d{(miss.x * dy.y - miss.y * dy.x) / determinant, (dx.x * miss.y - dx.y * miss.x) / determinant};
-  }
-
-  Lens const& lens_;
-  RayOrigin const& origin_;
-  double step_;
-};
+/// A full step of Newton's method; nothing where a neighbour is lost or the stop is not resolved.
+std::optional<Vec2d> newton_step(StopSight const& sight, Vec2d p, Vec2d miss) {
+  auto const right = sight.place(p + Vec2d{sight.step, 0}), left = sight.place(p - Vec2d{sight.step, 0});
+  auto const up = sight.place(p + Vec2d{0, sight.step}), down = sight.place(p - Vec2d{0, sight.step});
+  if (!right || !left || !up || !down) return std::nullopt;
+  Vec2d const dx = (*right - *left) / (2 * sight.step), dy = (*up - *down) / (2 * sight.step);
+  double const determinant = dx.x * dy.y - dx.y * dy.x;
+  if (determinant == 0) return std::nullopt;
+  return Vec2d{(miss.x * dy.y - miss.y * dy.x) / determinant, (dx.x * miss.y - dx.y * miss.x) / determinant};
+}
 
 /// Where the paraxial chief ray passes the tangent plane of the first vertex.
 Vec2d paraxial_guess(Lens const& lens, RayOrigin const& origin) {
@@ -99,25 +61,57 @@ std::optional<Vec2d> place_in_stop(Lens const& lens, Ray<double> ray) {
   return Vec2d{local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
 }
 
-std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin) {
-  StopAim const aim(lens, origin);
-  AimDisc disc;
-  disc.centre = paraxial_guess(lens, origin);
-  if (!aim.solve({}, disc.centre)) {
-    disc.centre = {};
-    if (!aim.solve({}, disc.centre)) return std::nullopt;
+bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance) {
+  auto here = sight.place(aim);
+  if (!here) return false;
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    Vec2d const miss = target - *here;
+    if (length(miss) < tolerance * sight.radius) return true;
+    auto const change = newton_step(sight, aim, miss);
+    if (!change) return false;
+    // half a step, and half of that, where the whole one loses the ray or gains nothing
+    bool better = false;
+    for (double share = 1; share > 1e-3 && !better; share /= 2) {
+      Vec2d const tried = aim + share * *change;
+      auto const there = sight.place(tried);
+      if (!there || length(target - *there) >= length(miss)) continue;
+      aim = tried;
+      here = there;
+      better = true;
+    }
+    if (!better) return length(miss) < 1e3 * tolerance * sight.radius;
   }
-  constexpr int rim_points = 32;
+  return false;
+}
+
+double aim_margin(int rim_points) {
+  // between its points the rim may reach out by 1 - cos(pi / points) of what it departs from the ellipse, a tenth at
+  // most; to that comes how near the points are
+  return 1 + 2 * near_enough + 0.1 * (1 - std::cos(pi / rim_points));
+}
+
+std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int rim_points) {
+  AimDisc disc;
+  disc.centre = guess;
+  if (!aim_at(sight, {}, disc.centre)) {
+    disc.centre = {};
+    if (!aim_at(sight, {}, disc.centre)) return std::nullopt;
+  }
+  // where rim points would be if the stop were imaged without aberration
+  std::optional<Vec2d> const along_x = newton_step(sight, disc.centre, {sight.radius, 0});
+  std::optional<Vec2d> const along_y = newton_step(sight, disc.centre, {0, sight.radius});
   std::vector<Vec2d> rim;
-  Vec2d from = disc.centre;
   for (int k = 0; k < rim_points; ++k) {
     double const angle = 2 * pi * k / rim_points;
-    Vec2d const target = lens.stop_radius * Vec2d{std::cos(angle), std::sin(angle)};
-    Vec2d p = from;
+    Vec2d const towards{std::cos(angle), std::sin(angle)};
+    Vec2d const linear = along_x && along_y ? towards.x * *along_x + towards.y * *along_y : Vec2d{};
+    Vec2d p = disc.centre;
     // towards the rim as far as rays can be followed: what lies beyond is lost in the lens and passes no stop
     for (double const share : {1.0, 0.9, 0.75, 0.5}) {
-      p = from;
-      if (aim.solve(share * target, p)) break;
+      p = disc.centre + share * linear;
+      if (aim_at(sight, share * sight.radius * towards, p, near_enough)) break;
+      p = disc.centre;
+      if (aim_at(sight, share * sight.radius * towards, p, near_enough)) break;
       p = disc.centre;
     }
     rim.push_back(p);
@@ -137,10 +131,18 @@ std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin) 
     double const v = (disc.a.x * d.y - disc.a.y * d.x) / determinant;
     furthest = std::max(furthest, std::hypot(u, v));
   }
-  constexpr double margin = 1.005;  // the rim between its 32 points: (1 - cos(pi / 32)) of it
+  double const margin = aim_margin(rim_points);
   disc.a = margin * furthest * disc.a;
   disc.b = margin * furthest * disc.b;
   return disc;
+}
+
+std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin) {
+  double const scale = std::abs(ray_transfer(lens, 0, lens.stop).a);
+  StopSight const sight{[&](Vec2d p) { return place_in_stop(lens, origin.ray_through(p)); }, lens.stop_radius,
+                        1e-4 * lens.stop_radius / std::max(scale, 0.05)};
+  constexpr int rim_points = 32;
+  return find_aim_disc(sight, paraxial_guess(lens, origin), rim_points);
 }
 
 }  // namespace gladstone

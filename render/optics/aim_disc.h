@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "render/optics/lens.h"
@@ -28,8 +29,30 @@ struct AimDisc {
   double area() const;
 };
 
-/// @return the disc, holding every ray that passes the stop, a little wide; nothing where no ray of this origin meets
-/// the stop's centre (total internal reflection, or it looks past the lens)
+/// How a source's rays come to a stop.
+struct StopSight {
+  /// Where the ray through a point of the aim plane meets the stop, in the stop's frame [m]; nothing where it is lost
+  /// on the way (vignetted rays are not).
+  std::function<std::optional<Vec2d>(Vec2d)> place;
+  double radius = 0;  ///< of the stop [m]
+  double step = 0;    ///< on the aim plane, that differences are taken over [m]
+};
+
+/// Solves place(aim) = target by Newton's method with differences.
+/// @param aim the first guess; becomes the solution @param tolerance in radii of the stop @return false: no ray goes
+/// there
+bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance = 1e-10);
+
+/// By how much a disc is wider than the rim that it is found by.
+double aim_margin(int rim_points);
+
+/// @param guess where the chief ray may pass @param rim_points of the stop that are aimed at: the more, the narrower
+/// the margin about them @return the disc, holding every ray that passes the stop, a little wide; nothing where no ray
+/// meets the stop's centre
+std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int rim_points);
+
+/// The same for a lens. @return nothing where no ray of this origin meets the stop's centre (total internal reflection,
+/// or it looks past the lens)
 std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin);
 
 /// Where a ray meets the stop's own plane frame [m]; nothing where it is lost on the way (vignetted rays are not).

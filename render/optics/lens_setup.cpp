@@ -2,21 +2,26 @@
 
 #include <cmath>
 
+#include "render/base/error.h"
 #include "render/base/units.h"
+#include "render/optics/paraxial.h"
 
 namespace gladstone {
 
 LensSetup read_lens_setup(SetupTable table) {
   LensSetup setup;
-  if (table.kind_word("model", "thin", {"thin", "prescription"}) == "prescription") {
-    table.excuse();
-    table.problem("model", "\"prescription\" is not available yet (this version has the thin lens only); use \"thin\"");
-  }
-  table.refuse("file", "is not available yet (lens prescriptions are not part of this version); use model = \"thin\"");
-  setup.focal_length = table.number("focal_length_mm", 105.0, Range::positive(1e5)) * unit::millimetre;
   Range aperture = Range::positive();
   aperture.allow_inf = true;
-  setup.f_number = table.number("f_number", 11.0, aperture);
+  if (table.kind_word("model", "thin", {"thin", "prescription"}) == "prescription") {
+    setup.file = table.required_path("file");
+    // its own stop, or what the aperture of the file opens it to, unless the setup says otherwise
+    setup.f_number = table.optional_number("f_number", aperture).value_or(std::nan(""));
+    table.refuse("focal_length_mm", "stands beside a prescription (which has its own); remove it");
+  } else {
+    table.refuse("file", "names a prescription (the model is a thin lens); use model = \"prescription\"");
+    setup.focal_length = table.number("focal_length_mm", 105.0, Range::positive(1e5)) * unit::millimetre;
+    setup.f_number = table.number("f_number", 11.0, aperture);
+  }
   if (table.has("focus_distance_mm")) {
     if (table.has("focus")) {
       table.problem("focus_distance_mm", "stands beside focus (one of them is enough); remove one");
@@ -34,6 +39,24 @@ LensSetup read_lens_setup(SetupTable table) {
   if (psf == "seed_eq8") setup.spot = SpotModel::seed_eq8;
   if (psf == "none") setup.spot = SpotModel::none;
   return setup;
+}
+
+void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::vector<std::string>& warnings) {
+  LensOptions options;
+  if (std::isfinite(setup.f_number)) options.f_number = setup.f_number;
+  try {
+    auto const lens = std::make_shared<Lens const>(
+        build_lens(read_prescription(setup.file), GlassCatalogue::shipped(), wavelength, options));
+    ParaxialLens const paraxial = paraxial_lens(*lens);
+    setup.focal_length = std::abs(paraxial.effective_focal_length);
+    if (std::isnan(setup.f_number) && std::isfinite(paraxial.f_number)) setup.f_number = paraxial.f_number;
+    warnings.insert(warnings.end(), lens->warnings.begin(), lens->warnings.end());
+    setup.prescription = lens;
+  } catch (SetupError const& error) {
+    table.problem("file", error.what());
+  } catch (DataError const& error) {
+    table.problem("file", error.what());
+  }
 }
 
 ImagingGeometry thin_lens_imaging(double focal_length, double f_number, double focus_distance, double target_distance) {

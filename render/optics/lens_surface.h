@@ -34,6 +34,15 @@ struct ShapedSurface {
   SurfaceAction action = SurfaceAction::refract;
   bool fresnel = false;  ///< whether a bare surface's reflection is taken off the light
 
+  /// Where a ray meets the surface, across the axis of its vertex [m]. @return false where it misses it
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
+    Ray<T> const local = pose.inwards(ray);
+    T way;
+    if (!shape.intersect(local, way)) return false;
+    place = {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
+    return true;
+  }
+
   /// Moves a ray to the surface and turns it. @return alive, vignetted (the ray goes on all the same),
   /// total_internal_reflection, or missed_lens where it does not meet the surface
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {

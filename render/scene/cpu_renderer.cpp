@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 
+#include "render/base/contracts.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -84,6 +85,7 @@ void apply_polarity(Scene const& scene, LightPair& light) {
 }  // namespace
 
 Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  GLADSTONE_EXPECTS(scene.setup.on_bench());
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   Rendering rendering = render_with_margin(scene, [&] {

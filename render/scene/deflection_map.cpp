@@ -73,6 +73,8 @@ char const* to_string(TableState state) {
       return "render.sampling = \"random\" takes rays as they are";
     case TableState::out_of_focus:
       return "the lens is not focused on the target";
+    case TableState::by_rays:
+      return "dots are rendered ray by ray (method = \"rays\")";
     case TableState::field_too_small:
       return "the field does not reach beyond the dots' cones of rays";
     case TableState::field_too_fine:

@@ -1,47 +1,20 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "render/base/image.h"
 #include "render/base/interrupt.h"
 #include "render/scene/dot_light.h"
 #include "render/scene/ground_truth.h"
+#include "render/scene/light_image.h"
 #include "render/scene/scene.h"
 #include "render/scene/trace_pair.h"
 #include "render/scene/truth_error.h"
-#include "render/sensor/exposure.h"
 
 namespace gladstone {
-
-/// An image in the making: 64-bit fixed point, added to from many threads in any order.
-class LightImage {
- public:
-  LightImage(int columns, int rows)
-      : columns_(columns), rows_(rows), light_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
-
-  void add(int column, int row, double light) {
-    if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-    light_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)]
-        .fetch_add(to_fixed_point(light), std::memory_order_relaxed);
-  }
-  Image<double> to_light() const {
-    Image<double> image(columns_, rows_);
-    for (std::size_t i = 0; i < light_.size(); ++i) {
-      image.data()[i] = static_cast<double>(light_[i].load(std::memory_order_relaxed)) / fixed_point_one;
-    }
-    return image;
-  }
-
- private:
-  int columns_;
-  int rows_;
-  std::vector<std::atomic<std::int64_t>> light_;
-};
 
 /// A square piece of a frame in which one dot's rays are gathered in double before they join the image.
 class LightPatch {

@@ -14,6 +14,7 @@
 #include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
 #include "render/scene/light_model.h"
+#include "render/scene/ray_scatter.h"
 #include "render/scene/trace_pair.h"
 
 namespace gladstone {
@@ -22,22 +23,11 @@ namespace {
 constexpr double step_tolerance_px = 1e-4;
 constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
 constexpr std::uint64_t always_allowed = 1024;
-constexpr int scramblings = 4;
-constexpr std::size_t sample_dots = 96;
+constexpr int scramblings = plan_scramblings;
 constexpr double widest_image_px = 100;  // of a dot that is measured whole
 
 constexpr std::size_t checked_dots = 24;  // of these, whose table is checked by rays alone
 constexpr std::uint64_t fewest_checking_rays = 1024, most_checking_rays = 16384;
-
-constexpr std::size_t probed_dots = 256;  // by all rays, of a target with more
-
-/// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
-struct Probe {
-  std::vector<Vec2d> displacement_px;
-  std::vector<double> bend;  ///< [m]
-
-  double largest_bend() const { return bend.empty() ? 0.0 : *std::max_element(bend.begin(), bend.end()); }
-};
 
 /// A ray that a dot is probed by.
 struct ProbeRay {
@@ -78,15 +68,6 @@ Probe probe_dots(Scene const& scene, Medium const& medium, std::vector<std::size
   return probe;
 }
 
-/// How far each dot moves from one probe to the other [px].
-std::vector<double> changes(Probe const& coarse, Probe const& fine) {
-  std::vector<double> change(coarse.displacement_px.size());
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    change[i] = length(coarse.displacement_px[i] - fine.displacement_px[i]);
-  }
-  return change;
-}
-
 /// Probes the dots of a scene at one step after the other.
 class StepProbe {
  public:
@@ -99,19 +80,12 @@ class StepProbe {
     std::iota(dots_.begin(), dots_.end(), std::size_t{0});
     if (dots_.size() <= probed_dots) return;
     Probe const coarse = probe(dots_, {{}}, step), fine = probe(dots_, {{}}, step / 2);
-    largest_bend_ = probe(most_of(coarse.bend), about_dot(), step).largest_bend();
-    dots_ = most_of(changes(coarse, fine));
+    largest_bend_ = probe(largest_of(coarse.bend), about_dot(), step).largest_bend();
+    dots_ = largest_of(changes(coarse, fine));
   }
 
-  Probe at(double step) const { return probe(dots_, cone_, step); }
-  /// Largest change between two probes, and where; and the largest bend of all rays so far.
-  void compare(Probe const& coarse, Probe const& fine, StepPlan& plan) const {
-    plan.largest_bend = std::max({largest_bend_, coarse.largest_bend(), fine.largest_bend()});
-    std::vector<double> const change = changes(coarse, fine);
-    if (change.empty()) return;
-    auto const most = std::max_element(change.begin(), change.end());
-    plan.change_px = *most;
-    plan.limiting_dot = dots_[static_cast<std::size_t>(most - change.begin())];
+  StepProbes probes() const {
+    return {dots_, largest_bend_, [this](double step) { return probe(dots_, cone_, step); }};
   }
 
  private:
@@ -136,33 +110,11 @@ class StepProbe {
     }
     return rays;
   }
-  /// The dots with the largest values. @pre more than probed_dots values
-  static std::vector<std::size_t> most_of(std::vector<double> const& value) {
-    std::vector<std::size_t> dots(value.size());
-    std::iota(dots.begin(), dots.end(), std::size_t{0});
-    auto const more = [&value](std::size_t a, std::size_t b) {
-      return value[a] > value[b] || (value[a] == value[b] && a < b);
-    };
-    std::partial_sort(dots.begin(), dots.begin() + probed_dots, dots.end(), more);
-    dots.resize(probed_dots);
-    return dots;
-  }
 
   Scene const& scene_;
   std::vector<std::size_t> dots_;
   std::vector<ProbeRay> cone_;  ///< by which these are probed
   double largest_bend_ = 0;
-};
-
-/// What one scrambling of one dot gives: its displacement, and its light in both frames over a window.
-struct Sampled {
-  Vec2d displacement{};
-  std::vector<double> light;
-};
-
-/// A square of pixels about a dot.
-struct Window {
-  int left, top, side;
 };
 
 template <class Medium>
@@ -197,27 +149,6 @@ SceneView<double> scrambled(Scene const& scene, int scrambling) {
   return view;
 }
 
-/// Displacement of a dot over independent scramblings of its rays.
-struct MeanDisplacement {
-  Vec2d mean{};
-  double variance = 0;  ///< between scramblings, averaged over both components [px^2]
-
-  static MeanDisplacement of(Vec2d const (&found)[scramblings]) {
-    MeanDisplacement result;
-    for (Vec2d const one : found) result.mean += one / static_cast<double>(scramblings);
-    for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
-    result.variance /= scramblings - 1;
-    return result;
-  }
-  double variance_of_mean() const { return variance / scramblings; }
-};
-
-double mean_variance(std::vector<MeanDisplacement> const& displacements) {
-  double sum = 0;
-  for (MeanDisplacement const& one : displacements) sum += one.variance;
-  return sum / static_cast<double>(displacements.size());
-}
-
 template <class Medium>
 MeanDisplacement mean_displacement(Scene const& scene, Medium const& medium, LightModel const& model, std::size_t index,
                                    std::uint64_t rays) {
@@ -236,13 +167,6 @@ MeanDisplacement mean_displacement(Scene const& scene, Medium const& medium, Lig
   return MeanDisplacement::of(found);
 }
 
-/// Scatter between scramblings at the scene's present number of rays.
-struct Scatter {
-  std::vector<MeanDisplacement> displacements;  ///< of the dots
-  double light_variance = 0;                    ///< mean over lit pixels of the worse frame
-  double brightest = 0;                         ///< pixel of both frames, where dots overlap too
-};
-
 /// Width of a dot's image without diffraction and medium: its disc and its blur out of focus [px].
 double image_width_px(Scene const& scene) {
   double const sharp = 1 / (1 / scene.setup.lens.focal_length - 1 / scene.setup.z_b());
@@ -250,115 +174,14 @@ double image_width_px(Scene const& scene) {
   return (2 * scene.dots.half_size * scene.imaging.magnification + blur) / scene.setup.camera.pixel_pitch;
 }
 
-/// What dots look like on average in one frame: sums over a dot's pixels.
-struct MeanDot {
-  double light = 0, square = 0;  ///< of the light and of its square
-  double variance = 0, lit = 0;  ///< over lit pixels: of the light's variance, and their number
-};
-
-/// @param density dots a pixel, placed at random
-/// @param level light of one grey level where known, else 0: then 90 % of full scale is at the brightest pixel
-Scatter measure_scatter(Scene const& scene, std::vector<std::size_t> const& dots, double density, SpotView const& spot,
-                        DeflectionTable const& table, double level, double levels_at_peak) {
-  struct PerDot {
-    std::vector<double> mean, variance;  // of the light
-  };
-  Scatter scatter;
-  scatter.displacements.resize(dots.size());
-  std::vector<PerDot> measured(dots.size());
-  OwnedLightModel const light(scene, scene.dots, &spot, table);
-  int const side = 2 * spot.half_width() + 49 + static_cast<int>(std::min(image_width_px(scene), widest_image_px));
-  std::visit(
-      [&](auto const& medium) {
-        parallel_for(dots.size(), [&](std::size_t index) {
-          std::size_t const dot = dots[index];
-          Vec2d const at = scene.to_pixel(scene.dots.centre[dot]);
-          Window const window{static_cast<int>(std::floor(at.x)) - side / 2,
-                              static_cast<int>(std::floor(at.y)) - side / 2, side};
-          std::vector<Sampled> samples;
-          for (int scrambling = 0; scrambling < scramblings; ++scrambling) {
-            samples.push_back(sample_dot(scene, scrambled(scene, scrambling), medium, light.model, dot, window));
-          }
-          PerDot& result = measured[index];
-          auto const unbiased = [&](auto const& value_of) {
-            double mean = 0, square = 0;
-            for (Sampled const& sample : samples) mean += value_of(sample) / scramblings;
-            for (Sampled const& sample : samples) square += (value_of(sample) - mean) * (value_of(sample) - mean);
-            return std::pair{mean, square / (scramblings - 1)};
-          };
-          Vec2d found[scramblings];
-          for (std::size_t k = 0; k < samples.size(); ++k) found[k] = samples[k].displacement;
-          scatter.displacements[index] = MeanDisplacement::of(found);
-          for (std::size_t i = 0; i < samples[0].light.size(); ++i) {
-            auto const [mean, variance] = unbiased([i](Sampled const& s) { return s.light[i]; });
-            result.mean.push_back(mean);
-            result.variance.push_back(variance);
-          }
-        });
-      },
-      scene.medium.view);
-
-  auto const share = 1 / static_cast<double>(dots.size());
-  MeanDot frames[frame_count];
-  auto const sum_over_frame = [&](int frame, auto const& add) {
-    std::size_t const area = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-    std::size_t const first = static_cast<std::size_t>(frame) * area;
-    for (PerDot const& dot : measured) {
-      for (std::size_t i = first; i < first + area; ++i) add(dot.mean[i], dot.variance[i]);
-    }
-  };
-  for (int frame = 0; frame < frame_count; ++frame) {
-    MeanDot& sums = frames[frame];
-    sum_over_frame(frame, [&](double mean, double variance) {
-      sums.light += share * mean;
-      sums.square += share * (mean * mean + variance * (1 - 1.0 / scramblings));  // of one scrambling
-      scatter.brightest = std::max(scatter.brightest, mean);
-    });
-    // many dots at random overlap to a level of this mean and variance (Campbell's theorem)
-    double const overlapping = density * sums.light + 3 * std::sqrt(density * sums.square);
-    scatter.brightest = std::max(scatter.brightest, overlapping);
-  }
-  double const threshold = level > 0 ? level : scatter.brightest / levels_at_peak;
-  for (int frame = 0; frame < frame_count; ++frame) {
-    MeanDot& sums = frames[frame];
-    sum_over_frame(frame, [&](double mean, double variance) {
-      if (mean < threshold) return;
-      sums.variance += share * variance;
-      sums.lit += share;
-    });
-    // the share of a picture that n dots a pixel light with k pixels each is 1 - exp(-n k); they add their variances
-    double const pixels = density > 0 ? -std::expm1(-density * sums.lit) / density : sums.lit;
-    if (pixels > 0) scatter.light_variance = std::max(scatter.light_variance, sums.variance / pixels);
-  }
-  return scatter;
-}
-
-/// The scene's dots in view; where there is none, the first.
-std::vector<std::size_t> dots_in_view(Scene const& scene) {
-  std::vector<std::size_t> in_view;
-  for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
-    if (scene.view().sensor.covers(scene.to_pixel(scene.dots.centre[dot]))) in_view.push_back(dot);
-  }
-  if (in_view.empty() && !scene.dots.centre.empty()) in_view.push_back(0);
-  return in_view;
-}
-
-/// Spread evenly over the list: random dots are in random order, regular ones row by row.
-std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& dots, std::size_t count) {
-  if (dots.size() <= count) return dots;
-  std::vector<std::size_t> sample;
-  for (std::size_t i = 0; i < count; ++i) sample.push_back(dots[i * dots.size() / count]);
-  return sample;
-}
-
 /// Measures a scene's errors at its present number of rays; what does not depend on that number is made once.
 class RayErrors {
  public:
   explicit RayErrors(Scene const& scene)
       : scene_(scene), spot_(make_spot(scene, airy_)), deflections_(scene, DeflectionPlan(scene, scene.dots)) {
-    CameraSetup const& camera = scene.setup.camera;
     std::vector<std::size_t> const in_view = dots_in_view(scene);
-    sample_ = choose_sample(in_view, sample_dots);
+    levels_ = GreyLevels(scene.setup.camera, in_view.size());
+    sample_ = choose_sample(in_view, plan_sample_dots);
     if (deflections_.table().exists()) {
       std::vector<std::size_t> places(sample_.size());
       std::iota(places.begin(), places.end(), std::size_t{0});
@@ -369,23 +192,27 @@ class RayErrors {
         if (variance <= 0.1 * truth_tolerance_px * truth_tolerance_px || rays == most_checking_rays) break;
       }
     }
-    density_ = static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows);
-    bits_ = std::min(camera.bit_depth, 12);
-    double const full_scale = std::pow(2.0, bits_) - 1;
-    // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
-    level_ = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
-    at_peak_ = 0.9 * full_scale;
   }
 
   RaysPlan measure() const {
     RaysPlan plan;
     plan.rays = scene_.rays_per_dot;
-    plan.bits = bits_;
+    plan.bits = levels_.bits;
     if (sample_.empty()) return plan;
-    Scatter const scatter = measure_scatter(scene_, sample_, density_, spot_, deflections_.table(), level_, at_peak_);
-    double const light_per_level = level_ > 0 ? level_ : scatter.brightest / at_peak_;
+    OwnedLightModel const light(scene_, scene_.dots, &spot_, deflections_.table());
+    int const side = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(image_width_px(scene_), widest_image_px));
+    Scatter const scatter = measure_scatter(sample_, levels_, [&](std::size_t dot, int scrambling) {
+      Vec2d const at = scene_.to_pixel(scene_.dots.centre[dot]);
+      Window const window{static_cast<int>(std::floor(at.x)) - side / 2, static_cast<int>(std::floor(at.y)) - side / 2,
+                          side};
+      return std::visit(
+          [&](auto const& medium) {
+            return sample_dot(scene_, scrambled(scene_, scrambling), medium, light.model, dot, window);
+          },
+          scene_.medium.view);
+    });
     plan.truth_error_px = std::sqrt(mean_variance(scatter.displacements) + table_bias(scatter.displacements));
-    plan.image_error_levels = light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
+    plan.image_error_levels = levels_.error(scatter);
     return plan;
   }
 
@@ -424,13 +251,42 @@ class RayErrors {
   DeflectionMap deflections_;
   std::vector<std::size_t> sample_, checked_;  // dots; those among them whose table is checked, by their places here
   std::vector<MeanDisplacement> by_rays_;
-  double density_, level_, at_peak_;  // dots a pixel, light of a grey level or 0, levels of the brightest pixel
-  int bits_;
+  GreyLevels levels_{scene_.setup.camera, 0};
 };
 
 }  // namespace
 
+std::vector<double> changes(Probe const& coarse, Probe const& fine) {
+  std::vector<double> change(coarse.displacement_px.size());
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    change[i] = length(coarse.displacement_px[i] - fine.displacement_px[i]);
+  }
+  return change;
+}
+
+std::vector<std::size_t> largest_of(std::vector<double> const& value) {
+  std::vector<std::size_t> dots(value.size());
+  std::iota(dots.begin(), dots.end(), std::size_t{0});
+  if (dots.size() <= probed_dots) return dots;
+  auto const more = [&value](std::size_t a, std::size_t b) {
+    return value[a] > value[b] || (value[a] == value[b] && a < b);
+  };
+  std::partial_sort(dots.begin(), dots.begin() + probed_dots, dots.end(), more);
+  dots.resize(probed_dots);
+  return dots;
+}
+
+double Probe::largest_bend() const { return bend.empty() ? 0.0 : *std::max_element(bend.begin(), bend.end()); }
+
 StepPlan plan_step(Scene& scene) {
+  return choose_step(scene, [&](double step, auto const& search) {
+    StepProbe const probe(scene, step);
+    search(probe.probes());
+  });
+}
+
+StepPlan choose_step(Scene& scene,
+                     std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare) {
   // the step is kept in mm, so that a setup file holds exactly the number used
   StepPlan plan;
   std::optional<double> const given = scene.setup.medium.step_mm;
@@ -440,16 +296,23 @@ StepPlan plan_step(Scene& scene) {
   if (!empty) {
     Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
     double const depth_mm = (box.high.z - box.low.z) / unit::millimetre;
-    StepProbe const probe(scene, plan.step_mm * unit::millimetre);
-    Probe coarse = probe.at(plan.step_mm * unit::millimetre);
-    for (int halvings = 0;; ++halvings) {
-      Probe fine = probe.at(plan.step_mm / 2 * unit::millimetre);
-      probe.compare(coarse, fine, plan);
-      bool const finest = halvings == 12 || depth_mm > 0.5 * most_steps * plan.step_mm;
-      if (given || plan.change_px < step_tolerance_px || finest) break;
-      plan.step_mm /= 2;
-      coarse = std::move(fine);
-    }
+    prepare(plan.step_mm * unit::millimetre, [&](StepProbes const& probes) {
+      Probe coarse = probes.at(plan.step_mm * unit::millimetre);
+      for (int halvings = 0;; ++halvings) {
+        Probe fine = probes.at(plan.step_mm / 2 * unit::millimetre);
+        plan.largest_bend = std::max({probes.largest_bend, coarse.largest_bend(), fine.largest_bend()});
+        std::vector<double> const change = changes(coarse, fine);
+        if (!change.empty()) {
+          auto const most = std::max_element(change.begin(), change.end());
+          plan.change_px = *most;
+          plan.limiting_dot = probes.dots[static_cast<std::size_t>(most - change.begin())];
+        }
+        bool const finest = halvings == 12 || depth_mm > 0.5 * most_steps * plan.step_mm;
+        if (given || plan.change_px < step_tolerance_px || finest) break;
+        plan.step_mm /= 2;
+        coarse = std::move(fine);
+      }
+    });
   }
   use_step(scene, plan);
   return plan;
@@ -479,14 +342,19 @@ RaysPlan plan_rays(Scene& scene) {
     return plan;
   }
   RayErrors const errors(scene);
-  double const seconds_a_ray = rays_seconds(scene);
+  return choose_rays(
+      scene, [&] { return errors.measure(); }, rays_seconds(scene));
+}
+
+RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray) {
+  RaysPlan plan;
   std::uint64_t most = always_allowed;
   while (most < most_rays && 2 * static_cast<double>(most) * seconds_a_ray <= rays_budget_s) most *= 2;
   bool const single_ray = scene.chief_rays_only() && scene.dots.half_size == 0;
   Progress progress("choosing the rays", 8);
   std::vector<double> excess;  // errors over their tolerances, whichever is larger, from doubling to doubling
   for (scene.rays_per_dot = single_ray ? 1 : 32;; scene.rays_per_dot *= 2) {
-    plan = errors.measure();
+    plan = measure();
     excess.push_back(
         std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels));
     plan.converged = excess.back() <= 1;

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "render/scene/scene.h"
 
@@ -44,6 +46,30 @@ double rays_seconds(Scene const& scene);
 /// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
 StepPlan plan_step(Scene& scene);
 
+/// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
+struct Probe {
+  std::vector<Vec2d> displacement_px;
+  std::vector<double> bend;  ///< [m]
+
+  double largest_bend() const;
+};
+/// How far each dot moves from one probe to the other [px].
+std::vector<double> changes(Probe const& coarse, Probe const& fine);
+
+/// What tells how good a step is.
+struct StepProbes {
+  std::vector<std::size_t> dots;  ///< that are probed
+  double largest_bend = 0;        ///< of rays beside these [m]
+  std::function<Probe(double step)> at;
+};
+/// Dots that are probed by all rays, of a target with more: those with the largest values.
+inline constexpr std::size_t probed_dots = 256;
+std::vector<std::size_t> largest_of(std::vector<double> const& value);
+
+/// The search of plan_step() by any probes: `prepare` makes them for the first step and hands them to the search.
+StepPlan choose_step(Scene& scene,
+                     std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare);
+
 /// Sets what plan_step sets, from its result.
 void use_step(Scene& scene, StepPlan const& plan);
 
@@ -59,5 +85,9 @@ RaysPlan measure_rays(Scene const& scene);
 /// half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most
 /// 65,536, and no more than rays_budget_s allows. Sets scene.rays_per_dot.
 RaysPlan plan_rays(Scene& scene);
+
+/// The same by any measure of the errors at the scene's present number of rays.
+/// @param seconds_a_ray processor time of one ray of every dot
+RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray);
 
 }  // namespace gladstone

@@ -20,6 +20,8 @@ struct Rendering {
   StatusCounts statuses{};
   std::int64_t rays = 0;                      ///< traced, both frames
   TableState table = TableState::no_sources;  ///< whether truth had a deflection table
+  RenderMethod method = RenderMethod::focused_dots;
+  std::string device;  ///< that rendered it; empty: the renderer's own
 };
 
 /// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.

@@ -14,6 +14,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/medium/density_field.h"
+#include "render/scene/build_camera.h"
 #include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
 
@@ -151,12 +152,26 @@ double Scene::spot_sigma_px() const {
   return 0;
 }
 
+bool Scene::in_view(Vec2d on_target) const {
+  Vec2d const pixel = to_pixel(on_target);
+  return setup.on_bench() ? view().sensor.covers(pixel) : camera.sensor.covers(pixel);
+}
+
 Vec2d Scene::to_pixel(Vec2d on_target) const {
+  if (!setup.on_bench()) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    return camera.project({on_target.x, on_target.y, -setup.z_d}).value_or(Vec2d{nan, nan});
+  }
   double const scale = imaging.magnification / setup.camera.pixel_pitch;
   return {0.5 * (setup.camera.columns - 1) + scale * on_target.x, 0.5 * (setup.camera.rows - 1) - scale * on_target.y};
 }
 
 Vec2d Scene::to_target(Vec2d pixel) const {
+  if (!setup.on_bench()) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    auto const seen = camera.unproject(pixel, target_plane());
+    return seen ? seen->place : Vec2d{nan, nan};
+  }
   double const scale = setup.camera.pixel_pitch / imaging.magnification;
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
 }
@@ -197,6 +212,13 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   Scene scene;
   scene.setup = setup;
   scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
+  if (!setup.on_bench()) {  // with the actual sensor
+    if (auto const axis = scene.camera.unproject(scene.camera.sensor.axis_pixel(), scene.target_plane())) {
+      double const area = std::abs(axis->by_x.x * axis->by_y.y - axis->by_x.y * axis->by_y.x);  // [px^2/m^2]
+      scene.imaging.magnification = setup.camera.pixel_pitch * std::sqrt(area);
+    }
+  }
   double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
   switch (setup.target.kind) {
     case TargetKind::dots:
@@ -216,11 +238,14 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
       break;
   }
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
+  if (setup.pose && setup.target.kind != TargetKind::points) {
+    for (Vec2d& centre : scene.dots.centre) centre = centre + setup.target_centre();
+  }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
-    if (-setup.z_d > box.low.z || setup.z_a < box.high.z) {
+    if (-setup.z_d > box.low.z || setup.camera_pose().origin.z < box.high.z) {
       throw DataError(
           setup.medium.field.where,
           fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "

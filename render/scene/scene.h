@@ -5,6 +5,7 @@
 
 #include "render/light/dot_pattern.h"
 #include "render/medium/field_volume.h"
+#include "render/scene/camera.h"
 #include "render/scene/scene_view.h"
 #include "render/scene/setup.h"
 #include "render/scene/theory.h"
@@ -16,6 +17,7 @@ namespace gladstone {
 struct Scene {
   Setup setup;
   ImagingGeometry imaging{};
+  Camera camera;
   DotPattern dots;
   BuiltMedium medium;
   double step = 0;          ///< [m]
@@ -51,7 +53,11 @@ struct Scene {
   double spot_sigma_px() const;
   /// As Setup::spot_scale_px.
   double spot_scale_px() const;
-  /// Where the chief ray of a point of the target ends without medium [px], and back [m].
+  /// The dots' plane, with the world's X and Y.
+  Pose<double> target_plane() const { return {{0, 0, -setup.z_d}}; }
+  /// Whether the sensor sees a point of the target.
+  bool in_view(Vec2d on_target) const;
+  /// Where the chief ray of a point of the target ends without medium [px], and back [m]; NaN where none gets through.
   Vec2d to_pixel(Vec2d on_target) const;
   Vec2d to_target(Vec2d pixel) const;
 };

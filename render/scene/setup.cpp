@@ -9,6 +9,9 @@
 #include "render/base/units.h"
 #include "render/medium/analytic_fields.h"
 #include "render/medium/field_volume.h"
+#include "render/optics/glass_catalogue.h"
+#include "render/optics/paraxial.h"
+#include "render/scene/build_camera.h"
 #include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
@@ -31,6 +34,9 @@ RenderSetup read_render_setup(SetupTable table) {
   if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
   if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
+  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots"});
+  if (method == "rays") setup.method = RenderMethod::rays;
+  if (method == "focused_dots") setup.method = RenderMethod::focused_dots;
   return setup;
 }
 
@@ -194,6 +200,24 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
 /// Spots whose diameter is told as four standard deviations, see Setup::spot_diameter_px.
 bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero || spot == SpotModel::seed_eq8; }
 
+/// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
+bool cross_check_camera(Setup const& setup, SetupTable root) {
+  std::string const lens = "lens: ";
+  try {
+    build_camera(setup);
+    setup.target_extent();
+    return true;
+  } catch (DataError const& error) {
+    std::string const text = error.what();
+    if (text.starts_with(lens)) {
+      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", text.substr(lens.size()));
+    } else {
+      camera_table(root).problem("pose", text.substr(text.find(' ') + 1));
+    }
+  }
+  return false;
+}
+
 /// Refuses views and targets that reach further off the axis than a lens sees: chief rays from there never end.
 void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, SetupTable root) {
   double const widest = 2 * setup.farthest_off_axis(), mm = unit::millimetre;
@@ -255,6 +279,97 @@ void cross_check_steps(Setup const& setup, SetupTable medium) {
                        steps, most_steps, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));
 }
 
+/// Table [camera.pose]: where the camera stands and looks.
+std::optional<Pose<double>> read_pose(SetupTable table) {
+  if (!table.present()) return std::nullopt;
+  auto const vector = [&table](char const* key, std::vector<double> const& fallback, Range range) {
+    auto const v = table.numbers(key, fallback, 3, range);
+    return v.size() == 3 ? Vec3d{v[0], v[1], v[2]} : Vec3d{};
+  };
+  Range const place{-1e9, 1e9};
+  if (!table.has("position_mm")) table.problem("position_mm", "is missing (where the camera stands); add it");
+  Pose<double> pose;
+  pose.origin = vector("position_mm", {0, 0, 750}, place) * unit::millimetre;
+  if (table.has("rotation_deg")) {
+    if (table.has("look_at_mm")) {
+      table.problem("rotation_deg", "stands beside look_at_mm (one of them says where the camera looks); remove one");
+    }
+    pose = pose.turned(vector("rotation_deg", {0, 0, 0}, {-360, 360}) * unit::degree);
+  } else {
+    Vec3d const towards = pose.origin - vector("look_at_mm", {0, 0, 0}, place) * unit::millimetre;
+    Vec3d const right = cross(Vec3d{0, 1, 0}, towards);
+    if (!(length(right) > 1e-9 * length(towards)) || towards == Vec3d{}) {
+      table.problem("look_at_mm",
+                    "is straight above, below or where the camera stands (its picture has no upright then); use "
+                    "rotation_deg");
+      return std::nullopt;
+    }
+    pose.z = normalized(towards);
+    pose.x = normalized(right);
+    pose.y = cross(pose.z, pose.x);
+  }
+  double const roll = table.number("roll_deg", 0, {-360, 360}) * unit::degree;
+  pose = pose.turned({0, 0, roll});
+  constexpr double least_cosine = 0.05;
+  if (!(pose.z.z > least_cosine)) {
+    table.problem(table.has("rotation_deg") ? "rotation_deg" : "look_at_mm",
+                  "turns the camera away from the dots, or along their plane (its axis must meet Z = 0 within 87 "
+                  "degrees of the normal, from the side of positive Z); look another way");
+    return std::nullopt;
+  }
+  return pose;
+}
+
+/// The camera's place: z_a_mm, z_front_mm or a pose.
+void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
+  SetupTable pose = camera.table("pose");
+  setup.pose = read_pose(pose);
+  for (char const* key : {"z_a_mm", "z_front_mm"}) {
+    if (pose.present()) geometry.refuse(key, "stands beside camera.pose (which places the camera); remove one");
+  }
+  if (pose.present()) {
+    if (setup.pose) setup.z_a = setup.pose->origin.z / setup.pose->z.z;
+    return;
+  }
+  bool const thin = setup.lens.file.empty();
+  if (thin) geometry.refuse("z_front_mm", "is of prescriptions (a thin lens has no first vertex); use z_a_mm");
+  if (thin || !geometry.has("z_front_mm")) {
+    setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
+    return;
+  }
+  geometry.refuse("z_a_mm", "stands beside z_front_mm (one of them places the lens); remove one");
+  setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
+}
+
+/// Makes lens and windows ready at the setup's wavelength, and finds the principal plane of a lens that is placed by
+/// its first vertex.
+void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
+  SetupTable lens = root.table("lens"), geometry = root.table("geometry");
+  if (!setup.lens.file.empty()) build_prescription(setup.lens, lens, setup.medium.wavelength, warnings);
+  if (setup.lens.prescription) {
+    ParaxialLens const paraxial = paraxial_lens(*setup.lens.prescription);
+    double const principal = paraxial.front_principal_plane;
+    bool const afocal = !std::isfinite(principal), telecentric = !std::isfinite(paraxial.entrance.position);
+    if (geometry.has("z_front_mm")) {
+      if (!afocal) setup.z_a += principal;
+    } else if ((afocal || telecentric) && !setup.pose) {
+      geometry.problem("z_a_mm",
+                       fmt::format("cannot place {} lens (it is no distance of its {}); give z_front_mm, of "
+                                   "its first vertex",
+                                   afocal ? "an afocal" : "a telecentric", afocal ? "principal plane" : "perspective"));
+    }
+  }
+  for (WindowSetup& window : setup.windows) {
+    try {
+      window.index = GlassCatalogue::shipped()
+                         .find(window.glass, setup.medium.wavelength, window.where)
+                         .index(setup.medium.wavelength);
+    } catch (DataError const& error) {
+      root.problem("window", error.what());
+    }
+  }
+}
+
 }  // namespace
 
 double Setup::focus_distance() const {
@@ -269,8 +384,22 @@ double Setup::focus_distance() const {
   return lens.focus_distance;
 }
 
+ImagingGeometry Setup::imaging() const {
+  if (!lens.prescription && windows.empty()) {
+    return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b());
+  }
+  return paraxial_imaging(*this, paraxial_camera(*this));
+}
+
+Vec2d Setup::target_centre() const {
+  if (!pose) return {};
+  Vec3d const there = pose->origin - z_b() * pose->z;
+  return {there.x, there.y};
+}
+
 Vec2d Setup::target_extent() const {
   if (target.extent_m) return *target.extent_m;
+  if (pose || camera.tilted()) return posed_extent(*this);
   // through mm, so that the resolved setup, which holds mm, gives the same dots to the last bit
   double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
   return Vec2d{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm} *
@@ -308,12 +437,18 @@ Setup read_setup(SetupTable root) {
     root.problem("experiment", "\"" + experiment + "\" is not available yet (this version simulates BOS); use \"bos\"");
   }
   Setup setup;
-  setup.camera = read_camera_setup(camera_table(root));
+  SetupTable camera = camera_table(root);
+  setup.camera = read_camera_setup(camera);
   setup.lens = read_lens_setup(root.table("lens"));
+  setup.windows = read_windows(root);
+  if (!setup.lens.file.empty() && setup.camera.distorted()) {
+    camera.table("sensor").problem("distortion", "is of thin lenses (a prescription has its own); remove it");
+  }
   SetupTable geometry = root.table("geometry");
-  setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
+  read_place(setup, camera, geometry);
   setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
   setup.medium = read_medium_setup(root.table("medium"));
+  build_optics(setup, root, setup.warnings);
   resolve_thickness(setup, root.table("medium"));
   setup.target = read_target_setup(root.table("target"));
   setup.render = read_render_setup(root.table("render"));
@@ -324,7 +459,7 @@ Setup read_setup(SetupTable root) {
 }
 
 std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = setup.warnings;
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), geometry = root.table("geometry"), target = root.table("target");
   if (setup.lens.f_number < fastest_lens) {
@@ -333,7 +468,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                          fastest_lens));
     return warnings;  // everything else needs an aperture
   }
-  if (setup.focus_distance() <= setup.lens.focal_length) {
+  if (!setup.lens.prescription && setup.focus_distance() <= setup.lens.focal_length) {
     bool const by_distance = setup.lens.focus == Focus::distance;
     (by_distance ? lens : geometry)
         .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
@@ -343,11 +478,12 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                      setup.focus_distance() / mm, setup.lens.focal_length / mm, metres_hint(setup.focus_distance())));
     return warnings;  // everything else needs an image
   }
-  if (setup.z_b() <= setup.lens.focal_length) {
+  if (!setup.lens.prescription && setup.z_b() <= setup.lens.focal_length) {
     geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
     return warnings;
   }
-  if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty()) {
+  if (!setup.on_bench() && !cross_check_camera(setup, root)) return warnings;  // everything else needs a picture
+  if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty() && !setup.lens.prescription) {
     warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
   }
   FieldKind const kind = setup.medium.field.kind;
@@ -360,7 +496,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                 -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm,
                                 metres_hint(setup.z_d)));
     }
-    if (setup.z_a < centre + half) {
+    if (setup.camera_pose().origin.z < centre + half) {
       geometry.problem("z_a_mm",
                        fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
                                    "z_a_mm or make the medium thinner{}",

@@ -8,6 +8,7 @@
 #include "render/light/target_setup.h"
 #include "render/medium/medium_setup.h"
 #include "render/optics/lens_setup.h"
+#include "render/optics/window.h"
 #include "render/sensor/camera_setup.h"
 
 namespace gladstone {
@@ -19,11 +20,19 @@ inline constexpr double most_steps = 1e6;
 /// Scalar that rays are traced in. Truth is double; single is the GPU's preview.
 enum class Precision { double_precision, single };
 
+/// How images and truth are made.
+enum class RenderMethod {
+  automatic,     ///< focused_dots where it holds, else rays
+  rays,          ///< ray by ray: any source, any camera
+  focused_dots,  ///< from tables, for flat dots in focus of an ideal thin lens
+};
+
 struct RenderSetup {
   std::optional<std::uint64_t> rays_per_dot;  ///< empty: auto
   PupilSampling sampling = PupilSampling::sobol;
   std::uint64_t seed = 1;
   Precision precision = Precision::double_precision;
+  RenderMethod method = RenderMethod::automatic;
 };
 
 /// Everything that rendering a BOS pair needs, in SI.
@@ -33,20 +42,34 @@ struct Setup {
   MediumSetup medium;
   TargetSetup target;
   RenderSetup render;
-  double z_a = 0.75;        ///< lens to the medium's mid-plane [m]
-  double z_d = 0.25;        ///< the medium's mid-plane to the dots [m]
+  double z_a = 0.75;                  ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  double z_d = 0.25;                  ///< the medium's mid-plane to the dots, along Z [m]
+  std::optional<Pose<double>> pose;   ///< of the camera: see camera_pose(); empty: on the Z axis, looking along -Z
+  std::vector<WindowSetup> windows;   ///< in the order light meets them
+  std::vector<std::string> warnings;  ///< of what was read
   int view_margin_px = 64;  ///< by which a target of default extent reaches beyond the view: the first pass's window
 
-  double z_b() const { return z_a + z_d; }
+  /// Of the front principal plane (of the first vertex, where a lens has no such plane): z along the light, x right and
+  /// y up as the camera sees them.
+  Pose<double> camera_pose() const { return pose ? *pose : Pose<double>{{0, 0, z_a}}; }
+  /// Front principal plane to the dots along the camera's axis [m].
+  double z_b() const { return z_a + z_d / camera_pose().z.z; }
+  /// Where the camera's axis meets the dots' plane [m].
+  Vec2d target_centre() const;
+  /// Whether the camera is an ideal thin lens on the Z axis with nothing before it, and its sensor square to it: what
+  /// closed forms describe.
+  bool on_bench() const {
+    return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted();
+  }
   double focus_distance() const;
   /// How far off the axis, in x or y, anything may lie that a lens is to see: ten times the way from the dots to it, 84
   /// degrees [m].
   double farthest_off_axis() const { return 10 * z_b(); }
-  ImagingGeometry imaging() const {
-    return thin_lens_imaging(lens.focal_length, lens.f_number, focus_distance(), z_b());
-  }
+  /// Magnification and pupil about the axis; of prescriptions and through windows those of paraxial light, with the
+  /// sensor in the paraxial image.
+  ImagingGeometry imaging() const;
   double ambient_index() const { return 1 + medium.ambient_refractivity(); }
-  /// Width and height of the target [m].
+  /// Width and height of the target, about target_centre() [m].
   Vec2d target_extent() const;
   /// Diameter of a dot on the target [m].
   double dot_diameter() const;

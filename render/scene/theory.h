@@ -16,31 +16,40 @@ struct GradientIntegral {
   Vec2<T> levered{};  ///< the same with each slice's own distance from the ray's start plane [m]
 };
 
-/// Integrates grad n over z along an undeflected ray, by Gauss-Legendre panels of three points no longer than `step`.
-/// @param start the ray, from the target's plane; outside the medium there is no gradient
-template <class T, class Medium>
-GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T> const& start, T step) {
+/// Calls visit(sample, s, ds) at the points of a quadrature along a straight ray through the medium: Gauss-Legendre
+/// panels of three points no longer than `step`; s is the way from the ray's start [m]. Outside the medium there is
+/// nothing.
+template <class T, class Medium, class Visit>
+GLADSTONE_HD void along_field(Medium const& medium, Ray<T> const& start, T step, Visit&& visit) {
   using std::ceil;
   constexpr double root = 0.77459666924148337704;  // sqrt(3/5)
-  GradientIntegral<T> sum;
   detail::Chord<T> const chord = detail::chord_in(medium.bounds(), start.position, start.direction);
   T const way = chord.leave - chord.enter;
-  if (!(way > T(0))) return sum;
+  if (!(way > T(0))) return;
   int const panels = static_cast<int>(ceil(way / step * (T(1) - T(1e-6)))) + (way < step * T(1e-6) ? 1 : 0);
   T const half = T(0.5) * way / T(panels);
   for (int panel = 0; panel < panels; ++panel) {
     T const middle = chord.enter + half * T(2 * panel + 1);
     for (int point = -1; point <= 1; ++point) {
       T const s = middle + half * T(point) * T(root);
-      T const dz = half * (point == 0 ? T(8.0 / 9.0) : T(5.0 / 9.0)) * start.direction.z;
-      IndexSample<T> const sample = medium.sample(start.position + start.direction * s);
-      Vec2<T> const slice{sample.gradient.x * dz, sample.gradient.y * dz};
-      sum.refractivity += sample.refractivity * dz;
-      sum.depth += dz;
-      sum.plain += slice;
-      sum.levered += slice * (s * start.direction.z);
+      visit(medium.sample(start.position + start.direction * s), s, half * (point == 0 ? T(8.0 / 9.0) : T(5.0 / 9.0)));
     }
   }
+}
+
+/// Integrates grad n over z along an undeflected ray, as along_field().
+/// @param start the ray, from the target's plane; outside the medium there is no gradient
+template <class T, class Medium>
+GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T> const& start, T step) {
+  GradientIntegral<T> sum;
+  along_field(medium, start, step, [&](IndexSample<T> const& sample, T s, T ds) {
+    T const dz = ds * start.direction.z;
+    Vec2<T> const slice{sample.gradient.x * dz, sample.gradient.y * dz};
+    sum.refractivity += sample.refractivity * dz;
+    sum.depth += dz;
+    sum.plain += slice;
+    sum.levered += slice * (s * start.direction.z);
+  });
   return sum;
 }
 

@@ -3,32 +3,16 @@
 #include <cstdint>
 
 #include "render/base/host_device.h"
+#include "render/scene/ray_hit.h"
 #include "render/scene/scene_view.h"
 
 namespace gladstone {
-
-enum class Frame : int { reference = 0, flow = 1 };
-inline constexpr int frame_count = 2;
 
 /// Which ray of which source.
 struct RayIndex {
   std::uint64_t source;
   std::uint64_t ray;
 };
-
-/// Where a ray ended.
-template <class T>
-struct RayHit {
-  RayStatus status = RayStatus::alive;
-  Vec2<T> pixel{};    ///< on the sensor's plane [px]; defined where reaches_sensor_plane(status)
-  T weight{};         ///< radiance cos^4 at the source [1]
-  Vec2<T> at_lens{};  ///< where it met the lens plane [m]
-};
-
-/// True for rays that count for truth: past the stop and on the sensor's plane, inside its area or not.
-GLADSTONE_HD constexpr bool reaches_sensor_plane(RayStatus status) {
-  return status == RayStatus::alive || status == RayStatus::missed_sensor;
-}
 
 /// From the target's side of the lens to the sensor's plane.
 template <class T>

@@ -22,6 +22,17 @@ CameraSetup read_camera_setup(SetupTable table) {
   double const full_scale = std::pow(2.0, setup.bit_depth) - 1;
   setup.offset_dn = table.number("offset_dn", 0.0, Range::at_least(0.0, 0.8 * full_scale));
 
+  if (SetupTable sensor = table.table("sensor"); sensor.present()) {
+    auto const tilt = sensor.numbers("tilt_deg", {0, 0}, 2, {-80, 80});
+    if (tilt.size() == 2) setup.tilt = Vec2d{tilt[0], tilt[1]} * unit::degree;
+    setup.scheimpflug = sensor.word("scheimpflug", "off", {"off", "auto"}) == "auto";
+    if (setup.scheimpflug && sensor.has("tilt_deg") && !(setup.tilt == Vec2d{})) {
+      sensor.problem("scheimpflug", "stands beside tilt_deg (one of them tilts the sensor); remove one");
+    }
+    auto const brown = sensor.numbers("distortion", {0, 0, 0, 0}, 4, {-100, 100});
+    if (brown.size() == 4) setup.distortion = {brown[0], brown[1], brown[2], brown[3]};
+  }
+
   SetupTable noise = table.table("noise");
   setup.noise.enabled = noise.present();
   if (setup.noise.enabled) {

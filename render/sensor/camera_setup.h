@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "render/base/setup_table.h"
+#include "render/sensor/posed_sensor.h"
 
 namespace gladstone {
 
@@ -30,6 +31,14 @@ struct CameraSetup {
   std::optional<double> exposure_e;
   double offset_dn = 0;  ///< black level
   NoiseSetup noise;
+  Vec2d tilt{};              ///< of the sensor about its x, then its turned y, through the axis point [rad]
+  bool scheimpflug = false;  ///< tilted so that the plane in focus is sharp all over, instead of `tilt`
+  BrownDistortion<double> distortion;
+
+  bool tilted() const { return scheimpflug || tilt.x != 0 || tilt.y != 0; }
+  bool distorted() const {
+    return distortion.k1 != 0 || distortion.k2 != 0 || distortion.p1 != 0 || distortion.p2 != 0;
+  }
 };
 
 CameraSetup read_camera_setup(SetupTable table);

@@ -11,6 +11,7 @@
 #include "studies/commands/command.h"
 #include "studies/json_text.h"
 #include "studies/ray_file.h"
+#include "studies/scene_renderer.h"
 
 namespace gladstone {
 
@@ -39,7 +40,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);
-    plan_step(scene);
+    plan_step_of(scene);
     Through const through = arguments->through == "medium"   ? Through::medium
                             : arguments->through == "optics" ? Through::optics
                                                              : Through::all;

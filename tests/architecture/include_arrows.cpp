@@ -19,6 +19,7 @@ struct Room {
 };
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
+Names const renderers = {"render/rays"};
 
 Names operator+(Names a, Names const& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -35,9 +36,13 @@ std::vector<Room> const& table() {
       {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/scene", render, {"Eigen"}, {"fmt"}},
+      {"render/rays", render, {"Eigen"}, {"fmt"}},
       {"analysis", {"render/base"}, {"Eigen", "Ceres"}, {"OpenCV", "fmt"}},
       {"cuda", render + Names{"analysis"}, {"Eigen", "CUDA"}, {"fmt"}},
-      {"studies", render + Names{"analysis", "cuda"}, {"Eigen", "fmt", "spdlog", "nlohmann_json", "CLI11"}, {"Ceres"}},
+      {"studies",
+       render + renderers + Names{"analysis", "cuda"},
+       {"Eigen", "fmt", "spdlog", "nlohmann_json", "CLI11"},
+       {"Ceres"}},
   };
   return rooms;
 }

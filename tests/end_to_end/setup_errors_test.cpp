@@ -184,7 +184,6 @@ TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
 
 TEST_F(SetupErrors, WhatIsDueLaterIsRefusedByName) {
   refused("\"bos\"", "\"piv\"", "experiment", {"\"piv\" is not available yet"});
-  refused("[lens]", "[lens]\nmodel = \"prescription\"", "model", {"\"prescription\" is not available yet"});
   refused("[correlate]", "[correlate]\nmethod = \"rpc\"", "method", {"\"rpc\" is not available yet", "use \"scc\""});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
   expect_setup_refused(two, {"several cameras, which is not available yet"});

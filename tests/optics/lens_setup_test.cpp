@@ -40,11 +40,11 @@ TEST(LensSetup, ReadsEveryKey) {
   EXPECT_EQ(read("psf = \"gaussian_first_zero\"").spot, SpotModel::gaussian_first_zero);
 }
 
-TEST(LensSetup, PrescriptionsAreRefusedByName) {
-  EXPECT_THAT(
-      [] { read("model = \"prescription\"\nfile = \"double_gauss.toml\"\n"); },
-      ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:2"), HasSubstr("\"prescription\" is not available yet"),
-                                      HasSubstr("lens.toml:3"), HasSubstr("lens prescriptions"))));
+TEST(LensSetup, NamesItsPrescription) {
+  LensSetup const setup = read("model = \"prescription\"\nfile = \"double_gauss.toml\"\nf_number = 8\n");
+  EXPECT_THAT(setup.file, HasSubstr("double_gauss.toml"));
+  EXPECT_DOUBLE_EQ(setup.f_number, 8);
+  EXPECT_TRUE(std::isnan(read("model = \"prescription\"\nfile = \"double_gauss.toml\"\n").f_number));
 }
 
 TEST(LensSetup, ImpossibleLensesAreRefused) {

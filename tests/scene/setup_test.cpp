@@ -185,9 +185,6 @@ TEST(Setup, WhatIsDueLaterIsRefusedByName) {
   EXPECT_THAT([] { read("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
   EXPECT_THAT([] { read("experiment = \"calibration\"\n"); }, refused("1:1", "\"calibration\" is not available yet"));
   EXPECT_THAT([] { read("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
-  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\n"); },
-              refused("2:1", "\"prescription\" is not available yet"));
-  EXPECT_THAT([] { read("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "lens prescriptions"));
   for (std::string const table : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
     EXPECT_THAT([&] { read(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
   }
@@ -203,8 +200,6 @@ TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
   EXPECT_THAT([] { read("[medium.field]\nkind = \"sinusiod\"\namplitude_kg_m3 = 0.1\nwavelength_mm = 4\n"); },
               only("did you mean \"sinusoid\"?"));
   EXPECT_THAT([] { read("[target]\nkind = \"pints\"\nfile = \"a.csv\"\n"); }, only("did you mean \"points\"?"));
-  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\nfile = \"a.zmx\"\nobject_side = 1\n"); },
-              only("\"prescription\" is not available yet"));
   EXPECT_THAT([] { read("[[camera]]\n[[camera]]\npixels = [64, 64]\n[camera.noise]\nseed = 1\n"); },
               only("several cameras"));
   EXPECT_THAT(

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <type_traits>
+
+#include "render/base/one_of.h"
+#include "render/base/pose.h"
+#include "render/optics/aperture_stop.h"
+#include "render/optics/lens_surface.h"
+
+namespace gladstone {
+
+/// A circular stop anywhere, facing any way: lets light of its own z through, forwards or back.
+template <class T>
+struct PosedStop {
+  Pose<T> pose;
+  T radius{};  ///< [m]
+  T edge{};    ///< width of the zone about the rim that quadrature smooths, see ApertureStop; 0: sharp
+
+  /// Where a ray meets the stop's plane, in its own frame [m]. @return false where it runs along it
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
+    Ray<T> const local = pose.inwards(ray);
+    if (local.direction.z == T(0)) return false;
+    T const way = -local.position.z / local.direction.z;
+    place = {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
+    return true;
+  }
+
+  /// Weighs a ray, which stays where it is: what limits light needs not stand in the order of the elements.
+  /// @return vignetted outside the radius, whatever the rim leaves of it
+  GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>& account) const {
+    Vec2<T> p;
+    if (!meet(ray, p)) return RayStatus::missed_lens;
+    account.weight = account.weight * ApertureStop<T>{T(0), radius, edge}.transmission(p.x, p.y);
+    return p.x * p.x + p.y * p.y > radius * radius ? RayStatus::vignetted : RayStatus::alive;
+  }
+};
+
+/// An ideal thin lens anywhere, facing any way: ThinLens in its own frame. Light runs along its z.
+template <class T>
+struct PosedThinLens {
+  Pose<T> pose;
+  T focal_length{};  ///< [m]
+
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
+    return PosedStop<T>{pose, T(0), T(0)}.meet(ray, place);
+  }
+
+  /// @return missed_lens for rays that do not run towards it; optical paths are undefined behind it
+  GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>&) const {
+    Ray<T> const local = pose.inwards(ray);
+    if (!(local.direction.z > T(0))) return RayStatus::missed_lens;
+    T const sx = local.direction.x / local.direction.z, sy = local.direction.y / local.direction.z;
+    T const x = local.position.x - sx * local.position.z, y = local.position.y - sy * local.position.z;
+    Vec3<T> const turned{sx - x / focal_length, sy - y / focal_length, T(1)};
+    ray = pose.outwards(Ray<T>{{x, y, T(0)}, normalized(turned)});
+    return RayStatus::alive;
+  }
+};
+
+/// Every element that a ray can meet between its source and the sensor. An element owns its pose in the world, takes
+/// rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. Adding one: its struct, and its
+/// name here.
+template <class T>
+using CameraElement =
+    OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>>;
+
+/// Takes a ray to an element and through it; its weight is 0 where it ends there. The smoothed rim of a stop lets a
+/// share of vignetted rays pass: theirs is not 0.
+template <class T>
+GLADSTONE_HD RayStatus pass_element(CameraElement<T> const& element, Ray<T>& ray, RayAccount<T>& account) {
+  return element.visit([&](auto const& held) {
+    RayStatus const status = held.interact(ray, account);
+    constexpr bool weighs = std::is_same_v<std::decay_t<decltype(held)>, PosedStop<T>>;
+    if (!weighs && status != RayStatus::alive) account.weight = T(0);
+    return status;
+  });
+}
+
+}  // namespace gladstone

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "render/scene/ray_plan.h"
+
+/// The plans of ray_plan.h for any scene, by trace_ray alone.
+namespace gladstone {
+
+/// plan_step() by chief rays of all dots, and chief and rim rays of those that change most.
+StepPlan plan_step_by_rays(Scene& scene);
+
+/// plan_rays() by the light that every ray lays down, and the scatter of centroids.
+RaysPlan plan_rays_by_rays(Scene& scene);
+
+}  // namespace gladstone

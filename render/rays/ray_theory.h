@@ -1,0 +1,102 @@
+#pragma once
+
+#include "render/rays/source_tracer.h"
+#include "render/scene/field_map.h"
+#include "render/scene/light_model.h"
+
+namespace gladstone {
+
+/// Integrals of grad n along a straight ray, of its components across the camera's axis.
+struct AcrossAxis {
+  Vec3d plain{};                       ///< [1]
+  Vec3d levered{};                     ///< each slice times its way along the axis from where the ray starts [m]
+  double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 along the axis [m]
+};
+
+/// What theory says of sources seen by any camera: Eq. 9 of Rajendran et al. with the deflection and the lever along
+/// the chief ray, both as the camera's axis sees them, times the derivative of the camera's projection in the dots'
+/// plane. Of a thin lens on the Z axis it is the paper's formula, M Z_D / (n_0 p) times the integral of grad n over z.
+class RayTheory {
+ public:
+  static constexpr int all_rings = 40;
+  /// @param launch how its rays are aimed @param shape,extended of the sources; others are points
+  /// @param most_rings of the rule over the stop: fewer where a rough average will do
+  RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape shape, bool extended, int most_rings = all_rings);
+
+  /// Of one source: along its chief ray, with every slice's own lever, and averaged over the rays that pass the stop.
+  template <class Sources, class Medium>
+  void record(RaysLaunch const& launch, Sources const& sources, Medium const& medium, std::uint64_t source,
+              GroundTruth& truth) const {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    truth.eq9_px[source] = truth.chief_px[source] = truth.eq9_cone_px[source] = {nan, nan};
+    Vec3d const middle = sources.middle(source);
+    auto const seen = launch.camera.see({middle.x, middle.y}, plane_);
+    if (!seen) return;
+    CameraView<double> const camera = launch.camera.view();
+    auto const chief = before_medium(camera, seen->chief);
+    if (!chief) return;
+    AcrossAxis const along = integrate(medium, *chief);
+    truth.eq9_px[source] = shift(*seen, *chief, lever(*chief) * along.plain);
+    truth.chief_px[source] = shift(*seen, *chief, along.levered);
+
+    auto const disc = launch.sight(middle);
+    if (!disc) return;
+    AimedBundle<double> const bundle = launch.bundle(*disc, 0, 0);
+    Vec2d sum{};
+    double weight = 0;
+    for (std::size_t i = 0; i < places_.points.size(); ++i) {
+      throw_if_interrupted();
+      for (std::size_t k = 0; k < pupil_.points.size(); ++k) {
+        AimedRay<double> const aimed =
+            ray_to(sources, bundle, source, places_.points[i], stop_share_ * pupil_.points[k]);
+        RayHit<double> const hit = trace_ray(camera, NoMedium<double>{}, launch.tracing, aimed.ray, aimed.weight);
+        auto const straight = before_medium(camera, aimed.ray);
+        if (!reaches_sensor_plane(hit.status) || !straight) continue;
+        double const share = aimed.weight * places_.weights[i] * pupil_.weights[k];
+        sum += share * shift(*seen, *straight, integrate(medium, *straight).levered);
+        weight += share;
+      }
+    }
+    if (weight > 0) truth.eq9_cone_px[source] = sum / weight;
+  }
+
+  /// The ray as it comes to the medium, moved along itself to the dots' plane as it is seen through windows; nothing
+  /// where it does not get there.
+  std::optional<Ray<double>> before_medium(CameraView<double> const& camera, Ray<double> ray) const;
+
+  /// @param start of the plane that levers count from
+  template <class Medium>
+  AcrossAxis integrate(Medium const& medium, Ray<double> const& start) const {
+    AcrossAxis sum;
+    double const cosine = dot(start.direction, axis_);
+    along_field(medium, start, step_, [&](IndexSample<double> const& sample, double s, double ds) {
+      Vec3d const slice = (ds * cosine) * (sample.gradient - dot(sample.gradient, axis_) * axis_);
+      sum.plain += slice;
+      sum.levered += (s * cosine) * slice;
+      sum.refractivity += sample.refractivity * ds * cosine;
+      sum.depth += ds * cosine;
+    });
+    return sum;
+  }
+
+  /// Way from a ray's start to the medium's mid-plane along the camera's axis [m].
+  double lever(Ray<double> const& start) const {
+    return -start.position.z / start.direction.z * dot(start.direction, axis_);
+  }
+  /// What a levered integral moves the pixel by [px].
+  Vec2d shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d levered) const;
+
+ private:
+  Pose<double> plane_;
+  Vec3d axis_;
+  double step_, n0_;
+  double stop_share_ = 1;          ///< of the disc that a launch aims at, that the stop fills
+  SourceCubature places_, pupil_;  ///< rules over a source and over the stop
+  double near_shift_ = 0;          ///< by which windows before the medium bring the dots nearer [m]
+};
+
+/// map_field and map_strain (field_map.h) for any camera. The cone's average is that of a few rays.
+FieldMap map_field_by_rays(Scene const& scene, int spacing_px);
+StrainMap map_strain_by_rays(Scene const& scene);
+
+}  // namespace gladstone

@@ -1,0 +1,170 @@
+#include "render/rays/rays_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+#include "render/rays/ray_theory.h"
+#include "render/rays/source_tracer.h"
+#include "render/scene/light_model.h"
+
+namespace gladstone {
+namespace {
+
+template <class Medium>
+Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& medium, SpotView const* spot,
+                    RenderTheory theory) {
+  RaysLaunch const launch(scene, spot ? *spot : SpotView{});
+  LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
+  std::size_t const count = sources.centre.size();
+  double const light_per_weight = launch.light_per_weight(lambert.area());
+  TracingPass pass(scene, sources);
+  std::optional<LightImage> images[frame_count];
+  LightImage* targets[frame_count] = {};
+  for (int frame = 0; spot && frame < frame_count; ++frame) {
+    targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+  }
+  RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
+  double margin = 0;
+  std::mutex merge;
+  Progress progress(spot ? "tracing rays" : "tracing truth", count);
+  parallel_chunks(count, 8, [&](std::size_t begin, std::size_t end) {
+    SourceTracer tracer(launch, launch.camera.view(), lambert, medium, spot != nullptr);
+    GroundTruth& truth = pass.rendering.truth;
+    for (std::size_t dot = begin; dot < end; ++dot) {
+      truth.set_hits(dot, tracer.trace(dot, targets), light_per_weight);
+      if (theory == RenderTheory::yes) model.record(launch, lambert, medium, dot, truth);
+    }
+    progress.advance(end - begin);
+    std::lock_guard const lock(merge);
+    margin = std::max(margin, tracer.largest_margin());
+    for (std::size_t frame = 0; frame < frame_count; ++frame) {
+      for (std::size_t status = 0; status < ray_status_count; ++status) {
+        pass.rendering.statuses[frame][status] += tracer.statuses()[frame][status];
+      }
+    }
+  });
+  if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
+  scene.pupil_margin = margin;
+  return std::move(pass.rendering);
+}
+
+/// A camera whose rays land where an ideal lens in its place would image what they seem to come from.
+struct IdealView : CameraView<double> {
+  Camera const* camera;
+  double plane_z;  ///< of the target [m]
+  double seen_z;   ///< where it is seen through the windows before the medium [m]
+};
+
+RayHit<double> finish_ray(IdealView const& view, Ray<double> const& ray, RayAccount<double> const& account,
+                          RayStatus status) {
+  RayHit<double> hit = finish_ray(static_cast<CameraView<double> const&>(view), ray, account, status);
+  if (hit.weight == 0) return hit;
+  double const way = (view.seen_z - ray.position.z) / ray.direction.z;
+  Vec3d const apparent = ray.position + way * ray.direction;
+  hit.pixel = view.camera->ideal_project({apparent.x, apparent.y, view.plane_z});
+  return hit;
+}
+
+/// Turns the light of bright dots into what is left of a white target.
+void take_from_white(Scene const& scene, LightPair& light) {
+  Image<double> const white = white_picture(scene);
+  for (Image<double>* frame : {&light.reference, &light.flow}) {
+    std::transform(white.begin(), white.end(), frame->begin(), frame->begin(),
+                   [](double paper, double dots) { return paper - dots; });
+  }
+}
+
+}  // namespace
+
+Rendering RaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  std::optional<AiryTable> airy;
+  SpotView const spot = make_spot(scene, airy);
+  Rendering rendering = std::visit(
+      [&](auto const& medium) {
+        return trace_all(scene, sources, medium, images == RenderImages::no ? nullptr : &spot, theory);
+      },
+      scene.medium.view);
+  rendering.table = TableState::by_rays;
+  if (images != RenderImages::no && scene.setup.target.polarity == Polarity::dark) {
+    take_from_white(scene, rendering.light);
+  }
+  if (images == RenderImages::kept) {
+    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+    rendering.light = {};
+  }
+  return rendering;
+}
+
+std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources) {
+  RaysLaunch const launch(scene, SpotView{});
+  LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
+  IdealView view{launch.camera.view(), &launch.camera, -scene.setup.z_d, -scene.setup.z_d};
+  for (WindowSetup const& window : scene.setup.windows) {
+    if (window.side == WindowSide::target) view.seen_z += window.shift();
+  }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Vec2d> displacement(sources.centre.size(), Vec2d{nan, nan});
+  std::visit(
+      [&](auto const& medium) {
+        parallel_chunks(displacement.size(), 8, [&](std::size_t begin, std::size_t end) {
+          SourceTracer tracer(launch, view, lambert, medium, false);
+          for (std::size_t dot = begin; dot < end; ++dot) {
+            DotTruth const truth = tracer.trace(dot, {});
+            displacement[dot] = truth.hits[1].mean() - truth.hits[0].mean();
+          }
+        });
+      },
+      scene.medium.view);
+  return displacement;
+}
+
+Image<double> white_picture(Scene const& scene) {
+  constexpr int nodes = 17, rays = 4096;
+  Scene many = scene;
+  many.rays_per_dot = rays;
+  RaysLaunch const launch(many, SpotView{});
+  CameraView<double> const camera = launch.camera.view();
+  Vec2d const centre{};
+  LambertSources<double> const paper{{&centre, nullptr, 1, -scene.setup.z_d, 0, SourceShape::disc}};
+  int const columns = scene.setup.camera.columns, rows = scene.setup.camera.rows;
+  Image<double> lattice(nodes, nodes);
+  parallel_for(static_cast<std::size_t>(nodes) * nodes, [&](std::size_t index) {
+    int const column = static_cast<int>(index) % nodes, row = static_cast<int>(index) / nodes;
+    Vec2d const pixel{(columns - 1.0) * column / (nodes - 1), (rows - 1.0) * row / (nodes - 1)};
+    auto const seen = launch.camera.unproject(pixel, scene.target_plane());
+    if (!seen) return;
+    LambertSources<double> here = paper;
+    Vec2d const place = seen->place;
+    here.dots.centre = &place;
+    auto const disc = launch.sight(here.middle(0));
+    if (!disc) return;
+    AimedBundle<double> const bundle = launch.bundle(*disc, 0, 0);
+    double light = 0;
+    for (std::uint64_t i = 0; i < launch.rays; ++i) {
+      AimedRay<double> aimed = aim_ray(here, bundle, 0, i);
+      RayAccount<double> account{aimed.weight};
+      carry(camera, 0, camera.count, aimed.ray, account);
+      light += account.weight;
+    }
+    double const area = 1 / std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
+    lattice(column, row) = light * launch.light_per_weight(area);
+  });
+  Image<double> white(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      double const u = (nodes - 1.0) * column / std::max(1, columns - 1);
+      double const v = (nodes - 1.0) * row / std::max(1, rows - 1);
+      int const i = std::min(static_cast<int>(u), nodes - 2), j = std::min(static_cast<int>(v), nodes - 2);
+      double const fu = u - i, fv = v - j;
+      white(column, row) = (1 - fv) * ((1 - fu) * lattice(i, j) + fu * lattice(i + 1, j)) +
+                           fv * ((1 - fu) * lattice(i, j + 1) + fu * lattice(i + 1, j + 1));
+    }
+  }
+  return white;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,207 @@
+#include "render/scene/build_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double sharp = 0;  // rim of a stop
+
+/// The window's two faces, in the order that light along +Z meets them.
+void append_window(Camera& camera, WindowSetup const& window) {
+  Pose<double> const middle = Pose<double>{window.position}.turned({window.tilt.x, window.tilt.y, 0});
+  ShapedSurface<double, Quadric<double>> face;
+  face.semi_diameter = std::numeric_limits<double>::infinity();
+  face.pose = middle.moved({0, 0, -window.thickness / 2});
+  face.n_after = window.index;
+  camera.elements.push_back(face);
+  face.pose = middle.moved({0, 0, window.thickness / 2});
+  face.n_before = window.index;
+  face.n_after = 1;
+  camera.elements.push_back(face);
+}
+
+void append_thin_lens(Camera& camera, Setup const& setup) {
+  bool const chief = std::isinf(setup.lens.f_number);
+  double const radius = chief ? std::numeric_limits<double>::infinity() : camera.paraxial.stop_radius;
+  camera.stop = static_cast<int>(camera.elements.size());
+  camera.stop_radius = camera.paraxial.stop_radius;
+  camera.elements.push_back(PosedStop<double>{camera.pose, radius, sharp});
+  camera.elements.push_back(PosedThinLens<double>{camera.pose, setup.lens.focal_length});
+}
+
+/// The surfaces of a prescription; a stop that is no glass becomes one whose rim can be smoothed.
+void append_prescription(Camera& camera, Setup const& setup) {
+  Lens const& lens = *setup.lens.prescription;
+  bool const chief = std::isinf(setup.lens.f_number);
+  camera.stop = static_cast<int>(camera.elements.size()) + lens.stop;
+  camera.stop_radius = chief ? 0 : lens.stop_radius;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    bool const stop = static_cast<int>(i) == lens.stop;
+    camera.elements.push_back(lens.surfaces[i].visit([&](auto surface) -> CameraElement<double> {
+      surface.pose = surface.pose.within(camera.aim_plane);
+      if (stop && chief) surface.semi_diameter = std::numeric_limits<double>::infinity();
+      if constexpr (std::is_same_v<decltype(surface.shape), Quadric<double>>) {
+        bool const plane = surface.action == SurfaceAction::pass && surface.shape.curvature == 0;
+        if (stop && plane) return PosedStop<double>{surface.pose, surface.semi_diameter, sharp};
+      }
+      return surface;
+    }));
+  }
+}
+
+/// Even spread over the unit disc (Vogel 1979).
+Vec2d sunflower(int k, int count) {
+  double const golden_angle = pi * (3 - std::sqrt(5.0)), r = std::sqrt((k + 0.5) / count);
+  return {r * std::cos(k * golden_angle), r * std::sin(k * golden_angle)};
+}
+
+/// By how much a sensor is to be moved along its axis, so that the bundle from a point is narrowest there: the rms
+/// radius is a parabola, <p p> + 2 z <p s> + z^2 <s s> about the means of places p and slopes s.
+double best_focus(Camera const& camera, Vec3d point) {
+  constexpr int count = 500;
+  auto const disc = camera.aim_disc(point);
+  std::vector<Vec2d> places, slopes;
+  Vec2d place{}, slope{};
+  for (int k = 0; disc && k < count; ++k) {
+    Vec2d const at = sunflower(k, count);
+    Ray<double> ray{point, normalized(disc->centre + at.x * disc->a + at.y * disc->b - point)};
+    RayAccount<double> account;
+    CameraView<double> const view = camera.view();
+    if (carry(view, 0, view.count, ray, account) != RayStatus::alive) continue;
+    Ray<double> const local = camera.sensor.pose.inwards(ray);
+    Vec2d const s{local.direction.x / local.direction.z, local.direction.y / local.direction.z};
+    places.push_back({local.position.x - s.x * local.position.z, local.position.y - s.y * local.position.z});
+    slopes.push_back(s);
+    place += places.back();
+    slope += s;
+  }
+  if (places.size() < 10) {
+    throw DataError("lens",
+                    "no light of the plane in focus passes it (too few of its axial rays reach the sensor); check "
+                    "lens.focus, geometry and lens.f_number");
+  }
+  auto const n = static_cast<double>(places.size());
+  double ps = 0, ss = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Vec2d const s = slopes[i] - slope / n;
+    ps += dot(places[i] - place / n, s);
+    ss += dot(s, s);
+  }
+  return ss > 0 ? -ps / ss : 0;
+}
+
+/// Tilts of the sensor that image a plane, whose normal in the camera's frame is given, sharply all over: with the
+/// plane at z = -Z + a . (x, y) the image plane is z' = z_i - M a . (x', y') (collinear map).
+Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
+  Vec2d const a{-normal.x / normal.z, -normal.y / normal.z};
+  Vec3d const tilted = normalized(Vec3d{magnification * a.x, magnification * a.y, 1});
+  return {std::atan2(-tilted.y, tilted.z), std::asin(tilted.x)};
+}
+
+}  // namespace
+
+ParaxialCamera paraxial_camera(Setup const& setup) {
+  ParaxialCamera paraxial;
+  for (WindowSetup const& window : setup.windows) paraxial.window_shift += window.shift();
+  if (setup.lens.prescription) {
+    Lens const& lens = *setup.lens.prescription;
+    int const count = static_cast<int>(lens.paraxial.size());
+    double const principal = paraxial_lens(lens).front_principal_plane;
+    paraxial.front = std::isfinite(principal) ? -principal : 0;
+    paraxial.to_stop = ray_transfer(lens, 0, lens.stop);
+    paraxial.whole = ray_transfer(lens, 0, count);
+    paraxial.forwards = lens.paraxial.back().n_after < 0 ? -1 : 1;
+    paraxial.stop_radius = lens.paraxial_stop_radius;
+    paraxial.behind = lens.poses.back().within(Pose<double>{{0, 0, paraxial.front}});
+  } else {
+    paraxial.whole.c = -1 / setup.lens.focal_length;
+    paraxial.stop_radius = setup.lens.focal_length / setup.lens.f_number / 2;
+  }
+  if (std::isinf(setup.lens.f_number)) paraxial.stop_radius = 0;
+  return paraxial;
+}
+
+ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial) {
+  double const target = setup.z_b() + paraxial.front, shift = paraxial.window_shift;
+  double const focus = setup.focus_distance() + paraxial.front - shift;
+  RayTransfer const& m = paraxial.whole;
+  double const image = -(m.a * focus + m.b) / (m.c * focus + m.d);  // behind the last surface
+  double const slope = paraxial.chief_slope(target), height = 1 + slope * (target - shift);
+  double const magnification = std::abs(m.a * height + m.b * slope + image * (m.c * height + m.d * slope));
+  ImagingGeometry imaging;
+  imaging.magnification = magnification;
+  imaging.entrance_pupil = paraxial.stop_radius > 0 ? 2 * setup.z_b() * paraxial.marginal_slope(target) : 0;
+  imaging.image_distance = paraxial.stop_radius > 0 ? imaging.entrance_pupil / (2 * paraxial.image_slope(target))
+                                                    : magnification * setup.z_b();
+  return imaging;
+}
+
+Vec2d posed_extent(Setup const& setup) {
+  Camera const camera = build_camera(setup);
+  Pose<double> const plane{{0, 0, -setup.z_d}};
+  double const margin = setup.view_margin_px, right = setup.camera.columns + margin, low = setup.camera.rows + margin;
+  Vec2d const centre = setup.target_centre();
+  Vec2d half{};
+  for (Vec2d const corner : {Vec2d{-margin, -margin}, {right, -margin}, {-margin, low}, {right, low}}) {
+    auto const seen = camera.unproject(corner, plane);
+    if (!seen) throw DataError("camera.pose", "its picture reaches beyond the dots' plane; turn the camera less");
+    half = {std::max(half.x, std::abs(seen->place.x - centre.x)), std::max(half.y, std::abs(seen->place.y - centre.y))};
+  }
+  // in whole micrometres, so that the resolved setup, which holds mm, gives the same dots to the last bit
+  auto const in_mm = [](double metres) { return std::ceil(2 * metres / unit::micrometre) * 1e-3; };
+  return Vec2d{in_mm(half.x), in_mm(half.y)} * unit::millimetre;
+}
+
+Camera build_camera(Setup const& setup) {
+  Camera camera;
+  camera.pose = setup.camera_pose();
+  camera.paraxial = paraxial_camera(setup);
+  ParaxialCamera const& paraxial = camera.paraxial;
+  camera.aim_plane = camera.pose.moved({0, 0, paraxial.front});
+  for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
+    for (WindowSetup const& window : setup.windows) {
+      if (window.side == side) append_window(camera, window);
+    }
+    if (side == WindowSide::target) camera.before_medium = static_cast<int>(camera.elements.size());
+  }
+  setup.lens.prescription ? append_prescription(camera, setup) : append_thin_lens(camera, setup);
+  double const pupil = paraxial.stop_radius / std::max(std::abs(paraxial.to_stop.a), 0.05);
+  camera.aim_step = pupil > 0 ? 1e-4 * pupil : 1e-4 * unit::millimetre;
+
+  bool const thin = !setup.lens.prescription;
+  double const focus = setup.focus_distance() + paraxial.front - paraxial.window_shift;
+  RayTransfer const& m = paraxial.whole;
+  double image = -(m.a * focus + m.b) / (m.c * focus + m.d);
+  if (thin && setup.windows.empty()) image = setup.imaging().image_distance;
+  if (!(paraxial.forwards * image > 0) || !std::isfinite(image)) {
+    throw DataError("lens", "the plane in focus has no real image behind it; check lens.focus and the geometry");
+  }
+  Pose<double> behind = paraxial.behind;
+  if (paraxial.forwards < 0) behind = {behind.origin, -1.0 * behind.x, behind.y, -1.0 * behind.z};
+  double const along = std::abs(image);
+  camera.sensor = {behind.moved({0, 0, along}).within(camera.pose),
+                   setup.camera.pixel_pitch,
+                   setup.camera.columns,
+                   setup.camera.rows,
+                   setup.camera.distortion,
+                   along};
+  if ((!thin || !setup.windows.empty()) && !camera.chief_rays_only()) {
+    Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
+    camera.sensor.pose = camera.sensor.pose.moved({0, 0, best_focus(camera, point)});
+  }
+  Vec2d tilt = setup.camera.tilt;
+  if (setup.camera.scheimpflug) {
+    tilt = scheimpflug_tilt(camera.pose.direction_inwards({0, 0, 1}), setup.imaging().magnification);
+  }
+  camera.sensor.pose = camera.sensor.pose.turned({tilt.x, tilt.y, 0});
+  return camera;
+}
+
+}  // namespace gladstone

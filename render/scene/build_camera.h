@@ -1,0 +1,23 @@
+#pragma once
+
+#include "render/scene/camera.h"
+#include "render/scene/setup.h"
+
+namespace gladstone {
+
+/// How paraxial light runs through a setup's lens and windows.
+ParaxialCamera paraxial_camera(Setup const& setup);
+
+/// Sizes that follow from it, see Setup::imaging().
+ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial);
+
+/// Width and height about target_centre() of what a turned or tilted camera sees of the dots' plane, with the setup's
+/// margin all round [m].
+Vec2d posed_extent(Setup const& setup);
+
+/// The camera of a setup, focused: an ideal thin lens by its formula; a prescription, or any lens behind windows, by
+/// moving the sensor along the axis to where the rays from the axis point of the plane in focus, traced through stop
+/// and glass, come closest together (least squares). @throws DataError where no ray gets through, or they meet nowhere
+Camera build_camera(Setup const& setup);
+
+}  // namespace gladstone

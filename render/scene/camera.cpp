@@ -1,0 +1,242 @@
+#include "render/scene/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace gladstone {
+namespace {
+
+/// Solves the square system of the columns for the right-hand side, by Gauss elimination. @return false: singular
+template <int N>
+bool solve(double (&matrix)[N][N], double (&right)[N]) {
+  for (int pivot = 0; pivot < N; ++pivot) {
+    int best = pivot;
+    for (int row = pivot + 1; row < N; ++row) {
+      if (std::abs(matrix[row][pivot]) > std::abs(matrix[best][pivot])) best = row;
+    }
+    if (!(std::abs(matrix[best][pivot]) > 0)) return false;
+    std::swap(matrix[best], matrix[pivot]);
+    std::swap(right[best], right[pivot]);
+    for (int row = pivot + 1; row < N; ++row) {
+      double const share = matrix[row][pivot] / matrix[pivot][pivot];
+      for (int column = pivot; column < N; ++column) matrix[row][column] -= share * matrix[pivot][column];
+      right[row] -= share * right[pivot];
+    }
+  }
+  for (int row = N - 1; row >= 0; --row) {
+    for (int column = row + 1; column < N; ++column) right[row] -= matrix[row][column] * right[column];
+    right[row] /= matrix[row][row];
+  }
+  return std::isfinite(right[0]);
+}
+
+constexpr int rim_points = 8;  // of the stop, that a source's sight of it is found by
+
+/// Takes a ray through an element, vignetted or not. @return false where it is lost
+bool go_on(CameraElement<double> const& element, Ray<double>& ray) {
+  RayAccount<double> account;
+  RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
+  return status == RayStatus::alive || status == RayStatus::vignetted;
+}
+
+}  // namespace
+
+double ParaxialCamera::chief_slope(double distance) const {
+  return -to_stop.a / (to_stop.a * (distance - window_shift) + to_stop.b);
+}
+
+double ParaxialCamera::marginal_slope(double distance) const {
+  return std::abs(stop_radius / (to_stop.a * (distance - window_shift) + to_stop.b));
+}
+
+double ParaxialCamera::image_slope(double distance) const {
+  double const u = marginal_slope(distance);
+  return std::abs(whole.c * (distance - window_shift) * u + whole.d * u);
+}
+
+void Camera::smooth_stop(double edge) {
+  auto& element = elements[static_cast<std::size_t>(stop)];
+  element = element.visit([edge](auto held) -> CameraElement<double> {
+    if constexpr (std::is_same_v<decltype(held), PosedStop<double>>) held.edge = edge;
+    return held;
+  });
+}
+
+Ray<double> Camera::towards(Vec3d point, Vec2d aim) const {
+  return {point, normalized(aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
+}
+
+std::optional<Vec2d> Camera::in_stop(Vec3d point, Vec2d aim) const {
+  Ray<double> ray = towards(point, aim);
+  auto const last = static_cast<std::size_t>(stop);
+  for (std::size_t i = 0; i < last; ++i) {
+    if (!go_on(elements[i], ray)) return std::nullopt;
+  }
+  Vec2d place;
+  bool const met = elements[last].visit([&](auto const& held) { return held.meet(ray, place); });
+  return met ? std::optional(place) : std::nullopt;
+}
+
+std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
+  Ray<double> ray = towards(point, aim);
+  Sight seen;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    bool const met = static_cast<int>(i) != stop ||
+                     elements[i].visit([&](auto const& held) { return held.meet(ray, seen.in_stop); });
+    if (!met || !go_on(elements[i], ray)) return std::nullopt;
+  }
+  Vec2d place;
+  if (!sensor.meet(ray, place)) return std::nullopt;
+  seen.pixel = sensor.to_pixel(place.x, place.y);
+  return seen;
+}
+
+StopSight Camera::stop_sight(Vec3d point) const {
+  double const scale = stop_radius > 0 ? stop_radius : 1e4 * aim_step;
+  return {[this, point](Vec2d aim) { return in_stop(point, aim); }, scale, aim_step};
+}
+
+Vec2d Camera::paraxial_aim(Vec3d point) const {
+  Vec3d const q = pose.point_inwards(point);
+  double const distance = paraxial.front - q.z;
+  double const scale = 1 + paraxial.chief_slope(distance) * (distance - paraxial.window_shift);
+  return {scale * q.x, scale * q.y};
+}
+
+std::optional<Vec2d> Camera::chief_aim(Vec3d point) const {
+  StopSight const to_stop = stop_sight(point);
+  for (Vec2d aim : {paraxial_aim(point), Vec2d{}}) {
+    if (aim_at(to_stop, {}, aim)) return aim;
+  }
+  return std::nullopt;
+}
+
+std::optional<Vec2d> Camera::project(Vec3d point) const {
+  auto const aim = chief_aim(point);
+  if (!aim) return std::nullopt;
+  auto const seen = sight(point, *aim);
+  return seen ? std::optional(seen->pixel) : std::nullopt;
+}
+
+double Camera::place_step(Pose<double> const& plane) const {
+  // about a pixel: small beside what distortion changes on, large beside rounding
+  double const focal = 1 / std::max(std::abs(paraxial.whole.c), 1e-3);
+  return sensor.pitch * std::max(1.0, length(plane.origin - pose.origin) / focal);
+}
+
+bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen) const {
+  double const h = place_step(plane);
+  auto const point = [&](double dx, double dy) {
+    return plane.point_outwards({seen.place.x + dx, seen.place.y + dy, 0});
+  };
+  // pixel and place in the stop by the point and by the aim; the chief ray keeps its place in the stop
+  Sight by[4];
+  for (int k = 0; k < 4; ++k) {
+    Vec2d const move = (k < 2 ? h : aim_step) * Vec2d{k % 2 == 0 ? 1.0 : 0.0, k % 2 == 0 ? 0.0 : 1.0};
+    auto const more = k < 2 ? sight(point(move.x, move.y), aim) : sight(point(0, 0), aim + move);
+    auto const less = k < 2 ? sight(point(-move.x, -move.y), aim) : sight(point(0, 0), aim - move);
+    if (!more || !less) return false;
+    double const apart = 2 * (k < 2 ? h : aim_step);
+    by[k] = {(more->in_stop - less->in_stop) / apart, (more->pixel - less->pixel) / apart};
+  }
+  for (int k = 0; k < 2; ++k) {
+    double matrix[2][2] = {{by[2].in_stop.x, by[3].in_stop.x}, {by[2].in_stop.y, by[3].in_stop.y}};
+    double right[2] = {-by[k].in_stop.x, -by[k].in_stop.y};
+    if (!solve(matrix, right)) return false;
+    (k == 0 ? seen.by_x : seen.by_y) = by[k].pixel + right[0] * by[2].pixel + right[1] * by[3].pixel;
+  }
+  return true;
+}
+
+std::optional<SeenPoint> Camera::see(Vec2d place, Pose<double> const& plane) const {
+  SeenPoint seen;
+  seen.place = place;
+  Vec3d const point = plane.point_outwards({place.x, place.y, 0});
+  auto const aim = chief_aim(point);
+  if (!aim || !differentiate(*aim, plane, seen)) return std::nullopt;
+  seen.chief = towards(point, *aim);
+  return seen;
+}
+
+std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plane) const {
+  // where the axis meets the plane
+  Ray<double> const axis = plane.inwards(Ray<double>{pose.origin, -1.0 * pose.z});
+  if (!(std::abs(axis.direction.z) > 0)) return std::nullopt;
+  double const way = -axis.position.z / axis.direction.z;
+  Vec2d place{axis.position.x + way * axis.direction.x, axis.position.y + way * axis.direction.y};
+  auto const point = [&](Vec2d p) { return plane.point_outwards({p.x, p.y, 0}); };
+  auto const found = chief_aim(point(place));
+  if (!found) return std::nullopt;
+  Vec2d aim = *found;
+  auto here = sight(point(place), aim);
+  if (!here) return std::nullopt;
+  // Newton's method for place and aim together: the ray is to meet the stop's centre and the pixel
+  double const h = place_step(plane), in_stop_unit = stop_radius > 0 ? stop_radius : 1e4 * aim_step;
+  auto const miss_of = [&](Sight const& s) {
+    return std::hypot(length(s.in_stop) / in_stop_unit, length(s.pixel - pixel));
+  };
+  for (int iteration = 0; iteration < 50 && miss_of(*here) > 1e-9; ++iteration) {
+    Vec2d const unit[2] = {{1, 0}, {0, 1}};
+    double matrix[4][4];
+    for (int k = 0; k < 4; ++k) {
+      auto const there =
+          k < 2 ? sight(point(place + h * unit[k]), aim) : sight(point(place), aim + aim_step * unit[k - 2]);
+      if (!there) return std::nullopt;
+      double const by = k < 2 ? h : aim_step;
+      Vec2d const stop_change = (there->in_stop - here->in_stop) / by, pixel_change = (there->pixel - here->pixel) / by;
+      double const column[4] = {stop_change.x, stop_change.y, pixel_change.x, pixel_change.y};
+      for (int row = 0; row < 4; ++row) matrix[row][k] = column[row];
+    }
+    Vec2d const to_pixel = pixel - here->pixel;
+    double change[4] = {-here->in_stop.x, -here->in_stop.y, to_pixel.x, to_pixel.y};
+    if (!solve(matrix, change)) return std::nullopt;
+    bool better = false;
+    for (double share = 1; share > 1e-3 && !better; share /= 2) {
+      Vec2d const new_place = place + share * Vec2d{change[0], change[1]},
+                  new_aim = aim + share * Vec2d{change[2], change[3]};
+      auto const there = sight(point(new_place), new_aim);
+      if (!there || !(miss_of(*there) < miss_of(*here))) continue;
+      place = new_place;
+      aim = new_aim;
+      here = there;
+      better = true;
+    }
+    if (!better) break;
+  }
+  if (!(miss_of(*here) < 1e-6)) return std::nullopt;
+  SeenPoint seen;
+  seen.place = place;
+  seen.chief = towards(point(place), aim);
+  if (!differentiate(aim, plane, seen)) return std::nullopt;
+  return seen;
+}
+
+double Camera::sight_margin() { return aim_margin(rim_points); }
+
+std::optional<WorldAimDisc> Camera::aim_disc(Vec3d source) const {
+  if (chief_rays_only()) {
+    auto const aim = chief_aim(source);
+    if (!aim) return std::nullopt;
+    return WorldAimDisc{aim_plane.point_outwards({aim->x, aim->y, 0}), {}, {}};
+  }
+  auto const disc = find_aim_disc(stop_sight(source), paraxial_aim(source), rim_points);
+  if (!disc) return std::nullopt;
+  auto const along = [this](Vec2d v) { return aim_plane.direction_outwards({v.x, v.y, 0}); };
+  return WorldAimDisc{aim_plane.point_outwards({disc->centre.x, disc->centre.y, 0}), along(disc->a), along(disc->b)};
+}
+
+Vec2d Camera::ideal_project(Vec3d point) const {
+  Vec3d const q = pose.point_inwards(point);
+  double const distance = paraxial.front - q.z, slope = paraxial.chief_slope(distance);
+  double const height = 1 + slope * (distance - paraxial.window_shift);  // at the front, over that of the point
+  double const out = paraxial.whole.a * height + paraxial.whole.b * slope;
+  double const out_slope = paraxial.whole.c * height + paraxial.whole.d * slope;
+  Ray<double> const leaving{{out * q.x, out * q.y, 0}, {out_slope * q.x, out_slope * q.y, paraxial.forwards}};
+  Ray<double> const local = sensor.pose.inwards(pose.outwards(paraxial.behind.outwards(leaving)));
+  double const way = -local.position.z / local.direction.z;
+  return sensor.undistorted_pixel(local.position.x + way * local.direction.x,
+                                  local.position.y + way * local.direction.y);
+}
+
+}  // namespace gladstone

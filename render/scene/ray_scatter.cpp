@@ -1,0 +1,129 @@
+#include "render/scene/ray_scatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/parallel.h"
+#include "render/scene/ray_hit.h"
+
+namespace gladstone {
+namespace {
+
+/// What dots look like on average in one frame: sums over a dot's pixels.
+struct MeanDot {
+  double light = 0, square = 0;  ///< of the light and of its square
+  double variance = 0, lit = 0;  ///< over lit pixels: of the light's variance, and their number
+};
+
+}  // namespace
+
+MeanDisplacement MeanDisplacement::of(Vec2d const (&found)[plan_scramblings]) {
+  MeanDisplacement result;
+  for (Vec2d const one : found) result.mean += one / static_cast<double>(plan_scramblings);
+  for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
+  result.variance /= plan_scramblings - 1;
+  return result;
+}
+
+double mean_variance(std::vector<MeanDisplacement> const& displacements) {
+  double sum = 0;
+  for (MeanDisplacement const& one : displacements) sum += one.variance;
+  return sum / static_cast<double>(displacements.size());
+}
+
+GreyLevels::GreyLevels(CameraSetup const& camera, std::size_t dots_in_view)
+    : density(static_cast<double>(dots_in_view) / (static_cast<double>(camera.columns) * camera.rows)),
+      bits(std::min(camera.bit_depth, 12)) {
+  double const full_scale = std::pow(2.0, bits) - 1;
+  // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
+  level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
+  at_peak = 0.9 * full_scale;
+}
+
+double GreyLevels::error(Scatter const& scatter) const {
+  double const light_per_level = level > 0 ? level : scatter.brightest / at_peak;
+  return light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
+}
+
+Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& levels,
+                        std::function<Sampled(std::size_t dot, int scrambling)> const& sample) {
+  struct PerDot {
+    std::vector<double> mean, variance;  // of the light
+  };
+  Scatter scatter;
+  scatter.displacements.resize(dots.size());
+  std::vector<PerDot> measured(dots.size());
+  parallel_for(dots.size(), [&](std::size_t index) {
+    std::vector<Sampled> samples;
+    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
+      samples.push_back(sample(dots[index], scrambling));
+    }
+    PerDot& result = measured[index];
+    auto const unbiased = [&](auto const& value_of) {
+      double mean = 0, square = 0;
+      for (Sampled const& one : samples) mean += value_of(one) / plan_scramblings;
+      for (Sampled const& one : samples) square += (value_of(one) - mean) * (value_of(one) - mean);
+      return std::pair{mean, square / (plan_scramblings - 1)};
+    };
+    Vec2d found[plan_scramblings];
+    for (std::size_t k = 0; k < samples.size(); ++k) found[k] = samples[k].displacement;
+    scatter.displacements[index] = MeanDisplacement::of(found);
+    for (std::size_t i = 0; i < samples[0].light.size(); ++i) {
+      auto const [mean, variance] = unbiased([i](Sampled const& s) { return s.light[i]; });
+      result.mean.push_back(mean);
+      result.variance.push_back(variance);
+    }
+  });
+
+  auto const share = 1 / static_cast<double>(dots.size());
+  MeanDot frames[frame_count];
+  auto const sum_over_frame = [&](int frame, auto const& add) {
+    for (PerDot const& dot : measured) {
+      std::size_t const area = dot.mean.size() / frame_count, first = static_cast<std::size_t>(frame) * area;
+      for (std::size_t i = first; i < first + area; ++i) add(dot.mean[i], dot.variance[i]);
+    }
+  };
+  for (int frame = 0; frame < frame_count; ++frame) {
+    MeanDot& sums = frames[frame];
+    sum_over_frame(frame, [&](double mean, double variance) {
+      sums.light += share * mean;
+      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // of one scrambling
+      scatter.brightest = std::max(scatter.brightest, mean);
+    });
+    // many dots at random overlap to a level of this mean and variance (Campbell's theorem)
+    double const overlapping = levels.density * sums.light + 3 * std::sqrt(levels.density * sums.square);
+    scatter.brightest = std::max(scatter.brightest, overlapping);
+  }
+  double const threshold = levels.level > 0 ? levels.level : scatter.brightest / levels.at_peak;
+  for (int frame = 0; frame < frame_count; ++frame) {
+    MeanDot& sums = frames[frame];
+    sum_over_frame(frame, [&](double mean, double variance) {
+      if (mean < threshold) return;
+      sums.variance += share * variance;
+      sums.lit += share;
+    });
+    // the share of a picture that n dots a pixel light with k pixels each is 1 - exp(-n k); they add their variances
+    double const density = levels.density;
+    double const pixels = density > 0 ? -std::expm1(-density * sums.lit) / density : sums.lit;
+    if (pixels > 0) scatter.light_variance = std::max(scatter.light_variance, sums.variance / pixels);
+  }
+  return scatter;
+}
+
+std::vector<std::size_t> dots_in_view(Scene const& scene) {
+  std::vector<std::size_t> in_view;
+  for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
+    if (scene.in_view(scene.dots.centre[dot])) in_view.push_back(dot);
+  }
+  if (in_view.empty() && !scene.dots.centre.empty()) in_view.push_back(0);
+  return in_view;
+}
+
+std::vector<std::size_t> choose_sample(std::vector<std::size_t> const& dots, std::size_t count) {
+  if (dots.size() <= count) return dots;
+  std::vector<std::size_t> sample;
+  for (std::size_t i = 0; i < count; ++i) sample.push_back(dots[i * dots.size() / count]);
+  return sample;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <type_traits>
+
+#include "render/medium/analytic_fields.h"
+#include "render/medium/trace_medium.h"
+#include "render/optics/camera_element.h"
+#include "render/scene/ray_hit.h"
+#include "render/sensor/posed_sensor.h"
+
+namespace gladstone {
+
+/// What a ray meets besides the medium, by value: a view that owns nothing.
+template <class T>
+struct CameraView {
+  CameraElement<T> const* elements = nullptr;
+  int before_medium = 0;  ///< of them, those that light meets before it comes to the medium
+  int count = 0;
+  PosedSensor<T> sensor;
+  Pose<T> aim_plane;  ///< that rays are aimed at: tangent to the first surface of the lens
+};
+
+/// Carries a ray through elements [first, last) while any of its light is left.
+template <class T>
+GLADSTONE_HD RayStatus carry(CameraView<T> const& camera, int first, int last, Ray<T>& ray, RayAccount<T>& account) {
+  RayStatus status = RayStatus::alive;
+  for (int i = first; i < last; ++i) {
+    RayStatus const here = pass_element(camera.elements[i], ray, account);
+    if (here != RayStatus::alive) status = here;
+    if (account.weight == T(0)) return status;
+  }
+  return status;
+}
+
+/// The straight ray that goes on where a ray leaves the medium; the very one that came where nothing turned it.
+template <class T>
+GLADSTONE_HD Ray<T> outgoing_ray(Ray<T> const& start, MediumPassage<T> const& way) {
+  if (!way.crossed || (way.turn == Vec3<T>{} && way.shift == Vec3<T>{})) return start;
+  return {exit_position(start, way), exit_direction(start, way)};
+}
+
+/// From where a ray leaves the medium to the sensor's plane.
+template <class T>
+GLADSTONE_HD RayHit<T> finish_ray(CameraView<T> const& camera, Ray<T> ray, RayAccount<T> account, RayStatus status) {
+  RayHit<T> hit;
+  PosedStop<T>{camera.aim_plane, T(0), T(0)}.meet(ray, hit.at_lens);
+  RayStatus const behind = carry(camera, camera.before_medium, camera.count, ray, account);
+  hit.status = behind != RayStatus::alive ? behind : status;
+  hit.weight = account.weight;
+  if (hit.weight == T(0)) return hit;
+  Vec2<T> place;
+  if (!camera.sensor.meet(ray, place)) {
+    hit.status = RayStatus::missed_lens;
+    hit.weight = T(0);
+    return hit;
+  }
+  hit.pixel = camera.sensor.to_pixel(place.x, place.y);
+  if (hit.status == RayStatus::alive && !camera.sensor.covers(hit.pixel)) hit.status = RayStatus::missed_sensor;
+  return hit;
+}
+
+/// N rays in one frame, side by side: through what stands before the medium, the medium, the camera, to the sensor.
+/// What the frame's medium is, its type says: NoMedium is the ambient. A view with a finish_ray() of its own decides
+/// where rays land.
+template <class View, class T, class Medium, int N>
+GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOptions<T> const& options,
+                             Ray<T> const (&start)[N], T const (&weight)[N], RayHit<T> (&hit)[N]) {
+  Ray<T> ray[N];
+  RayAccount<T> account[N];
+  RayStatus status[N];
+  for (int i = 0; i < N; ++i) {
+    ray[i] = start[i];
+    account[i].weight = weight[i];
+    status[i] = carry(camera, 0, camera.before_medium, ray[i], account[i]);
+  }
+  if constexpr (!std::is_same_v<Medium, NoMedium<T>>) {
+    MediumPassage<T> way[N];
+    trace_medium(medium, options, ray, way);
+    for (int i = 0; i < N; ++i) {
+      if (way[i].status != RayStatus::alive && account[i].weight != T(0)) {
+        status[i] = way[i].status;
+        account[i].weight = T(0);
+      }
+      ray[i] = outgoing_ray(ray[i], way[i]);
+    }
+  }
+  for (int i = 0; i < N; ++i) {
+    if (account[i].weight != T(0)) {
+      hit[i] = finish_ray(camera, ray[i], account[i], status[i]);
+    } else {
+      hit[i] = {};
+      hit[i].status = status[i];
+    }
+  }
+}
+
+/// The one per-ray function: one ray in one frame.
+template <class View, class T, class Medium>
+GLADSTONE_HD RayHit<T> trace_ray(View const& camera, Medium const& medium, TracingOptions<T> const& options,
+                                 Ray<T> const& start, T weight) {
+  Ray<T> const rays[1] = {start};
+  T const weights[1] = {weight};
+  RayHit<T> hit[1];
+  trace_rays(camera, medium, options, rays, weights, hit);
+  return hit[0];
+}
+
+}  // namespace gladstone

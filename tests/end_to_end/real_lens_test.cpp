@@ -1,0 +1,116 @@
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+
+/// Scenes beyond the thin lens on the bench: rendered ray by ray, through the whole chain.
+class RealLens : public Workplace {
+ protected:
+  nlohmann::json summary_of(std::string const& folder) const {
+    return nlohmann::json::parse(read(folder + "/summary.json"));
+  }
+  /// Renders, correlates, compares. @return errors.json
+  nlohmann::json compared(std::string const& folder, std::string const& setup,
+                          std::vector<std::string> const& more = {}) const {
+    render(folder, more, setup);
+    succeed({"correlate", folder});
+    succeed({"compare", folder, "--no-figures"});
+    return nlohmann::json::parse(read(folder + "/errors.json"));
+  }
+  static double rms(nlohmann::json const& errors, char const* term) {
+    return errors["budget"]["terms"][term]["rms_px"].get<double>();
+  }
+};
+
+std::string double_gauss_setup() {
+  return with(small_setup, "focal_length_mm = 105.0\nf_number = 11.0",
+              "model = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
+                  "/lenses/double_gauss.toml\"\nf_number = 8.0");
+}
+
+// A double Gauss in the thin lens' place: ray by ray, and what it adds to an ideal lens is a line of the budget.
+TEST_F(RealLens, RunsThroughTheWholeChain) {
+  write("lens.toml", with(double_gauss_setup(), "rays_per_dot = 32", "rays_per_dot = 256"));
+  auto const errors = compared("case", "lens.toml");
+  auto const summary = summary_of("case");
+  EXPECT_EQ(summary["method"], "rays");
+  EXPECT_EQ(Hdf5Reader(in("case/truth.h5").string()).attribute("method"), "rays");
+  // f / (Z_B - f) of 99.8 mm at 532 nm, as far as best focus is paraxial focus
+  EXPECT_NEAR(summary["magnification"].get<double>(), 0.111, 0.001);
+  EXPECT_GT(rms(errors, "aberration"), 1e-7);
+  EXPECT_LT(rms(errors, "aberration"), 0.01);
+  EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
+  // the setup that it was understood as gives the same case
+  render("again", {}, "case/setup.toml");
+  expect_same_case("case", "again");
+}
+
+// The lens is wide open and sees further off its axis: it aberrates more.
+TEST_F(RealLens, AberratesMoreWideOpen) {
+  write("lens.toml", double_gauss_setup());
+  double const narrow = rms(compared("narrow", "lens.toml", {"--set", "lens.f_number=16"}), "aberration");
+  double const wide = rms(compared("wide", "lens.toml", {"--set", "lens.f_number=2.8"}), "aberration");
+  EXPECT_GT(wide, 2 * narrow);
+}
+
+TEST_F(RealLens, TracesGivenRays) {
+  write("lens.toml", with(double_gauss_setup(), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                          "kind = \"none\""));
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n0,0,-250,1,0,1\n");
+  for (std::string const through : {"optics", "all"}) {
+    succeed({"trace", "lens.toml", "--rays", "rays.csv", "-o", through + ".csv", "--through", through});
+  }
+  std::string const optics = read("optics.csv"), all = read("all.csv");
+  EXPECT_THAT(optics, HasSubstr("alive,0,0,"));
+  EXPECT_THAT(optics, HasSubstr("missed_lens,nan"));
+  EXPECT_THAT(all, HasSubstr("alive,0,0,"));
+  EXPECT_THAT(all, HasSubstr(",31.5,31.5\n"));
+}
+
+// Both methods give the same case to within what their rays know; and the setup may say which.
+TEST_F(RealLens, MethodsAgreeOnTheBench) {
+  auto const fast = compared("fast", "setup.toml"),
+             rays = compared("rays", "setup.toml", {"--set", "render.method=rays", "--set", "render.rays_per_dot=2048"});
+  EXPECT_EQ(summary_of("fast")["method"], "focused_dots");
+  EXPECT_EQ(summary_of("rays")["method"], "rays");
+  EXPECT_EQ(Hdf5Reader(in("fast/truth.h5").string()).attribute("method"), "focused_dots");
+  for (char const* term : {"small_angle", "cone", "refraction"}) {
+    EXPECT_NEAR(rms(rays, term), rms(fast, term), 1e-4) << term;
+  }
+  EXPECT_LT(rms(rays, "aberration"), 1e-9) << "an ideal lens in focus";
+  EXPECT_NEAR(rays["ray_truth"]["rms_px"].get<double>(), fast["ray_truth"]["rms_px"].get<double>(), 2e-3);
+}
+
+TEST_F(RealLens, MethodThatDoesNotHoldIsRefused) {
+  expect_refused(
+      {"render", "setup.toml", "-o", "case", "--set", "render.method=focused_dots", "--set", "lens.focus=medium"}, 2,
+      {"--set render.method=focused_dots", "the dots are out of focus"});
+  expect_refused({"render", "setup.toml", "-o", "case", "--set", "render.method=fast"}, 2, {"focused_dots"});
+}
+
+// A camera that looks at the dots from the side, its sensor tilted so that they are sharp, through a window: every
+// vector is right, and what the window and the turned lens add is aberration.
+TEST_F(RealLens, LooksFromTheSideThroughAWindow) {
+  std::string const posed = with(with(small_setup, "z_a_mm = 750.0\n", ""), "[lens]",
+                                 "[camera.pose]\nposition_mm = [250.0, 0.0, 700.0]\nlook_at_mm = [0.0, 0.0, 0.0]\n"
+                                 "[camera.sensor]\nscheimpflug = \"auto\"\n"
+                                 "[[window]]\nthickness_mm = 10.0\nposition_mm = [0.0, 0.0, 50.0]\n[lens]");
+  write("posed.toml", with(posed, "rays_per_dot = 32", "rays_per_dot = 128"));
+  auto const errors = compared("case", "posed.toml");
+  EXPECT_EQ(summary_of("case")["method"], "rays");
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.05);
+  EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+  // along the line of sight the medium is longer, and its gradient seen at a slant: within a tenth of Eq. 9 all the
+  // same
+  EXPECT_LT(rms(errors, "small_angle"), 0.05);
+  render("again", {}, "case/setup.toml");
+  expect_same_case("case", "again");
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,186 @@
+#include "render/rays/rays_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/parallel.h"
+#include "render/base/units.h"
+#include "render/rays/ray_planning.h"
+#include "render/rays/ray_theory.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/focused_dots.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+Rendering by_rays(Scene scene, RenderImages images = RenderImages::yes, RenderTheory theory = RenderTheory::yes) {
+  return RaysRenderer().render(scene, scene.dots, images, theory);
+}
+
+double brightest(Image<double> const& image) { return *std::max_element(image.begin(), image.end()); }
+
+/// Root mean square over lit pixels of what two pictures differ by, in grey levels of 12 bits, the brightest pixel at
+/// 90 % of full scale.
+double levels_between(Image<double> const& a, Image<double> const& b) {
+  double const level = brightest(b) / (0.9 * 4095);
+  double squares = 0, lit = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (b.data()[i] < level) continue;
+    squares += std::pow((a.data()[i] - b.data()[i]) / level, 2);
+    ++lit;
+  }
+  return std::sqrt(squares / lit);
+}
+
+/// Table 1 with the late DNS plane: dots of 3 px.
+Scene late_scene(std::uint64_t rays) {
+  Setup setup = table1_setup(48);
+  setup.medium.field = dns_plane("late");
+  return scene_with_dots(setup, lattice(48, 2, 17.3), rays);
+}
+
+// The same scene by both methods. Truth: within three of the errors that both state, and the little that table and rule
+// leave where their errors are far below it. Images: half a grey level of 12 bits of scatter between these rays; in the
+// flow there comes the third of a level that a deflection table leaves whatever the number of rays (measure_rays).
+TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
+  Scene scene = late_scene(65536);
+  ASSERT_TRUE(focused_dots(scene));
+  Rendering const fast = render_all(scene), rays = by_rays(scene);
+  for (std::size_t dot = 0; dot < fast.truth.size(); ++dot) {
+    Vec2d const off = rays.truth.displacement_px[dot] - fast.truth.displacement_px[dot];
+    Vec2d const one = rays.truth.displacement_error_px[dot], other = fast.truth.displacement_error_px[dot];
+    EXPECT_LE(std::abs(off.x), 3 * std::hypot(one.x, other.x) + 2e-5) << dot;
+    EXPECT_LE(std::abs(off.y), 3 * std::hypot(one.y, other.y) + 2e-5) << dot;
+    EXPECT_LT(one.x, 1e-3);
+    EXPECT_NEAR(length(rays.truth.reference_px[dot] - fast.truth.reference_px[dot]), 0, 5e-4);
+    // both integrate along straight rays: the cone by rules of their own
+    EXPECT_NEAR(length(rays.truth.eq9_px[dot] - fast.truth.eq9_px[dot]), 0, 1e-8);
+    EXPECT_NEAR(length(rays.truth.chief_px[dot] - fast.truth.chief_px[dot]), 0, 1e-8);
+    EXPECT_NEAR(length(rays.truth.eq9_cone_px[dot] - fast.truth.eq9_cone_px[dot]), 0, 2e-3);
+    EXPECT_NEAR(rays.truth.flux[dot].x / fast.truth.flux[dot].x, 1, 1e-4);
+  }
+  EXPECT_LT(levels_between(rays.light.reference, fast.light.reference), 0.5);
+  EXPECT_LT(levels_between(rays.light.flow, fast.light.flow), 0.5 + 1.0 / 3);
+}
+
+// Out of focus neither knows more than its rays: the same rays would give the same, others do within their scatter.
+TEST(RaysRenderer, AgreesWithPlainRaysOutOfFocus) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(40, -20);
+  setup.lens.focus = Focus::distance;
+  setup.lens.focus_distance = 0.99;  // a blur of 1.1 px
+  Scene scene = scene_with_dots(setup, {{31.2, 30.4}}, 16384);
+  ASSERT_FALSE(focused_dots(scene));
+  Rendering const plain = render_all(scene), rays = by_rays(scene);
+  Vec2d const off = rays.truth.displacement_px[0] - plain.truth.displacement_px[0];
+  EXPECT_LT(length(off),
+            3 * length(rays.truth.displacement_error_px[0]) + 3 * length(plain.truth.displacement_error_px[0]));
+  EXPECT_NEAR(rays.truth.flux[0].y / plain.truth.flux[0].y, 1, 1e-3);
+  // a pixel has the light of a tenth of the rays, known to 2.5 % by chance; points that fill evenly know it ten times
+  // better
+  EXPECT_LT(levels_between(rays.light.flow, plain.light.flow), 0.0025 * 4095);
+}
+
+TEST(RaysRenderer, LeavesWhatNothingBendsWhereItIs) {
+  auto setup = table1_setup(32);
+  setup.medium.field = uniform_gradient(0, 0);
+  Scene const scene = scene_with_dots(setup, {{15.3, 16.9}}, 64);
+  Rendering const still = by_rays(scene);
+  EXPECT_EQ(still.truth.displacement_px[0].x, 0);
+  EXPECT_EQ(still.truth.displacement_px[0].y, 0);
+  EXPECT_TRUE(std::equal(still.light.reference.begin(), still.light.reference.end(), still.light.flow.begin()));
+}
+
+// Eq. 9 exactly, small angles apart: u = -M Z_D K L_z g_x / (n_0 p), v with the other sign (F27: 5e-4 off the axis).
+TEST(RaysRenderer, ShowsTheDisplacementOfEqNine) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(50, 30);
+  Scene const scene = scene_with_dots(setup, {{31.5, 31.5}, {5, 60}}, 512);
+  Rendering const rendering = by_rays(scene, RenderImages::no);
+  double const per_gradient = 105.0 / 895.0 * 0.25 * setup.medium.gladstone_dale * 0.01 / setup.ambient_index() / 1e-5;
+  for (std::size_t dot = 0; dot < 2; ++dot) {
+    EXPECT_NEAR(rendering.truth.eq9_px[dot].x, -50 * per_gradient, 1e-7);
+    EXPECT_NEAR(rendering.truth.eq9_px[dot].y, 30 * per_gradient, 1e-7);
+    EXPECT_NEAR(rendering.truth.displacement_px[dot].x / (-50 * per_gradient), 1, 1e-3);
+    EXPECT_NEAR(rendering.truth.displacement_px[dot].y / (30 * per_gradient), 1, 1e-3);
+  }
+}
+
+TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
+  Scene const scene = late_scene(256);
+  int const threads = thread_count();
+  set_thread_count(1);
+  Rendering const one = by_rays(scene);
+  set_thread_count(3);
+  Rendering const three = by_rays(scene);
+  set_thread_count(threads);
+  EXPECT_TRUE(std::equal(one.light.flow.begin(), one.light.flow.end(), three.light.flow.begin()));
+  for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {
+    EXPECT_EQ(one.truth.displacement_px[dot], three.truth.displacement_px[dot]);
+  }
+  EXPECT_EQ(one.statuses, three.statuses);
+}
+
+// A dot's truth depends on nothing but its own setup: not on how many others there are.
+TEST(RaysRenderer, KnowsADotByItself) {
+  Scene all = late_scene(256), first = all;
+  first.dots.centre.resize(1);
+  EXPECT_EQ(by_rays(all).truth.displacement_px[0], by_rays(first).truth.displacement_px[0]);
+}
+
+// White paper under a thin lens: cos^4 of the angle to the axis.
+TEST(RaysRenderer, SeesWhitePaperByTheFourthPowerOfTheCosine) {
+  auto const setup = table1_setup(512);
+  Scene const scene = scene_with_dots(setup, {{200, 200}}, 64);
+  Image<double> const white = white_picture(scene), expected = white_light(scene);
+  // 4096 rays with a smoothed rim, the pupil's own width: cos^4 over f/11's cone is 2e-5 less than on the axis
+  EXPECT_NEAR(white(0, 0), expected(0, 0), 2e-4);
+  EXPECT_NEAR(white(255, 255), 1, 2e-4);
+  EXPECT_NEAR(white(400, 100), expected(400, 100), 2e-4);
+}
+
+TEST(RaysRenderer, PlansStepAndRaysByTracing) {
+  auto setup = table1_setup(64);
+  setup.medium.field = sinusoid(0.05, 4e-3);
+  setup.camera.bit_depth = 8;
+  Scene scene = scene_with_dots(setup, lattice(64, 3, 15), 64), other = scene;
+  StepPlan const general = plan_step_by_rays(scene), bench = plan_step(other);
+  EXPECT_LT(general.change_px, 1e-4);
+  EXPECT_LT(bench.change_px, 1e-4);
+  EXPECT_NEAR(std::log2(general.step_mm / bench.step_mm), 0, 1.01) << "one halving more or less";
+  RaysPlan const rays = plan_rays_by_rays(scene);
+  EXPECT_TRUE(rays.converged);
+  EXPECT_LE(rays.truth_error_px, truth_tolerance_px);
+  EXPECT_LE(rays.image_error_levels, image_tolerance_levels);
+  // and what it promises is so: another choice of as many rays gives the same to that
+  Rendering const one = by_rays(scene, RenderImages::no);
+  scene.setup.render.seed = 99;
+  Rendering const two = by_rays(scene, RenderImages::no);
+  for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {
+    EXPECT_LT(length(one.truth.displacement_px[dot] - two.truth.displacement_px[dot]), 5 * truth_tolerance_px);
+  }
+}
+
+TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
+  auto const bench = table1_setup(64);
+  EXPECT_EQ(reason_against_focused_dots(bench), "");
+  auto const refused = [&](auto const& change) {
+    auto setup = bench;
+    change(setup);
+    return !reason_against_focused_dots(setup).empty();
+  };
+  EXPECT_TRUE(refused([](auto& s) { s.lens.prescription = std::make_shared<Lens const>(); }));
+  EXPECT_TRUE(refused([](auto& s) { s.pose = Pose<double>{{0, 0, 0.75}}; }));
+  EXPECT_TRUE(refused([](auto& s) { s.windows.emplace_back(); }));
+  EXPECT_TRUE(refused([](auto& s) { s.camera.tilt.x = 1e-3; }));
+  EXPECT_TRUE(refused([](auto& s) { s.camera.scheimpflug = true; }));
+  EXPECT_TRUE(refused([](auto& s) { s.camera.distortion.k1 = 1e-3; }));
+  EXPECT_TRUE(refused([](auto& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }));
+  EXPECT_TRUE(refused([](auto& s) { s.lens.focus = Focus::medium; }));
+}
+
+}  // namespace
+}  // namespace gladstone
