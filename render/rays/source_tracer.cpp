@@ -9,7 +9,8 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown)
       tracing{scene.step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
               scene.setup.medium.faces},
       spot(shown),
-      rays(scene.rays_per_dot) {
+      rays(scene.rays_per_dot),
+      z_b(scene.setup.z_b()) {
   choice.seed = scene.setup.render.seed;
   choice.sampling = scene.setup.render.sampling;
   choice.scrambling_bits = scrambling_bits(rays);

@@ -9,6 +9,7 @@
 #include "render/base/units.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
+#include "render/scene/bend_limit.h"
 #include "render/scene/camera.h"
 #include "render/scene/dot_exposure.h"
 #include "render/scene/scene.h"
@@ -23,6 +24,7 @@ struct RaysLaunch {
   BundleView<double> choice;
   SpotView spot;
   std::uint64_t rays = 1;
+  double z_b = 0;         ///< from the dots to the lens [m]
   double light_unit = 1;  ///< of weight times source area: a fully lit pixel on the axis [m^2]
   double point_area = 0;  ///< that a source of no size counts as: what a pixel on the axis sees [m^2]
 
@@ -85,6 +87,7 @@ class SourceTracer {
       if (with_images_) trace_all(source, *disc, margin, truth.origin, images, -1);
       statuses_ = before;
       margin = 1.02 * bend;
+      refuse_bend_beyond_any_bench(margin, launch_.z_b);
     }
     largest_margin_ = std::max(largest_margin_, margin);
     int const scramblings = 1 << launch_.choice.scrambling_bits;

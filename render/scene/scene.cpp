@@ -14,6 +14,7 @@
 #include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/medium/density_field.h"
+#include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/deflection_map.h"
 #include "render/scene/dot_exposure.h"
@@ -103,13 +104,16 @@ TheoryModel Scene::theory_model() const {
           imaging.entrance_pupil / 2};
 }
 
+void refuse_bend_beyond_any_bench(double bend, double z_b) {
+  if (bend <= z_b) return;
+  throw DataError("medium.field",
+                  fmt::format("bends rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which no "
+                              "bench does; reduce its gradients, or check their unit",
+                              bend / unit::millimetre, z_b / unit::millimetre));
+}
+
 void Scene::widen_pupil(double margin) {
-  if (!(margin <= setup.z_b())) {
-    throw DataError("medium.field",
-                    fmt::format("bends rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which no "
-                                "bench does; reduce its gradients, or check their unit",
-                                margin / unit::millimetre, setup.z_b() / unit::millimetre));
-  }
+  refuse_bend_beyond_any_bench(margin, setup.z_b());
   pupil_margin = margin;
 }
 
