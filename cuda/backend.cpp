@@ -5,10 +5,10 @@
 
 #include <string>
 
-#include "cuda/cuda_correlator.h"
-#include "cuda/cuda_error.h"
-#include "cuda/cuda_renderer.h"
-#include "cuda/runnable_code.h"
+#include "cuda/correlation/cuda_correlator.h"
+#include "cuda/device/cuda_error.h"
+#include "cuda/device/runnable_code.h"
+#include "cuda/focused_dots/cuda_renderer.h"
 
 namespace gladstone::cuda {
 namespace {

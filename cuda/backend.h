@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 #include "render/scene/renderer.h"
 
 /// The GPU as the rest of gladstone sees it: no CUDA header, the same with and without CUDA compiled in.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/correlation_settings.h"
+#include "analysis/correlation/correlation_settings.h"
 #include "render/base/folder_replacement.h"
 #include "render/base/setup_table.h"
 #include "render/scene/field_map.h"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/correlator.h"
-#include "analysis/scattered_grid.h"
+#include "analysis/correlation/correlator.h"
+#include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/input_file.h"

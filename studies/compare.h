@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/convention_detection.h"
-#include "analysis/error_budget.h"
-#include "analysis/error_summary.h"
-#include "analysis/vector_screening.h"
-#include "analysis/window_truth.h"
+#include "analysis/errors/error_budget.h"
+#include "analysis/errors/error_summary.h"
+#include "analysis/errors/window_truth.h"
+#include "analysis/vectors/convention_detection.h"
+#include "analysis/vectors/vector_screening.h"
 #include "render/scene/renderer.h"
 #include "studies/case.h"
 #include "studies/compared_files.h"

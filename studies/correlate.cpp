@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "analysis/correlator.h"
-#include "analysis/pair_verdict.h"
-#include "analysis/vector_file.h"
+#include "analysis/correlation/correlator.h"
+#include "analysis/correlation/pair_verdict.h"
+#include "analysis/vectors/vector_file.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
 #include "studies/case.h"

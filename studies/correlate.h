@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "analysis/correlation_settings.h"
+#include "analysis/correlation/correlation_settings.h"
 #include "render/base/displacement_field.h"
 #include "render/base/image.h"
 #include "render/base/source_files.h"

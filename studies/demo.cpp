@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "analysis/scattered_grid.h"
+#include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"

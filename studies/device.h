@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 #include "render/scene/renderer.h"
 
 namespace gladstone {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "analysis/vector_file.h"
+#include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/input_file.h"
 #include "render/base/output_file.h"

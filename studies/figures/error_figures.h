@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/error_budget.h"
-#include "analysis/error_summary.h"
+#include "analysis/errors/error_budget.h"
+#include "analysis/errors/error_summary.h"
 #include "render/base/displacement_field.h"
 #include "render/base/vec.h"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "analysis/error_summary.h"
+#include "analysis/errors/error_summary.h"
 #include "render/base/contracts.h"
 #include "studies/sweep/unit_ending.h"
 

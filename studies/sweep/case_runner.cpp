@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "analysis/vector_file.h"
+#include "analysis/vectors/vector_file.h"
 #include "render/base/content_hash.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"

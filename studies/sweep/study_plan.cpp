@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis/correlation_settings.h"
+#include "analysis/correlation/correlation_settings.h"
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"

@@ -1,4 +1,4 @@
-#include "analysis/convention_detection.h"
+#include "analysis/vectors/convention_detection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

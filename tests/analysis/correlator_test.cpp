@@ -1,4 +1,4 @@
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "analysis/standard_correlator.h"
+#include "analysis/correlation/standard_correlator.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"

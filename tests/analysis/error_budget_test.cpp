@@ -1,4 +1,4 @@
-#include "analysis/error_budget.h"
+#include "analysis/errors/error_budget.h"
 
 #include <gtest/gtest.h>
 

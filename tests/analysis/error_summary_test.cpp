@@ -1,4 +1,4 @@
-#include "analysis/error_summary.h"
+#include "analysis/errors/error_summary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/pair_verdict.h"
+#include "analysis/correlation/pair_verdict.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "analysis/pattern_period.h"
+#include "analysis/correlation/pattern_period.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/point_cells.h"
+#include "analysis/errors/point_cells.h"
 
 #include <gtest/gtest.h>
 

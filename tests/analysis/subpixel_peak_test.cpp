@@ -1,11 +1,11 @@
-#include "analysis/subpixel_peak.h"
+#include "analysis/correlation/subpixel_peak.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "analysis/peak_search.h"
+#include "analysis/correlation/peak_search.h"
 #include "render/base/vec.h"
 
 namespace gladstone {

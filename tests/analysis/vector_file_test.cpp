@@ -1,4 +1,4 @@
-#include "analysis/vector_file.h"
+#include "analysis/vectors/vector_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "analysis/vector_screening.h"
+#include "analysis/vectors/vector_screening.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/vector_file.h"
+#include "analysis/vectors/vector_file.h"
 
 namespace gladstone {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/vector_validation.h"
+#include "analysis/correlation/vector_validation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/window_deformation.h"
+#include "analysis/correlation/window_deformation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/window_truth.h"
+#include "analysis/errors/window_truth.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "analysis/scattered_grid.h"
+#include "analysis/errors/scattered_grid.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {

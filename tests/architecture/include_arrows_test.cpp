@@ -71,13 +71,16 @@ TEST(IncludeArrows, AllowWhatTheTableHas) {
               IsEmpty());
   EXPECT_THAT(forbidden_arrows("render/scene/a.h", "#include \"render/optics/b.h\"\n#include \"render/medium/c.h\"\n"),
               IsEmpty());
-  EXPECT_THAT(forbidden_arrows("analysis/a.cpp", "#include <opencv2/core.hpp>\n#include \"render/base/vec.h\"\n"),
+  EXPECT_THAT(
+      forbidden_arrows("analysis/correlation/a.cpp", "#include <opencv2/core.hpp>\n#include \"render/base/vec.h\"\n"),
+      IsEmpty());
+  EXPECT_THAT(forbidden_arrows(
+                  "cuda/a.cu",
+                  "#include <cuda_runtime.h>\n#include \"analysis/correlation/b.h\"\n#include \"render/scene/c.h\"\n"),
               IsEmpty());
-  EXPECT_THAT(forbidden_arrows("cuda/a.cu",
-                               "#include <cuda_runtime.h>\n#include \"analysis/b.h\"\n#include \"render/scene/c.h\"\n"),
-              IsEmpty());
-  EXPECT_THAT(forbidden_arrows("studies/commands/a.cpp", "#include <CLI/CLI.hpp>\n#include \"analysis/b.h\"\n"),
-              IsEmpty());
+  EXPECT_THAT(
+      forbidden_arrows("studies/commands/a.cpp", "#include <CLI/CLI.hpp>\n#include \"analysis/correlation/b.h\"\n"),
+      IsEmpty());
   EXPECT_THAT(forbidden_arrows("tests/base/a_test.cpp", "#include <gtest/gtest.h>\n#include \"studies/b.h\"\n"),
               IsEmpty());
 }
@@ -108,10 +111,12 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
         Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
         Planted{"render/medium/a.cpp", "<hdf5.h>"},  // through base alone
-        Planted{"render/scene/a.h", "\"analysis/b.h\""}, Planted{"render/scene/a.cpp", "\"cuda/b.h\""},
-        Planted{"analysis/a.cpp", "\"render/scene/b.h\""},  // analysis never calls the renderer
-        Planted{"analysis/a.h", "<opencv2/core.hpp>"}, Planted{"analysis/a.cpp", "\"studies/b.h\""},
-        Planted{"cuda/a.cu", "\"studies/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
+        Planted{"render/scene/a.h", "\"analysis/correlation/b.h\""}, Planted{"render/scene/a.cpp", "\"cuda/b.h\""},
+        Planted{"analysis/correlation/a.cpp", "\"render/scene/b.h\""},  // analysis never calls the renderer
+        Planted{"analysis/correlation/a.h", "<opencv2/core.hpp>"},
+        Planted{"analysis/correlation/a.cpp", "\"studies/b.h\""}, Planted{"cuda/a.cu", "\"studies/b.h\""},
+        Planted{"analysis/vectors/a.cpp", "\"analysis/errors/b.h\""}, Planted{"cuda/device/a.cu", "\"cuda/rays/b.h\""},
+        Planted{"cuda/correlation/a.cu", "\"cuda/focused_dots/b.h\""}, Planted{"cuda/a.cpp", "<opencv2/core.hpp>"},
         Planted{"render/scene/a.cpp", "<cuda_runtime.h>"},  // CUDA headers in cuda/ alone
         Planted{"tests/cuda/a_test.cpp", "<cuda_runtime_api.h>"}, Planted{"studies/a.cpp", "<cufft.h>"},
         Planted{"render/base/a.h", "<cuda/std/complex>"}, Planted{"render/base/a.h", "<thrust/sort.h>"},
@@ -161,10 +166,10 @@ TEST(Tree, KeepsCudaHeadersInTheirRoom) {
     }
   }
   std::set<std::string> none_yet;
-  EXPECT_TRUE(draws_cuda("cuda/launch.h", files, none_yet));  // what is looked for is there to be found
+  EXPECT_TRUE(draws_cuda("cuda/device/launch.h", files, none_yet));  // what is looked for is there to be found
   for (auto const& [path, includes] : files) {
     std::set<std::string> seen;
-    if (room_of(path) != "cuda") {
+    if (!path.starts_with("cuda/")) {
       EXPECT_FALSE(draws_cuda(path, files, seen)) << path;
     }
   }
@@ -174,7 +179,7 @@ TEST(Tree, NamesCudaInExactlyOneFileOfStudies) {
   std::vector<std::string> naming;
   for (SourceFile const& file : sources_of({"studies"})) {
     for (Include const& include : includes_of(file.text)) {
-      if (include.quoted && room_of(include.target) == "cuda") {
+      if (include.quoted && include.target.starts_with("cuda/")) {
         naming.push_back(file.path);
         break;
       }

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 #include "render/base/parallel.h"
 #include "tests/analysis/support/particle_pair.h"
 

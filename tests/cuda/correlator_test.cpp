@@ -1,4 +1,4 @@
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 
 #include <gtest/gtest.h>
 

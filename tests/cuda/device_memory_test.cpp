@@ -1,4 +1,4 @@
-#include "cuda/device_memory.h"
+#include "cuda/device/device_memory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/correlator.h"
+#include "analysis/correlation/correlator.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
 #include "render/scene/deflection_map.h"

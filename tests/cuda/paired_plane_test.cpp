@@ -1,4 +1,4 @@
-#include "cuda/paired_plane.h"
+#include "cuda/correlation/paired_plane.h"
 
 #include <gtest/gtest.h>
 

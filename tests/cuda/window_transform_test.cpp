@@ -1,4 +1,4 @@
-#include "cuda/window_transform.h"
+#include "cuda/correlation/window_transform.h"
 
 #include <gtest/gtest.h>
 

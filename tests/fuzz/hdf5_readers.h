@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/vector_file.h"
+#include "analysis/vectors/vector_file.h"
 #include "render/base/source_files.h"
 #include "studies/truth_file.h"
 #include "tests/fuzz/fields.h"

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "analysis/correlation_settings.h"
+#include "analysis/correlation/correlation_settings.h"
 #include "render/base/setup_table.h"
 #include "render/scene/setup.h"
 #include "tests/fuzz/input.h"

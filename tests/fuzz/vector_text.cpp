@@ -1,10 +1,10 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/convention_detection.h"
-#include "analysis/vector_file.h"
-#include "analysis/vector_screening.h"
-#include "analysis/window_truth.h"
+#include "analysis/errors/window_truth.h"
+#include "analysis/vectors/convention_detection.h"
+#include "analysis/vectors/vector_file.h"
+#include "analysis/vectors/vector_screening.h"
 #include "tests/fuzz/input.h"
 
 using namespace gladstone;

@@ -1,7 +1,7 @@
 #include <iostream>
 #include <vector>
 
-#include "analysis/error_summary.h"
+#include "analysis/errors/error_summary.h"
 #include "render/base/version.h"
 #include "render/scene/setup.h"
 

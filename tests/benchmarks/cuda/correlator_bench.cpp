@@ -5,10 +5,10 @@
 #include <cstring>
 
 #include "cuda/backend.h"
-#include "cuda/correlation_kernels.h"
-#include "cuda/cuda_correlator.h"
-#include "cuda/device_array.h"
-#include "cuda/device_timer.h"
+#include "cuda/correlation/correlation_kernels.h"
+#include "cuda/correlation/cuda_correlator.h"
+#include "cuda/device/device_array.h"
+#include "cuda/device/device_timer.h"
 #include "tests/analysis/support/particle_pair.h"
 
 namespace gladstone::bench {

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/correlation/interrogation_grid.h"
+#include "analysis/correlation/window_ops.h"
+#include "render/base/host_device.h"
+
+namespace gladstone {
+
+/// The weights of all windows of a grid along one axis, as a kernel reads them.
+struct AxisWeightsView {
+  int size;                        ///< side of a window's support, twice the nominal window [px]
+  int first_px;                    ///< image position where the support of window 0 begins
+  int spacing_px;                  ///< and how far on the next begins
+  float const* weights;            ///< `size` for each window, 0 outside the image
+  double const* autocorrelations;  ///< lags() for each window
+  double const* sums;              ///< sum of the weights of each window
+
+  GLADSTONE_HD static constexpr int lags(int size) { return size / 4 + 2; }
+  GLADSTONE_HD int first(int window) const { return first_px + window * spacing_px; }
+  GLADSTONE_HD float const* weight(int window) const { return weights + static_cast<long long>(window) * size; }
+  GLADSTONE_HD double sum(int window) const { return sums[window]; }
+  /// Sum of w(i) w(i + lag), |lag| <= size/4 + 1.
+  GLADSTONE_HD double autocorrelation(int window, int lag) const {
+    return autocorrelations[static_cast<long long>(window) * lags(size) + (lag < 0 ? -lag : lag)];
+  }
+};
+
+/// The weights of the windows along one axis, cut off at the image's border, and their autocorrelation.
+class AxisWeights {
+ public:
+  /// @param windows      of the grid along this axis
+  /// @param image_length along this axis [px]
+  AxisWeights(InterrogationGrid const& grid, int windows, int image_length, WindowWeighting weighting)
+      : size_(2 * grid.window_px), first_px_(-grid.window_px / 2), spacing_px_(grid.spacing_px) {
+    int const lags = AxisWeightsView::lags(size_);
+    weights_.reserve(static_cast<std::size_t>(windows) * size_);
+    autocorrelations_.reserve(static_cast<std::size_t>(windows) * lags);
+    for (int k = 0; k < windows; ++k) {
+      int const first = first_px_ + k * spacing_px_;
+      for (int i = 0; i < size_; ++i) {
+        bool const inside = first + i >= 0 && first + i < image_length;
+        double const offset = i - 0.5 * (size_ - 1);
+        double const weight = axis_weight(weighting, offset, static_cast<double>(grid.window_px));
+        weights_.push_back(inside ? static_cast<float>(weight) : 0.0f);
+      }
+      float const* w = weights_.data() + static_cast<std::size_t>(k) * size_;
+      double all = 0.0;
+      for (int i = 0; i < size_; ++i) all += w[i];
+      sums_.push_back(all);
+      for (int lag = 0; lag < lags; ++lag) {
+        double sum = 0.0;
+        for (int i = 0; i + lag < size_; ++i) sum += static_cast<double>(w[i]) * w[i + lag];
+        autocorrelations_.push_back(sum);
+      }
+    }
+  }
+
+  AxisWeightsView view() const {
+    return {size_, first_px_, spacing_px_, weights_.data(), autocorrelations_.data(), sums_.data()};
+  }
+  std::vector<float> const& weights() const { return weights_; }
+  std::vector<double> const& autocorrelations() const { return autocorrelations_; }
+  std::vector<double> const& sums() const { return sums_; }
+
+ private:
+  int size_;
+  int first_px_;
+  int spacing_px_;
+  std::vector<float> weights_;
+  std::vector<double> autocorrelations_;
+  std::vector<double> sums_;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,58 @@
+#include "analysis/correlation/correlation_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/correlation/correlator.h"
+
+namespace gladstone {
+namespace {
+
+/// A word of a closed set; names that are planned are refused as such.
+std::string available_word(SetupTable& table, std::string const& key, std::string const& fallback,
+                           std::vector<std::string> const& words, std::string const& planned) {
+  if (table.is_string(key) && table.text(key, fallback) == planned) {
+    table.problem(key, fmt::format("\"{}\" is not available yet; use \"{}\"", planned, fallback));
+    return fallback;
+  }
+  return table.word(key, fallback, words);
+}
+
+}  // namespace
+
+CorrelationSettings read_correlation_settings(SetupTable table) {
+  CorrelationSettings settings;
+  std::vector<long long> const fallback(settings.window_px.begin(), settings.window_px.end());
+  std::vector<long long> const windows = table.integers("window_px", fallback, 1, 10, 4, 512);
+  settings.window_px.assign(windows.begin(), windows.end());
+  if (std::any_of(windows.begin(), windows.end(), [](long long w) { return w % 2 != 0; }))
+    table.problem("window_px",
+                  "an odd window (its support of twice the size must sit on whole pixels); use even sizes");
+  if (!std::is_sorted(windows.rbegin(), windows.rend()))
+    table.problem("window_px",
+                  "a window larger than that of the pass before (passes refine); order them from large to small");
+  settings.overlap = table.number("overlap", settings.overlap, Range::at_least(0.0, 0.95));
+  settings.method = available_word(table, "method", settings.method, correlation_methods(), "rpc");
+  settings.subpixel = available_word(table, "subpixel", settings.subpixel, {"gauss3"}, "gauss2d");
+  settings.weighting = table.word("weighting", settings.weighting, {"gaussian", "uniform"});
+  settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic"});
+  settings.final_passes = static_cast<int>(table.integer("final_passes", settings.final_passes, 1, 5));
+  settings.max_displacement_px =
+      table.number_or_word("max_displacement_px", {{}, "none"}, {"none"}, Range::positive(512.0)).number;
+  settings.median_threshold = table.number("median_threshold", settings.median_threshold, Range::positive());
+  settings.median_epsilon_px = table.number("median_epsilon_px", settings.median_epsilon_px, Range::positive());
+  settings.trusted_peak_ratio =
+      table.number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}}, {"none"}, Range::at_least(1.0))
+          .number;
+  return settings;
+}
+
+std::string window_problem(CorrelationSettings const& settings, int columns, int rows) {
+  int const largest = *std::max_element(settings.window_px.begin(), settings.window_px.end());
+  if (largest <= std::min(columns, rows)) return {};
+  return fmt::format("a window of {} px on an image of {} x {} px (it must fit inside); use windows up to {} px",
+                     largest, columns, rows, std::min(columns, rows) / 2 * 2);
+}
+
+}  // namespace gladstone

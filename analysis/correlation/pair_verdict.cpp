@@ -1,0 +1,181 @@
+#include "analysis/correlation/pair_verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "analysis/correlation/pattern_period.h"
+#include "analysis/correlation/standard_correlator.h"
+
+namespace gladstone {
+namespace {
+
+/// Part of the windows with a signal that must be more than chance.
+constexpr double least_correlated = 0.25;
+/// Standard deviations by which correlation must be above chance: one in 44 is, were it normally distributed.
+constexpr double deviations = 2.0;
+/// Part of a measurement from which it is looked into, and from which it is spoken of.
+constexpr double suspicious = 0.05;
+constexpr double worth_a_warning = 0.1;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool has_signal(VectorReason reason) { return reason != VectorReason::masked && reason != VectorReason::no_signal; }
+
+/// Vectors with a signal, and parts of them.
+struct Tally {
+  explicit Tally(DisplacementField const& field) {
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      if (!has_signal(field.reason[i])) continue;
+      ++signal;
+      uncorrelated += field.reason[i] == VectorReason::uncorrelated;
+      beyond += field.reason[i] == VectorReason::beyond_limit;
+      ambiguous += field.ambiguous[i] != Ambiguity::none;
+      doubtful += field.ambiguous[i] != Ambiguity::none || field.reason[i] != VectorReason::measured;
+    }
+  }
+  bool nothing_left() const { return uncorrelated + beyond == signal; }
+  double part(std::size_t count) const {
+    return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
+  }
+  std::size_t signal = 0, uncorrelated = 0, beyond = 0, ambiguous = 0, doubtful = 0;
+};
+
+bool same_bits(Image<double> const& a, Image<double> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
+/// Whether there are best peaks, and all are at no shift, up to what float leaves of it.
+bool stands_still(DisplacementField const& field) {
+  auto const still = std::count_if(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return length(d) <= 1e-2; });
+  auto const none = std::count_if(field.raw_px.begin(), field.raw_px.end(), [](Vec2d d) { return std::isnan(d.x); });
+  return still > 0 && still + none == static_cast<std::ptrdiff_t>(field.size());
+}
+
+/// A mean, and how many independent windows it is of.
+struct Mean {
+  double value = 0.0;
+  double windows = 0.0;
+};
+
+/// Mean correlation of the vectors up to `reach` columns and rows away from one.
+/// @param windows_per_vector that share no pixel: spacing squared over window squared
+Mean local_mean(DisplacementField const& field, std::size_t vector, int reach, double windows_per_vector) {
+  int const column = static_cast<int>(vector) % field.columns, row = static_cast<int>(vector) / field.columns;
+  double sum = 0.0, count = 0.0;
+  for (int y = std::max(0, row - reach); y <= std::min(field.rows - 1, row + reach); ++y)
+    for (int x = std::max(0, column - reach); x <= std::min(field.columns - 1, column + reach); ++x) {
+      double const value = field.correlation[static_cast<std::size_t>(y) * field.columns + x];
+      if (std::isnan(value)) continue;
+      sum += value;
+      count += 1.0;
+    }
+  return {sum / count, std::max(1.0, count * windows_per_vector)};
+}
+
+Image<double> upside_down(Image<double> image) {
+  std::reverse(image.begin(), image.end());
+  return image;
+}
+
+/// How far a measurement looked, in words.
+struct Reach {
+  explicit Reach(CorrelationSettings const& settings) {
+    int const range = CorrelationSchedule(settings).search_radius_px(0);
+    bool const limited = settings.max_displacement_px && *settings.max_displacement_px <= range;
+    what = limited ? fmt::format("correlate.max_displacement_px = {:g}", *settings.max_displacement_px)
+                   : fmt::format("the search range of {} px", range);
+    remedy = limited ? "raise it" : "use a larger first window in correlate.window_px";
+  }
+  std::string what;
+  std::string remedy;  ///< what makes it longer
+};
+
+std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
+  std::string const why = fmt::format(
+      "they agree no better than frames that have nothing in common: a shift beyond {}, two scenes, or noise alone",
+      reach.what);
+  if (tally.nothing_left())
+    return fmt::format("the frames do not correlate ({}); {}, or give frames that belong together", why, reach.remedy);
+  return fmt::format(
+      "{:.0f} % of the windows do not correlate ({}), so that their vectors are invalid; use larger "
+      "windows, or leave these vectors out",
+      100.0 * tally.part(tally.uncorrelated), why);
+}
+
+std::string beyond_text(Tally const& tally, Reach const& reach) {
+  return fmt::format(
+      "{:.0f} % of the windows have no correlation peak within {} (displacements are larger, or these windows hold "
+      "noise), so that their vectors are invalid; {}, or leave these vectors out",
+      100.0 * tally.part(tally.beyond), reach.what, reach.remedy);
+}
+
+}  // namespace
+
+void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings) {
+  InterrogationGrid const grid = final_grid(settings, settings.window_px.back(), settings.window_px.back());
+  double const share = static_cast<double>(grid.spacing_px) / grid.window_px, windows_per_vector = share * share;
+  int const reach = 2 * grid.window_px / grid.spacing_px;
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (double const value : chance.correlation) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    count += 1.0;
+  }
+  double const mean = count > 0.0 ? sum / count : 0.0;
+  double const variance = count > 0.0 ? std::max(0.0, squares / count - mean * mean) : 0.0;
+  double const all_windows = std::max(1.0, count * windows_per_vector);
+  std::vector<std::size_t> uncorrelated, signal;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!has_signal(field.reason[i])) continue;
+    signal.push_back(i);
+    Mean const here = local_mean(field, i, reach, windows_per_vector);
+    double const deviation = std::sqrt(variance * (1.0 / here.windows + 1.0 / all_windows));
+    if (!(here.value > mean + deviations * deviation)) uncorrelated.push_back(i);
+  }
+  double const correlated = static_cast<double>(signal.size() - uncorrelated.size());
+  bool const hardly_any = correlated < least_correlated * static_cast<double>(signal.size());
+  for (std::size_t const i : hardly_any ? signal : uncorrelated) {
+    if (field.reason[i] == VectorReason::beyond_limit) continue;
+    field.displacement_px[i] = {nan, nan};
+    field.status[i] = VectorStatus::invalid;
+    field.reason[i] = VectorReason::uncorrelated;
+  }
+}
+
+void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+                CorrelationSettings const& settings) {
+  if (stands_still(field) && same_bits(frames.reference(), frames.flow())) {
+    field.warnings.emplace_back(
+        "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
+    return;
+  }
+  Tally const found(field);
+  if (found.part(found.doubtful) < suspicious) return;
+  Reach const reach(settings);
+  if (std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings)) {
+    if (found.part(found.ambiguous) >= worth_a_warning)
+      field.warnings.push_back(fmt::format(
+          "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within {}: only a displacement "
+          "below {:.2f} px can be trusted, a larger one comes back less by whole pitches; use random dots, or set "
+          "correlate.max_displacement_px below {:.2f} if no displacement is larger",
+          period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
+  } else {
+    // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
+    std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
+    leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
+  }
+  Tally const left(field);
+  bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
+  if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
+  if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
+    field.warnings.push_back(beyond_text(left, reach));
+}
+
+}  // namespace gladstone

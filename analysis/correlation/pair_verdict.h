@@ -1,0 +1,28 @@
+#pragma once
+
+#include "analysis/correlation/correlator.h"
+
+/// What a measurement as a whole is worth.
+namespace gladstone {
+
+/// Leaves out the vectors that cannot be told from chance, and all of them where fewer than a quarter can
+/// (VectorReason::uncorrelated). Chance is what the same correlator finds in frames that have the same dots, density
+/// and noise but nothing in common: the reference, and the flow frame turned upside down. There the correlation of
+/// single vectors has some mean and standard deviation s; the mean over the n independent windows within two windows of
+/// a place then scatters by s/sqrt(n), the overall mean over N by s/sqrt(N), and a place is more than chance where the
+/// pair's own mean is higher by two of their joint deviations. No level of correlation is set beforehand, since
+/// noise, few dots and steep gradients lower both, and later passes sharpen chance peaks as they do others. A pattern
+/// that repeats correlates with itself upside down, too: it is not to be judged so.
+/// @param chance what the correlator gives for such frames, on the same grid
+void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings);
+
+/// Judges a pair by its vectors: calls those uncorrelated that cannot be told from chance, and puts into the field's
+/// warnings, each as "problem (why); suggestion", what the user should know: frames that are the same, that do not
+/// correlate, a pattern whose period makes displacements ambiguous within the search range. A pair whose vectors
+/// agree (at most one in twenty replaced, invalid or ambiguous) gives no reason to look further, and takes no time.
+/// @param field  what the correlator gave for the frames
+/// @throws as Correlator::correlate
+void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+                CorrelationSettings const& settings);
+
+}  // namespace gladstone

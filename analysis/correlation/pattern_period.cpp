@@ -1,0 +1,126 @@
+#include "analysis/correlation/pattern_period.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "analysis/correlation/axis_weights.h"
+#include "analysis/correlation/fourier_plan.h"
+#include "analysis/correlation/peak_search.h"
+#include "analysis/correlation/standard_correlator.h"
+#include "analysis/correlation/window_deformation.h"
+
+namespace gladstone {
+namespace {
+
+/// Windows over the whole image, four on an axis at most.
+InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
+  InterrogationGrid grid = make_interrogation_grid(columns, rows, window_px, 0.5);
+  grid.spacing_px = std::max(grid.spacing_px, (std::max(columns, rows) - window_px + 2) / 3);
+  grid.columns = (columns - window_px) / grid.spacing_px + 1;
+  grid.rows = (rows - window_px) / grid.spacing_px + 1;
+  return grid;
+}
+
+/// Autocorrelation planes of one window after the other, with their scratch memory.
+class Autocorrelation {
+ public:
+  explicit Autocorrelation(int size)
+      : size_(size), plan_(make_fourier_plan(size)), values_(count()), spectrum_(count()) {}
+
+  /// The plane of a window of the reference; the next call overwrites it.
+  PlaneView<float> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
+    double weights = 0.0, sum = 0.0;
+    auto const for_each_pixel = [&](auto const& visit) {
+      for (int j = 0; j < size_; ++j)
+        for (int i = 0; i < size_; ++i) {
+          int const at_x = x.first(column) + i, at_y = y.first(row) + j;
+          bool const inside = at_x >= 0 && at_x < pair.columns && at_y >= 0 && at_y < pair.rows;
+          std::size_t const at = inside ? static_cast<std::size_t>(at_y) * pair.columns + at_x : 0;
+          bool const known = inside && (pair.available.empty() || pair.available[at] > 0.0f);
+          float const weight = known ? x.weight(column)[i] * y.weight(row)[j] : 0.0f;
+          visit(static_cast<std::size_t>(j) * size_ + i, weight, pair.reference[at]);
+        }
+    };
+    for_each_pixel([&](std::size_t, float weight, float value) {
+      weights += weight;
+      sum += static_cast<double>(weight) * value;
+    });
+    float const mean = weights > 0.0 ? static_cast<float>(sum / weights) : 0.0f;
+    for_each_pixel([&](std::size_t k, float weight, float value) { values_[k] = weight * (value - mean); });
+    plan_->forward(values_.data(), spectrum_.data());
+    for (std::complex<float>& value : spectrum_) value = std::norm(value);
+    plan_->inverse(spectrum_.data(), values_.data());
+    return {reinterpret_cast<float const*>(values_.data()), size_, 2};
+  }
+
+ private:
+  std::size_t count() const { return static_cast<std::size_t>(size_) * size_; }
+
+  int size_;
+  std::unique_ptr<FourierPlan> plan_;
+  std::vector<std::complex<float>> values_, spectrum_;
+};
+
+/// Part of a window's autocorrelation at no shift that a pattern must reach one pixel beside it, else it is not seen.
+/// Noise, whose pixels have nothing in common, scatters by 1/window_px of it there (square root of the sum of w^8 over
+/// the sum of w^4 along both axes, w the Gaussian weights), and some thousand shifts reach five times that.
+double least_seen(int window_px) { return 8.0 / window_px; }
+
+/// Geometric mean of a peak's heights one pixel from its middle along either axis, on the Gaussian of its samples: that
+/// falls by the square root of what both samples beside the highest have fallen by together.
+/// @param fall_off of the plane that the weights cause, divided out
+double height_beside(PlaneView<float> const& plane, PlanePeak<float> const& peak, double fall_off) {
+  double const centre = plane(peak.x, peak.y);
+  double const beside[4] = {plane(peak.x - 1, peak.y), plane(peak.x + 1, peak.y), plane(peak.x, peak.y - 1),
+                            plane(peak.x, peak.y + 1)};
+  double product = 1.0;
+  for (double const value : beside) product *= std::max(0.0, value) / centre;
+  return peak.height / fall_off * std::pow(product, 0.25);
+}
+
+}  // namespace
+
+std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings) {
+  constexpr int fewest_px = 128;
+  int const room = std::min(image.columns(), image.rows()) / 2 * 2;
+  int const window = std::min(std::max(2 * settings.window_px.front(), fewest_px), room);
+  int const range = CorrelationSchedule(settings).search_radius_px(0), radius = std::min(2 * range, window / 2);
+  InterrogationGrid const grid = sampling_grid(image.columns(), image.rows(), window);
+  AxisWeights const weights_x(grid, grid.columns, image.columns(), WindowWeighting::gaussian);
+  AxisWeights const weights_y(grid, grid.rows, image.rows(), WindowWeighting::gaussian);
+  AxisWeightsView const x = weights_x.view(), y = weights_y.view();
+  ImagePair const pair = make_image_pair(image, image);
+  Autocorrelation autocorrelation(x.size);
+  std::size_t repeating = 0;
+  std::optional<PatternPeriod> period;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      PlaneView<float> const plane = autocorrelation.of(pair, x, column, y, row);
+      double const across = 0.5 * (plane(-1, 0) + plane(1, 0)), down = 0.5 * (plane(0, -1) + plane(0, 1));
+      double const main = std::sqrt(std::max(0.0, across) * std::max(0.0, down));
+      PeakList<float> const found = find_peaks(plane, radius);
+      bool repeats = false;
+      for (int k = 0; k < found.count; ++k) {
+        PlanePeak<float> const& peak = found.peak[k];
+        if (peak.x == 0 && peak.y == 0) continue;
+        double const fall_off = x.autocorrelation(column, peak.x) * y.autocorrelation(row, peak.y) /
+                                (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
+        double const whole = peak.height / fall_off / plane(0, 0);
+        double const beside =
+            main > least_seen(window) * plane(0, 0) ? height_beside(plane, peak, fall_off) / main : 0.0;
+        double const height = std::max(whole, beside);
+        if (height < nearly_as_high) continue;
+        repeats = true;
+        RefinedPeak<float> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
+        double const pitch = std::hypot(at.x, at.y);
+        if (!period || pitch < period->pitch_px) period = {pitch, height};
+      }
+      repeating += repeats;
+    }
+  if (4 * repeating < grid.size()) return std::nullopt;
+  return period;
+}
+
+}  // namespace gladstone

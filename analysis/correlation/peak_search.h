@@ -1,0 +1,186 @@
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+#include "analysis/correlation/subpixel_peak.h"
+#include "render/base/host_device.h"
+
+/// The peaks of a correlation plane, for the CPU and for CUDA's kernels. They are ranked by their height between the
+/// samples: the sample of a peak half a pixel off is 12 % lower (Gaussian of 1 px) along either axis, so that an alias
+/// of a regular pattern, or any other peak, would win by lying nearer to a whole pixel.
+namespace gladstone {
+
+/// A correlation plane as an inverse transform leaves it: shift (dx, dy) at row dy mod size, column dx mod size.
+template <class T>
+struct PlaneView {
+  T const* value;
+  int size;
+  int stride;  ///< values from one column to the next: 2 where two planes lie interleaved
+
+  /// @pre -size <= dx, dy < size
+  GLADSTONE_HD T operator()(int dx, int dy) const {
+    int const x = dx < 0 ? dx + size : dx;
+    int const y = dy < 0 ? dy + size : dy;
+    return value[(static_cast<long long>(y) * size + x) * stride];
+  }
+};
+
+/// A local maximum of a correlation plane.
+template <class T>
+struct PlanePeak {
+  int x = 0;  ///< its highest sample
+  int y = 0;
+  T height{};  ///< between the samples
+};
+
+/// The highest local maxima of a correlation plane.
+template <class T>
+struct PeakList {
+  static constexpr int capacity = 3;
+  PlanePeak<T> peak[capacity];  ///< highest first, but for what prefer_nearest() has moved to the front
+  int count = 0;
+};
+
+/// Whether v, the plane's value at (x, y), is above its eight neighbours; of equal ones the first in reading order is.
+template <class Plane, class T>
+GLADSTONE_HD bool is_maximum(Plane const& plane, int x, int y, T v) {
+  return v > plane(x - 1, y - 1) && v > plane(x, y - 1) && v > plane(x + 1, y - 1) && v > plane(x - 1, y) &&
+         v >= plane(x + 1, y) && v >= plane(x - 1, y + 1) && v >= plane(x, y + 1) && v >= plane(x + 1, y + 1);
+}
+
+/// Most by which a peak rises above its highest sample: a Gaussian of 0.6 px, the correlation of points that fill a
+/// pixel, half a pixel off along both axes. What seems to rise more is a sample beside noise.
+constexpr double largest_rise = 2.0;
+
+/// Where a maximum lies between the samples, and how high it is there: three points along either axis.
+template <class T>
+struct RefinedPeak {
+  T x, y;
+  T height;
+};
+
+/// @param v the plane's value at its maximum (x, y), positive
+template <class Plane, class T>
+GLADSTONE_HD RefinedPeak<T> refined_peak(Plane const& plane, int x, int y, T v) {
+  using std::exp;
+  PeakBetweenSamples<T> const across = gaussian_peak<T>(plane(x - 1, y), v, plane(x + 1, y));
+  PeakBetweenSamples<T> const down = gaussian_peak<T>(plane(x, y - 1), v, plane(x, y + 1));
+  T const rise = T(exp(across.log_rise + down.log_rise)), most = T(largest_rise);
+  return {T(x) + across.offset, T(y) + down.offset, v * (rise < most ? rise : most)};
+}
+
+/// Whether a peak of that height is high enough for the list.
+template <class T>
+GLADSTONE_HD bool can_enter(PeakList<T> const& found, T height) {
+  return found.count < PeakList<T>::capacity || height > found.peak[PeakList<T>::capacity - 1].height;
+}
+
+/// Whether two peaks are less than `apart` pixels from each other on both axes: then only the higher counts.
+template <class T>
+GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b, int apart = 3) {
+  int const dx = a.x - b.x, dy = a.y - b.y;
+  return dx < apart && -dx < apart && dy < apart && -dy < apart;
+}
+
+/// Puts a local maximum that can_enter() into the list, unless a higher one is close; lower ones that are close drop
+/// out. Maxima come in reading order.
+template <class T>
+GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate) {
+  int place = 0;
+  for (; place < found.count && !(candidate.height > found.peak[place].height); ++place)
+    if (are_close(found.peak[place], candidate)) return;
+  // behind the higher ones; lower ones follow if they are far enough and there is room
+  PeakList<T> next;
+  for (int k = 0; k < place; ++k) next.peak[next.count++] = found.peak[k];
+  next.peak[next.count++] = candidate;
+  for (int k = place; k < found.count && next.count < PeakList<T>::capacity; ++k)
+    if (!are_close(found.peak[k], candidate)) next.peak[next.count++] = found.peak[k];
+  found = next;
+}
+
+/// Two peaks are as good as equal where the lower has this part of the other's height: over the windows of a regular
+/// pattern the heights of aliases differ by that much, since each misses other dots at the window's rim and the
+/// three-point Gaussian is not their shape.
+constexpr double nearly_as_high = 0.9;
+
+/// Whether no higher maximum is close to a peak, so that it is not the shoulder of another. Of equal ones the first in
+/// reading order is the higher.
+template <class Plane, class T>
+GLADSTONE_HD bool is_summit(Plane const& plane, int radius, PlanePeak<T> const& peak) {
+  for (int y = peak.y - 2; y <= peak.y + 2; ++y)
+    for (int x = peak.x - 2; x <= peak.x + 2; ++x) {
+      bool const before = y < peak.y || (y == peak.y && x < peak.x);
+      if (x < -radius || x > radius || y < -radius || y > radius || (x == peak.x && y == peak.y)) continue;
+      T const v = plane(x, y);
+      if (!(T(largest_rise) * v >= peak.height) || !is_maximum(plane, x, y, v)) continue;
+      T const height = refined_peak(plane, x, y, v).height;
+      if (height > peak.height || (before && height == peak.height)) return false;
+    }
+  return true;
+}
+
+/// Puts the peak to the front that lies nearest to shift 0 among those nearly as high as the highest: aliases of a
+/// regular pattern are equally good, and the displacement, or what is left over by a predictor, is most likely small.
+/// @param for_each_maximum calls its argument with every positive local maximum in reading order
+template <class Plane, class T, class Maxima>
+GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& found, Maxima const& for_each_maximum) {
+  T const enough = T(nearly_as_high) * found.peak[0].height;
+  if (found.count < 2 || found.peak[1].height < enough) return;
+  auto const distance = [&](PlanePeak<T> const& peak) {
+    RefinedPeak<T> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
+    return at.x * at.x + at.y * at.y;
+  };
+  PlanePeak<T> nearest = found.peak[0];
+  T least = distance(nearest);
+  for_each_maximum([&](PlanePeak<T> const& peak) {
+    if (peak.height < enough) return;
+    T const here = distance(peak);
+    if (!(here < least) || !is_summit(plane, radius, peak)) return;
+    least = here;
+    nearest = peak;
+  });
+  int place = 0;
+  while (place < found.count - 1 && (found.peak[place].x != nearest.x || found.peak[place].y != nearest.y)) ++place;
+  for (; place > 0; --place) found.peak[place] = found.peak[place - 1];
+  found.peak[0] = nearest;
+}
+
+/// Calls visit with every positive local maximum with |dx|, |dy| <= radius, in reading order, whose height could pass.
+/// @param could_pass whether a peak of at most that height is of interest
+template <class Plane, class Visit, class CouldPass>
+GLADSTONE_HD void visit_maxima(Plane const& plane, int radius, Visit const& visit, CouldPass const& could_pass) {
+  for (int y = -radius; y <= radius; ++y)
+    for (int x = -radius; x <= radius; ++x) {
+      auto const v = plane(x, y);
+      using T = std::remove_const_t<decltype(v)>;
+      if (v > T(0) && could_pass(T(largest_rise) * v) && is_maximum(plane, x, y, v))
+        visit(PlanePeak<T>{x, y, refined_peak(plane, x, y, v).height});
+    }
+}
+
+/// visit_maxima() of those that prefer_nearest() chooses among.
+template <class Plane, class T, class Visit>
+GLADSTONE_HD void visit_rivals(Plane const& plane, int radius, PeakList<T> const& found, Visit const& visit) {
+  T const enough = T(nearly_as_high) * found.peak[0].height;
+  visit_maxima(plane, radius, visit, [enough](T height) { return height >= enough; });
+}
+
+/// Finds the positive local maxima with |dx|, |dy| <= radius that are highest between the samples; of two closer than
+/// three pixels on both axes only the higher counts, so that a ragged peak is not its own rival. Equal heights: the
+/// first in reading order. Then prefer_nearest().
+/// @pre radius + 1 < size/2
+template <class T>
+GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {
+  PeakList<T> found;
+  visit_maxima(
+      plane, radius,
+      [&](PlanePeak<T> const& peak) {
+        if (can_enter(found, peak.height)) insert_peak(found, peak);
+      },
+      [&](T height) { return can_enter(found, height); });
+  prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_rivals(plane, radius, found, visit); });
+  return found;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/correlation/interrogation_grid.h"
+#include "render/base/host_device.h"
+#include "render/base/vec.h"
+
+/// A displacement known at the nodes of a grid, at every point, per node and per point: the same functions serve the
+/// CPU and a CUDA kernel.
+namespace gladstone {
+
+/// Weights of Keys' kernel (a = -1/2) for the nodes at -1, 0, 1, 2, for a point t past node 0.
+GLADSTONE_HD inline void cubic_convolution(double t, double* w) {
+  w[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
+  w[1] = 1.0 + 0.5 * t * t * (-5.0 + 3.0 * t);
+  w[2] = 0.5 * t * (1.0 + t * (4.0 - 3.0 * t));
+  w[3] = 0.5 * t * t * (t - 1.0);
+}
+
+/// Rows and columns of ghost nodes on every side of a grid, so that they reach past the image.
+inline int ghost_nodes(InterrogationGrid const& grid, int image_columns, int image_rows) {
+  double const beyond = std::max(
+      {grid.centre(0), image_columns - grid.centre(grid.columns - 1), image_rows - grid.centre(grid.rows - 1)});
+  return static_cast<int>(std::ceil(beyond / grid.spacing_px)) + 2;
+}
+
+/// value(k) for 0 <= k < count, on a straight line beyond; the line's slope is taken over half a window, not over
+/// noise.
+template <class Value>
+GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Value const& value) {
+  if (k >= 0 && k < count) return value(k);
+  int const half_window = grid.window_px / (2 * grid.spacing_px);
+  int const wanted = half_window > 1 ? half_window : 1;
+  int const base = wanted < count - 1 ? wanted : count - 1;
+  int const edge = k < 0 ? 0 : count - 1;
+  if (base < 1) return value(edge);
+  int const inner = k < 0 ? base : count - 1 - base;
+  int const steps = k < 0 ? -k : k - edge;
+  return value(edge) + (static_cast<double>(steps) / base) * (value(edge) - value(inner));
+}
+
+/// Node (column, row) of a grid, or of its straight continuation. @param nodes grid.size() of them
+GLADSTONE_HD inline Vec2d extended_node(InterrogationGrid const& grid, Vec2d const* nodes, int column, int row) {
+  return extended(grid, row, grid.rows, [&](int j) {
+    return extended(grid, column, grid.columns,
+                    [&](int i) { return nodes[static_cast<long long>(j) * grid.columns + i]; });
+  });
+}
+
+/// A displacement at the nodes of a grid with ghost nodes around it.
+struct PredictorView {
+  /// The four nodes that count at a position along one axis.
+  struct Taps {
+    int first;
+    double weight[4];
+  };
+
+  InterrogationGrid grid;
+  int ghosts;
+  int columns;  ///< with the ghost nodes
+  int rows;
+  Vec2d const* nodes;
+
+  /// @param count columns or rows
+  GLADSTONE_HD Taps taps(double position_px, int count) const {
+    double const node = (position_px - grid.centre(0)) / grid.spacing_px + ghosts;
+    double const last = static_cast<double>(count - 3);
+    double const clamped = node < 1.0 ? 1.0 : (node > last ? last : node);
+    int const whole = static_cast<int>(clamped);
+    int const base = whole < count - 3 ? whole : count - 3;
+    Taps result{base - 1, {}};
+    cubic_convolution(clamped - base, result.weight);
+    return result;
+  }
+
+  GLADSTONE_HD Vec2d at(Vec2d position_px) const {
+    Taps const x = taps(position_px.x, columns), y = taps(position_px.y, rows);
+    Vec2d sum;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i)
+        sum += (y.weight[j] * x.weight[i]) * nodes[static_cast<long long>(y.first + j) * columns + x.first + i];
+    return sum;
+  }
+};
+
+}  // namespace gladstone

@@ -1,0 +1,130 @@
+#include "analysis/correlation/standard_correlator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "analysis/correlation/fft_correlation.h"
+#include "analysis/correlation/window_deformation.h"
+#include "render/base/contracts.h"
+#include "render/base/error.h"
+
+namespace gladstone {
+namespace {
+
+class StandardCorrelator final : public Correlator {
+ public:
+  explicit StandardCorrelator(CorrelationSettings const& settings) : settings_(settings), schedule_(settings) {}
+
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
+    int const columns = reference.columns(), rows = reference.rows();
+    check_image_sizes(settings_, columns, rows, flow.columns(), flow.rows());
+
+    std::optional<PairDeformer> deformer;
+    if (schedule_.passes() > 1) deformer.emplace(reference, flow, schedule_.spline_degree());
+    std::optional<DensePredictor> predictor;
+    std::vector<char> ambiguous;
+    InterrogationGrid grid_before;
+    for (int pass = 0;; ++pass) {
+      InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
+      ImagePair const pair = predictor ? deformer->deform(*predictor) : make_image_pair(reference, flow);
+      std::vector<WindowCorrelation> const windows =
+          correlate_windows(pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass),
+                            fmt::format("correlate {}/{}", pass + 1, schedule_.passes()));
+      std::vector<GridVector> vectors(windows.size());
+      auto const predicted = [&](std::size_t i) { return predictor ? predictor->at(grid.centre(i)) : Vec2d{}; };
+      AmbiguousPlaces const before{grid_before, pass > 0 ? ambiguous.data() : nullptr};
+      for (std::size_t i = 0; i < vectors.size(); ++i)
+        vectors[i] = grid_vector(windows[i], predicted(i), schedule_.limit_px(), before.at(grid.centre(i)));
+      ambiguous.resize(vectors.size());
+      std::transform(vectors.begin(), vectors.end(), ambiguous.begin(),
+                     [](GridVector const& v) { return v.ambiguous != Ambiguity::none; });
+      grid_before = grid;
+      validate_vectors(vectors, grid.columns, schedule_.rule(pass));
+      if (schedule_.is_last(pass)) {
+        std::vector<MeasuredVector> measured(windows.size());
+        std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
+        return displacement_field(grid, measured);
+      }
+      std::vector<Vec2d> const nodes = smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns);
+      predictor.emplace(grid, nodes, columns, rows);
+    }
+  }
+
+ private:
+  CorrelationSettings settings_;
+  CorrelationSchedule schedule_;
+};
+
+}  // namespace
+
+CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
+    : windows_(settings.window_px),
+      overlap_(settings.overlap),
+      last_rule_{settings.median_threshold, settings.median_epsilon_px,
+                 settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity()),
+                 settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())},
+      weighting_(window_weighting(settings)),
+      spline_degree_(settings.deformation == "cubic" ? 3 : 5) {
+  GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
+  windows_.insert(windows_.end(), static_cast<std::size_t>(settings.final_passes - 1), settings.window_px.back());
+}
+
+int CorrelationSchedule::search_radius_px(int pass) const {
+  int const widest = windows_[pass] / (pass == 0 ? 2 : 4);
+  if (pass > 0 || limit_px() >= widest) return widest;
+  // CUDA's kernels search blocks of four; what lies beyond the limit grid_vector() leaves out
+  return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px() / 4.0)));
+}
+
+ValidationRule CorrelationSchedule::rule(int pass) const {
+  ValidationRule rule = last_rule_;
+  if (!is_last(pass)) rule.epsilon_px = std::max(rule.epsilon_px, 0.5);
+  if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
+  return rule;
+}
+
+void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
+                       int flow_rows) {
+  if (flow_columns != reference_columns || flow_rows != reference_rows)
+    throw DataError("image pair", fmt::format("images of different size ({} x {} and {} x {} px)", reference_columns,
+                                              reference_rows, flow_columns, flow_rows));
+  if (std::string const problem = window_problem(settings, reference_columns, reference_rows); !problem.empty())
+    throw DataError("image pair", problem);
+}
+
+DisplacementField displacement_field(InterrogationGrid const& grid, std::span<MeasuredVector const> vectors) {
+  GLADSTONE_EXPECTS(vectors.size() == grid.size());
+  DisplacementField field;
+  field.columns = grid.columns;
+  field.rows = grid.rows;
+  field.position_px.reserve(vectors.size());
+  field.displacement_px.reserve(vectors.size());
+  field.peak_ratio.reserve(vectors.size());
+  field.status.reserve(vectors.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    field.position_px.push_back(grid.centre(i));
+    field.displacement_px.push_back(vectors[i].displacement);
+    field.peak_ratio.push_back(vectors[i].peak_ratio);
+    field.status.push_back(vectors[i].status);
+    field.raw_px.push_back(vectors[i].raw);
+    field.correlation.push_back(vectors[i].correlation);
+    field.reason.push_back(vectors[i].reason);
+    field.ambiguous.push_back(vectors[i].ambiguous);
+  }
+  return field;
+}
+
+std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
+  return std::make_unique<StandardCorrelator>(settings);
+}
+
+WindowWeighting window_weighting(CorrelationSettings const& settings) {
+  GLADSTONE_EXPECTS(settings.weighting == "gaussian" || settings.weighting == "uniform");
+  return settings.weighting == "gaussian" ? WindowWeighting::gaussian : WindowWeighting::uniform;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,223 @@
+#include "analysis/errors/error_budget.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The chain: each stage but the first ends the term beside it.
+struct Link {
+  std::string_view stage;
+  std::string_view term;
+};
+constexpr std::array<Link, 9> chain{{{"eq9", ""},
+                                     {"straight", "small_angle"},
+                                     {"eq9_cone", "cone"},
+                                     {"thin_lens", "refraction"},
+                                     {"lens", "aberration"},
+                                     {"window", "window"},
+                                     {"estimator", "estimator"},
+                                     {"noise_free", "pattern"},
+                                     {"measured", "noise"}}};
+
+using Differences = std::vector<Vec2d>;  // of one term, over the vectors that count; empty: unknown
+
+bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
+
+Vec2d mean(Differences const& values) {
+  Vec2d sum{};
+  for (Vec2d const& value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+BudgetTerm term_of(std::string_view name, Differences const& values) {
+  BudgetTerm term{std::string(name), {}, nan, nan, nan, nan, nan};
+  if (values.empty()) return term;
+  Vec2d const bias = mean(values);
+  Vec2d variance{};
+  double square = 0.0;
+  for (Vec2d const& value : values) {
+    Vec2d const rest = value - bias;
+    variance += Vec2d{rest.x * rest.x, rest.y * rest.y};
+    square += dot(value, value);
+  }
+  auto const n = static_cast<double>(values.size());
+  term.bias_u_px = bias.x;
+  term.bias_v_px = bias.y;
+  term.random_u_px = std::sqrt(variance.x / n);
+  term.random_v_px = std::sqrt(variance.y / n);
+  term.rms_px = std::sqrt(0.5 * square / n);
+  return term;
+}
+
+/// Fills C_u, C_v and their mean from the terms' differences.
+void fill_covariance(std::vector<Differences> const& terms, ErrorBudget& budget) {
+  std::size_t const size = terms.size();
+  CovarianceMatrix const unknown{size, std::vector<double>(size * size, nan)};
+  budget.covariance = budget.covariance_u = budget.covariance_v = unknown;
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j < size; ++j) {
+      if (terms[i].empty() || terms[j].empty()) continue;
+      Vec2d const bias_i = mean(terms[i]);
+      Vec2d const bias_j = mean(terms[j]);
+      Vec2d sum{};
+      for (std::size_t k = 0; k < terms[i].size(); ++k) {
+        Vec2d const a = terms[i][k] - bias_i;
+        Vec2d const b = terms[j][k] - bias_j;
+        sum += Vec2d{a.x * b.x, a.y * b.y};
+      }
+      Vec2d const covariance = sum / static_cast<double>(terms[i].size());
+      budget.covariance_u.values[i * size + j] = covariance.x;
+      budget.covariance_v.values[i * size + j] = covariance.y;
+      budget.covariance.values[i * size + j] = 0.5 * (covariance.x + covariance.y);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string_view> budget_stage_names() {
+  std::vector<std::string_view> names;
+  for (Link const& link : chain) names.push_back(link.stage);
+  return names;
+}
+
+std::vector<std::string_view> budget_term_names() {
+  std::vector<std::string_view> names;
+  for (Link const& link : std::span(chain).subspan(1)) names.push_back(link.term);
+  return names;
+}
+
+ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask) {
+  // The present stages in the order of the chain.
+  std::array<std::vector<Vec2d> const*, chain.size()> at{};
+  for (BudgetStage const& stage : stages) {
+    auto const* const link = std::find_if(chain.begin(), chain.end(), [&](Link l) { return l.stage == stage.name; });
+    GLADSTONE_EXPECTS(link != chain.end());
+    auto& place = at[static_cast<std::size_t>(link - chain.begin())];
+    GLADSTONE_EXPECTS(place == nullptr);
+    if (stage.displacement_px.empty()) continue;
+    GLADSTONE_EXPECTS(stage.displacement_px.size() == mask.size());
+    place = &stage.displacement_px;
+  }
+
+  // One set of vectors for all terms.
+  std::vector<std::size_t> counted;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    bool const whole =
+        mask[i] != 0 && std::all_of(at.begin(), at.end(), [i](auto const* d) { return !d || finite((*d)[i]); });
+    if (whole) counted.push_back(i);
+  }
+
+  auto const difference = [&](std::size_t to, std::size_t from) {
+    Differences values;
+    for (std::size_t const i : counted) values.push_back((*at[to])[i] - (*at[from])[i]);
+    return values;
+  };
+
+  // A difference across absent stages goes to the first term of the gap.
+  std::vector<Differences> differences(chain.size() - 1);
+  std::vector<std::vector<std::string>> includes(chain.size() - 1);
+  std::optional<std::size_t> first, last;
+  for (std::size_t to = 0; to < chain.size(); ++to) {
+    if (at[to] == nullptr) continue;
+    if (last) {
+      differences[*last] = difference(to, *last);
+      for (std::size_t skipped = *last + 1; skipped < to; ++skipped) {
+        includes[*last].emplace_back(chain[skipped + 1].term);
+      }
+    } else {
+      first = to;
+    }
+    last = to;
+  }
+
+  ErrorBudget budget;
+  budget.count = counted.size();
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    budget.terms.push_back(term_of(chain[i + 1].term, differences[i]));
+    budget.terms.back().includes = includes[i];
+  }
+  Differences const total = first && *last != *first ? difference(*last, *first) : Differences{};
+  budget.total = term_of("total", total);
+  fill_covariance(differences, budget);
+
+  for (std::size_t k = 0; k < total.size(); ++k) {
+    Vec2d sum{};
+    for (Differences const& term : differences) {
+      if (!term.empty()) sum += term[k];
+    }
+    Vec2d const gap = sum - total[k];
+    budget.closure_px = std::max({budget.closure_px, std::abs(gap.x), std::abs(gap.y)});
+  }
+
+  // Estimator error of this pattern where there are noise-free images, of the measurement otherwise.
+  constexpr std::size_t window = 5, noise_free = 7, measured = 8;
+  static_assert(chain[window].stage == "window" && chain[noise_free].stage == "noise_free");
+  std::size_t const estimate = at[noise_free] ? noise_free : measured;
+  budget.peak_locking_px = nan;
+  if (at[window] && at[estimate]) {
+    Differences truth;
+    for (std::size_t const i : counted) truth.push_back((*at[window])[i]);
+    budget.peak_locking_px = peak_locking(truth, difference(estimate, window), {});
+  }
+  return budget;
+}
+
+double peak_locking(std::span<Vec2d const> truth_px, std::span<Vec2d const> error_px, VectorMask const& mask) {
+  GLADSTONE_EXPECTS(truth_px.size() == error_px.size());
+  GLADSTONE_EXPECTS(mask.empty() || mask.size() == truth_px.size());
+  constexpr int bins = 20;
+  std::array<double, bins> sum{};
+  std::array<std::size_t, bins> count{};
+  auto const add = [&](double displacement, double error) {
+    double const fraction = displacement - std::floor(displacement);
+    auto const bin = static_cast<std::size_t>(std::min(bins - 1, static_cast<int>(fraction * bins)));
+    sum[bin] += error;
+    ++count[bin];
+  };
+  for (std::size_t i = 0; i < truth_px.size(); ++i) {
+    if (!mask.empty() && mask[i] == 0) continue;
+    if (!finite(truth_px[i]) || !finite(error_px[i])) continue;
+    add(truth_px[i].x, error_px[i].x);
+    add(truth_px[i].y, error_px[i].y);
+  }
+  double square = 0.0;
+  int filled = 0;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    if (count[bin] == 0) continue;
+    double const bin_mean = sum[bin] / static_cast<double>(count[bin]);
+    square += bin_mean * bin_mean;
+    ++filled;
+  }
+  return filled == 0 ? nan : std::sqrt(square / filled);
+}
+
+BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
+                                 std::span<std::vector<Vec2d> const> pattern_window_truth_px,
+                                 std::span<std::vector<Vec2d> const> pattern_noise_free_px) {
+  GLADSTONE_EXPECTS(pattern_window_truth_px.size() == pattern_noise_free_px.size());
+  BudgetStage stage{"estimator", std::vector<Vec2d>(window_truth_px.begin(), window_truth_px.end())};
+  for (std::size_t i = 0; i < window_truth_px.size(); ++i) {
+    Vec2d sum{};
+    int count = 0;
+    for (std::size_t k = 0; k < pattern_noise_free_px.size(); ++k) {
+      Vec2d const error = pattern_noise_free_px[k][i] - pattern_window_truth_px[k][i];
+      if (!finite(error)) continue;
+      sum += error;
+      ++count;
+    }
+    stage.displacement_px[i] += sum / static_cast<double>(count);  // no pattern: NaN, and the vector is left out
+  }
+  return stage;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,67 @@
+#include "analysis/errors/window_truth.h"
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "analysis/errors/point_cells.h"
+#include "render/base/contracts.h"
+#include "render/base/parallel.h"
+
+namespace gladstone {
+
+WindowWeight gaussian_window(double sigma_px, double half_width_px) {
+  GLADSTONE_EXPECTS(sigma_px > 0.0 && half_width_px > 0.0);
+  double const factor = -0.5 / (sigma_px * sigma_px);
+  return {[factor](double dx, double dy) { return std::exp(factor * (dx * dx + dy * dy)); }, half_width_px};
+}
+
+WindowWeight top_hat_window(double window_px) {
+  GLADSTONE_EXPECTS(window_px > 0.0);
+  return {[](double, double) { return 1.0; }, 0.5 * window_px};
+}
+
+WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d const> displacement_px,
+                         std::span<double const> flux, std::span<Vec2d const> centres_px, WindowWeight const& weight,
+                         TruthAt at) {
+  GLADSTONE_EXPECTS(reference_px.size() == displacement_px.size());
+  GLADSTONE_EXPECTS(flux.empty() || flux.size() == reference_px.size());
+  GLADSTONE_EXPECTS(weight.half_width_px > 0.0);
+
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Vec2d> position(reference_px.size());
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    Vec2d const d = displacement_px[i];
+    bool const usable = std::isfinite(d.x) && std::isfinite(d.y);
+    Vec2d const shift = at == TruthAt::mid_position ? 0.5 * d : Vec2d{};
+    position[i] = usable ? reference_px[i] + shift : Vec2d{nan, nan};
+  }
+  PointCells const cells(position, weight.half_width_px);
+
+  WindowTruth truth;
+  truth.displacement_px.resize(centres_px.size());
+  std::atomic<std::size_t> left_out{0};
+  parallel_chunks(centres_px.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec2d sum{};
+      double total = 0.0;
+      int dots = 0;
+      cells.for_near(centres_px[i], weight.half_width_px, [&](std::size_t dot) {
+        Vec2d const offset = position[dot] - centres_px[i];
+        if (std::abs(offset.x) > weight.half_width_px || std::abs(offset.y) > weight.half_width_px) return;
+        double const w = weight.value(offset.x, offset.y) * (flux.empty() ? 1.0 : flux[dot]);
+        if (!(w > 0.0)) return;
+        sum += w * w * displacement_px[dot];
+        total += w * w;
+        ++dots;
+      });
+      bool const enough = dots >= 3;
+      truth.displacement_px[i] = enough ? sum / total : Vec2d{nan, nan};
+      if (!enough) ++left_out;
+    }
+  });
+  truth.left_out = left_out;
+  return truth;
+}
+
+}  // namespace gladstone

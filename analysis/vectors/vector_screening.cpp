@@ -1,0 +1,127 @@
+#include "analysis/vectors/vector_screening.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "analysis/vectors/vector_file.h"
+
+namespace gladstone {
+namespace {
+
+bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
+
+bool inside(double coordinate, int size) {
+  return coordinate >= -outside_margin_px && coordinate <= size - 1 + outside_margin_px;
+}
+
+/// The rectangle that holds finite places.
+struct Extent {
+  Vec2d low{}, high{};
+  bool any = false;
+
+  void add(Vec2d p) {
+    low = any ? Vec2d{std::min(low.x, p.x), std::min(low.y, p.y)} : p;
+    high = any ? Vec2d{std::max(high.x, p.x), std::max(high.y, p.y)} : p;
+    any = true;
+  }
+  std::string text() const {
+    return fmt::format("x from {:.6g} to {:.6g}, y from {:.6g} to {:.6g}", low.x, high.x, low.y, high.y);
+  }
+};
+
+Extent extent_of(DisplacementField const& screened) {
+  Extent extent;
+  for (Vec2d const& p : screened.position_px) extent.add(p);
+  return extent;
+}
+
+}  // namespace
+
+std::string LeftOutVectors::text() const {
+  std::string list;
+  auto const add = [&list](std::size_t count, std::string const& reason) {
+    if (count > 0) list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, reason);
+  };
+  add(place_not_finite, "with a place that is nan or infinite");
+  add(outside_image, fmt::format("outside the image (by more than {} px)", outside_margin_px));
+  add(displacement_not_finite, "with a displacement that is nan or infinite");
+  add(displacement_beyond_image, "with a displacement larger than the image");
+  return list;
+}
+
+LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows) {
+  LeftOutVectors left_out;
+  field.status.resize(field.size(), VectorStatus::valid);
+  std::vector<std::size_t> kept;
+  Extent extent;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    Vec2d const place = field.position_px[i] + Vec2d{offset_px, offset_px};
+    if (!finite(place)) {
+      ++left_out.place_not_finite;
+      continue;
+    }
+    extent.add(field.position_px[i]);
+    if (!inside(place.x, image_columns) || !inside(place.y, image_rows)) {
+      ++left_out.outside_image;
+    } else {
+      kept.push_back(i);
+    }
+  }
+  left_out.low_px = extent.low;
+  left_out.high_px = extent.high;
+  if (kept.size() < field.size()) take_vectors(field, kept);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    Vec2d& d = field.displacement_px[i];
+    bool const known = finite(d);
+    if (known && std::abs(d.x) <= image_columns && std::abs(d.y) <= image_rows) continue;
+    if (field.status[i] != VectorStatus::masked) {
+      ++(known ? left_out.displacement_beyond_image : left_out.displacement_not_finite);
+      field.status[i] = VectorStatus::invalid;
+    }
+    d = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  }
+  return left_out;
+}
+
+std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors const& left_out, int image_columns,
+                              int image_rows) {
+  std::string const image = fmt::format("the image of {} x {} px", image_columns, image_rows);
+  if (screened.size() == 0) {
+    std::string const where =
+        left_out.outside_image > 0 ? " (" + Extent{left_out.low_px, left_out.high_px}.text() + ")" : "";
+    return fmt::format(
+        "none of {} vectors lies in {}{}: {}; places are taken in px from the first pixel's centre, "
+        "export them so, or say what is to be added to them with --conventions offset=NUMBER",
+        left_out.all(), image, where, left_out.text());
+  }
+  if (left_out.outside_image > screened.size()) {
+    return fmt::format(
+        "{} of {} vectors lie outside {} ({}), as places from another origin do; places are taken in px from the first "
+        "pixel's centre, export them so, or say what is to be added to them with --conventions offset=NUMBER",
+        left_out.outside_image, left_out.outside_image + screened.size(), image,
+        Extent{left_out.low_px, left_out.high_px}.text());
+  }
+  Extent const extent = extent_of(screened);
+  Vec2d const size = extent.high - extent.low;
+  if (static_cast<double>(screened.size()) > 2.0 * (size.x + 1.0) * (size.y + 1.0)) {
+    return fmt::format("{} vectors lie closer than pixels ({}); export places in px, not in mm", screened.size(),
+                       extent.text());
+  }
+  return {};
+}
+
+std::string doubt_about_places(DisplacementField const& screened, int image_columns, int image_rows) {
+  constexpr std::size_t fewest = 16;  // that tell how far a grid reaches
+  Extent const extent = extent_of(screened);
+  Vec2d const size = extent.high - extent.low;
+  double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);
+  if (screened.size() < fewest || share >= 0.05) return {};
+  return fmt::format("the vectors cover {:.2g} % of the image only ({}); if that is not meant, export places in px",
+                     100.0 * share, extent.text());
+}
+
+}  // namespace gladstone

@@ -1,0 +1,263 @@
+#include "cuda/correlation/cuda_correlator.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "analysis/correlation/standard_correlator.h"
+#include "cuda/correlation/correlation_kernels.h"
+#include "cuda/device/device_array.h"
+#include "cuda/device/device_frames.h"
+#include "render/base/interrupt.h"
+
+namespace gladstone::cuda {
+namespace {
+
+constexpr char const* purpose = "correlation";
+
+template <class T>
+DeviceArray<T> on_device(std::vector<T> const& values) {
+  return DeviceArray<T>(values.data(), values.size(), purpose);
+}
+
+/// The weights along one axis on the device.
+class DeviceAxisWeights {
+ public:
+  explicit DeviceAxisWeights(AxisWeights const& host)
+      : weights_(on_device(host.weights())),
+        autocorrelations_(on_device(host.autocorrelations())),
+        sums_(on_device(host.sums())),
+        view_(host.view()) {
+    view_.weights = weights_.data();
+    view_.autocorrelations = autocorrelations_.data();
+    view_.sums = sums_.data();
+  }
+  AxisWeightsView const& view() const { return view_; }
+
+ private:
+  DeviceArray<float> weights_;
+  DeviceArray<double> autocorrelations_;
+  DeviceArray<double> sums_;
+  AxisWeightsView view_;
+};
+
+}  // namespace
+
+/// Device memory and tables for pairs of one size.
+class CorrelationPlan {
+ public:
+  CorrelationPlan(CorrelationSchedule const& schedule, int columns, int rows)
+      : schedule_(schedule), columns_(columns), rows_(rows) {
+    std::size_t const pixels = static_cast<std::size_t>(columns) * rows;
+    original_ = Pair(pixels);
+    if (schedule.passes() > 1) {
+      deformed_ = Pair(pixels);
+      constexpr int margin = BsplineView<float>::margin_before + BsplineView<float>::margin_after;
+      std::size_t const coefficients = static_cast<std::size_t>(columns + margin) * (rows + margin);
+      for (DeviceArray<float>& spline : spline_) spline = DeviceArray<float>(coefficients, purpose);
+      taps_ = on_device(bspline_taps(schedule.spline_degree()));
+    }
+    std::size_t most_vectors = 0, most_nodes = 0;
+    for (int pass = 0; pass < schedule.passes(); ++pass) {
+      passes_.push_back(make_pass(pass));
+      Pass const& made = passes_.back();
+      most_vectors = std::max(most_vectors, made.grid.size());
+      if (!schedule.is_last(pass))
+        most_nodes = std::max(most_nodes, static_cast<std::size_t>(made.predictor.columns) * made.predictor.rows);
+    }
+    windows_ = DeviceArray<WindowCorrelation>(most_vectors, purpose);
+    peaks_ = DeviceArray<WindowPeaks>(most_vectors, purpose);
+    vectors_ = DeviceArray<GridVector>(most_vectors, purpose);
+    for (DeviceArray<char>& flags : ambiguous_) flags = DeviceArray<char>(most_vectors, purpose);
+    measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
+    measured_.zero();  // the gaps between its members are copied to the host, too
+    list_ = DeviceArray<Replacement>(most_vectors, purpose);
+    if (schedule.passes() > 1) {
+      nodes_ = DeviceArray<Vec2d>(most_vectors, purpose);
+      smoothed_ = DeviceArray<Vec2d>(most_vectors, purpose);
+      known_ = DeviceArray<char>(most_vectors, purpose);
+      extended_ = DeviceArray<Vec2d>(most_nodes, purpose);
+    }
+  }
+
+  bool suits(int columns, int rows) const { return columns == columns_ && rows == rows_; }
+
+  /// Copies images to the device.
+  void upload(Image<double> const& reference, Image<double> const& flow) {
+    if (uploaded_[1].size() == 0)
+      for (DeviceArray<double>& image : uploaded_) image = DeviceArray<double>(reference.size(), purpose);
+    uploaded_[0].upload(reference.data());
+    uploaded_[1].upload(flow.data());
+  }
+  DeviceImage uploaded(int which) const { return {uploaded_[which].data(), columns_, rows_}; }
+
+  DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) {
+    if (slots_ == 0) make_scratch();  // last, since it takes what is left
+    DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
+    prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
+    BsplineView<float> spline[2] = {};
+    if (schedule_.passes() > 1) {
+      float const* const first = &original.pixels->reference;
+      for (int k = 0; k < 2; ++k)  // the deformed pair is not needed yet: scratch
+        spline[k] = filter_image(first + k, columns_, rows_, taps_.data(), static_cast<int>(taps_.size()),
+                                 &deformed.pixels->reference, spline_[k].data());
+    }
+    for (int pass = 0;; ++pass) {
+      throw_if_interrupted();
+      Pass const& now = passes_[pass];
+      if (pass > 0)
+        deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, predictor(pass - 1), deformed);
+      correlate_windows(now, pass > 0 ? deformed : original);
+      take_vectors(windows_.data(), vectors_.data(), now.grid, deformed_by(pass), schedule_.limit_px(), before(pass),
+                   ambiguous_[pass % 2].data());
+      validate(vectors_.data(), now.grid, schedule_.rule(pass), list_.data(), list_size_.data());
+      if (schedule_.is_last(pass)) return download(now.grid);
+      make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
+                     predictor(pass), extended_.data());
+    }
+  }
+
+ private:
+  struct Pair {
+    Pair() = default;
+    explicit Pair(std::size_t size) : pixels(size, purpose) {}
+    DevicePair view(int columns, int rows) { return {pixels.data(), columns, rows}; }
+    DeviceArray<GreyPair> pixels;
+  };
+
+  struct Pass {
+    InterrogationGrid grid;
+    int search_radius_px;
+    PredictorView predictor;  ///< made of this pass' vectors
+    DeviceAxisWeights x, y;
+    LinePlan lines;
+    DeviceArray<float> roots;
+  };
+
+  Pass make_pass(int pass) const {
+    InterrogationGrid const grid = schedule_.grid(pass, columns_, rows_);
+    int const ghosts = ghost_nodes(grid, columns_, rows_), size = 2 * grid.window_px;
+    PredictorView const predictor{grid, ghosts, grid.columns + 2 * ghosts, grid.rows + 2 * ghosts, nullptr};
+    return {grid,
+            schedule_.search_radius_px(pass),
+            predictor,
+            DeviceAxisWeights(AxisWeights(grid, grid.columns, columns_, schedule_.weighting())),
+            DeviceAxisWeights(AxisWeights(grid, grid.rows, rows_, schedule_.weighting())),
+            make_line_plan(size),
+            on_device(unit_roots(size))};
+  }
+
+  PredictorView predictor(int pass) const {
+    PredictorView view = passes_[pass].predictor;
+    view.nodes = extended_.data();
+    return view;
+  }
+
+  PassPredictor deformed_by(int pass) const {
+    return pass > 0 ? PassPredictor{predictor(pass - 1), true} : PassPredictor{{}, false};
+  }
+
+  AmbiguousPlaces before(int pass) const {
+    return pass > 0 ? AmbiguousPlaces{passes_[pass - 1].grid, ambiguous_[(pass - 1) % 2].data()}
+                    : AmbiguousPlaces{{}, nullptr};
+  }
+
+  /// Room for the windows that are worked on together where one does not fit into shared memory: fewer where the device
+  /// has little left.
+  void make_scratch() {
+    std::size_t values = 0, windows = 0;
+    for (Pass const& pass : passes_)
+      if (!has_own_kernel(pass.lines.size) && !pass.lines.window_in_shared) {
+        values = std::max(values, pass.lines.window_values());
+        windows = std::max(windows, pass.grid.size());
+      }
+    if (values == 0) return;
+    for (auto slots = std::min<std::size_t>(windows, 264);; slots = (slots + 1) / 2) try {
+        scratch_ = DeviceArray<float>(values * slots, "correlation of large windows");
+        slots_ = static_cast<int>(slots);
+        return;
+      } catch (OutOfDeviceMemory const&) {
+        if (slots == 1) throw;
+      }
+  }
+
+  void correlate_windows(Pass const& pass, DevicePair const& pair) {
+    WindowJob const job{pair,          contrast_.data(),      pass.grid,      pass.x.view(),
+                        pass.y.view(), pass.search_radius_px, windows_.data()};
+    if (has_own_kernel(pass.lines.size))
+      correlate_small_windows(job, peaks_.data());
+    else
+      correlate_windows_by_lines(job, pass.lines, pass.roots.data(), scratch_.data(), slots_);
+  }
+
+  DisplacementField download(InterrogationGrid const& grid) {
+    finish(windows_.data(), vectors_.data(), grid, measured_.data());
+    std::vector<MeasuredVector> measured(grid.size());
+    measured_.download(measured.data(), measured.size());
+    return displacement_field(grid, measured);
+  }
+
+  CorrelationSchedule schedule_;
+  int columns_;
+  int rows_;
+  std::vector<Pass> passes_;
+  DeviceArray<LevelKeys> keys_{1, purpose};
+  DeviceArray<float> contrast_{1, purpose};
+  Pair original_, deformed_;
+  DeviceArray<double> uploaded_[2];
+  DeviceArray<float> spline_[2];
+  DeviceArray<double> taps_;
+  DeviceArray<WindowCorrelation> windows_;
+  DeviceArray<WindowPeaks> peaks_;
+  DeviceArray<GridVector> vectors_;
+  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and the one before
+  DeviceArray<MeasuredVector> measured_;
+  DeviceArray<Replacement> list_;
+  DeviceArray<int> list_size_{1, purpose};
+  DeviceArray<Vec2d> nodes_, smoothed_, extended_;
+  DeviceArray<char> known_;
+  DeviceArray<float> scratch_;
+  int slots_ = 0;
+};
+
+struct CudaCorrelator::State {
+  explicit State(CorrelationSettings const& wanted) : settings(wanted), schedule(wanted) {}
+
+  /// The plan for images of that size. @throws DataError, OutOfDeviceMemory
+  CorrelationPlan& plan_for(int columns, int rows) {
+    if (!plan || !plan->suits(columns, rows)) {
+      plan.reset();  // first gives its memory back
+      plan = std::make_unique<CorrelationPlan>(schedule, columns, rows);
+    }
+    return *plan;
+  }
+
+  CorrelationSettings settings;
+  CorrelationSchedule schedule;
+  std::mutex busy;
+  std::unique_ptr<CorrelationPlan> plan;
+};
+
+CudaCorrelator::CudaCorrelator(CorrelationSettings const& settings) : state_(std::make_unique<State>(settings)) {}
+
+CudaCorrelator::~CudaCorrelator() = default;
+
+DisplacementField CudaCorrelator::correlate(Image<double> const& reference, Image<double> const& flow) const {
+  check_image_sizes(state_->settings, reference.columns(), reference.rows(), flow.columns(), flow.rows());
+  std::lock_guard const lock(state_->busy);
+  CorrelationPlan& plan = state_->plan_for(reference.columns(), reference.rows());
+  plan.upload(reference, flow);
+  return plan.correlate(plan.uploaded(0), plan.uploaded(1));
+}
+
+DisplacementField CudaCorrelator::correlate_pair(FramePair const& frames) const {
+  auto const* const here = dynamic_cast<DeviceFrames const*>(&frames);
+  return here ? correlate(here->image(Frame::reference), here->image(Frame::flow)) : Correlator::correlate_pair(frames);
+}
+
+DisplacementField CudaCorrelator::correlate(DeviceImage const& reference, DeviceImage const& flow) const {
+  check_image_sizes(state_->settings, reference.columns, reference.rows, flow.columns, flow.rows);
+  std::lock_guard const lock(state_->busy);
+  return state_->plan_for(reference.columns, reference.rows).correlate(reference, flow);
+}
+
+}  // namespace gladstone::cuda

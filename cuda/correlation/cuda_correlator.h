@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/correlation/correlator.h"
+#include "cuda/device/device_image.h"
+
+namespace gladstone::cuda {
+
+/// StandardCorrelator on the device: the same per-pixel, per-window and per-vector functions, with the transform done
+/// beside them. Between the passes nothing leaves the device. Its memory is kept for the next pair of the same size;
+/// calls from several threads wait for each other.
+class CudaCorrelator final : public Correlator {
+ public:
+  explicit CudaCorrelator(CorrelationSettings const& settings);
+  ~CudaCorrelator() override;
+
+  /// As Correlator::correlate. @throws also DeviceError
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override;
+  /// Frames of this device's renderer are taken where they are.
+  DisplacementField correlate_pair(FramePair const& frames) const override;
+  /// The same for images that are on the device already, complete on the default stream.
+  DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gladstone::cuda

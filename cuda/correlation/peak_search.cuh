@@ -1,0 +1,253 @@
+#pragma once
+
+#include "analysis/correlation/window_measurement.h"
+#include "cuda/correlation/paired_plane.h"
+
+namespace gladstone::cuda {
+
+/// A correlation plane in shared memory as rows of `pitch` values, shift (0, 0) at `centre`.
+template <int pitch>
+struct CentredPlane {
+  float const* centre;
+  __device__ float operator()(int dx, int dy) const { return centre[dy * pitch + dx]; }
+};
+
+/// Lists the positive local maxima among the shifts numbered [begin, end), row by row in a square of side
+/// 2 radius + 1, in reading order. By one full warp. @param begin a multiple of 32 @return how many
+template <class Plane>
+__device__ int list_maxima(Plane const& plane, int radius, int begin, int end, PlanePeak<float>* list) {
+  int const lane = static_cast<int>(threadIdx.x % 32u);
+  int const width = 2 * radius + 1, rows_per_step = 32 / width, columns_per_step = 32 % width;
+  int y = (begin + lane) / width, x = (begin + lane) % width, count = 0;
+  for (int first = begin; first < end; first += 32) {
+    bool maximum = false;
+    float height = 0.0f;
+    int const dx = x - radius, dy = y - radius;
+    if (first + lane < end) {
+      height = plane(dx, dy);
+      maximum = height > 0.0f && is_maximum(plane, dx, dy, height);
+    }
+    unsigned const all = __ballot_sync(0xffffffffu, maximum);
+    if (maximum) list[count + __popc(all & ((1u << lane) - 1u))] = {dx, dy, refined_peak(plane, dx, dy, height).height};
+    count += __popc(all);
+    y += rows_per_step;
+    x += columns_per_step;
+    if (x >= width) {
+      x -= width;
+      ++y;
+    }
+  }
+  return count;
+}
+
+/// Enters listed maxima into the list of the highest. By one thread.
+__device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> const* list, int count) {
+  for (int k = 0; k < count; ++k)
+    if (can_enter(found, list[k].height)) insert_peak(found, list[k]);
+}
+
+/// A positive maximum of a plane as whole numbers: heights between the samples order as their bits do, shifts in
+/// reading order.
+struct RankedPeak {
+  unsigned height = 0;  ///< 0: none
+  unsigned order = 0;   ///< the earlier in reading order, the higher
+
+  __device__ int x() const { return static_cast<int>(~order % 256u) - 128; }
+  __device__ int y() const { return static_cast<int>(~order / 256u) - 128; }
+  __device__ PlanePeak<float> peak() const { return {x(), y(), __uint_as_float(height)}; }
+  /// Of equal ones the first in reading order is.
+  __device__ bool is_above(RankedPeak const& other) const { return rank() > other.rank(); }
+
+ private:
+  __device__ unsigned long long rank() const { return static_cast<unsigned long long>(height) << 32 | order; }
+};
+
+/// @pre |x|, |y| < 128
+inline __device__ RankedPeak ranked_peak(float height, int x, int y) {
+  return {__float_as_uint(height), ~static_cast<unsigned>((y + 128) * 256 + x + 128)};
+}
+
+/// The two highest maxima that a lane came across.
+struct LanePeaks {
+  RankedPeak first, second;
+  int count = 0;  ///< all of them
+
+  __device__ void add(RankedPeak const& peak) {
+    bool const above_first = peak.is_above(first), above_second = peak.is_above(second);
+    second = above_first ? first : (above_second ? peak : second);
+    first = above_first ? peak : first;
+    ++count;
+  }
+  /// Takes out the highest of a warp's. Every lane receives it.
+  __device__ RankedPeak take_highest() {
+    constexpr unsigned all_lanes = 0xffffffffu;
+    RankedPeak best;
+    best.height = __reduce_max_sync(all_lanes, first.height);
+    best.order = __reduce_max_sync(all_lanes, first.height == best.height ? first.order : 0u);
+    if (best.height != 0 && first.order == best.order) {
+      first = second;
+      second = RankedPeak();
+      ++taken;
+    }
+    return best;
+  }
+  /// Whether a third one of this lane might have been among those taken from its warp.
+  __device__ bool may_miss_one() const { return taken == 2 && count > 2; }
+
+ private:
+  int taken = 0;
+};
+
+/// Four shifts side by side and what is around them.
+struct PlanePatch {
+  float value[3][6];
+  __device__ float operator()(int x, int y) const { return value[y + 1][x + 1]; }
+};
+
+/// The three highest maxima of a warp's share of the plane, highest first.
+struct HighestPeaks {
+  RankedPeak peak[PeakList<float>::capacity];
+  int incomplete = 0;  ///< 1: there may be a higher one than the last
+};
+
+/// By one full warp.
+inline __device__ HighestPeaks highest_of_warp(LanePeaks& own) {
+  HighestPeaks highest;
+#pragma unroll
+  for (RankedPeak& peak : highest.peak) peak = own.take_highest();
+  highest.incomplete = __any_sync(0xffffffffu, own.may_miss_one());
+  return highest;
+}
+
+/// Searches rows [begin, end) of the square |x|, |y| <= radius. By one full warp.
+/// @pre four values from (-radius, y) on are aligned, and so are all others four columns apart
+template <int pitch>
+__device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius, int begin, int end) {
+  int const lane = static_cast<int>(threadIdx.x % 32u), groups = (2 * radius + 4) / 4;
+  int const rows_per_step = 32 / groups, groups_per_step = 32 % groups;
+  LanePeaks own;
+  for (int y = begin + lane / groups, group = lane % groups; y < end;) {
+    int const x = 4 * group - radius;
+    PlanePatch patch;
+#pragma unroll
+    for (int row = 0; row < 3; ++row) {
+      float const* const line = plane.centre + (y + row - 1) * pitch + x;
+      float4 const middle = *reinterpret_cast<float4 const*>(line);
+      patch.value[row][0] = line[-1];
+      patch.value[row][1] = middle.x;
+      patch.value[row][2] = middle.y;
+      patch.value[row][3] = middle.z;
+      patch.value[row][4] = middle.w;
+      patch.value[row][5] = line[4];
+    }
+#pragma unroll
+    for (int k = 0; k < 4; ++k) {
+      float const height = patch(k, 0);
+      if (x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height))
+        own.add(ranked_peak(refined_peak(patch, k, 0, height).height, x + k, y));
+    }
+    y += rows_per_step;
+    group += groups_per_step;
+    if (group >= groups) {
+      group -= groups;
+      ++y;
+    }
+  }
+  return highest_of_warp(own);
+}
+
+/// Searches the square |x|, |y| <= radius, a lane a block. By one full warp.
+template <int pitch>
+__device__ HighestPeaks search_block(PairedPlane<pitch> const& plane, int radius, SearchBlock const& block) {
+  LanePeaks own;
+  if (block.x <= radius && block.y <= radius) {
+    PlanePeak<float> found[2];
+    maxima_of_block(plane, radius, block.x, block.y, found);
+    for (PlanePeak<float>& peak : found)
+      if (peak.height > 0.0f) peak.height = refined_peak(plane, peak.x, peak.y, peak.height).height;
+    RankedPeak const upper = ranked_peak(found[0].height, found[0].x, found[0].y);
+    RankedPeak const lower = ranked_peak(found[1].height, found[1].x, found[1].y);
+    bool const in_order = upper.height >= lower.height;
+    own.first = in_order ? upper : lower;
+    own.second = in_order ? lower : upper;
+  }
+  return highest_of_warp(own);
+}
+
+/// The slow way: all maxima in reading order. By one full warp. @param list room for all maxima
+template <class Plane>
+__device__ __noinline__ void find_all_peaks(Plane const plane, int radius, PlanePeak<float>* list,
+                                            PeakList<float>& found) {
+  int const listed = list_maxima(plane, radius, 0, (2 * radius + 1) * (2 * radius + 1), list);
+  __syncwarp();
+  if (threadIdx.x % 32u == 0) {
+    found = {};
+    insert_listed(found, list, listed);
+    prefer_nearest(plane, radius, found, [&](auto const& visit) {
+      for (int k = 0; k < listed; ++k) visit(list[k]);
+    });
+  }
+  __syncwarp();
+}
+
+/// The peaks of a window from the highest of every share, as find_peaks gives them: the three highest maxima, unless
+/// two of them are close, or nearly as high. By one full warp.
+/// @param list, found memory for the other case
+/// @return how many; lane k < 3 receives the k-th in `own`
+template <class Plane>
+__device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* shares, int count,
+                           PlanePeak<float>* list, PeakList<float>& found, PlanePeak<float>& own) {
+  constexpr int capacity = PeakList<float>::capacity;
+  int const lane = static_cast<int>(threadIdx.x % 32u);
+  bool incomplete = false;
+  LanePeaks candidate;
+  for (int k = 0; k < count; ++k) incomplete = incomplete || shares[k].incomplete != 0;
+  if (lane < capacity * count) candidate.add(shares[lane / capacity].peak[lane % capacity]);
+  RankedPeak const first = candidate.take_highest(), second = candidate.take_highest(),
+                   third = candidate.take_highest();
+  int const peaks = (first.height != 0) + (second.height != 0) + (third.height != 0);
+  bool const close = (peaks > 1 && are_close(first.peak(), second.peak())) ||
+                     (peaks > 2 && (are_close(first.peak(), third.peak()) || are_close(second.peak(), third.peak())));
+  bool const rivals = peaks > 1 && second.peak().height >= static_cast<float>(nearly_as_high) * first.peak().height;
+  if (close || incomplete || rivals) {
+    find_all_peaks(plane, radius, list, found);
+    own = found.peak[lane < capacity ? lane : 0];
+    return found.count;
+  }
+  own = (lane == 0 ? first : (lane == 1 ? second : third)).peak();
+  return peaks;
+}
+
+/// Writes what hangs on the heights in the plane alone.
+__device__ inline void write_outcome(int count, float const (&height)[3], double scale, WindowCorrelation& result) {
+  result.outcome = count > 0 ? WindowCorrelation::Outcome::measured : WindowCorrelation::Outcome::no_peak;
+  result.peaks = count;
+  result.peak_ratio = count > 0 ? peak_ratio(scale * height[0], count > 1 ? scale * height[1] : 0.0,
+                                             count > 2 ? scale * height[2] : 0.0)
+                                : 0.0;
+}
+
+/// Writes what the peaks say about window (column, row). By one full warp.
+/// @param scale makes the plane a correlation coefficient
+template <class Plane>
+__device__ void write_peaks(Plane const& plane, PeakList<float> const& found, double scale, AxisWeightsView const& x,
+                            int column, AxisWeightsView const& y, int row, WindowCorrelation& result) {
+  int const lane = static_cast<int>(threadIdx.x % 32u);
+  if (lane < PeakList<float>::capacity) {
+    MeasuredPeak peak{};
+    if (lane < found.count)
+      peak = measured_peak(plane, found.peak[lane].x, found.peak[lane].y, scale, x, column, y, row);
+    result.shift[lane] = peak.shift;
+    result.coefficient[lane] = peak.coefficient;
+  }
+  if (lane == 31)
+    write_outcome(found.count, {found.peak[0].height, found.peak[1].height, found.peak[2].height}, scale, result);
+}
+
+/// Writes that there is nothing to measure. By one thread.
+__device__ inline void write_nothing(WindowCorrelation::Outcome why, WindowCorrelation& result) {
+  result = WindowCorrelation();
+  result.outcome = why;
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,86 @@
+#include "cuda/correlation/correlation_kernels.h"
+#include "cuda/device/cuda_error.h"
+
+namespace gladstone::cuda {
+namespace {
+
+constexpr int threads = 128;
+constexpr int threads_of_rounds = 512;  // of the kernels that are one block
+
+__global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid grid, PassPredictor predictor,
+                             double limit_px, AmbiguousPlaces before, GridVector* vectors, char* ambiguous) {
+  int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i >= static_cast<int>(grid.size())) return;
+  Vec2d const centre = grid.centre(static_cast<std::size_t>(i));
+  GridVector const vector = grid_vector(windows[i], predictor.at(centre), limit_px, before.at(centre));
+  vectors[i] = vector;
+  ambiguous[i] = vector.ambiguous != Ambiguity::none;
+}
+
+__global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
+                              int* count) {
+  int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < columns * rows && is_spurious(vectors, i, columns, rows, rule))
+    list[atomicAdd(count, 1)] = {i, Replacement::open, {}};
+}
+
+/// Rounds from the rim of a spurious patch inwards; within a round only what was sound before counts, so that the order
+/// of the list does not matter. One block.
+__global__ void __launch_bounds__(threads_of_rounds)
+    replace_spurious(GridVector* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
+                     int const* count) {
+  int const first = static_cast<int>(threadIdx.x), step = static_cast<int>(blockDim.x);
+  for (int n = first; n < *count; n += step) take_out(vectors[list[n].index]);
+  int progress = __syncthreads_or(*count > 0);
+  while (progress) {
+    progress = 0;
+    for (int n = first; n < *count; n += step) {
+      Replacement& spurious = list[n];
+      if (spurious.state == Replacement::open &&
+          find_replacement(vectors, spurious.index, columns, rows, rule, spurious.by))
+        spurious.state = Replacement::found;
+    }
+    __syncthreads();
+    for (int n = first; n < *count; n += step) {
+      Replacement& spurious = list[n];
+      if (spurious.state != Replacement::found) continue;
+      replace(vectors[spurious.index], spurious.by, rule);
+      spurious.state = Replacement::done;
+      progress = 1;
+    }
+    progress = __syncthreads_or(progress);
+  }
+}
+
+__global__ void take_measured(WindowCorrelation const* windows, GridVector const* vectors, int size,
+                              MeasuredVector* measured) {
+  int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i < size) measured[i] = measured_vector(vectors[i], windows[i]);
+}
+
+unsigned blocks(InterrogationGrid const& grid) { return static_cast<unsigned>((grid.size() + threads - 1) / threads); }
+
+}  // namespace
+
+void take_vectors(WindowCorrelation const* windows, GridVector* vectors, InterrogationGrid const& grid,
+                  PassPredictor const& predictor, double limit_px, AmbiguousPlaces const& before, char* ambiguous) {
+  make_vectors<<<blocks(grid), threads>>>(windows, grid, predictor, limit_px, before, vectors, ambiguous);
+  check_launch("make_vectors");
+}
+
+void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
+              int* count) {
+  check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
+  find_spurious<<<blocks(grid), threads>>>(vectors, grid.columns, grid.rows, rule, list, count);
+  check_launch("find_spurious");
+  replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
+  check_launch("replace_spurious");
+}
+
+void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,
+            MeasuredVector* measured) {
+  take_measured<<<blocks(grid), threads>>>(windows, vectors, static_cast<int>(grid.size()), measured);
+  check_launch("take_measured");
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,21 @@
+#include "cuda/device/cuda_error.h"
+
+#include <fmt/format.h>
+
+namespace gladstone::cuda {
+
+void check(cudaError_t status, char const* call) {
+  if (status == cudaSuccess) return;
+  cudaGetLastError();  // forget it: the next launch has not failed
+  throw DeviceError(
+      fmt::format("CUDA: {} failed: {} ({})", call, cudaGetErrorString(status), cudaGetErrorName(status)));
+}
+
+void check_launch(char const* kernel) {
+  check(cudaGetLastError(), kernel);
+#ifndef NDEBUG
+  check(cudaDeviceSynchronize(), kernel);
+#endif
+}
+
+}  // namespace gladstone::cuda

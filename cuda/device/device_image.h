@@ -1,0 +1,12 @@
+#pragma once
+
+namespace gladstone::cuda {
+
+/// An image in the device's memory: grey levels row by row.
+struct DeviceImage {
+  double const* pixels;  ///< device address of columns * rows values
+  int columns;
+  int rows;
+};
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,102 @@
+#include "cuda/device/device_memory.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include "cuda/device/cuda_error.h"
+
+namespace gladstone::cuda {
+namespace {
+
+/// Enters memory into the account. @return false where the limit does not allow it
+bool enter(std::size_t bytes) {
+  DeviceMemoryAccount& account = device_memory_account;
+  std::size_t held = account.held;
+  do {
+    std::size_t const limit = account.limit;
+    if (held > limit || bytes > limit - held) return false;
+  } while (!account.held.compare_exchange_weak(held, held + bytes));
+  std::size_t most = account.most_held;
+  while (most < held + bytes && !account.most_held.compare_exchange_weak(most, held + bytes)) {
+  }
+  return true;
+}
+
+std::size_t pool_attribute(cudaMemPool_t pool, cudaMemPoolAttr attribute) {
+  std::uint64_t value = 0;
+  check(cudaMemPoolGetAttribute(pool, attribute, &value), "cudaMemPoolGetAttribute");
+  return value;
+}
+
+/// In MiB, small sizes with their decimals.
+std::string mebibytes(std::size_t bytes) {
+  double const size = static_cast<double>(bytes) / 0x1p20;
+  return fmt::format("{:.{}f}", size, size < 10 ? 3 : 0);
+}
+
+std::string shortage(std::string const& what_for, std::size_t bytes) {
+  DeviceRoom const room = device_room();
+  return fmt::format(
+      "out of device memory: {} needs {} MiB, {} of {} MiB are free; use fewer rays, smaller images or volumes, or "
+      "--device cpu",
+      what_for, mebibytes(bytes), mebibytes(room.free), mebibytes(room.total));
+}
+
+}  // namespace
+
+OutOfDeviceMemory::OutOfDeviceMemory(std::string const& what_for, std::size_t bytes)
+    : DeviceError(shortage(what_for, bytes)) {}
+
+DeviceRoom device_room() {
+  check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is given back in the order of the stream
+  DeviceRoom room{};
+  check(cudaMemGetInfo(&room.free, &room.total), "cudaMemGetInfo");
+  int device = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  cudaMemPool_t pool = nullptr;
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "cudaDeviceGetDefaultMemPool");
+  room.free +=
+      pool_attribute(pool, cudaMemPoolAttrReservedMemCurrent) - pool_attribute(pool, cudaMemPoolAttrUsedMemCurrent);
+  std::size_t const limit = device_memory_account.limit, held = device_memory_account.held;
+  return {std::min(room.free, limit - std::min(held, limit)), std::min(room.total, limit)};
+}
+
+void* allocate_on_device(std::size_t bytes, std::string const& what_for) {
+  if (!enter(bytes)) throw OutOfDeviceMemory(what_for, bytes);
+  void* memory = nullptr;
+  cudaError_t const status = cudaMallocAsync(&memory, bytes, nullptr);
+  if (status == cudaSuccess) return memory;
+  device_memory_account.held -= bytes;
+  if (status != cudaErrorMemoryAllocation) check(status, "cudaMallocAsync");
+  cudaGetLastError();  // the failure is not sticky: forget it
+  throw OutOfDeviceMemory(what_for, bytes);
+}
+
+void release_on_device(void* memory, std::size_t bytes) noexcept {
+  if (!memory) return;
+  cudaFreeAsync(memory, nullptr);  // fails only after an error that was reported where it happened
+  device_memory_account.held -= bytes;
+}
+
+void copy_to_device(void* to, void const* from, std::size_t bytes) {
+  check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "cudaMemcpy to the device");
+}
+
+void copy_to_host(void* to, void const* from, std::size_t bytes) {
+  check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "cudaMemcpy from the device");
+}
+
+void zero_on_device(void* memory, std::size_t bytes) { check(cudaMemset(memory, 0, bytes), "cudaMemset"); }
+
+void* allocate_pinned(std::size_t bytes) {
+  void* memory = nullptr;
+  check(cudaMallocHost(&memory, bytes), "cudaMallocHost");
+  return memory;
+}
+
+void release_pinned(void* memory) noexcept {
+  if (memory) cudaFreeHost(memory);
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "cuda/device/cuda_error.h"
+#include "cuda/device/device_memory.h"
+
+namespace gladstone::cuda {
+
+/// Steps of rays that one launch may take, a second or two of them: nothing ends a launch, so that Ctrl-C has to wait.
+inline constexpr double most_steps_a_launch = 4e10;
+
+/// Blocks that fill the device with a kernel, but no more than the work needs.
+template <class Kernel>
+int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64_t wanted) {
+  int device = 0, processors = 0, resident = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&resident, kernel, threads, shared_bytes),
+        "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  // several rounds, so that blocks whose work is short do not leave processors idle
+  std::uint64_t const most =
+      8 * static_cast<std::uint64_t>(processors) * static_cast<std::uint64_t>(std::max(1, resident));
+  return static_cast<int>(std::max<std::uint64_t>(1, std::min(wanted, most)));
+}
+
+/// Dynamic shared memory that a block of a kernel can have beside its static one [bytes].
+template <class Kernel>
+std::size_t most_shared_bytes(Kernel kernel) {
+  int device = 0, of_block = 0;
+  cudaFuncAttributes attributes{};
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  check(cudaDeviceGetAttribute(&of_block, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "cudaDeviceGetAttribute");
+  check(cudaFuncGetAttributes(&attributes, reinterpret_cast<void const*>(kernel)), "cudaFuncGetAttributes");
+  std::size_t const most = std::min<std::size_t>(static_cast<std::size_t>(of_block), shared_memory_limit);
+  return most - std::min(most, attributes.sharedSizeBytes);
+}
+
+/// Lets a kernel be launched with so much dynamic shared memory.
+template <class Kernel>
+void allow_shared_bytes(Kernel kernel, std::size_t bytes) {
+  check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
+                             static_cast<int>(bytes)),
+        "cudaFuncSetAttribute");
+}
+
+}  // namespace gladstone::cuda

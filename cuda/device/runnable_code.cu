@@ -1,0 +1,25 @@
+#include <cuda_runtime_api.h>
+
+#include "cuda/device/runnable_code.h"
+
+namespace gladstone::cuda {
+namespace {
+
+__global__ void any_kernel() {}
+
+}  // namespace
+
+std::string why_code_cannot_run() {
+  cudaFuncAttributes attributes{};
+  if (cudaFuncGetAttributes(&attributes, any_kernel) != cudaSuccess) {
+    cudaGetLastError();  // forget it: the next launch has not failed
+    return "this build has code for sm_" GLADSTONE_CUDA_ARCHITECTURES
+           " alone; build with CMAKE_OPTIONS=-DCMAKE_CUDA_ARCHITECTURES=native";
+  }
+  int device = 0, pools = 0;
+  if (cudaGetDevice(&device) == cudaSuccess) cudaDeviceGetAttribute(&pools, cudaDevAttrMemoryPoolsSupported, device);
+  cudaGetLastError();
+  return pools != 0 ? "" : "its driver has no memory pools";
+}
+
+}  // namespace gladstone::cuda
