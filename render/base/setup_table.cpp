@@ -391,6 +391,10 @@ void SetupTable::resolve(std::string const& key, std::vector<double> const& valu
   settle(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
 }
 
+void SetupTable::resolve(std::string const& key, std::string const& word) {
+  settle(*state_, path_, key, toml_text(word));
+}
+
 void SetupTable::pass_over(std::string const& key) { read(*state_, path_, key); }
 
 void SetupTable::refuse(std::string const& key, std::string const& reason) {

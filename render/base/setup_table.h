@@ -148,6 +148,7 @@ class SetupTable {
   void resolve(std::string const& key, double value);
   void resolve(std::string const& key, long long value);
   void resolve(std::string const& key, std::vector<double> const& values);
+  void resolve(std::string const& key, std::string const& word);
 
   /// As word(), for the key that says which others the table has: where it is wrong, they are excused.
   std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);

@@ -125,10 +125,11 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     std::string const& place = apart ? arguments->output : folder;
     refuse_inputs_as_outputs(results_of_comparison(place), inputs);
     std::optional<OutputFolder> output;
+    std::optional<OutputFile> tried;  // shows that the place can be written, until the comparison is done
     if (apart) {
       output.emplace(place, FolderContent{case_file::errors, figure_names()});
     } else {
-      OutputFile const tried(in_case(folder, case_file::errors));
+      tried.emplace(in_case(folder, case_file::errors));
     }
     Comparison const comparison = compare_case(folder, device, compare);
     std::string const json = errors_json(comparison);
