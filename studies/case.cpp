@@ -201,7 +201,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
   if (loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();
-    root.table("target").resolve("extent_mm", {extent.x / unit::millimetre, extent.y / unit::millimetre});
+    root.table("target").resolve("extent_mm",
+                                 std::vector<double>{extent.x / unit::millimetre, extent.y / unit::millimetre});
   }
   return prepared;
 }
@@ -330,9 +331,10 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
     constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
     std::string const why =
         !scene.chief_rays_only() && passing < few
-            ? fmt::format("some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
-                          "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
-                          passing, scene.rays_per_dot, scene.pupil_margin / unit::millimetre)
+            ? fmt::format(
+                  "some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
+                  "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
+                  passing, scene.rays_per_dot, scene.pupil_margin / unit::millimetre)
             : "the flow bends their rays past the lens; reduce the gradients or Z_D";
     warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
                                scene.dots.centre.size(), why));
