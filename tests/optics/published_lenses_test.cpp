@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "render/base/units.h"
+#include "render/optics/aim_disc.h"
+#include "render/optics/lens.h"
+#include "render/optics/paraxial.h"
+
+namespace gladstone {
+namespace {
+
+Prescription shipped(std::string const& name) {
+  return read_prescription(std::string(GLADSTONE_DATA_DIR "/lenses/") + name);
+}
+
+Lens build(Prescription prescription, double wavelength = spectral_line::d) {
+  return build_lens(std::move(prescription), GlassCatalogue::shipped(), wavelength);
+}
+
+/// Surfaces [first, last) of a lens as a lens of their own, with the stop on the first of them.
+Prescription part(Prescription const& whole, std::size_t first, std::size_t last) {
+  Prescription result = whole;
+  auto const begin = whole.surfaces.begin();
+  result.surfaces.assign(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(last));
+  for (PrescribedSurface& surface : result.surfaces) surface.stop = false;
+  result.surfaces.front().stop = true;
+  result.aperture = {PrescribedAperture::Kind::entrance_pupil, unit::millimetre};
+  return result;
+}
+
+/// How far the printed digits leave a quantity open: the patents print lengths to 0.001 and indices to 0.00001, each
+/// good to half of that; the changes that these make add up.
+/// @param scale of the shipped lens over the printed one [1]
+template <class Quantity>
+double left_open(Prescription const& printed, double scale, Quantity const& quantity) {
+  double const as_printed = quantity(printed), half_length = 0.0005 * scale * unit::millimetre;
+  double sum = 0;
+  auto const add = [&](std::size_t i, auto const& change) {
+    Prescription changed = printed;
+    change(changed.surfaces[i]);
+    sum += std::abs(quantity(changed) - as_printed);
+  };
+  for (std::size_t i = 0; i < printed.surfaces.size(); ++i) {
+    if (printed.surfaces[i].curvature != 0) {
+      add(i, [&](PrescribedSurface& s) { s.curvature = 1 / (1 / s.curvature + half_length); });
+    }
+    if (i + 1 < printed.surfaces.size()) add(i, [&](PrescribedSurface& s) { s.thickness += half_length; });
+    if (std::holds_alternative<PrescribedMedium::Described>(printed.surfaces[i].after.is)) {
+      add(i, [](PrescribedSurface& s) { std::get<PrescribedMedium::Described>(s.after.is).nd += 0.000005; });
+    }
+  }
+  return sum;
+}
+
+/// Holds a quantity against its published value, within what the digits of both leave open.
+template <class Quantity>
+void expect_published(Prescription const& lens, double scale, Quantity const& quantity, double published,
+                      double half_a_digit) {
+  double const tolerance = left_open(lens, scale, quantity) + half_a_digit;
+  EXPECT_NEAR(quantity(lens), published, tolerance);
+}
+
+double focal_length(Prescription const& lens) { return paraxial_lens(build(lens)).effective_focal_length; }
+double back_focus(Prescription const& lens) { return paraxial_lens(build(lens)).back_focal_length; }
+
+/// First surface to last [m].
+double vertex_length(Prescription const& lens) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < lens.surfaces.size(); ++i) sum += lens.surfaces[i].thickness;
+  return sum;
+}
+
+constexpr double mm = unit::millimetre;
+
+// JP H9-105860, Example 1: the shipped doublet before the patent's rear component, 107 mm behind it, is the published
+// lens: f = 390.004, Bf = 174.594, front and rear focal lengths of 0.541 and -0.520 f, length to the image 0.762 f. The
+// beam of the lens, at f/8.13, is the doublet's own.
+TEST(PublishedLenses, AchromatIsTheFrontOfThePublishedTelephoto) {
+  Prescription const doublet = shipped("achromat.toml");
+  Prescription whole = doublet;
+  whole.surfaces.back().thickness = 107 * mm;
+  auto const add = [&](double radius, double thickness, PrescribedMedium after) {
+    PrescribedSurface surface;
+    surface.curvature = 1 / (radius * mm);
+    surface.thickness = thickness * mm;
+    surface.after = std::move(after);
+    whole.surfaces.push_back(surface);
+  };
+  add(191.786, 3, {PrescribedMedium::Described{1.62004, 36.27}});
+  add(-247.184, 2, {PrescribedMedium::Described{1.51680, 64.10}});
+  add(59.608, 0, {});
+  expect_published(whole, 1, focal_length, 390.004 * mm, 0.0005 * mm);
+  expect_published(whole, 1, back_focus, 174.594 * mm, 0.0005 * mm);
+  expect_published(
+      whole, 1, [](auto const& p) { return (vertex_length(p) + back_focus(p)) / focal_length(p); }, 0.762, 0.0005);
+  expect_published(
+      whole, 1, [](auto const& p) { return focal_length(part(p, 0, 3)) / focal_length(p); }, 0.541, 0.0005);
+  expect_published(
+      whole, 1, [](auto const& p) { return focal_length(part(p, 3, 6)) / focal_length(p); }, -0.520, 0.0005);
+  ParaxialLens const paraxial = paraxial_lens(build(doublet));
+  EXPECT_NEAR(paraxial.entrance.diameter, 390.004 / 8.13 * mm, 0.005 / 8.13 * 390.004 / 8.13 * mm);
+  EXPECT_NEAR(paraxial.f_number, 0.541 * 8.13, 0.0005 * 8.13 + 0.541 * 0.005);
+}
+
+// A single lens of the doublet's crown has its foci for F and C f / V apart, 3.7 mm; the flint takes nine tenths of
+// that away, and the spherical aberration with it: on the axis rays of every height meet within two Airy discs' radii.
+TEST(PublishedLenses, AchromatBringsColoursAndZonesTogether) {
+  Prescription const doublet = shipped("achromat.toml");
+  double const f = focal_length(doublet);
+  double const blue = paraxial_lens(build(doublet, spectral_line::F)).back_focal_length;
+  double const red = paraxial_lens(build(doublet, spectral_line::C)).back_focal_length;
+  EXPECT_LT(std::abs(blue - red), 0.1 * f / 57.03);
+  Lens const lens = build(doublet);
+  double const focus = paraxial_lens(lens).back_focal_length;
+  double const airy = 1.22 * spectral_line::d * paraxial_lens(lens).f_number;  // 3.2 um
+  for (double const height : {5.0, 10.0, 15.0, 20.0, 23.9}) {
+    Ray<double> ray{{0, height * mm, -0.1}, {0, 0, 1}};
+    RayAccount<double> account;
+    ASSERT_EQ(lens.view().carry(ray, account), RayStatus::alive);
+    double const way = (lens.poses.back().origin.z + focus - ray.position.z) / ray.direction.z;
+    EXPECT_LT(std::abs(ray.position.y + way * ray.direction.y), 2 * airy) << height;
+  }
+}
+
+// US 4,099,850, Example 5: f = 100.0, back focus 137.350, aperture ratio 1:3.5, and a front pair of |f12| between 1.5
+// and 1.75 f; the shipped lens is 0.28 of it.
+TEST(PublishedLenses, WideAngleHasThePublishedFoci) {
+  constexpr double scale = 0.28;
+  Prescription const lens = shipped("wide_angle.toml");
+  expect_published(lens, scale, focal_length, 100.0 * scale * mm, 0.05 * scale * mm);
+  expect_published(lens, scale, back_focus, 137.350 * scale * mm, 0.0005 * scale * mm);
+  EXPECT_NEAR(paraxial_lens(build(lens)).f_number, 3.5, 1e-12);
+  double const pair = -focal_length(part(lens, 0, 4)) / focal_length(lens);
+  EXPECT_GT(pair, 1.5);
+  EXPECT_LT(pair, 1.75);
+}
+
+// It images 74.2 degrees: the chief ray of the corner passes every edge and lands within 3 % of f tan(37.1 degrees).
+TEST(PublishedLenses, WideAngleReachesItsCorner) {
+  Lens const lens = build(shipped("wide_angle.toml"));
+  double const angle = 37.1 * unit::degree;
+  RayOrigin const corner = RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
+  auto const disc = find_aim_disc(lens, corner);
+  ASSERT_TRUE(disc);
+  Ray<double> ray = corner.ray_through(disc->centre);
+  RayAccount<double> account;
+  ASSERT_EQ(lens.view().carry(ray, account), RayStatus::alive);
+  ParaxialLens const paraxial = paraxial_lens(lens);
+  double const way = (lens.poses.back().origin.z + paraxial.back_focal_length - ray.position.z) / ray.direction.z;
+  double const height = ray.position.y + way * ray.direction.y;
+  EXPECT_NEAR(height / (paraxial.effective_focal_length * std::tan(angle)), 1, 0.03);
+}
+
+// US 4,338,001, Embodiment 2: focal lengths of the forward and the rearward group 80.383 and -118.959, their principal
+// points 57.046 apart, which makes f = 100, and a telephoto ratio of 0.957; the shipped lens is 1.8 of it. Its stop is
+// not the patent's.
+TEST(PublishedLenses, TelecentricLensIsThePublishedTelephoto) {
+  constexpr double scale = 1.8, published_f = 80.383 * -118.959 / (80.383 - 118.959 - 57.046);
+  Prescription const lens = part(shipped("telecentric.toml"), 0, 10);
+  auto const front = [](auto const& p) { return part(p, 0, 6); };
+  auto const rear = [](auto const& p) { return part(p, 6, 10); };
+  double const half = 0.0005 * scale * mm;
+  expect_published(
+      lens, scale, [&](auto const& p) { return focal_length(front(p)); }, 80.383 * scale * mm, half);
+  expect_published(
+      lens, scale, [&](auto const& p) { return focal_length(rear(p)); }, -118.959 * scale * mm, half);
+  expect_published(
+      lens, scale,
+      [&](auto const& p) {
+        return p.surfaces[5].thickness - paraxial_lens(build(front(p))).rear_principal_plane +
+               paraxial_lens(build(rear(p))).front_principal_plane;
+      },
+      57.046 * scale * mm, half);
+  EXPECT_NEAR(published_f, 100, 0.005);
+  expect_published(lens, scale, focal_length, 100 * scale * mm, 0.005 * scale * mm);
+  expect_published(
+      lens, scale, [](auto const& p) { return (vertex_length(p) + back_focus(p)) / focal_length(p); }, 0.957, 0.0005);
+}
+
+/// The chief ray of a point at a height above the axis, `distance` in front of the first vertex.
+Ray<double> chief_ray(Lens const& lens, double height, double distance) {
+  RayOrigin const origin = RayOrigin::point({0, height, -distance});
+  auto const disc = find_aim_disc(lens, origin);
+  EXPECT_TRUE(disc);
+  return origin.ray_through(disc->centre);
+}
+
+// Of the field, 44 mm wide, chief rays leave parallel to the axis within 0.005 degrees: what is left is the spherical
+// aberration of the published lens, which images parallel light on the stop.
+TEST(PublishedLenses, TelecentricLensTakesChiefRaysParallelToTheAxis) {
+  Lens const lens = build(shipped("telecentric.toml"));
+  EXPECT_TRUE(std::isinf(paraxial_lens(lens).entrance.position));
+  for (double const height : {2.0, 6.0, 10.0, 14.0, 18.0, 22.0}) {
+    Ray<double> ray = chief_ray(lens, height * mm, lens.prescription.object_distance);
+    EXPECT_LT(std::abs(std::atan2(ray.direction.y, ray.direction.z)), 0.005 * unit::degree) << height;
+    RayAccount<double> account;
+    EXPECT_EQ(lens.view().carry(ray, account), RayStatus::alive) << height;
+  }
+}
+
+// So an object keeps its size when it moves: 0.3 m nearer or further its image changes by less than 1 / 1000, where a
+// camera that looked on from the first vertex would show it a third larger or a fifth smaller.
+TEST(PublishedLenses, TelecentricLensKeepsTheSizeOfWhatMoves) {
+  Lens const lens = build(shipped("telecentric.toml"));
+  double const distance = lens.prescription.object_distance;
+  auto const image = [&](double way) {
+    Ray<double> ray = chief_ray(lens, 20 * mm, distance + way);
+    RayAccount<double> account;
+    EXPECT_EQ(lens.view().carry(ray, account), RayStatus::alive);
+    return ray.position.y + 36.006 * mm * ray.direction.y / ray.direction.z;
+  };
+  double const here = image(0);
+  EXPECT_NEAR(here, -0.2 * 20 * mm, 0.02 * 0.2 * 20 * mm);
+  for (double const way : {-0.3, 0.3}) EXPECT_NEAR(image(way) / here, 1, 1e-3) << way;
+}
+
+}  // namespace
+}  // namespace gladstone
