@@ -20,7 +20,8 @@ struct ParaxialLens {
   double rear_principal_plane = 0;    ///< from the last vertex [m]
   Pupil entrance;                     ///< from the first vertex
   Pupil exit;                         ///< from the last vertex
-  double f_number = 0;                ///< effective focal length over the entrance pupil's diameter [1]
+  double f_number = 0;                ///< effective focal length over the entrance pupil's diameter [1]; infinite for
+                                      ///< afocal lenses, and where that pupil is infinitely far and wide
 };
 
 /// @pre the lens has a stop

@@ -86,7 +86,8 @@ std::string lens_text(LensQuestion const& question, Lens const& lens, ParaxialLe
   line("principal planes",
        fmt::format("{} from the first vertex, {} from the last", length_text(paraxial.front_principal_plane),
                    length_text(paraxial.rear_principal_plane)));
-  line("f-number", std::isfinite(paraxial.f_number) ? fmt::format("{:.4g}", paraxial.f_number) : "none (afocal)");
+  char const* const none = std::isfinite(paraxial.effective_focal_length) ? "none (telecentric)" : "none (afocal)";
+  line("f-number", std::isfinite(paraxial.f_number) ? fmt::format("{:.4g}", paraxial.f_number) : none);
   line("entrance pupil", fmt::format("{} wide at {} from the first vertex", length_text(paraxial.entrance.diameter),
                                      length_text(paraxial.entrance.position)));
   line("exit pupil", fmt::format("{} wide at {} from the last vertex", length_text(paraxial.exit.diameter),
