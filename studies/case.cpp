@@ -295,8 +295,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
   loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
-  // a GPU that traces a scene out of focus ray by ray chooses that by "auto" alone
-  if (rendering.method == RenderMethod::focused_dots || rendering.device == "cpu") {
+  // what "auto" takes for other scenes hangs on the device, and on what is compared
+  if (rendering.method == RenderMethod::focused_dots) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
   std::string const resolved = loaded.document.resolved();
