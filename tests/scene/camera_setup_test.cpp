@@ -6,25 +6,15 @@
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/setup.h"
+#include "tests/scene/read_setup_text.h"
 
 namespace gladstone {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-gladstone::Setup read(std::string const& text) {
-  SetupDocument document = SetupDocument::from_text(text, "case.toml");
-  gladstone::Setup setup = read_setup(document.root());
-  if (!document.has_problems()) cross_check(setup, document.root());
-  document.finish();
-  return setup;
-}
-
-auto refused(std::string const& where, std::string const& why) {
-  return ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:" + where), HasSubstr(why)));
-}
+Setup setup_of(std::string const& text) { return read_setup_text(text).setup; }
 
 std::string double_gauss(std::string const& more = "") {
   return "[lens]\nmodel = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
@@ -34,7 +24,7 @@ std::string double_gauss(std::string const& more = "") {
 // Looking at a point: the axis runs from the camera through it, columns stay level.
 TEST(CameraPose, LooksAtAPoint) {
   gladstone::Setup const setup =
-      read("[camera.pose]\nposition_mm = [300, 0, 700]\nlook_at_mm = [0, 0, 0]\n[geometry]\nz_d_mm = 70\n");
+      setup_of("[camera.pose]\nposition_mm = [300, 0, 700]\nlook_at_mm = [0, 0, 0]\n[geometry]\nz_d_mm = 70\n");
   Pose<double> const pose = setup.camera_pose();
   double const far = std::hypot(0.3, 0.7);
   EXPECT_NEAR(length(pose.z - Vec3d{0.3 / far, 0, 0.7 / far}), 0, 1e-15);
@@ -47,26 +37,26 @@ TEST(CameraPose, LooksAtAPoint) {
   EXPECT_NEAR(setup.target_centre().x, -0.03, 1e-15);
   // near enough the same as turning about y by the angle to the axis
   gladstone::Setup const turned =
-      read("[camera.pose]\nposition_mm = [300, 0, 700]\nrotation_deg = [0, 23.19859051364819, 0]\n");
+      setup_of("[camera.pose]\nposition_mm = [300, 0, 700]\nrotation_deg = [0, 23.19859051364819, 0]\n");
   EXPECT_NEAR(length(turned.camera_pose().z - pose.z), 0, 1e-12);
   EXPECT_NEAR(length(turned.camera_pose().x - pose.x), 0, 1e-12);
 }
 
 TEST(CameraPose, ThatMakesNoSenseIsRefused) {
-  EXPECT_THAT([] { read("[camera.pose]\nposition_mm = [0, 0, 700]\n[geometry]\nz_a_mm = 750\n"); },
+  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\n[geometry]\nz_a_mm = 750\n"); },
               refused("4:1", "stands beside camera.pose"));
-  EXPECT_THAT([] { read("[camera.pose]\nlook_at_mm = [0, 0, 0]\n"); }, refused("1:", "position_mm"));
-  EXPECT_THAT([] { read("[camera.pose]\nposition_mm = [0, 0, -700]\n"); }, refused("1:", "away from the dots"));
-  EXPECT_THAT([] { read("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "no upright"));
+  EXPECT_THAT([] { setup_of("[camera.pose]\nlook_at_mm = [0, 0, 0]\n"); }, refused("1:", "position_mm"));
+  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 0, -700]\n"); }, refused("1:", "away from the dots"));
+  EXPECT_THAT([] { setup_of("[camera.pose]\nposition_mm = [0, 700, 0]\n"); }, refused("1:", "no upright"));
   EXPECT_THAT(
-      [] { read("[camera.pose]\nposition_mm = [0, 0, 700]\nlook_at_mm = [0, 0, 0]\nrotation_deg = [0, 0, 0]\n"); },
+      [] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\nlook_at_mm = [0, 0, 0]\nrotation_deg = [0, 0, 0]\n"); },
       refused("4:1", "stands beside look_at_mm"));
-  EXPECT_THAT([] { read("[camera.sensor]\nscheimpflug = \"auto\"\ntilt_deg = [1, 0]\n"); },
+  EXPECT_THAT([] { setup_of("[camera.sensor]\nscheimpflug = \"auto\"\ntilt_deg = [1, 0]\n"); },
               refused("2:1", "stands beside tilt_deg"));
 }
 
 TEST(Windows, AreReadWithTheirGlass) {
-  gladstone::Setup const setup = read(
+  gladstone::Setup const setup = setup_of(
       "[[window]]\nside = \"target\"\nglass = \"N-BK7\"\nthickness_mm = 20\nposition_mm = [0, 0, -100]\n"
       "[[window]]\nposition_mm = [0, 0, 100]\ntilt_deg = [5, 0]\n");
   ASSERT_EQ(setup.windows.size(), 2u);
@@ -74,40 +64,42 @@ TEST(Windows, AreReadWithTheirGlass) {
   EXPECT_NEAR(setup.windows[0].index, 1.519472583, 1e-8);
   EXPECT_EQ(setup.windows[1].side, WindowSide::camera);
   EXPECT_NEAR(setup.windows[1].tilt.x, 5 * unit::degree, 1e-15);
-  EXPECT_THAT([] { read("[[window]]\nglass = \"N-BK77\"\nposition_mm = [0, 0, 1]\n"); },
+  EXPECT_THAT([] { setup_of("[[window]]\nglass = \"N-BK77\"\nposition_mm = [0, 0, 1]\n"); },
               ThrowsMessage<SetupError>(HasSubstr("N-BK77")));
-  EXPECT_THAT([] { read("[[window]]\n"); }, ThrowsMessage<SetupError>(HasSubstr("position_mm")));
+  EXPECT_THAT([] { setup_of("[[window]]\n"); }, ThrowsMessage<SetupError>(HasSubstr("position_mm")));
 }
 
 TEST(PrescribedLens, SetsFocalLengthAndStop) {
-  gladstone::Setup const own = read(double_gauss());
+  gladstone::Setup const own = setup_of(double_gauss());
   ASSERT_TRUE(own.lens.prescription);
   EXPECT_NEAR(own.lens.focal_length, 0.1, 1e-3);  // 100.00 mm at 587.6 nm; the wavelength is 532 nm here
   EXPECT_NEAR(own.lens.f_number, 2, 0.02);
-  gladstone::Setup const stopped = read(double_gauss("f_number = 8\n"));
+  gladstone::Setup const stopped = setup_of(double_gauss("f_number = 8\n"));
   EXPECT_NEAR(stopped.lens.prescription->stop_radius / own.lens.prescription->stop_radius, 2.0 / 8, 0.01);
   // M = f / (Z_B - f) from the front principal plane
   EXPECT_NEAR(own.imaging().magnification, own.lens.focal_length / (1 - own.lens.focal_length), 1e-9);
 }
 
 TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {
-  gladstone::Setup const by_vertex = read(double_gauss("[geometry]\nz_front_mm = 680\n"));
+  gladstone::Setup const by_vertex = setup_of(double_gauss("[geometry]\nz_front_mm = 680\n"));
   double const principal = paraxial_lens(*by_vertex.lens.prescription).front_principal_plane;
   EXPECT_NEAR(by_vertex.z_a, 0.68 + principal, 1e-15);
-  EXPECT_THAT([] { read(double_gauss("[geometry]\nz_front_mm = 680\nz_a_mm = 750\n")); },
+  EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_front_mm = 680\nz_a_mm = 750\n")); },
               refused("6:1", "stands beside z_front_mm"));
-  EXPECT_THAT([] { read("[geometry]\nz_front_mm = 680\n"); }, refused("2:1", "a thin lens has no first vertex"));
+  EXPECT_THAT([] { setup_of("[geometry]\nz_front_mm = 680\n"); }, refused("2:1", "a thin lens has no first vertex"));
 }
 
 TEST(PrescribedLens, ThatIsWrongIsNamed) {
-  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\n"); }, ThrowsMessage<SetupError>(HasSubstr("file")));
-  EXPECT_THAT([] { read("[lens]\nmodel = \"prescription\"\nfile = \"none.zmx\"\n"); }, refused("3:1", "none.zmx"));
-  EXPECT_THAT([] { read("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "model = \"prescription\""));
-  EXPECT_THAT([] { read(double_gauss("focal_length_mm = 100\n")); }, refused("4:1", "stands beside a prescription"));
-  EXPECT_THAT([] { read(double_gauss("[camera.sensor]\ndistortion = [0.1, 0, 0, 0]\n")); },
+  EXPECT_THAT([] { setup_of("[lens]\nmodel = \"prescription\"\n"); }, ThrowsMessage<SetupError>(HasSubstr("file")));
+  EXPECT_THAT([] { setup_of("[lens]\nmodel = \"prescription\"\nfile = \"none.zmx\"\n"); }, refused("3:1", "none.zmx"));
+  EXPECT_THAT([] { setup_of("[lens]\nfile = \"a.zmx\"\n"); }, refused("2:1", "model = \"prescription\""));
+  EXPECT_THAT([] { setup_of(double_gauss("focal_length_mm = 100\n")); },
+              refused("4:1", "stands beside a prescription"));
+  EXPECT_THAT([] { setup_of(double_gauss("[camera.sensor]\ndistortion = [0.1, 0, 0, 0]\n")); },
               refused("5:1", "is of thin lenses"));
   // the dots within the focal length
-  EXPECT_THAT([] { read(double_gauss("[geometry]\nz_a_mm = 60\nz_d_mm = 30\n")); }, refused("3:1", "no real image"));
+  EXPECT_THAT([] { setup_of(double_gauss("[geometry]\nz_a_mm = 60\nz_d_mm = 30\n")); },
+              refused("3:1", "no real image"));
 }
 
 }  // namespace

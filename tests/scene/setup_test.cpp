@@ -8,6 +8,7 @@
 
 #include "render/scene/deflection_map.h"
 #include "render/scene/scene.h"
+#include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -19,26 +20,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-struct ReadSetup {
-  gladstone::Setup setup;
-  std::vector<std::string> warnings;
-};
-
-/// Reads and cross-checks a setup as the commands do.
-ReadSetup read(std::string const& text) {
-  SetupDocument document = SetupDocument::from_text(text, "case.toml");
-  ReadSetup result{read_setup(document.root()), {}};
-  result.warnings = cross_check(result.setup, document.root());
-  document.finish();
-  return result;
-}
-
-auto refused(std::string const& where, std::string const& why) {
-  return ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:" + where), HasSubstr(why)));
-}
-
 TEST(Setup, DefaultsAreTable1WithoutAnyComplaint) {
-  ReadSetup const seen = read("schema = 1\n");
+  ReadSetup const seen = read_setup_text("schema = 1\n");
   EXPECT_THAT(seen.warnings, IsEmpty());
   EXPECT_DOUBLE_EQ(seen.setup.z_b(), 1.0);
   EXPECT_NEAR(seen.setup.imaging().magnification, 0.117318436, 1e-9);
@@ -50,19 +33,20 @@ TEST(Setup, DefaultsAreTable1WithoutAnyComplaint) {
 }
 
 TEST(Setup, FocusWithinTheFocalLengthIsImpossible) {
-  EXPECT_THAT([] { read("[geometry]\nz_a_mm = 60\nz_d_mm = 40\n"); }, refused("2:1", "focus is impossible"));
-  EXPECT_THAT([] { read("[lens]\nfocus_distance_mm = 100\n"); }, refused("2:1", "focus is impossible"));
-  EXPECT_THAT([] { read("[lens]\nfocus = \"medium\"\n[geometry]\nz_a_mm = 100\n"); },
+  EXPECT_THAT([] { read_setup_text("[geometry]\nz_a_mm = 60\nz_d_mm = 40\n"); }, refused("2:1", "focus is impossible"));
+  EXPECT_THAT([] { read_setup_text("[lens]\nfocus_distance_mm = 100\n"); }, refused("2:1", "focus is impossible"));
+  EXPECT_THAT([] { read_setup_text("[lens]\nfocus = \"medium\"\n[geometry]\nz_a_mm = 100\n"); },
               refused("4:1", "focus is impossible"));
 }
 
 TEST(Setup, DotsAndLensMustStandOutsideTheMedium) {
   std::string const field =
       "[medium]\nthickness_mm = 100\n[medium.field]\nkind = \"uniform_gradient\"\ngradient_kg_m4 = [1, 0, 0]\n";
-  EXPECT_THAT([&] { read(field + "[geometry]\nz_d_mm = 20\n"); }, refused("7:1", "dots lie inside the medium"));
-  EXPECT_THAT([&] { read(field + "[lens]\nfocal_length_mm = 10\n[geometry]\nz_a_mm = 30\n"); },
+  EXPECT_THAT([&] { read_setup_text(field + "[geometry]\nz_d_mm = 20\n"); },
+              refused("7:1", "dots lie inside the medium"));
+  EXPECT_THAT([&] { read_setup_text(field + "[lens]\nfocal_length_mm = 10\n[geometry]\nz_a_mm = 30\n"); },
               refused("9:1", "lens lies inside"));
-  EXPECT_THAT(read("[medium]\nthickness_mm = 100\n[geometry]\nz_d_mm = 20\n").warnings,
+  EXPECT_THAT(read_setup_text("[medium]\nthickness_mm = 100\n[geometry]\nz_d_mm = 20\n").warnings,
               IsEmpty());  // no field, no medium
 }
 
@@ -124,46 +108,47 @@ TEST(Setup, AutomaticThicknessStopsShortOfDotsAndLens) {
 // a trilinear grid in quarters of a cell: 1e6 steps across 10 mm at most, whoever asks for them.
 TEST(Setup, LengthsThatNoRayGetsToTheEndOfAreRefusedAtTheirKey) {
   std::string const wave = "[medium.field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 0.1\nwavelength_mm = ";
-  EXPECT_THAT([&] { read(wave + "1e-9\n"); },
+  EXPECT_THAT([&] { read_setup_text(wave + "1e-9\n"); },
               refused("4:1", "would need 4e+10 steps across the medium (1e+06 at most)"));
-  EXPECT_THAT(read(wave + "1e-3\n").warnings, IsEmpty());
+  EXPECT_THAT(read_setup_text(wave + "1e-3\n").warnings, IsEmpty());
   EXPECT_THAT(
       [] {
-        read(
+        read_setup_text(
             "[medium.field]\nkind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1\n"
             "shock_thickness_mm = 1e-7\n");
       },
       refused("5:1", "would need 4e+08 steps"));
   for (std::string const kind : {"gaussian_plume", "gaussian_blob"}) {
-    EXPECT_THAT([&] { read("[medium.field]\nkind = \"" + kind + "\"\namplitude_kg_m3 = 0.1\nradius_mm = 1e-7\n"); },
-                refused("4:1", "would need 2e+08 steps"));
+    EXPECT_THAT(
+        [&] { read_setup_text("[medium.field]\nkind = \"" + kind + "\"\namplitude_kg_m3 = 0.1\nradius_mm = 1e-7\n"); },
+        refused("4:1", "would need 2e+08 steps"));
   }
   std::string const plane =
       "[medium]\ninterpolation = \"trilinear\"\n[medium.field]\nkind = \"file\"\nfile = \"" GLADSTONE_DATA_DIR
       "/fields/hbdt512_late_slice.h5\"\nextrude = true\nspacing_mm = ";
-  EXPECT_THAT([&] { read(plane + "[1e-7, 1e-7, 1]\n"); }, refused("7:1", "would need 4e+08 steps"));
-  EXPECT_THAT(read(plane + "[0.0625, 0.0625, 1]\n").warnings, IsEmpty());
-  EXPECT_THAT([&] { read("[medium]\nstep_mm = 1e-9\n[medium.field]\nkind = \"uniform_gradient\"\n"); },
+  EXPECT_THAT([&] { read_setup_text(plane + "[1e-7, 1e-7, 1]\n"); }, refused("7:1", "would need 4e+08 steps"));
+  EXPECT_THAT(read_setup_text(plane + "[0.0625, 0.0625, 1]\n").warnings, IsEmpty());
+  EXPECT_THAT([&] { read_setup_text("[medium]\nstep_mm = 1e-9\n[medium.field]\nkind = \"uniform_gradient\"\n"); },
               refused("2:1", "would need 1e+10 steps"));
 }
 
 TEST(Setup, TheTargetMustFillTheView) {
-  EXPECT_THAT([] { read("[target]\nextent_mm = [40, 60]\n"); }, refused("2:1", "larger than the target"));
-  EXPECT_THAT(read("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
+  EXPECT_THAT([] { read_setup_text("[target]\nextent_mm = [40, 60]\n"); }, refused("2:1", "larger than the target"));
+  EXPECT_THAT(read_setup_text("[target]\nextent_mm = [44, 60]\n").warnings, IsEmpty());
 }
 
 // Dots of 1 px with a spot of 1.6 px are 1.89 px wide.
 TEST(Setup, DotsBelowTwoPixelsAreWarnedOf) {
-  EXPECT_THAT(read("[target]\ndot_diameter_px = 1\n").warnings,
+  EXPECT_THAT(read_setup_text("[target]\ndot_diameter_px = 1\n").warnings,
               Contains(AllOf(HasSubstr("1.88"), HasSubstr("below 2 px"))));
-  EXPECT_THAT(read("[target]\ndot_diameter_px = 1.5\n").warnings, IsEmpty());
+  EXPECT_THAT(read_setup_text("[target]\ndot_diameter_px = 1.5\n").warnings, IsEmpty());
 }
 
 // The spot that counts is the one drawn. Table 1: 1.595 px between first zeros (airy, gaussian) or over four standard
 // deviations (gaussian_first_zero), pi times that as the seed prints it, none without one.
 TEST(Setup, DotsBelowTwoPixelsAreThoseOfTheSpotDrawn) {
   auto const warnings = [](std::string const& psf) {
-    return read("[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n").warnings;
+    return read_setup_text("[lens]\npsf = \"" + psf + "\"\n[target]\ndot_diameter_px = 1\n").warnings;
   };
   EXPECT_THAT(warnings("airy"), Contains(HasSubstr("1.88 px wide (geometric image 1.00 px, diffraction spot 1.59 px "
                                                    "between its first zeros)")));
@@ -175,20 +160,22 @@ TEST(Setup, DotsBelowTwoPixelsAreThoseOfTheSpotDrawn) {
 
 TEST(Setup, DotsThatCannotFindRoomAreRefused) {
   // 100 dots of 3 px in 1024 px^2 cover 69 %
-  EXPECT_THAT([] { read("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
-  EXPECT_THAT(read("[target]\ndots_per_32px_window = 100\narrangement = \"regular\"\n").warnings, IsEmpty());
-  EXPECT_THAT([] { read("[target]\ndots_per_32px_window = 1e-6\n"); }, refused("2:1", "no dot at all"));
-  EXPECT_THAT([] { read("[target]\npolarity = \"dark\"\ndot_diameter_px = 0\n"); }, refused("2:1", "cannot be seen"));
+  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 100\n"); }, refused("2:1", "69 %"));
+  EXPECT_THAT(read_setup_text("[target]\ndots_per_32px_window = 100\narrangement = \"regular\"\n").warnings, IsEmpty());
+  EXPECT_THAT([] { read_setup_text("[target]\ndots_per_32px_window = 1e-6\n"); }, refused("2:1", "no dot at all"));
+  EXPECT_THAT([] { read_setup_text("[target]\npolarity = \"dark\"\ndot_diameter_px = 0\n"); },
+              refused("2:1", "cannot be seen"));
 }
 
 TEST(Setup, WhatIsDueLaterIsRefusedByName) {
-  EXPECT_THAT([] { read("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
-  EXPECT_THAT([] { read("experiment = \"calibration\"\n"); }, refused("1:1", "\"calibration\" is not available yet"));
-  EXPECT_THAT([] { read("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
+  EXPECT_THAT([] { read_setup_text("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
+  EXPECT_THAT([] { read_setup_text("experiment = \"calibration\"\n"); },
+              refused("1:1", "\"calibration\" is not available yet"));
+  EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
   for (std::string const table : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
-    EXPECT_THAT([&] { read(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
+    EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
   }
-  EXPECT_THAT([] { read("schema = 2\n"); }, refused("1:1", "schema"));
+  EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused("1:1", "schema"));
 }
 
 // A word that decides which keys a table has, and is wrong, leaves nothing to say of the others.
@@ -197,26 +184,29 @@ TEST(Setup, KeysOfARefusedKindAreNotCalledUnknown) {
     return ThrowsMessage<SetupError>(
         AllOf(HasSubstr(why), testing::Not(HasSubstr("unknown")), testing::Not(HasSubstr("no effect"))));
   };
-  EXPECT_THAT([] { read("[medium.field]\nkind = \"sinusiod\"\namplitude_kg_m3 = 0.1\nwavelength_mm = 4\n"); },
-              only("did you mean \"sinusoid\"?"));
-  EXPECT_THAT([] { read("[target]\nkind = \"pints\"\nfile = \"a.csv\"\n"); }, only("did you mean \"points\"?"));
-  EXPECT_THAT([] { read("[[camera]]\n[[camera]]\npixels = [64, 64]\n[camera.noise]\nseed = 1\n"); },
+  EXPECT_THAT(
+      [] { read_setup_text("[medium.field]\nkind = \"sinusiod\"\namplitude_kg_m3 = 0.1\nwavelength_mm = 4\n"); },
+      only("did you mean \"sinusoid\"?"));
+  EXPECT_THAT([] { read_setup_text("[target]\nkind = \"pints\"\nfile = \"a.csv\"\n"); },
+              only("did you mean \"points\"?"));
+  EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\npixels = [64, 64]\n[camera.noise]\nseed = 1\n"); },
               only("several cameras"));
   EXPECT_THAT(
       [] {
-        read("[[medium.field]]\n[[medium.field]]\nkind = \"gaussian_blob\"\nradius_mm = 1\namplitude_kg_m3 = 1\n");
+        read_setup_text(
+            "[[medium.field]]\n[[medium.field]]\nkind = \"gaussian_blob\"\nradius_mm = 1\namplitude_kg_m3 = 1\n");
       },
       only("several fields"));
   // but a table beside it is read as ever
-  EXPECT_THAT([] { read("[medium]\nstep = 1\n[medium.field]\nkind = \"sinusiod\"\n"); },
+  EXPECT_THAT([] { read_setup_text("[medium]\nstep = 1\n[medium.field]\nkind = \"sinusiod\"\n"); },
               refused("2:1", "unknown key \"step\""));
 }
 
 TEST(Setup, AllProblemsComeTogether) {
   EXPECT_THAT(
       [] {
-        read(
-            "[camera]\npixel_pitch_um = -1\n[lens]\nf_numbr = 8\n[target]\nextent_mm = [1, 1]\n[render]\nrays_per_dot "
+        read_setup_text(
+            "[camera]\npixel_pitch_um = -1\n[lens]\nf_numbr = 8\n[target]\nextent_mm = [1, -1]\n[render]\nrays_per_dot "
             "= 1.5\n");
       },
       ThrowsMessage<SetupError>(AllOf(HasSubstr("case.toml:2:1"), HasSubstr("case.toml:4:1"), HasSubstr("f_number"),

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <stdexcept>
@@ -10,14 +11,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether any user may enter a folder and all that it lies in.
+bool all_may_enter(fs::path folder) {
+  for (folder = fs::absolute(folder); folder.has_relative_path(); folder = folder.parent_path()) {
+    if ((fs::status(folder).permissions() & fs::perms::others_exec) == fs::perms::none) return false;
+  }
+  return true;
+}
+
 /// ctest runs tests of one fixture side by side, each in a process of its own: gives this process a TempDir() of its
 /// own, and removes it at the end.
 class OwnFolder final : public ::testing::Environment {
  public:
   void SetUp() override {
-    folder_ = ::testing::TempDir() + "XXXXXX";
+    // run by root, some tests are another user for a moment, who cannot enter root's home
+    bool const here = ::geteuid() != 0 || all_may_enter(::testing::TempDir());
+    folder_ = here ? ::testing::TempDir() + "XXXXXX" : (fs::temp_directory_path() / "gladstone-test-XXXXXX").string();
     if (::mkdtemp(folder_.data()) == nullptr) throw std::runtime_error(folder_ + ": cannot be made");
-    fs::permissions(folder_, fs::perms(0755));  // some tests are another user for a moment
+    fs::permissions(folder_, fs::perms(0755));
     ::setenv("TEST_TMPDIR", folder_.c_str(), 1);
   }
   void TearDown() override {
