@@ -9,6 +9,7 @@
 #include "cuda/device/cuda_error.h"
 #include "cuda/device/runnable_code.h"
 #include "cuda/focused_dots/cuda_renderer.h"
+#include "cuda/rays/cuda_rays_renderer.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -56,6 +57,11 @@ int device_count() {
 std::unique_ptr<Renderer> make_renderer() {
   require_device();
   return std::make_unique<CudaRenderer>();
+}
+
+std::unique_ptr<Renderer> make_rays_renderer() {
+  require_device();
+  return std::make_unique<CudaRaysRenderer>();
 }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {

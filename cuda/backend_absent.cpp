@@ -15,6 +15,8 @@ int device_count() { return 0; }
 
 std::unique_ptr<Renderer> make_renderer() { throw DeviceError(device_state().text); }
 
+std::unique_ptr<Renderer> make_rays_renderer() { throw DeviceError(device_state().text); }
+
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const&) { throw DeviceError(device_state().text); }
 
 }  // namespace gladstone::cuda

@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
+#include "render/rays/rays_renderer.h"
 #include "studies/scene_renderer.h"
 #include "studies/version_text.h"
 
@@ -20,13 +21,15 @@ Device open_device(std::string const& wanted) {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), wanted == "cuda"), cuda::make_correlator};
+      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer()),
+              cuda::make_correlator};
     }
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
     instead = " (" + state.text + ")";
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
-  return {std::make_unique<SceneRenderer>(std::make_unique<CpuRenderer>(), false), make_correlator};
+  return {std::make_unique<SceneRenderer>(std::make_unique<CpuRenderer>(), std::make_unique<RaysRenderer>()),
+          make_correlator};
 }
 
 int gpu_count() { return cuda::device_count(); }

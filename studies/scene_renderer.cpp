@@ -1,11 +1,7 @@
 #include "studies/scene_renderer.h"
 
-#include <spdlog/spdlog.h>
-
-#include "render/base/error.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
-#include "render/rays/rays_renderer.h"
 #include "render/scene/focused_dots.h"
 
 namespace gladstone {
@@ -18,25 +14,12 @@ RenderMethod method_of(Scene const& scene) {
 
 char const* to_string(RenderMethod method) { return method == RenderMethod::focused_dots ? "focused_dots" : "rays"; }
 
-SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> device, bool only)
-    : device_(std::move(device)), rays_(std::make_unique<RaysRenderer>()), only_(only) {}
+SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays)
+    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)) {}
 
 Rendering SceneRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   RenderMethod const method = method_of(scene);
-  bool const other_device = device_->device() != rays_->device();
-  bool const on_device = method == RenderMethod::focused_dots || (other_device && scene.setup.on_bench() &&
-                                                                  scene.setup.render.method == RenderMethod::automatic);
-  if (!on_device && other_device) {
-    std::string const reason = reason_against_focused_dots(scene.setup);
-    std::string const why = reason.empty() ? "render.method = \"rays\"" : reason;
-    if (only_) {
-      throw DeviceError("--device " + device_->device() + ": the general renderer, which this scene needs (" + why +
-                        "), runs on the CPU; use --device cpu or auto");
-    }
-    if (!told_) spdlog::info("method: rays ({}), on the CPU", why);
-    told_ = true;
-  }
-  Renderer& renderer = on_device ? *device_ : *rays_;
+  Renderer& renderer = method == RenderMethod::focused_dots ? *focused_dots_ : *rays_;
   Rendering rendering = renderer.render(scene, sources, images, theory);
   rendering.method = method;
   rendering.device = renderer.device();

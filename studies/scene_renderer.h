@@ -15,21 +15,17 @@ RenderMethod method_of(Scene const& scene);
 /// "rays" or "focused_dots", as files call it.
 char const* to_string(RenderMethod method);
 
-/// Renders every scene by its method: dots in focus on the device, whatever else on the CPU, ray by ray. (A device
-/// takes bench scenes out of focus too, which it traces ray by ray itself.)
+/// Renders every scene by its method, on one device.
 class SceneRenderer : public Renderer {
  public:
-  /// @param only whether nothing but this device was asked for
-  SceneRenderer(std::unique_ptr<Renderer> device, bool only);
+  /// @param focused_dots,rays the renderers of that device
+  SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
 
-  std::string device() const override { return device_->device(); }
-  /// @throws DeviceError where only a device was asked for that cannot render the scene
+  std::string device() const override { return rays_->device(); }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
-  std::unique_ptr<Renderer> device_, rays_;
-  bool only_;
-  bool told_ = false;
+  std::unique_ptr<Renderer> focused_dots_, rays_;
 };
 
 /// What plans a scene and maps its field, by its method.

@@ -62,6 +62,15 @@ DeviceRoom device_room() {
   return {std::min(room.free, limit - std::min(held, limit)), std::min(room.total, limit)};
 }
 
+void keep_freed_device_memory() {
+  int device = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  cudaMemPool_t pool = nullptr;
+  check(cudaDeviceGetDefaultMemPool(&pool, device), "cudaDeviceGetDefaultMemPool");
+  std::uint64_t all = ~std::uint64_t{0};
+  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "cudaMemPoolSetAttribute");
+}
+
 void* allocate_on_device(std::size_t bytes, std::string const& what_for) {
   if (!enter(bytes)) throw OutOfDeviceMemory(what_for, bytes);
   void* memory = nullptr;

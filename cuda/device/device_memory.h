@@ -69,6 +69,9 @@ class OutOfDeviceMemory : public DeviceError {
   OutOfDeviceMemory(std::string const& what_for, std::size_t bytes);
 };
 
+/// Freed memory of the device stays with the process, so that the next rendering does not wait for the driver.
+void keep_freed_device_memory();
+
 /// Memory from the device's pool, in the order of the default stream; contents are undefined.
 /// @param what_for named in the message should memory be short @throws OutOfDeviceMemory, DeviceError
 void* allocate_on_device(std::size_t bytes, std::string const& what_for);

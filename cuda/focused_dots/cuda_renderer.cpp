@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "cuda/device/cuda_error.h"
+#include "cuda/device/device_images.h"
+#include "cuda/device/device_light.h"
 #include "cuda/device/launch.h"
 #include "cuda/focused_dots/device_deflections.h"
-#include "cuda/focused_dots/device_light.h"
 #include "cuda/focused_dots/expose_dots.h"
 #include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
@@ -97,31 +98,6 @@ class MirroredLightModel {
   DeviceArray<double> airy_;
 };
 
-/// Both frames on the device.
-class ImagePairOnDevice {
- public:
-  ImagePairOnDevice(int columns, int rows) : columns_(columns), rows_(rows) {
-    for (auto& frame : light_) {
-      frame = DeviceArray<unsigned long long>(pixels(), "the images");
-      frame.zero();
-    }
-  }
-  DeviceImages view(double light_per_weight) {
-    return {{light_[0].data(), light_[1].data()}, columns_, rows_, light_per_weight * fixed_point_one};
-  }
-  void to_light(DeviceLight& light) const {
-    for (Frame const frame : {Frame::reference, Frame::flow}) {
-      cuda::to_light(light_[static_cast<int>(frame)].data(), light.light(frame), pixels());
-    }
-  }
-
- private:
-  std::size_t pixels() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
-
-  int columns_, rows_;
-  DeviceArray<unsigned long long> light_[frame_count];
-};
-
 /// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only @param light_out of the
 /// images, for bright dots
 template <class T>
@@ -200,22 +176,10 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
   return pass;
 }
 
-/// Freed memory of the device stays with the process, so that the next rendering does not wait for the driver.
-void keep_freed_device_memory() {
-  int device = 0;
-  check(cudaGetDevice(&device), "cudaGetDevice");
-  cudaMemPool_t pool = nullptr;
-  check(cudaDeviceGetDefaultMemPool(&pool, device), "cudaDeviceGetDefaultMemPool");
-  std::uint64_t all = ~std::uint64_t{0};
-  check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "cudaMemPoolSetAttribute");
-}
-
 }  // namespace
 
 struct CudaRenderer::Uploads {
-  std::shared_ptr<void const> owner;  ///< of the medium that is on the device
-  MirroredMedium medium;
-  bool wide = false;
+  KeptMedium medium;
   KeptDeflections<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
@@ -230,20 +194,15 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   bool const single = scene.setup.render.precision == Precision::single;
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
-  // an upload of the same grid serves again; views without a grid cost nothing to mirror
-  if (!scene.medium.owner || uploads_->owner != scene.medium.owner || uploads_->wide == single) {
+  if (!uploads_->medium.serves(scene, !single)) {
     uploads_->deflections.forget();
-    uploads_->owner.reset();
-    uploads_->medium = MirroredMedium();
-    uploads_->medium = MirroredMedium(scene.medium.view, !single);
-    uploads_->owner = scene.medium.owner;
-    uploads_->wide = !single;
+    uploads_->medium.upload(scene, !single);
   }
   MirroredSources on_device(sources);
   if (single) on_device.mirror_single(sources);
   std::shared_ptr<DeviceLight> light;
   auto const trace = [&]<class T>(T) {
-    MirroredMedium const& medium = uploads_->medium;
+    MirroredMedium const& medium = uploads_->medium.medium();
     DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
     std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
     double const steps = static_cast<double>(scene.rays_per_dot) * std::max(1.0, scene.steps_across());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cuda/device/device_images.cuh"
 #include "cuda/focused_dots/expose_dots.h"
 #include "render/sensor/exposure.h"
 
@@ -26,18 +27,6 @@ inline __device__ RayRecord<double> widened(RayRecord<float> const& ray) {
   return {wide(here.place),      wide(here.pupil), wide(here.arrival),    wide(here.reference),
           wide(here.flow),       here.weight,      here.reference_weight, here.flow_weight,
           here.reference_counts, here.flow_counts, here.leaves_medium,    here.moved};
-}
-
-/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up
-/// to 2^53, 512 fully lit pixels), so that images depend neither on the order of deposits nor on where they are
-/// gathered on their way to the image.
-__device__ inline double whole_units(double units) { return rint(units); }
-
-/// @param units whole
-__device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double units) {
-  if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
-  auto const share = static_cast<unsigned long long>(static_cast<long long>(units));
-  atomicAdd(images.light[static_cast<int>(frame)] + static_cast<std::size_t>(row) * images.columns + column, share);
 }
 
 /// A square piece of a frame in which a block gathers a dot's light, one copy a warp, so that few additions go to the

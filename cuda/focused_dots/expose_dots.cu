@@ -174,11 +174,6 @@ __global__ void __launch_bounds__(threads, 4)
   }
 }
 
-__global__ void to_light_kernel(unsigned long long const* fixed_point, double* light, std::size_t count) {
-  std::size_t const i = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (i < count) light[i] = static_cast<double>(static_cast<long long>(fixed_point[i])) / fixed_point_one;
-}
-
 }  // namespace
 
 template <class T>
@@ -201,11 +196,5 @@ template void expose_dots(LightModel const&, SourcesView<double> const&, Batch c
                           DotTruth const*, DotCone const*, DeviceImages const&);
 template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
                           DotTruth const*, DotCone const*, DeviceImages const&);
-
-void to_light(unsigned long long const* fixed_point, double* light, std::size_t count) {
-  constexpr int block = 256;
-  to_light_kernel<<<static_cast<unsigned int>((count + block - 1) / block), block>>>(fixed_point, light, count);
-  check_launch("to_light");
-}
 
 }  // namespace gladstone::cuda

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "cuda/device/device_images.h"
 #include "cuda/rays/trace_rays.h"
 #include "render/scene/dot_light.h"
 
@@ -13,14 +14,6 @@ struct DotCone {
   Vec2d origin;       ///< mean displacement of the traced rays [px]
   MomentField field;  ///< of a narrow one
   TableCheck check;   ///< of a wide one
-};
-
-/// Images in the making: 64-bit fixed point, row by row.
-struct DeviceImages {
-  unsigned long long* light[frame_count] = {};  ///< null: no images
-  int columns = 0;
-  int rows = 0;
-  double units_per_weight = 0;  ///< units of fixed point
 };
 
 /// Sums up the records of a batch's dots to truth, a block a dot: truth[i] and cones[i] belong to dot first + i.
@@ -49,8 +42,5 @@ extern template void expose_dots(LightModel const&, SourcesView<double> const&, 
                                  DotTruth const*, DotCone const*, DeviceImages const&);
 extern template void expose_dots(LightModel const&, SourcesView<double> const&, Batch const&, RayRecord<float> const*,
                                  DotTruth const*, DotCone const*, DeviceImages const&);
-
-/// Turns fixed point into light per pixel. @param light count doubles on the device
-void to_light(unsigned long long const* fixed_point, double* light, std::size_t count);
 
 }  // namespace gladstone::cuda

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "cuda/device/device_array.h"
 #include "cuda/device/scalar_cast.h"
 #include "render/medium/cell_polynomials.h"
+#include "render/scene/scene.h"
 
 namespace gladstone::cuda {
 
@@ -87,6 +89,29 @@ class MirroredMedium {
   DeviceArray<double> doubles_;
   DeviceArray<double> polynomials_;
   DeviceArray<float> single_polynomials_;
+};
+
+/// The medium of the last scene, which often is the next one's too.
+class KeptMedium {
+ public:
+  /// Whether it is the scene's. Views without a grid cost nothing to mirror: it never is.
+  bool serves(Scene const& scene, bool wide) const {
+    return scene.medium.owner && owner_ == scene.medium.owner && wide_ == wide;
+  }
+  /// @param wide as MirroredMedium
+  void upload(Scene const& scene, bool wide) {
+    owner_.reset();
+    medium_ = MirroredMedium();
+    medium_ = MirroredMedium(scene.medium.view, wide);
+    owner_ = scene.medium.owner;
+    wide_ = wide;
+  }
+  MirroredMedium const& medium() const { return medium_; }
+
+ private:
+  std::shared_ptr<void const> owner_;  ///< of the medium that is on the device
+  MirroredMedium medium_;
+  bool wide_ = false;
 };
 
 }  // namespace gladstone::cuda

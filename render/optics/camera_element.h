@@ -64,16 +64,18 @@ template <class T>
 using CameraElement =
     OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>>;
 
-/// Takes a ray to an element and through it; its weight is 0 where it ends there. The smoothed rim of a stop lets a
-/// share of vignetted rays pass: theirs is not 0.
+/// Takes a ray to an element of a known kind and through it; its weight is 0 where it ends there. The smoothed rim of a
+/// stop lets a share of vignetted rays pass: theirs is not 0.
+template <class T, class Held>
+GLADSTONE_HD RayStatus pass(Held const& held, Ray<T>& ray, RayAccount<T>& account) {
+  RayStatus const status = held.interact(ray, account);
+  constexpr bool weighs = std::is_same_v<Held, PosedStop<T>>;
+  if (!weighs && status != RayStatus::alive) account.weight = T(0);
+  return status;
+}
 template <class T>
 GLADSTONE_HD RayStatus pass_element(CameraElement<T> const& element, Ray<T>& ray, RayAccount<T>& account) {
-  return element.visit([&](auto const& held) {
-    RayStatus const status = held.interact(ray, account);
-    constexpr bool weighs = std::is_same_v<std::decay_t<decltype(held)>, PosedStop<T>>;
-    if (!weighs && status != RayStatus::alive) account.weight = T(0);
-    return status;
-  });
+  return element.visit([&](auto const& held) { return pass(held, ray, account); });
 }
 
 }  // namespace gladstone

@@ -52,7 +52,9 @@ struct Quadric {
 
   /// Unit normal at a point of the surface, towards +z at the vertex.
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const {
-    return normalized(Vec3<T>{-curvature * p.x, -curvature * along_y * p.y, T(1) - (T(1) + conic) * curvature * p.z});
+    Vec3<T> const along{-curvature * p.x, -curvature * along_y * p.y, T(1) - (T(1) + conic) * curvature * p.z};
+    // of a plane and a sphere it is the radius over itself, of unit length as it stands
+    return conic == T(0) && along_y == T(1) ? along : normalized(along);
   }
 
  private:

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "render/light/sources.h"
+#include "render/scene/ground_truth.h"
+#include "render/scene/ray_hit.h"
 
 namespace gladstone {
 
@@ -81,6 +83,25 @@ GLADSTONE_HD AimedRay<T> aim_ray(Sources<T> const& sources, AimedBundle<T> const
   sample_coordinates(bundle.choice, i, ((of_scrambling >> 1) << bits) | scrambling, u);
   Vec2<T> const place = sources.place(u[2], u[3]);
   return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_of_circle(sqrt(u[0]), u[1]));
+}
+
+/// Enters what became of one ray in both frames: its ends are counted, its hits summed, its light laid down.
+/// @param origin that sums count from [px] @param hits of the ray's scrambling
+/// @param count called as (frame, status) @param deposit called as (frame, hit) where light arrives
+/// @return square of how far the medium moved it on the aim plane [m^2]; 0 where that is not known
+template <class T, class Count, class Deposit>
+GLADSTONE_HD T enter_ray(RayHit<T> const& reference, RayHit<T> const& flow, Vec2<T> origin,
+                         CentroidSum<T> (&hits)[frame_count], Count&& count, Deposit&& deposit) {
+  for (int frame = 0; frame < frame_count; ++frame) {
+    RayHit<T> const& here = frame == 0 ? reference : flow;
+    count(frame, here.status);
+    if (here.weight == T(0)) continue;
+    hits[frame].add(here.pixel - origin, here.weight, reaches_sensor_plane(here.status));
+    deposit(frame, here);
+  }
+  if (reference.status > RayStatus::vignetted || flow.status > RayStatus::vignetted) return T(0);
+  Vec2<T> const bend = flow.at_lens - reference.at_lens;
+  return dot(bend, bend);
 }
 
 }  // namespace gladstone

@@ -1,20 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
-#include "render/base/vec.h"
+#include "render/rays/hit_spline.h"
 #include "render/scene/light_image.h"
-#include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
 
-/// Light of many rays with one Gaussian spot: hits are gathered on a fine grid by cubic B-spline weights, and blurred
-/// once by spot and pixels. A ray costs sixteen additions instead of a spot.
-///
-/// What a pixel sees of a hit, as a function of its place, is interpolated by the splines that the hits are dealt to:
-/// to h^4/384 of its fourth derivative (de Boor, A Practical Guide to Splines), 1.4 over sigma^4. Three nodes a sigma
-/// leave 5e-5 of a ray's light to a pixel at worst, a fifth of a grey level of 12 bits, and less of any pixel that rays
-/// at many places light.
+/// Gathers the light of many rays with one Gaussian spot on the CPU, by a HitSpline. A ray costs sixteen additions
+/// instead of a spot.
 class HitGrid {
  public:
   explicit HitGrid(GaussianSpot<double> const& spot);
@@ -30,13 +25,12 @@ class HitGrid {
  private:
   static constexpr int side_px = 16;
 
-  int per_px_;                                                         ///< nodes a pixel
-  int reach_;                                                          ///< pixels to each side that a node lights
-  int side_;                                                           ///< nodes
-  int left_ = 0, top_ = 0;                                             ///< pixel of node (0, 0)
-  int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  ///< touched part
-  std::vector<double> share_;  ///< [phase][2 reach + 2]: what pixels from node's pixel - reach on see of a node
-  std::vector<double> light_, row_, picture_;
+  HitSpline spline_;
+  HitSplineView view_;
+  int side_;                               ///< nodes
+  int left_ = 0, top_ = 0;                 ///< pixel of node (0, 0)
+  NodeRange columns_{0, 0}, lines_{0, 0};  ///< touched part
+  std::vector<double> light_, rows_seen_;
 };
 
 }  // namespace gladstone

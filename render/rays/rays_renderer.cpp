@@ -59,14 +59,18 @@ struct IdealView : CameraView<double> {
   double seen_z;   ///< where it is seen through the windows before the medium [m]
 };
 
-RayHit<double> finish_ray(IdealView const& view, Ray<double> const& ray, RayAccount<double> const& account,
-                          RayStatus status) {
-  RayHit<double> hit = finish_ray(static_cast<CameraView<double> const&>(view), ray, account, status);
-  if (hit.weight == 0) return hit;
-  double const way = (view.seen_z - ray.position.z) / ray.direction.z;
-  Vec3d const apparent = ray.position + way * ray.direction;
-  hit.pixel = view.camera->ideal_project({apparent.x, apparent.y, view.plane_z});
-  return hit;
+template <int N>
+void finish_rays(IdealView const& view, Ray<double> (&ray)[N], RayAccount<double> (&account)[N], RayStatus (&status)[N],
+                 RayHit<double> (&hit)[N]) {
+  Ray<double> came[N];
+  std::copy_n(ray, N, came);
+  finish_rays(static_cast<CameraView<double> const&>(view), ray, account, status, hit);
+  for (int i = 0; i < N; ++i) {
+    if (hit[i].weight == 0) continue;
+    double const way = (view.seen_z - came[i].position.z) / came[i].direction.z;
+    Vec3d const apparent = came[i].position + way * came[i].direction;
+    hit[i].pixel = view.camera->ideal_project({apparent.x, apparent.y, view.plane_z});
+  }
 }
 
 /// Turns the light of bright dots into what is left of a white target.

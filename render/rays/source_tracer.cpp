@@ -1,6 +1,8 @@
 #include "render/rays/source_tracer.h"
 
 #include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/scene/bend_limit.h"
 
 namespace gladstone {
 
@@ -44,6 +46,27 @@ AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, double reach, d
   AimedBundle<double> bundle{disc.centre, wider * disc.a, wider * disc.b, {}, choice};
   bundle.across = pi * cross(bundle.a, bundle.b);
   return bundle;
+}
+
+double RaysLaunch::wider_margin(double bend) const {
+  double const margin = 1.02 * bend;
+  refuse_bend_beyond_any_bench(margin, z_b);
+  return margin;
+}
+
+DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  DotTruth truth;
+  truth.origin = origin;
+  truth.error = {nan, nan};
+  RaySums all;
+  for (int i = 0; i < scramblings; ++i) all += of_scramblings[i];
+  for (int frame = 0; frame < frame_count; ++frame) truth.hits[frame] = all.hits[frame];
+  if (scramblings > 1) {
+    Vec2d const squares = truth_errors(of_scramblings, scramblings, all).rays2;
+    truth.error = {std::sqrt(squares.x), std::sqrt(squares.y)};
+  }
+  return truth;
 }
 
 RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot, {}) {

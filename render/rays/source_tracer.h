@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 
 #include "render/base/interrupt.h"
-#include "render/base/units.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
-#include "render/scene/bend_limit.h"
 #include "render/scene/camera.h"
 #include "render/scene/dot_exposure.h"
 #include "render/scene/scene.h"
@@ -38,6 +37,9 @@ struct RaysLaunch {
   std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
   /// Where its rays go, if it reaches so far about the point, and the medium bends rays aside by `margin` at most [m].
   AimedBundle<double> bundle(WorldAimDisc const& disc, double reach, double margin) const;
+  /// The margin for a source of which the medium moved a ray so far on the aim plane [m].
+  /// @throws DataError where no bench has such a bend
+  double wider_margin(double bend) const;
 };
 
 /// Lays down the light of one frame of one source at a time.
@@ -55,6 +57,45 @@ class RayLight {
   double light_per_weight_ = 0;
 };
 
+/// How the rays of a source are sent.
+struct SourceAim {
+  std::optional<WorldAimDisc> disc;           ///< none: no ray of it gets through
+  Vec2d origin{};                             ///< whole pixel that its sums count from [px]
+  double margin = 0;                          ///< by which its bundle is wider than what it sees of the stop [m]
+  Vec2d low[frame_count], high[frame_count];  ///< about what is known of where they land [px]
+};
+
+/// Aims at what a source sees of the stop, wider by a fourth more than the medium moves its chief and rim rays on the
+/// aim plane.
+template <class View, class Medium>
+SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& medium, Vec3d middle) {
+  SourceAim aim;
+  aim.disc = launch.sight(middle);
+  if (!aim.disc) return aim;
+  if (auto const pixel = launch.camera.project(middle)) aim.origin = {std::round(pixel->x), std::round(pixel->y)};
+  for (int frame = 0; frame < frame_count; ++frame) aim.low[frame] = aim.high[frame] = aim.origin;
+  auto const landed = [&aim](int frame, RayHit<double> const& hit) {
+    if (!reaches_sensor_plane(hit.status)) return;
+    aim.low[frame] = {std::min(aim.low[frame].x, hit.pixel.x), std::min(aim.low[frame].y, hit.pixel.y)};
+    aim.high[frame] = {std::max(aim.high[frame].x, hit.pixel.x), std::max(aim.high[frame].y, hit.pixel.y)};
+  };
+  double bend = 0;
+  for (Vec3d const off : {Vec3d{}, aim.disc->a, aim.disc->b, -aim.disc->a, -aim.disc->b}) {
+    Ray<double> const start{middle, normalized(aim.disc->centre + off - middle)};
+    RayHit<double> const reference = trace_ray(view, NoMedium<double>{}, launch.tracing, start, 1.0);
+    RayHit<double> const flow = trace_ray(view, medium, launch.tracing, start, 1.0);
+    landed(0, reference);
+    landed(1, flow);
+    bool const known = std::max(reference.status, flow.status) <= RayStatus::vignetted;
+    if (known) bend = std::max(bend, length(flow.at_lens - reference.at_lens));
+  }
+  aim.margin = 1.25 * bend;
+  return aim;
+}
+
+/// The truth of a source from the sums over its scramblings. @param scramblings 0: NaN, no ray of it gets through
+DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin);
+
 /// Traces the rays of sources, both frames by the same, one source at a time: its light and its truth.
 /// @tparam View CameraView, or another that says where rays land
 template <class View, class Sources, class Medium>
@@ -70,35 +111,18 @@ class SourceTracer {
   /// its light is taken back and it begins again. So what it gives hangs on nothing but itself.
   /// @param images null: its light is not sent anywhere @return its truth; NaN where no ray of it gets through
   DotTruth trace(std::uint64_t source, LightImage* const (&images)[frame_count]) {
-    DotTruth truth;
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    truth.error = {nan, nan};
-    Vec3d const middle = sources_.middle(source);
-    auto const disc = launch_.sight(middle);
-    if (!disc) return truth;
-    if (auto const pixel = launch_.camera.project(middle)) {
-      truth.origin = {std::round(pixel->x), std::round(pixel->y)};
-    }
-    double margin = probe_bend(middle, *disc);
+    SourceAim aim = aim_at_stop(launch_, view_, medium_, sources_.middle(source));
+    if (!aim.disc) return source_truth(nullptr, 0, {});
     while (true) {
       StatusCounts const before = statuses_;
-      double const bend = trace_all(source, *disc, margin, truth.origin, images, 1);
-      if (launch_.camera.chief_rays_only() || !(bend > margin)) break;
-      if (with_images_) trace_all(source, *disc, margin, truth.origin, images, -1);
+      double const bend = trace_all(source, aim, images, 1);
+      if (launch_.camera.chief_rays_only() || !(bend > aim.margin)) break;
+      if (with_images_) trace_all(source, aim, images, -1);
       statuses_ = before;
-      margin = 1.02 * bend;
-      refuse_bend_beyond_any_bench(margin, launch_.z_b);
+      aim.margin = launch_.wider_margin(bend);
     }
-    largest_margin_ = std::max(largest_margin_, margin);
-    int const scramblings = 1 << launch_.choice.scrambling_bits;
-    RaySums all;
-    for (int i = 0; i < scramblings; ++i) all += of_scramblings_[i];
-    for (int frame = 0; frame < frame_count; ++frame) truth.hits[frame] = all.hits[frame];
-    if (scramblings > 1) {
-      Vec2d const squares = truth_errors(of_scramblings_, scramblings, all).rays2;
-      truth.error = {std::sqrt(squares.x), std::sqrt(squares.y)};
-    }
-    return truth;
+    largest_margin_ = std::max(largest_margin_, aim.margin);
+    return source_truth(of_scramblings_, 1 << launch_.choice.scrambling_bits, aim.origin);
   }
 
   StatusCounts const& statuses() const { return statuses_; }
@@ -106,26 +130,9 @@ class SourceTracer {
   double largest_margin() const { return largest_margin_; }
 
  private:
-  /// A fourth more than chief and rim rays are moved on the aim plane [m].
-  double probe_bend(Vec3d middle, WorldAimDisc const& disc) const {
-    double bend = 0;
-    for (Vec3d const off : {Vec3d{}, disc.a, disc.b, -disc.a, -disc.b}) {
-      Ray<double> const start[1] = {{middle, normalized(disc.centre + off - middle)}};
-      bend = std::max(bend, bend_of(start[0]));
-    }
-    return 1.25 * bend;
-  }
-  double bend_of(Ray<double> const& start) const {
-    RayHit<double> const reference = trace_ray(view_, NoMedium<double>{}, launch_.tracing, start, 1.0);
-    RayHit<double> const flow = trace_ray(view_, medium_, launch_.tracing, start, 1.0);
-    bool const known = std::max(reference.status, flow.status) <= RayStatus::vignetted;
-    return known ? length(flow.at_lens - reference.at_lens) : 0;
-  }
-
   /// @param sign of the light that is laid down @return furthest that a ray was moved on the aim plane [m]
-  double trace_all(std::uint64_t source, WorldAimDisc const& disc, double margin, Vec2d origin,
-                   LightImage* const (&images)[frame_count], double sign) {
-    AimedBundle<double> const bundle = launch_.bundle(disc, sources_.reach(), margin);
+  double trace_all(std::uint64_t source, SourceAim const& aim, LightImage* const (&images)[frame_count], double sign) {
+    AimedBundle<double> const bundle = launch_.bundle(*aim.disc, sources_.reach(), aim.margin);
     double const light_per_weight = sign * launch_.light_per_weight(sources_.area());
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) {
       light_[frame]->begin(images[frame], light_per_weight);
@@ -133,11 +140,16 @@ class SourceTracer {
     std::fill_n(of_scramblings_, most_scramblings, RaySums{});
     largest_bend2_ = 0;
     std::uint64_t ray = 0;
-    for (; ray + 2 <= launch_.rays; ray += 2) trace_some<2>(bundle, source, ray, origin);
-    if (ray < launch_.rays) trace_some<1>(bundle, source, ray, origin);
+    for (; ray + side_by_side <= launch_.rays; ray += side_by_side) {
+      trace_some<side_by_side>(bundle, source, ray, aim.origin);
+    }
+    for (; ray < launch_.rays; ++ray) trace_some<1>(bundle, source, ray, aim.origin);
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) light_[frame]->finish();
     return std::sqrt(largest_bend2_);
   }
+
+  /// Rays that go side by side: two across a medium, which needs the registers of both.
+  static constexpr int side_by_side = std::is_same_v<Medium, NoMedium<double>> ? 4 : 2;
 
   template <int N>
   void trace_some(AimedBundle<double> const& bundle, std::uint64_t source, std::uint64_t first, Vec2d origin) {
@@ -152,21 +164,16 @@ class SourceTracer {
     RayHit<double> hit[frame_count][N];
     trace_rays(view_, NoMedium<double>{}, launch_.tracing, start, weight, hit[0]);
     trace_rays(view_, medium_, launch_.tracing, start, weight, hit[1]);
+    auto const mask = (std::uint64_t{1} << launch_.choice.scrambling_bits) - 1;
+    auto const count = [this](int frame, RayStatus status) {
+      ++statuses_[static_cast<std::size_t>(frame)][static_cast<std::size_t>(status)];
+    };
+    auto const deposit = [this](int frame, RayHit<double> const& here) {
+      if (with_images_) light_[frame]->deposit(here.pixel, here.weight);
+    };
     for (int i = 0; i < N; ++i) {
-      auto const mask = (std::uint64_t{1} << launch_.choice.scrambling_bits) - 1;
       RaySums& sums = of_scramblings_[(first + static_cast<std::uint64_t>(i)) & mask];
-      for (int frame = 0; frame < frame_count; ++frame) {
-        RayHit<double> const& here = hit[frame][i];
-        ++statuses_[static_cast<std::size_t>(frame)][static_cast<std::size_t>(here.status)];
-        if (here.weight == 0) continue;
-        sums.hits[frame].add(here.pixel - origin, here.weight, reaches_sensor_plane(here.status));
-        if (with_images_) light_[frame]->deposit(here.pixel, here.weight);
-      }
-      RayStatus const worse = std::max(hit[0][i].status, hit[1][i].status);
-      if (worse <= RayStatus::vignetted) {
-        Vec2d const bend = hit[1][i].at_lens - hit[0][i].at_lens;
-        largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
-      }
+      largest_bend2_ = std::max(largest_bend2_, enter_ray(hit[0][i], hit[1][i], origin, sums.hits, count, deposit));
     }
   }
 

@@ -20,14 +20,30 @@ struct CameraView {
   Pose<T> aim_plane;  ///< that rays are aimed at: tangent to the first surface of the lens
 };
 
-/// Carries a ray through elements [first, last) while any of its light is left.
+/// Carries N rays through elements [first, last), each while any of its light is left. They go side by side: a surface
+/// is one long chain of operations that wait for each other, and those of several rays fill each other's gaps.
+/// @param status of each; stays where nothing stops it
+template <class T, int N>
+GLADSTONE_HD void carry(CameraView<T> const& camera, int first, int last, Ray<T> (&ray)[N], RayAccount<T> (&account)[N],
+                        RayStatus (&status)[N]) {
+  for (int i = first; i < last; ++i) {
+    camera.elements[i].visit([&](auto const& held) {
+      for (int k = 0; k < N; ++k) {
+        if (account[k].weight == T(0)) continue;
+        RayStatus const here = pass(held, ray[k], account[k]);
+        if (here != RayStatus::alive) status[k] = here;
+      }
+    });
+  }
+}
+
+/// The same for one.
 template <class T>
 GLADSTONE_HD RayStatus carry(CameraView<T> const& camera, int first, int last, Ray<T>& ray, RayAccount<T>& account) {
   RayStatus status = RayStatus::alive;
-  for (int i = first; i < last; ++i) {
+  for (int i = first; i < last && account.weight != T(0); ++i) {
     RayStatus const here = pass_element(camera.elements[i], ray, account);
     if (here != RayStatus::alive) status = here;
-    if (account.weight == T(0)) return status;
   }
   return status;
 }
@@ -39,28 +55,33 @@ GLADSTONE_HD Ray<T> outgoing_ray(Ray<T> const& start, MediumPassage<T> const& wa
   return {exit_position(start, way), exit_direction(start, way)};
 }
 
-/// From where a ray leaves the medium to the sensor's plane.
-template <class T>
-GLADSTONE_HD RayHit<T> finish_ray(CameraView<T> const& camera, Ray<T> ray, RayAccount<T> account, RayStatus status) {
-  RayHit<T> hit;
-  PosedStop<T>{camera.aim_plane, T(0), T(0)}.meet(ray, hit.at_lens);
-  RayStatus const behind = carry(camera, camera.before_medium, camera.count, ray, account);
-  hit.status = behind != RayStatus::alive ? behind : status;
-  hit.weight = account.weight;
-  if (hit.weight == T(0)) return hit;
-  Vec2<T> place;
-  if (!camera.sensor.meet(ray, place)) {
-    hit.status = RayStatus::missed_lens;
-    hit.weight = T(0);
-    return hit;
+/// From where rays leave the medium to the sensor's plane. @param status of each so far
+template <class T, int N>
+GLADSTONE_HD void finish_rays(CameraView<T> const& camera, Ray<T> (&ray)[N], RayAccount<T> (&account)[N],
+                              RayStatus (&status)[N], RayHit<T> (&hit)[N]) {
+  for (int i = 0; i < N; ++i) {
+    hit[i] = {};
+    if (account[i].weight != T(0)) PosedStop<T>{camera.aim_plane, T(0), T(0)}.meet(ray[i], hit[i].at_lens);
   }
-  hit.pixel = camera.sensor.to_pixel(place.x, place.y);
-  if (hit.status == RayStatus::alive && !camera.sensor.covers(hit.pixel)) hit.status = RayStatus::missed_sensor;
-  return hit;
+  carry(camera, camera.before_medium, camera.count, ray, account, status);
+  for (int i = 0; i < N; ++i) {
+    hit[i].status = status[i];
+    hit[i].weight = account[i].weight;
+    if (hit[i].weight == T(0)) continue;
+    Vec2<T> place;
+    if (!camera.sensor.meet(ray[i], place)) {
+      hit[i].status = RayStatus::missed_lens;
+      hit[i].weight = T(0);
+      continue;
+    }
+    hit[i].pixel = camera.sensor.to_pixel(place.x, place.y);
+    if (hit[i].status == RayStatus::alive && !camera.sensor.covers(hit[i].pixel))
+      hit[i].status = RayStatus::missed_sensor;
+  }
 }
 
 /// N rays in one frame, side by side: through what stands before the medium, the medium, the camera, to the sensor.
-/// What the frame's medium is, its type says: NoMedium is the ambient. A view with a finish_ray() of its own decides
+/// What the frame's medium is, its type says: NoMedium is the ambient. A view with a finish_rays() of its own decides
 /// where rays land.
 template <class View, class T, class Medium, int N>
 GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOptions<T> const& options,
@@ -71,8 +92,9 @@ GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOp
   for (int i = 0; i < N; ++i) {
     ray[i] = start[i];
     account[i].weight = weight[i];
-    status[i] = carry(camera, 0, camera.before_medium, ray[i], account[i]);
+    status[i] = RayStatus::alive;
   }
+  carry(camera, 0, camera.before_medium, ray, account, status);
   if constexpr (!std::is_same_v<Medium, NoMedium<T>>) {
     MediumPassage<T> way[N];
     trace_medium(medium, options, ray, way);
@@ -84,14 +106,7 @@ GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOp
       ray[i] = outgoing_ray(ray[i], way[i]);
     }
   }
-  for (int i = 0; i < N; ++i) {
-    if (account[i].weight != T(0)) {
-      hit[i] = finish_ray(camera, ray[i], account[i], status[i]);
-    } else {
-      hit[i] = {};
-      hit[i].status = status[i];
-    }
-  }
+  finish_rays(camera, ray, account, status, hit);
 }
 
 /// The one per-ray function: one ray in one frame.

@@ -5,6 +5,10 @@
 #include <span>
 #include <string>
 
+#include "render/optics/glass_catalogue.h"
+#include "render/optics/lens.h"
+#include "render/optics/paraxial.h"
+#include "render/optics/prescription.h"
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
 #include "render/scene/scene.h"
@@ -100,6 +104,34 @@ inline Scene plane_scene(int per_side, std::uint64_t rays_per_dot, int pixels = 
   scene.medium = build_medium(medium);
   medium.step_mm = 2.5;
   plan_step(scene);
+  return scene;
+}
+
+/// Table 1 with the double Gauss of data/lenses in place of its lens.
+inline Setup double_gauss_setup() {
+  Setup setup;
+  LensOptions options;
+  options.f_number = setup.lens.f_number;
+  auto const lens = std::make_shared<Lens const>(
+      build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/double_gauss.toml"),
+                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
+  setup.lens.prescription = lens;
+  setup.lens.focal_length = paraxial_lens(*lens).effective_focal_length;
+  return setup;
+}
+
+/// Point sources out of focus by 2 px, 10,000 rays each, no medium.
+/// @param dots_per_window of 32 x 32 px
+inline Scene points_scene(Setup setup, double dots_per_window = 1) {
+  setup.target.kind = TargetKind::dots;
+  setup.target.dots_per_32px_window = dots_per_window;
+  setup.target.dot_diameter_px = 0;
+  setup.lens.focus = Focus::distance;
+  // a defocus of 2 px: the cone's width at the sensor, d_A |z_i - z| / z, see physics of a point out of focus
+  setup.lens.focus_distance = setup.z_b() * (1 - 0.0168);
+  Scene scene = build_scene(setup);
+  scene.rays_per_dot = 10000;
+  scene.step = setup.medium.thickness;
   return scene;
 }
 

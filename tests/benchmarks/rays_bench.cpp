@@ -1,12 +1,10 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
-#include <memory>
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/build_camera.h"
 #include "tests/benchmarks/bench_scenes.h"
 
 namespace gladstone::bench {
@@ -31,33 +29,10 @@ void render_points_by_rays(benchmark::State& state, Scene scene) {
   state.counters["rays/s"] = rays / fastest;
 }
 
-Scene points_scene(Setup setup) {
-  setup.target.kind = TargetKind::dots;
-  setup.target.dots_per_32px_window = 1;
-  setup.target.dot_diameter_px = 0;
-  setup.lens.focus = Focus::distance;
-  // a defocus of 2 px: the cone's width at the sensor, d_A |z_i - z| / z, see physics of a point out of focus
-  setup.lens.focus_distance = setup.z_b() * (1 - 0.0168);
-  Scene scene = build_scene(setup);
-  scene.rays_per_dot = 10000;
-  scene.step = setup.medium.thickness;
-  return scene;
-}
-
 void thin_lens(benchmark::State& state) { render_points_by_rays(state, points_scene({})); }
 BENCHMARK(thin_lens)->ArgName("threads")->Arg(1)->Arg(2)->UseManualTime()->Iterations(2)->Unit(benchmark::kMillisecond);
 
-void double_gauss(benchmark::State& state) {
-  Setup setup;
-  LensOptions options;
-  options.f_number = setup.lens.f_number;
-  auto const lens = std::make_shared<Lens const>(
-      build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/double_gauss.toml"),
-                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
-  setup.lens.prescription = lens;
-  setup.lens.focal_length = paraxial_lens(*lens).effective_focal_length;
-  render_points_by_rays(state, points_scene(setup));
-}
+void double_gauss(benchmark::State& state) { render_points_by_rays(state, points_scene(double_gauss_setup())); }
 BENCHMARK(double_gauss)
     ->ArgName("threads")
     ->Arg(1)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cuda/backend.h"
+#include "render/rays/rays_renderer.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -40,21 +41,37 @@ inline bool same_bits(Image<double> const& a, Image<double> const& b) {
   return std::equal(a.begin(), a.end(), b.begin());
 }
 
+/// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].
+struct FocusedDotsMethod {
+  using OnCpu = CpuRenderer;
+  static std::unique_ptr<Renderer> on_device() { return cuda::make_renderer(); }
+  static constexpr double levels = 0.01;
+};
+struct RaysMethod {
+  using OnCpu = RaysRenderer;
+  static std::unique_ptr<Renderer> on_device() { return cuda::make_rays_renderer(); }
+  /// the device gathers the hits of few rays on a grid, too, and in whole numbers
+  static constexpr double levels = 1;
+};
+
 /// Renders on the device and beside it on the CPU; skipped where there is no device.
-class CudaRendererTest : public testing::Test {
+template <class Method>
+class OnBothDevices : public testing::Test {
  protected:
   void SetUp() override {
     if (!cuda::device_state().usable) GTEST_SKIP() << cuda::device_state().text;
-    renderer_ = cuda::make_renderer();
+    renderer_ = Method::on_device();
   }
   Rendering on_device(Scene& scene) {
     return renderer_->render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
   }
 
-  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to a grey level, counts exactly.
+  /// The device's rendering must be the CPU's: truth and theory to 1e-9 px, images to its share of a grey level, counts
+  /// exactly.
   void expect_as_on_cpu(Scene scene) {
     Scene again = scene;
-    Rendering const cpu = render_all(scene), gpu = on_device(again);
+    Rendering const cpu = on_cpu_.render(scene, scene.dots, RenderImages::yes, RenderTheory::yes),
+                    gpu = on_device(again);
     EXPECT_LT(largest_difference(cpu.truth.displacement_px, gpu.truth.displacement_px), 1e-9);
     EXPECT_LT(largest_difference(cpu.truth.reference_px, gpu.truth.reference_px), 1e-9);
     EXPECT_LT(largest_difference(cpu.truth.displacement_error_px, gpu.truth.displacement_error_px), 1e-9);
@@ -69,8 +86,8 @@ class CudaRendererTest : public testing::Test {
     EXPECT_EQ(cpu.rays, gpu.rays);
     EXPECT_NEAR(scene.pupil_margin, again.pupil_margin, 1e-12);
     double const level = grey_level(cpu.light.reference);
-    EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), 0.01 * level);
-    EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), 0.01 * level);
+    EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), Method::levels * level);
+    EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), Method::levels * level);
   }
 
   Scene scene_of(FieldSetup const& field, std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
@@ -83,6 +100,10 @@ class CudaRendererTest : public testing::Test {
   }
 
   std::unique_ptr<Renderer> renderer_;
+  typename Method::OnCpu on_cpu_;
 };
+
+using CudaRendererTest = OnBothDevices<FocusedDotsMethod>;
+using CudaRaysTest = OnBothDevices<RaysMethod>;
 
 }  // namespace gladstone

@@ -8,13 +8,20 @@
 namespace gladstone {
 namespace {
 
-TEST_F(CudaRendererTest, NoMedium) { expect_as_on_cpu(scene_of({}, 100)); }
-TEST_F(CudaRendererTest, UniformGradient) { expect_as_on_cpu(scene_of(uniform_gradient(20, -8, 3), 128)); }
-TEST_F(CudaRendererTest, Sinusoid) { expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 333)); }
-TEST_F(CudaRendererTest, DnsPlane) { expect_as_on_cpu(scene_of(dns_plane("kepeak"), 257)); }
-TEST_F(CudaRendererTest, FewRays) { expect_as_on_cpu(scene_of(dns_plane("late"), 7)); }
+/// Every kind of medium, source and spot that the bench has goes through here, by the fast renderer and by the general
+/// one.
+template <class Method>
+class ByBothMethods : public OnBothDevices<Method> {};
+using Methods = testing::Types<FocusedDotsMethod, RaysMethod>;
+TYPED_TEST_SUITE(ByBothMethods, Methods);
 
-TEST_F(CudaRendererTest, PlumeBlobAndShock) {
+TYPED_TEST(ByBothMethods, NoMedium) { this->expect_as_on_cpu(this->scene_of({}, 100)); }
+TYPED_TEST(ByBothMethods, UniformGradient) { this->expect_as_on_cpu(this->scene_of(uniform_gradient(20, -8, 3), 128)); }
+TYPED_TEST(ByBothMethods, Sinusoid) { this->expect_as_on_cpu(this->scene_of(sinusoid(0.2, 4e-3), 333)); }
+TYPED_TEST(ByBothMethods, DnsPlane) { this->expect_as_on_cpu(this->scene_of(dns_plane("kepeak"), 257)); }
+TYPED_TEST(ByBothMethods, FewRays) { this->expect_as_on_cpu(this->scene_of(dns_plane("late"), 7)); }
+
+TYPED_TEST(ByBothMethods, PlumeBlobAndShock) {
   for (FieldKind const kind : {FieldKind::gaussian_plume, FieldKind::gaussian_blob, FieldKind::normal_shock}) {
     FieldSetup field;
     field.kind = kind;
@@ -23,7 +30,7 @@ TEST_F(CudaRendererTest, PlumeBlobAndShock) {
     field.mach = 1.2;
     field.upstream_density = 1.225;
     field.shock_thickness = 1e-3;
-    expect_as_on_cpu(scene_of(field, 64));
+    this->expect_as_on_cpu(this->scene_of(field, 64));
   }
 }
 
@@ -44,12 +51,12 @@ FieldSetup volume_file() {
   return field;
 }
 
-TEST_F(CudaRendererTest, VolumesSplineAndLinear) {
+TYPED_TEST(ByBothMethods, VolumesSplineAndLinear) {
   FieldSetup field = volume_file();
   for (bool const tiled : {false, true}) {
     field.periodic = {tiled, tiled, tiled};
     for (bool const spline : {true, false}) {
-      expect_as_on_cpu(scene_of(field, 200, [&](BosSetup& setup) {
+      this->expect_as_on_cpu(this->scene_of(field, 200, [&](BosSetup& setup) {
         if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
       }));
     }
@@ -63,30 +70,35 @@ TEST_F(CudaRendererTest, MoreRaysThanAreOrderedTogether) {
   expect_as_on_cpu(scene);
 }
 
-TEST_F(CudaRendererTest, EulerStraightAndRefractingFaces) {
-  expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::euler; }));
-  expect_as_on_cpu(scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::straight; }));
-  expect_as_on_cpu(scene_of(uniform_gradient(20, 5), 64, [](BosSetup& s) { s.medium.faces = Faces::refract; }));
+TYPED_TEST(ByBothMethods, EulerStraightAndRefractingFaces) {
+  this->expect_as_on_cpu(
+      this->scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::euler; }));
+  this->expect_as_on_cpu(
+      this->scene_of(sinusoid(0.2, 4e-3), 64, [](BosSetup& s) { s.medium.integrator = Integrator::straight; }));
+  this->expect_as_on_cpu(
+      this->scene_of(uniform_gradient(20, 5), 64, [](BosSetup& s) { s.medium.faces = Faces::refract; }));
 }
 
-TEST_F(CudaRendererTest, SpotsFocusAndPolarity) {
+TYPED_TEST(ByBothMethods, SpotsFocusAndPolarity) {
   for (SpotModel const spot : {SpotModel::airy, SpotModel::none, SpotModel::gaussian_first_zero}) {
-    expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& s) { s.lens.spot = spot; }));
+    this->expect_as_on_cpu(this->scene_of(sinusoid(0.1, 6e-3), 96, [&](BosSetup& s) { s.lens.spot = spot; }));
   }
-  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.lens.focus = Focus::medium; }));
-  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.target.polarity = Polarity::dark; }));
+  this->expect_as_on_cpu(this->scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.lens.focus = Focus::medium; }));
+  this->expect_as_on_cpu(
+      this->scene_of(sinusoid(0.1, 6e-3), 96, [](BosSetup& s) { s.target.polarity = Polarity::dark; }));
 }
 
-TEST_F(CudaRendererTest, ChiefRaysPointsAndRandomPupil) {
+TYPED_TEST(ByBothMethods, ChiefRaysPointsAndRandomPupil) {
   double const pinhole = std::numeric_limits<double>::infinity();
-  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [&](BosSetup& s) { s.lens.f_number = pinhole; }));
-  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.target.dot_diameter_px = 0; }));
-  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.render.sampling = PupilSampling::random; }));
+  this->expect_as_on_cpu(this->scene_of(sinusoid(0.1, 6e-3), 64, [&](BosSetup& s) { s.lens.f_number = pinhole; }));
+  this->expect_as_on_cpu(this->scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.target.dot_diameter_px = 0; }));
+  this->expect_as_on_cpu(
+      this->scene_of(sinusoid(0.1, 6e-3), 64, [](BosSetup& s) { s.render.sampling = PupilSampling::random; }));
 }
 
-TEST_F(CudaRendererTest, TwoRunsGiveTheSameBits) {
-  Scene scene = scene_of(dns_plane("kepeak"), 500);
-  Rendering const one = on_device(scene), two = on_device(scene);
+TYPED_TEST(ByBothMethods, TwoRunsGiveTheSameBits) {
+  Scene scene = this->scene_of(dns_plane("kepeak"), 500);
+  Rendering const one = this->on_device(scene), two = this->on_device(scene);
   EXPECT_TRUE(same_bits(one.light.reference, two.light.reference));
   EXPECT_TRUE(same_bits(one.light.flow, two.light.flow));
   EXPECT_EQ(one.truth.displacement_px, two.truth.displacement_px);

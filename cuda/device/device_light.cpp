@@ -1,9 +1,9 @@
-#include "cuda/focused_dots/device_light.h"
+#include "cuda/device/device_light.h"
 
 #include <algorithm>
 
 #include "cuda/device/cuda_error.h"
-#include "cuda/focused_dots/detect_light.h"
+#include "cuda/device/detect_light.h"
 #include "render/base/parallel.h"
 
 namespace gladstone::cuda {

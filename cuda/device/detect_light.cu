@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <bit>
 
+#include "cuda/device/detect_light.h"
 #include "cuda/device/launch.h"
 #include "cuda/device/ordered_key.cuh"
-#include "cuda/focused_dots/detect_light.h"
 
 namespace gladstone::cuda {
 namespace {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "cuda/device/device_images.h"
+
+namespace gladstone::cuda {
+
+/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up
+/// to 2^53, 512 fully lit pixels), so that images depend neither on the order of deposits nor on where they are
+/// gathered on their way to the image.
+__device__ inline double whole_units(double units) { return rint(units); }
+
+/// @param units whole
+__device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double units) {
+  if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
+  auto const share = static_cast<unsigned long long>(static_cast<long long>(units));
+  atomicAdd(images.light[static_cast<int>(frame)] + static_cast<std::size_t>(row) * images.columns + column, share);
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+#include "cuda/device/device_light.h"
+
+namespace gladstone::cuda {
+
+/// Images in the making: 64-bit fixed point, row by row.
+struct DeviceImages {
+  unsigned long long* light[frame_count] = {};  ///< null: no images
+  int columns = 0;
+  int rows = 0;
+  double units_per_weight = 0;  ///< units of fixed point
+};
+
+/// Both frames on the device.
+class ImagePairOnDevice {
+ public:
+  ImagePairOnDevice(int columns, int rows);
+
+  DeviceImages view(double light_per_weight);
+  void to_light(DeviceLight& light) const;
+
+ private:
+  std::size_t pixels() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
+
+  int columns_, rows_;
+  DeviceArray<unsigned long long> light_[frame_count];
+};
+
+}  // namespace gladstone::cuda

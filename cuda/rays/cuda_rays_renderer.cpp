@@ -1,0 +1,300 @@
+#include "cuda/rays/cuda_rays_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "cuda/device/device_images.h"
+#include "cuda/device/launch.h"
+#include "cuda/rays/trace_sources.h"
+#include "render/base/interrupt.h"
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+#include "render/rays/ray_theory.h"
+#include "render/rays/rays_renderer.h"
+#include "render/rays/source_tracer.h"
+#include "render/scene/light_model.h"
+
+namespace gladstone::cuda {
+namespace {
+
+/// Memory for the sums of one batch of sources [bytes].
+constexpr std::size_t most_sum_bytes = std::size_t{256} << 20;
+
+/// What the sources of a scene share, on the device and on the host.
+class LaunchOnDevice {
+ public:
+  /// @param images null: truth only
+  LaunchOnDevice(RaysLaunch const& host, DotPattern const& pattern, double plane_z, ImagePairOnDevice* images)
+      : host_(host),
+        pattern_{pattern.view(plane_z)},
+        source_px_(pattern_.reach() / std::sqrt(host.point_area)),
+        elements_(host.camera.elements.data(), host.camera.elements.size(), "the camera"),
+        centres_(pattern.centre.data(), pattern.centre.size(), "the sources"),
+        radiances_(pattern.radiance.data(), pattern.radiance.size(), "the sources") {
+    launch_.camera = host.camera.view();
+    launch_.camera.elements = elements_.data();
+    launch_.tracing = host.tracing;
+    launch_.sources = pattern_;
+    launch_.sources.dots.centre = centres_.data();
+    launch_.sources.dots.radiance = radiances_.data();
+    launch_.choice = host.choice;
+    launch_.rays = host.rays;
+    if (!images) return;
+    launch_.images = images->view(host.light_per_weight(pattern_.area()));
+    launch_.spot = host.spot;
+    if (host.spot.model == SpotModel::airy) {
+      airy_ = DeviceArray<double>(host.spot.airy.shares, host.spot.airy.count(), "the Airy table");
+      launch_.spot.airy.shares = airy_.data();
+    } else if (host.spot.model != SpotModel::none && HitSpline::serves(host.spot.gaussian.sigma)) {
+      HitSpline const spline(host.spot.gaussian);
+      launch_.spline = spline.view();
+      share_ = DeviceArray<double>(launch_.spline.share, static_cast<std::size_t>(launch_.spline.count()), "a spline");
+      launch_.spline.share = share_.data();
+    }
+  }
+
+  LambertSources<double> const& pattern() const { return pattern_; }
+  std::size_t sums_a_source() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }
+  int scramblings() const { return launch_.scramblings(); }
+
+  SourceOnDevice place(std::uint64_t source, SourceAim const& aim) const {
+    AimedBundle<double> const bundle = host_.bundle(*aim.disc, pattern_.reach(), aim.margin);
+    SourceOnDevice placed{source, bundle.centre, bundle.a, bundle.b, bundle.across, aim.origin};
+    // four times what a ray through the middle weighs: rays through a wide disc differ, but not by so much
+    placed.most_weight = 4 * std::abs(ray_to(pattern_, bundle, source, {}, {}).weight);
+    if (!launch_.spline.share || !launch_.images.light[0]) return placed;
+    double wide = 0;
+    for (int frame = 0; frame < frame_count; ++frame) {
+      Vec2d const extent = aim.high[frame] - aim.low[frame];
+      wide = std::max({wide, extent.x, extent.y});
+    }
+    // a tenth for rims wider than what is seen of the stop, and a pixel on either side for the nodes about a hit
+    double const wanted = std::ceil(1.1 * wide + 2 * source_px_) + 4;
+    placed.window_px = static_cast<int>(std::min<double>(wanted, most_window_nodes / launch_.spline.per_px));
+    for (int frame = 0; frame < frame_count; ++frame) {
+      Vec2d const middle = 0.5 * (aim.low[frame] + aim.high[frame]);
+      placed.left[frame] = static_cast<int>(std::lround(middle.x)) - placed.window_px / 2;
+      placed.top[frame] = static_cast<int>(std::lround(middle.y)) - placed.window_px / 2;
+    }
+    return placed;
+  }
+
+  /// @param sign of the light that is laid down
+  SourcesLaunch launch(std::vector<SourceOnDevice> const& sources, DeviceMedium<double> const& medium,
+                       double sign) const {
+    SourcesLaunch launch = launch_;
+    launch.sign = sign;
+    for (SourceOnDevice const& source : sources)
+      launch.most_window_px = std::max(launch.most_window_px, source.window_px);
+    if (!fits_shared_memory(launch, medium)) launch.most_window_px = 0;
+    return launch;
+  }
+
+ private:
+  RaysLaunch const& host_;
+  LambertSources<double> pattern_;
+  double source_px_;  ///< half size of a source's image on the axis [px]
+  DeviceArray<CameraElement<double>> elements_;
+  DeviceArray<Vec2d> centres_;
+  DeviceArray<double> radiances_, airy_, share_;
+  SourcesLaunch launch_;
+};
+
+/// Some sources on their way through the device.
+class Batch {
+ public:
+  Batch(LaunchOnDevice const& scene, DeviceMedium<double> const& medium, std::vector<SourceOnDevice> sources,
+        double sign)
+      : scene_(scene),
+        sources_(std::move(sources)),
+        on_device_(sources_.data(), sources_.size(), "the sources"),
+        sums_(sources_.size() * scene.sums_a_source(), "the sums over a batch's rays"),
+        bend2_(sources_.size(), "the sums over a batch's rays"),
+        ends_(frame_count * ray_status_count, "the sums over a batch's rays") {
+    bend2_.zero();
+    ends_.zero();
+    if (sources_.empty()) return;
+    trace_sources(scene.launch(sources_, medium, sign), medium, on_device_.data(), sources_.size(),
+                  {sums_.data(), bend2_.data(), ends_.data()});
+  }
+
+  /// Waits for it. @param sign by which its rays count
+  void finish(std::int64_t sign, StatusCounts& statuses) {
+    unsigned long long ends[frame_count * ray_status_count] = {};
+    ends_.download(ends, frame_count * ray_status_count);
+    for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
+      statuses[i / ray_status_count][i % ray_status_count] += sign * static_cast<std::int64_t>(ends[i]);
+    }
+    bends_.resize(sources_.size());
+    bend2_.download(bends_.data(), bends_.size());
+    found_.resize(sums_.size());
+    sums_.download(found_.data(), found_.size());
+  }
+
+  std::vector<SourceOnDevice> const& sources() const { return sources_; }
+  /// Furthest that the medium moved a ray of a source on the aim plane [m].
+  double bend(std::size_t at) const { return std::sqrt(bends_[at]); }
+  DotTruth truth(std::size_t at) const {
+    auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
+    RaySums of_scramblings[most_scramblings];
+    for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
+      HitSums const& here = found_[at * scene_.sums_a_source() + i];
+      for (int frame = 0; frame < frame_count; ++frame) of_scramblings[i % scramblings].hits[frame] += here.hits[frame];
+    }
+    return source_truth(of_scramblings, scene_.scramblings(), sources_[at].origin);
+  }
+
+ private:
+  LaunchOnDevice const& scene_;
+  std::vector<SourceOnDevice> sources_;
+  DeviceArray<SourceOnDevice> on_device_;
+  DeviceArray<HitSums> sums_;
+  DeviceArray<double> bend2_;
+  DeviceArray<unsigned long long> ends_;
+  std::vector<double> bends_;
+  std::vector<HitSums> found_;
+};
+
+/// Traces all sources of a scene; the medium is there twice, for the host aims and integrates.
+template <class Medium>
+class SceneTracer {
+ public:
+  SceneTracer(Scene const& scene, RaysLaunch const& launch, LaunchOnDevice const& on_device, Medium const& medium,
+              DeviceMedium<double> const& mirrored, GroundTruth& truth, StatusCounts& statuses)
+      : scene_(scene),
+        launch_(launch),
+        on_device_(on_device),
+        medium_(medium),
+        mirrored_(mirrored),
+        truth_(truth),
+        statuses_(statuses),
+        light_per_weight_(launch.light_per_weight(on_device.pattern().area())) {}
+
+  /// @return the widest that any source was aimed beyond the stop [m]
+  double trace(char const* what) {
+    std::size_t const count = truth_.size();
+    aims_.resize(count);
+    // so many that their sums fit, and that one launch does not take long
+    double const steps = static_cast<double>(launch_.rays) * std::max(1.0, scene_.steps_across());
+    std::size_t const most =
+        std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(HitSums)),
+                                         static_cast<std::size_t>(most_steps_a_launch / steps)),
+                                1, 1 << 16);
+    Progress progress(what, count);
+    std::vector<SourceOnDevice> next = aim(0, std::min(most, count));
+    for (std::size_t first = 0; first < count; first += most) {
+      throw_if_interrupted();
+      Batch batch(on_device_, mirrored_, std::move(next), 1);
+      // meanwhile
+      std::size_t const after = std::min(first + most, count);
+      next = aim(after, std::min(after + most, count));
+      finish(batch);
+      progress.advance(after - first);
+    }
+    return largest_margin_;
+  }
+
+ private:
+  std::vector<SourceOnDevice> aim(std::size_t begin, std::size_t end) {
+    std::vector<SourceOnDevice> placed(end - begin);
+    parallel_chunks(placed.size(), 8, [&](std::size_t low, std::size_t high) {
+      for (std::size_t i = low; i < high; ++i) {
+        throw_if_interrupted();
+        SourceAim& aimed = aims_[begin + i];
+        aimed = aim_at_stop(launch_, launch_.camera.view(), medium_, on_device_.pattern().middle(begin + i));
+        if (aimed.disc) {
+          placed[i] = on_device_.place(begin + i, aimed);
+        } else {
+          truth_.set_hits(begin + i, source_truth(nullptr, 0, {}), light_per_weight_);
+        }
+      }
+    });
+    std::size_t i = begin;
+    std::erase_if(placed, [&](SourceOnDevice const&) { return !aims_[i++].disc; });
+    return placed;
+  }
+
+  /// Takes in what a batch came to. Sources of which a ray was bent beyond their margin are taken back and traced
+  /// again.
+  void finish(Batch& batch) {
+    batch.finish(1, statuses_);
+    std::vector<SourceOnDevice> missed, wider;
+    for (std::size_t at = 0; at < batch.sources().size(); ++at) {
+      SourceOnDevice const& placed = batch.sources()[at];
+      SourceAim& aimed = aims_[placed.source];
+      if (launch_.camera.chief_rays_only() || !(batch.bend(at) > aimed.margin)) {
+        largest_margin_ = std::max(largest_margin_, aimed.margin);
+        truth_.set_hits(placed.source, batch.truth(at), light_per_weight_);
+        continue;
+      }
+      missed.push_back(placed);
+      aimed.margin = launch_.wider_margin(batch.bend(at));
+      wider.push_back(on_device_.place(placed.source, aimed));
+    }
+    if (missed.empty()) return;
+    throw_if_interrupted();
+    Batch(on_device_, mirrored_, std::move(missed), -1).finish(-1, statuses_);
+    Batch again(on_device_, mirrored_, std::move(wider), 1);
+    finish(again);
+  }
+
+  Scene const& scene_;
+  RaysLaunch const& launch_;
+  LaunchOnDevice const& on_device_;
+  Medium const& medium_;
+  DeviceMedium<double> const& mirrored_;
+  GroundTruth& truth_;
+  StatusCounts& statuses_;
+  double light_per_weight_;
+  std::vector<SourceAim> aims_;
+  double largest_margin_ = 0;
+};
+
+}  // namespace
+
+struct CudaRaysRenderer::Uploads {
+  KeptMedium medium;
+  PinnedBuffer staging;
+};
+
+CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_device_memory(); }
+CudaRaysRenderer::~CudaRaysRenderer() = default;
+
+Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  bool const lit = images != RenderImages::no;
+  std::optional<AiryTable> airy;
+  RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{});
+  if (!uploads_->medium.serves(scene, true)) uploads_->medium.upload(scene, true);
+  DeviceMedium<double> const mirrored = uploads_->medium.medium().view<double>();
+  CameraSetup const& camera = scene.setup.camera;
+  std::optional<ImagePairOnDevice> frames;
+  if (lit) frames.emplace(camera.columns, camera.rows);
+  LaunchOnDevice const on_device(launch, sources, -scene.setup.z_d, frames ? &*frames : nullptr);
+  TracingPass pass(scene, sources);
+  Rendering& rendering = pass.rendering;
+  RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
+  std::visit(
+      [&](auto const& medium) {
+        SceneTracer tracer(scene, launch, on_device, medium, mirrored, rendering.truth, rendering.statuses);
+        scene.pupil_margin = tracer.trace(lit ? "tracing rays" : "tracing truth");
+        if (theory == RenderTheory::no) return;
+        parallel_chunks(rendering.truth.size(), 8, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t dot = begin; dot < end; ++dot) {
+            model.record(launch, on_device.pattern(), medium, dot, rendering.truth);
+          }
+        });
+      },
+      scene.medium.view);
+  rendering.table = TableState::by_rays;
+  if (!lit) return std::move(rendering);
+  auto light = std::make_shared<DeviceLight>(camera.columns, camera.rows);
+  frames->to_light(*light);
+  if (scene.setup.target.polarity == Polarity::dark) light->take_from(white_picture(scene));
+  if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
+  if (images == RenderImages::kept) rendering.kept = std::move(light);
+  return std::move(rendering);
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "cuda/device/device_images.cuh"
+#include "cuda/rays/trace_sources.h"
+
+/// What a block of threads has in shared memory while it traces sources.
+namespace gladstone::cuda {
+
+inline constexpr int source_threads = 128;
+
+/// Threads of a block, as hit_spline.h takes them.
+struct Block {
+  __device__ int rank() const { return static_cast<int>(threadIdx.x); }
+  __device__ int size() const { return source_threads; }
+  __device__ void sync() const { __syncthreads(); }
+};
+
+/// A square of a frame in which a block gathers the light of a source at nodes. They are whole numbers, which may be
+/// added in any order, of a unit so small that rounding every ray's shares leaves less than 1e-6 of the source's light
+/// to a pixel.
+struct HitWindow {
+  int* nodes = nullptr;  ///< [side][side]; null: takes nothing
+  int side, per_px;
+  int left, top;  ///< pixel of node (0, 0)
+  double units;   ///< of weight 1
+  double most_weight;
+
+  /// Units for so many rays of that weight and less: their sum at a node is half of what a number holds, since a node
+  /// gets 4/9 of a ray at most.
+  __device__ static double units_per_weight(double most_weight, std::uint64_t rays) {
+    return most_weight > 0 ? 0x1p31 / (most_weight * static_cast<double>(rays)) : 0;
+  }
+
+  __device__ void clear() const {
+    for (int i = threadIdx.x; i < side * side; i += source_threads) nodes[i] = 0;
+  }
+
+  /// Takes a ray's light in. @return false where it lands elsewhere, or is too bright
+  __device__ bool take(Vec2d p, double weight) const {
+    if (!nodes || !(fabs(weight) <= most_weight)) return false;
+    DealtHit const x((p.x - left) * per_px), y((p.y - top) * per_px);
+    if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return false;
+    if (x.first < 0 || y.first < 0 || x.first + 4 > side || y.first + 4 > side) return false;
+    int* line = nodes + y.first * side + x.first;
+    for (int j = 0; j < 4; ++j, line += side) {
+      double const share = units * weight * y.share[j];
+      for (int i = 0; i < 4; ++i) atomicAdd(line + i, __double2int_rn(share * x.share[i]));
+    }
+    return true;
+  }
+
+  /// Sends what was gathered to the image.
+  __device__ void flush(HitSplineView const& spline, double* rows_seen, DeviceImages const& images, int frame,
+                        double sign) const {
+    double const of_unit = units > 0 ? sign * images.units_per_weight / units : 0;
+    blur_hits(Block(), spline, NodeRange{0, side}, NodeRange{0, side}, nodes, side, rows_seen,
+              [&](int column, int row, double light) {
+                if (light != 0) {
+                  add_light(images, static_cast<Frame>(frame), left + column, top + row, whole_units(light * of_unit));
+                }
+              });
+    __syncthreads();
+  }
+};
+
+/// Where the parts lie.
+struct SharedParts {
+  CameraElement<double>* elements;
+  HitSums* sums;      ///< one a thread
+  double* rows_seen;  ///< in the place of sums, which are done with then
+  double* share;      ///< of the spline
+  int* nodes;         ///< of both windows; null: there are none
+
+  __device__ SharedParts(unsigned char* memory, SourcesLaunch const& launch) {
+    elements = reinterpret_cast<CameraElement<double>*>(memory);
+    memory += elements_bytes(launch);
+    sums = reinterpret_cast<HitSums*>(memory);
+    rows_seen = reinterpret_cast<double*>(memory);
+    memory += common_bytes(launch);
+    share = reinterpret_cast<double*>(memory);
+    nodes = launch.most_window_px > 0 ? reinterpret_cast<int*>(memory + share_bytes(launch)) : nullptr;
+  }
+  /// Copies what all sources share. The threads must meet before it is used.
+  __device__ void fill(SourcesLaunch const& launch) const {
+    auto const copy = [](void* to, void const* from, std::size_t bytes) {
+      for (std::size_t i = threadIdx.x; i < bytes / sizeof(double); i += source_threads) {
+        static_cast<double*>(to)[i] = static_cast<double const*>(from)[i];
+      }
+    };
+    copy(elements, launch.camera.elements, elements_bytes(launch));
+    if (nodes) copy(share, launch.spline.share, share_bytes(launch));
+  }
+
+  static std::size_t bytes(SourcesLaunch const& launch) {
+    auto const side = static_cast<std::size_t>(launch.most_window_px * launch.spline.per_px);
+    return elements_bytes(launch) + common_bytes(launch) + share_bytes(launch) +
+           frame_count * side * side * sizeof(int);
+  }
+
+ private:
+  GLADSTONE_HD static std::size_t elements_bytes(SourcesLaunch const& launch) {
+    static_assert(sizeof(CameraElement<double>) % 16 == 0);
+    return static_cast<std::size_t>(launch.camera.count) * sizeof(CameraElement<double>);
+  }
+  GLADSTONE_HD static std::size_t common_bytes(SourcesLaunch const& launch) {
+    std::size_t const of_sums = source_threads * sizeof(HitSums);
+    if (launch.most_window_px == 0) return of_sums;
+    int const side = launch.most_window_px * launch.spline.per_px;
+    std::size_t const of_rows =
+        static_cast<std::size_t>(side) * static_cast<std::size_t>(launch.spline.pixels({0, side})) * sizeof(double);
+    return of_rows > of_sums ? of_rows : of_sums;
+  }
+  GLADSTONE_HD static std::size_t share_bytes(SourcesLaunch const& launch) {
+    return launch.most_window_px > 0 ? static_cast<std::size_t>(launch.spline.count()) * sizeof(double) : 0;
+  }
+};
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,158 @@
+#include "cuda/device/block_sum.cuh"
+#include "cuda/device/device_images.cuh"
+#include "cuda/device/launch.h"
+#include "cuda/rays/hit_window.cuh"
+
+namespace gladstone::cuda {
+namespace {
+
+constexpr int threads = source_threads;
+constexpr int warp_size = 32;
+constexpr unsigned int whole_warp = 0xffffffffu;
+
+/// Lays down one ray's spot by a warp.
+__device__ void lay_down_spot(SpotView const& spot, Vec2d p, double units, int frame, DeviceImages const& images) {
+  if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return;
+  int const half = spot.half_width(), width = 2 * half + 1;
+  int const column = static_cast<int>(floor(p.x + 0.5)) - half, row = static_cast<int>(floor(p.y + 0.5)) - half;
+  auto const gaussian = [&](double place, int pixel) {
+    double const left = (pixel - 0.5 - place) / spot.gaussian.sigma;
+    return GaussianSpot<double>::edge_value(left + 1 / spot.gaussian.sigma) - GaussianSpot<double>::edge_value(left);
+  };
+  for (int k = threadIdx.x % warp_size; k < width * width; k += warp_size) {
+    int const i = k % width, j = k / width;
+    double share = 1;
+    if (spot.model == SpotModel::airy) {
+      share = spot.airy.share(p.x - (column + half), p.y - (row + half), j, i);
+    } else if (spot.model != SpotModel::none) {
+      share = gaussian(p.x, column + i) * gaussian(p.y, row + j);
+    }
+    add_light(images, static_cast<Frame>(frame), column + i, row + j, whole_units(units * share));
+  }
+}
+
+/// Lays down, one after the other, the spots of those of a warp's rays that no window took.
+__device__ void lay_down_spots(SourcesLaunch const& launch, bool mine, RayHit<double> const& hit, int frame) {
+  for (unsigned int rest = __ballot_sync(whole_warp, mine); rest != 0; rest &= rest - 1) {
+    int const lane = __ffs(static_cast<int>(rest)) - 1;
+    Vec2d const p{__shfl_sync(whole_warp, hit.pixel.x, lane), __shfl_sync(whole_warp, hit.pixel.y, lane)};
+    double const weight = __shfl_sync(whole_warp, hit.weight, lane);
+    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, frame, launch.images);
+  }
+}
+
+/// One block's part of a source.
+template <class Medium>
+__device__ void trace_share(SourcesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
+                            SourceOnDevice const& aim, std::uint64_t first, std::uint64_t last,
+                            HitWindow const (&window)[frame_count], unsigned int* counts, HitSums& sums,
+                            double& bend2) {
+  bool const lit = launch.images.light[0] != nullptr;
+  AimedBundle<double> const bundle{aim.centre, aim.a, aim.b, aim.across, launch.choice};
+  auto const count = [counts](int frame, RayStatus status) {
+    atomicAdd(counts + frame * ray_status_count + static_cast<int>(status), 1u);
+  };
+  // whole warps go round, for what they lay down together
+  for (std::uint64_t of_block = first; of_block < last; of_block += threads) {
+    std::uint64_t const j = of_block + threadIdx.x;
+    RayHit<double> hit[frame_count];
+    bool alone[frame_count] = {};  // whether no window takes its light
+    if (j < last) {
+      AimedRay<double> const aimed = aim_ray(launch.sources, bundle, aim.source, j);
+      hit[0] = trace_ray(camera, NoMedium<double>{}, launch.tracing, aimed.ray, aimed.weight);
+      hit[1] = trace_ray(camera, medium, launch.tracing, aimed.ray, aimed.weight);
+      double const moved2 =
+          enter_ray(hit[0], hit[1], aim.origin, sums.hits, count, [&](int frame, RayHit<double> const& here) {
+            alone[frame] = lit && !window[frame].take(here.pixel, here.weight);
+          });
+      bend2 = fmax(bend2, moved2);
+    }
+    if (lit) {
+      for (int frame = 0; frame < frame_count; ++frame) lay_down_spots(launch, alone[frame], hit[frame], frame);
+    }
+  }
+}
+
+template <class Medium>
+__global__ void __launch_bounds__(threads, 3)
+    trace_sources_kernel(SourcesLaunch const __grid_constant__ launch, Medium const __grid_constant__ medium,
+                         SourceOnDevice const* const sources, std::uint64_t const count, SourcesTraced const traced) {
+  extern __shared__ __align__(16) unsigned char dynamic[];
+  __shared__ unsigned int counts[frame_count * ray_status_count];
+  SharedParts const parts(dynamic, launch);
+  if (threadIdx.x < frame_count * ray_status_count) counts[threadIdx.x] = 0;
+  parts.fill(launch);
+  __syncthreads();
+  CameraView<double> camera = launch.camera;
+  camera.elements = parts.elements;
+  HitSplineView spline = launch.spline;
+  spline.share = parts.share;
+  std::uint64_t const shares = (launch.rays + most_rays_a_share - 1) / most_rays_a_share;
+  unsigned int const scramblings = 1u << launch.choice.scrambling_bits;
+  for (std::uint64_t item = blockIdx.x; item < count * shares; item += gridDim.x) {
+    std::uint64_t const at = item / shares, first = item % shares * most_rays_a_share;
+    std::uint64_t const last = min(launch.rays, first + most_rays_a_share);
+    SourceOnDevice const& aim = sources[at];
+    double const units = HitWindow::units_per_weight(aim.most_weight, min(launch.rays, most_rays_a_share));
+    HitWindow window[frame_count];
+    bool const windows = parts.nodes != nullptr && aim.window_px > 0;
+    int const side = aim.window_px * spline.per_px;
+    for (int frame = 0; windows && frame < frame_count; ++frame) {
+      window[frame] = {parts.nodes + frame * side * side,
+                       side,
+                       spline.per_px,
+                       aim.left[frame],
+                       aim.top[frame],
+                       units,
+                       aim.most_weight};
+      window[frame].clear();
+    }
+    __syncthreads();
+    HitSums sums;
+    double bend2 = 0;
+    trace_share(launch, camera, medium, aim, first, last, window, counts, sums, bend2);
+    for (int step = warp_size / 2; step > 0; step /= 2) bend2 = fmax(bend2, __shfl_xor_sync(whole_warp, bend2, step));
+    if (threadIdx.x % warp_size == 0 && bend2 > 0) {
+      atomicMax(reinterpret_cast<unsigned long long*>(traced.bend2 + at),
+                static_cast<unsigned long long>(__double_as_longlong(bend2)));
+    }
+    __syncthreads();
+    block_sums(sums, parts.sums, scramblings);
+    if (threadIdx.x < scramblings) traced.sums[item * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
+    __syncthreads();
+    for (int frame = 0; windows && frame < frame_count; ++frame) {
+      window[frame].flush(spline, parts.rows_seen, launch.images, frame, launch.sign);
+    }
+  }
+  __syncthreads();
+  if (threadIdx.x < frame_count * ray_status_count && counts[threadIdx.x] > 0) {
+    atomicAdd(traced.ends + threadIdx.x, static_cast<unsigned long long>(counts[threadIdx.x]));
+  }
+}
+
+}  // namespace
+
+bool fits_shared_memory(SourcesLaunch const& launch, DeviceMedium<double> const& medium) {
+  return std::visit(
+      [&](auto const& held) {
+        return SharedParts::bytes(launch) <=
+               most_shared_bytes(trace_sources_kernel<std::remove_cvref_t<decltype(held)>>);
+      },
+      medium);
+}
+
+void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medium, SourceOnDevice const* sources,
+                   std::uint64_t count, SourcesTraced const& traced) {
+  std::visit(
+      [&](auto const& held) {
+        auto* const kernel = trace_sources_kernel<std::remove_cvref_t<decltype(held)>>;
+        std::size_t const shared = SharedParts::bytes(launch);
+        allow_shared_bytes(kernel, shared);
+        kernel<<<blocks_for(kernel, threads, shared, count * launch.shares()), threads, shared>>>(launch, held, sources,
+                                                                                                  count, traced);
+        check_launch("trace_sources");
+      },
+      medium);
+}
+
+}  // namespace gladstone::cuda

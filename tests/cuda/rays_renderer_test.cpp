@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cuda/device/device_memory.h"
+#include "render/optics/glass_catalogue.h"
+#include "render/optics/lens.h"
+#include "render/optics/paraxial.h"
+#include "render/optics/prescription.h"
+#include "render/rays/ray_planning.h"
+#include "render/scene/build_camera.h"
+#include "tests/cuda/cuda_renderer_fixture.h"
+
+namespace gladstone {
+namespace {
+
+/// Table 1's bench with a lens of data/lenses in place of its own.
+void put_lens(BosSetup& setup, std::string const& name) {
+  LensOptions options;
+  options.f_number = setup.lens.f_number = 8;
+  setup.lens.prescription = std::make_shared<Lens const>(
+      build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/" + name + ".toml"),
+                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
+  setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
+}
+
+/// A scene of any camera, with 36 dots about the middle of its picture.
+Scene seen_through(std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
+  BosSetup setup = table1_setup(96);
+  setup.medium.field = sinusoid(0.1, 6e-3);
+  setup.target.dots_per_32px_window = 1;
+  change(setup);
+  Scene scene = build_scene(setup);
+  scene.dots.centre.clear();
+  for (Vec2d const place : lattice(96, 6, 14)) {
+    Vec2d const at = scene.to_target(place);
+    if (std::isfinite(at.x)) scene.dots.centre.push_back(at);
+  }
+  plan_step_by_rays(scene);
+  scene.rays_per_dot = rays;
+  return scene;
+}
+
+TEST_F(CudaRaysTest, LensesOfManySurfaces) {
+  for (std::string const name : {"double_gauss", "achromat", "wide_angle"}) {
+    SCOPED_TRACE(name);
+    expect_as_on_cpu(seen_through(400, [&](BosSetup& setup) { put_lens(setup, name); }));
+  }
+}
+
+TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
+  auto const window = [](WindowSide side) {
+    WindowSetup setup;
+    setup.side = side;
+    setup.index = 1.5168;
+    setup.thickness = 10e-3;
+    setup.position = {0, 0, side == WindowSide::camera ? 0.1 : -0.1};
+    setup.tilt = {0.05, -0.02};
+    return setup;
+  };
+  expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
+    setup.windows = {window(WindowSide::target), window(WindowSide::camera)};
+  }));
+  expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
+    setup.camera.tilt = {0.03, -0.05};
+    setup.camera.distortion = {-0.1, 0.02, 1e-3, -2e-3};
+  }));
+}
+
+// A source that is blurred over more than the widest window, and one of more rays than a block traces: what no window
+// takes is laid down ray by ray.
+TEST_F(CudaRaysTest, WideBlursAndManyRays) {
+  Scene blurred = scene_of(sinusoid(0.1, 6e-3), 2000, [](BosSetup& setup) {
+    setup.lens.focus = Focus::distance;
+    setup.lens.focus_distance = 0.6;
+    setup.lens.f_number = 4;
+  });
+  blurred.dots.centre.resize(3);
+  expect_as_on_cpu(blurred);
+  Scene many = scene_of(uniform_gradient(20, 5), 40000);
+  many.dots.centre.resize(2);
+  expect_as_on_cpu(many);
+}
+
+// The first look at what the medium bends is too short for a fine wave in front of a wide pupil: the light of the rays
+// is taken back, to the last unit, and they are sent again, wider.
+TEST_F(CudaRaysTest, TakesLightBackWhereRaysAreBentBeyondTheirMargin) {
+  expect_as_on_cpu(scene_of(sinusoid(0.6, 1.1e-3), 1500, [](BosSetup& setup) { setup.lens.f_number = 2.8; }));
+}
+
+// Dots whose images' middles lie on pixels' edges and corners.
+TEST_F(CudaRaysTest, DotsOnEdgesOfPixels) {
+  for (SpotModel const spot : {SpotModel::gaussian, SpotModel::airy}) {
+    BosSetup setup = table1_setup(64);
+    setup.lens.spot = spot;
+    setup.target.dot_diameter_px = 0;
+    expect_as_on_cpu(scene_with_dots(setup, {{20.5, 20}, {40, 20.5}, {20.5, 40.5}, {40, 40}}, 512));
+  }
+}
+
+// A source's bits hang on nothing but itself: not on how many others there are.
+TEST_F(CudaRaysTest, ASourceAloneIsTheSourceAmongMany) {
+  Scene many = scene_of(dns_plane("late"), 700), alone = many;
+  alone.dots.centre.resize(1);
+  Rendering const of_many = on_device(many), of_one = on_device(alone);
+  EXPECT_EQ(of_many.truth.displacement_px[0], of_one.truth.displacement_px[0]);
+  EXPECT_EQ(of_many.truth.displacement_error_px[0], of_one.truth.displacement_error_px[0]);
+}
+
+// A block without the memory for windows lays every ray down by itself, to the same images.
+TEST_F(CudaRaysTest, LittleSharedMemoryGivesTheSameImages) {
+  cuda::SharedMemoryLimit const limit(20000);
+  expect_as_on_cpu(scene_of(sinusoid(0.1, 6e-3), 300));
+}
+
+}  // namespace
+}  // namespace gladstone
