@@ -3,10 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include "render/base/error.h"
+#include "render/focused_dots/focused_dots.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/rays/rays_renderer.h"
-#include "render/scene/focused_dots.h"
 
 namespace gladstone {
 

@@ -2,8 +2,8 @@
 
 #include <type_traits>
 
+#include "render/focused_dots/scene_view.h"
 #include "render/medium/medium.h"
-#include "render/scene/scene_view.h"
 
 /// Views in another scalar: what the single-precision preview traces. One function for every element and medium.
 namespace gladstone::cuda {

@@ -14,7 +14,7 @@
 #include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/light_model.h"
 #include "render/sensor/exposure.h"
 
 namespace gladstone::cuda {

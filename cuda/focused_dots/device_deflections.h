@@ -4,7 +4,7 @@
 
 #include "cuda/device/device_array.h"
 #include "cuda/rays/device_medium.h"
-#include "render/scene/deflection_map.h"
+#include "render/focused_dots/deflection_map.h"
 
 namespace gladstone::cuda {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "cuda/rays/trace_rays.h"
-#include "render/scene/dot_light.h"
+#include "cuda/focused_dots/trace_rays.h"
+#include "render/focused_dots/dot_light.h"
 
 namespace gladstone::cuda {
 

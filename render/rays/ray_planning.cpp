@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "render/base/parallel.h"
+#include "render/focused_dots/light_model.h"
 #include "render/rays/source_tracer.h"
-#include "render/scene/light_model.h"
 #include "render/scene/ray_scatter.h"
 
 namespace gladstone {

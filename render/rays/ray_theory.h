@@ -1,8 +1,8 @@
 #pragma once
 
+#include "render/focused_dots/light_model.h"
 #include "render/rays/source_tracer.h"
 #include "render/scene/field_map.h"
-#include "render/scene/light_model.h"
 
 namespace gladstone {
 

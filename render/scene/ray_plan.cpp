@@ -11,11 +11,11 @@
 #include "render/base/progress.h"
 #include "render/base/random.h"
 #include "render/base/units.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/dot_exposure.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_exposure.h"
+#include "render/focused_dots/light_model.h"
+#include "render/focused_dots/trace_pair.h"
 #include "render/scene/ray_scatter.h"
-#include "render/scene/trace_pair.h"
 
 namespace gladstone {
 namespace {

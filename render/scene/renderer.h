@@ -5,7 +5,7 @@
 #include <string>
 
 #include "render/base/image.h"
-#include "render/scene/deflection_map.h"
+#include "render/focused_dots/deflection_map.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/kept_light.h"
 #include "render/scene/scene.h"

@@ -13,11 +13,11 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_exposure.h"
 #include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/dot_exposure.h"
 
 namespace gladstone {
 namespace {

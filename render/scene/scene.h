@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "render/focused_dots/scene_view.h"
 #include "render/light/dot_pattern.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/camera.h"
-#include "render/scene/scene_view.h"
 #include "render/scene/setup.h"
 #include "render/scene/theory.h"
 #include "render/sensor/diffraction_spot.h"
@@ -38,7 +38,8 @@ struct Scene {
   /// What Eq. 9 takes.
   TheoryModel theory_model() const;
   /// Widens the pupil by a margin [m].
-  /// @throws DataError where rays are bent by more than 45 degrees on their way: no bench sees those, and the search for
+  /// @throws DataError where rays are bent by more than 45 degrees on their way: no bench sees those, and the search
+  /// for
   ///                   a margin that loses none of them would not end
   void widen_pupil(double margin);
   /// Whether the pupil is wide enough for rays that the medium moves this far on the lens plane [m]; if not, it is

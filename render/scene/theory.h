@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "render/base/host_device.h"
-#include "render/scene/scene_view.h"
+#include "render/focused_dots/scene_view.h"
 
 namespace gladstone {
 

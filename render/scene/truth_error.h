@@ -1,9 +1,9 @@
 #pragma once
 
+#include "render/focused_dots/cone_moments.h"
+#include "render/focused_dots/trace_pair.h"
 #include "render/light/sources.h"
-#include "render/scene/cone_moments.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/trace_pair.h"
 
 /// Standard errors of a dot's displacement, from the scatter between the independent scramblings of its rays.
 namespace gladstone {

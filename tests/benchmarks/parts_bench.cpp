@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "render/scene/dot_exposure.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/dot_exposure.h"
+#include "render/focused_dots/light_model.h"
 #include "render/sensor/diffraction_spot.h"
 #include "tests/benchmarks/bench_scenes.h"
 #include "tests/benchmarks/plain_loop.h"

@@ -12,8 +12,8 @@
 #include "analysis/correlation/correlator.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/ray_record.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/ray_record.h"
 #include "tests/analysis/support/particle_pair.h"
 #include "tests/scene/small_scenes.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "render/base/image_file.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/light_model.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
 
 /// Every way in which a dot's light is laid down, on the device as on the CPU.

@@ -7,10 +7,10 @@
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "render/focused_dots/focused_dots.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/focused_dots.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "render/scene/deflection_map.h"
+#include "render/focused_dots/deflection_map.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"

@@ -4,7 +4,7 @@
 
 #include "cuda/device/device_array.h"
 #include "cuda/device/launch.h"
-#include "cuda/rays/trace_rays.h"
+#include "cuda/focused_dots/trace_rays.h"
 
 /// Which rays are traced side by side.
 namespace gladstone::cuda {

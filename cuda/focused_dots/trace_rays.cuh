@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "cuda/rays/order_rays.cuh"
-#include "cuda/rays/trace_rays.h"
+#include "cuda/focused_dots/order_rays.cuh"
+#include "cuda/focused_dots/trace_rays.h"
 #include "render/base/contracts.h"
 
 namespace gladstone::cuda {

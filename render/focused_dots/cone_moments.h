@@ -1,8 +1,8 @@
 #pragma once
 
-#include "render/scene/deflection_table.h"
+#include "render/focused_dots/deflection_table.h"
+#include "render/focused_dots/ray_record.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/ray_record.h"
 
 /// Truth and light of a dot from the whole cone of its rays: the deflection table says what each would do, the rays
 /// that were traced correct it. Integrals over the cone are then as good as their rule, with few rays a dot; the rule

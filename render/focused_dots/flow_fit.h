@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "render/scene/ray_record.h"
+#include "render/focused_dots/ray_record.h"
 
 namespace gladstone {
 

@@ -1,4 +1,4 @@
-#include "render/scene/light_model.h"
+#include "render/focused_dots/light_model.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

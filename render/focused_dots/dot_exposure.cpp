@@ -1,4 +1,4 @@
-#include "render/scene/dot_exposure.h"
+#include "render/focused_dots/dot_exposure.h"
 
 #include <algorithm>
 #include <cmath>

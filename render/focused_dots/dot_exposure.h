@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "render/base/interrupt.h"
-#include "render/scene/dot_light.h"
+#include "render/focused_dots/dot_light.h"
+#include "render/focused_dots/trace_pair.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/light_image.h"
 #include "render/scene/scene.h"
-#include "render/scene/trace_pair.h"
 #include "render/scene/truth_error.h"
 
 namespace gladstone {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "render/scene/trace_pair.h"
+#include "render/focused_dots/trace_pair.h"
 
 namespace gladstone {
 

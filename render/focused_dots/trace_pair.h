@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "render/base/host_device.h"
+#include "render/focused_dots/scene_view.h"
 #include "render/scene/ray_hit.h"
-#include "render/scene/scene_view.h"
 
 namespace gladstone {
 

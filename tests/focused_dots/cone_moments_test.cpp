@@ -1,4 +1,4 @@
-#include "render/scene/cone_moments.h"
+#include "render/focused_dots/cone_moments.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <type_traits>
 
 #include "render/base/units.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/dot_exposure.h"
-#include "render/scene/light_model.h"
-#include "tests/scene/picture_error.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_exposure.h"
+#include "render/focused_dots/light_model.h"
+#include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "cuda/rays/device_medium.h"
-#include "render/scene/dot_light.h"
+#include "render/focused_dots/dot_light.h"
+#include "render/focused_dots/ray_record.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/ray_record.h"
 #include "render/scene/theory.h"
 
 /// Launches over rays: TracePair and the theory, for any medium.

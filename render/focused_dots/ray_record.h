@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/scene/trace_pair.h"
+#include "render/focused_dots/trace_pair.h"
 
 namespace gladstone {
 

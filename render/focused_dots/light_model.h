@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/scene/dot_light.h"
+#include "render/focused_dots/dot_light.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {

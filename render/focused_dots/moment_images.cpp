@@ -1,4 +1,4 @@
-#include "render/scene/moment_images.h"
+#include "render/focused_dots/moment_images.h"
 
 #include <algorithm>
 

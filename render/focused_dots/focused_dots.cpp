@@ -1,4 +1,4 @@
-#include "render/scene/focused_dots.h"
+#include "render/focused_dots/focused_dots.h"
 
 #include <cmath>
 

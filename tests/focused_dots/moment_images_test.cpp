@@ -1,11 +1,11 @@
-#include "render/scene/moment_images.h"
+#include "render/focused_dots/moment_images.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "render/scene/dot_exposure.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/dot_exposure.h"
+#include "render/focused_dots/light_model.h"
 
 namespace gladstone {
 namespace {

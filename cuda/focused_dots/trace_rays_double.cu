@@ -1,4 +1,4 @@
-#include "cuda/rays/trace_rays.cuh"
+#include "cuda/focused_dots/trace_rays.cuh"
 
 namespace gladstone::cuda {
 

@@ -1,4 +1,4 @@
-#include "render/scene/deflection_map.h"
+#include "render/focused_dots/deflection_map.h"
 
 #include <algorithm>
 #include <cmath>

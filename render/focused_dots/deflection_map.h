@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "render/scene/deflection_table.h"
+#include "render/focused_dots/deflection_table.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {

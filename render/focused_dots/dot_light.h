@@ -1,9 +1,9 @@
 #pragma once
 
+#include "render/focused_dots/cone_moments.h"
+#include "render/focused_dots/flow_fit.h"
+#include "render/focused_dots/moment_images.h"
 #include "render/optics/lens_setup.h"
-#include "render/scene/cone_moments.h"
-#include "render/scene/flow_fit.h"
-#include "render/scene/moment_images.h"
 #include "render/scene/theory.h"
 #include "render/scene/truth_error.h"
 #include "render/sensor/diffraction_spot.h"

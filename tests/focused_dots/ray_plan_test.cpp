@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "render/base/random.h"
-#include "render/scene/deflection_map.h"
-#include "tests/scene/picture_error.h"
+#include "render/focused_dots/deflection_map.h"
+#include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
