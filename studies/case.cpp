@@ -43,7 +43,7 @@ void cross_check_windows(CaseSetup& loaded) {
 /// who read it.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup, field);
+    check_memory(loaded.setup, field, focused_dots_memory(loaded.setup));
   } catch (DataError const& error) {
     std::string const text = error.what();
     SetupTable root = loaded.document.root();

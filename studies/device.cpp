@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 #include "studies/scene_renderer.h"
 #include "studies/version_text.h"
 
@@ -26,7 +27,7 @@ Device open_device(std::string const& wanted) {
     instead = " (" + state.text + ")";
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
-  return {std::make_unique<SceneRenderer>(std::make_unique<CpuRenderer>(), false), make_correlator};
+  return {std::make_unique<SceneRenderer>(std::make_unique<FocusedDotsRenderer>(), false), make_correlator};
 }
 
 int gpu_count() { return cuda::device_count(); }

@@ -2,8 +2,8 @@
 
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_frames.h"
-#include "render/focused_dots/trace_pair.h"
 #include "render/scene/kept_light.h"
+#include "render/scene/ray_hit.h"
 
 namespace gladstone::cuda {
 

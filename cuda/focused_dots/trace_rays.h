@@ -6,7 +6,6 @@
 #include "render/focused_dots/dot_light.h"
 #include "render/focused_dots/ray_record.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/theory.h"
 
 /// Launches over rays: TracePair and the theory, for any medium.
 namespace gladstone::cuda {

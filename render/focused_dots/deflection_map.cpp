@@ -59,32 +59,6 @@ double cone_reach(double way, double half_size, double pupil) {
 
 }  // namespace
 
-char const* to_string(TableState state) {
-  switch (state) {
-    case TableState::made:
-      break;
-    case TableState::no_medium:
-      return "nothing bends rays";
-    case TableState::no_sources:
-      return "there are no dots";
-    case TableState::chief_rays:
-      return "chief rays alone are traced (lens.f_number = inf)";
-    case TableState::random_rays:
-      return "render.sampling = \"random\" takes rays as they are";
-    case TableState::out_of_focus:
-      return "the lens is not focused on the target";
-    case TableState::by_rays:
-      return "dots are rendered ray by ray (method = \"rays\")";
-    case TableState::field_too_small:
-      return "the field does not reach beyond the dots' cones of rays";
-    case TableState::field_too_fine:
-      return "the field is so fine that a table for these few dots would take more rays than it saves";
-    case TableState::dots_too_wide:
-      return "the dots are wide beside what the field changes on";
-  }
-  return "";
-}
-
 double table_bytes_needed(Setup const& setup) {
   FieldSetup const& field = setup.medium.field;
   if (field.kind == FieldKind::none || !std::isfinite(setup.lens.f_number) ||
@@ -103,7 +77,8 @@ double table_bytes_needed(Setup const& setup) {
   return density.bytes(area) * std::min(1.0, allowed_rays(sources) / density.rays(area));
 }
 
-DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
+DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& sources) {
+  Scene const& scene = dots.scene();
   Setup const& setup = scene.setup;
   state = std::holds_alternative<NoMedium<double>>(scene.medium.view) || !(scene.medium.finest > 0)
               ? TableState::no_medium
@@ -112,7 +87,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
           : sources.centre.empty()                        ? TableState::no_sources
                                                           : TableState::made;
   if (state != TableState::made) return;
-  SceneView<double> const view = scene.view(sources);
+  SceneView<double> const view = dots.view(sources);
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const depth = view.bundle.lens_z - view.sources.plane_z;
   double const middle_z = 0.5 * (box.low.z + box.high.z);
@@ -156,7 +131,7 @@ DeflectionPlan::DeflectionPlan(Scene const& scene, DotPattern const& sources) {
   // out of focus a dot's cone has its rule, for theory, but no table
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) state = TableState::out_of_focus;
 
-  SceneView<double> const open = open_view(scene);
+  SceneView<double> const open = dots.open_view();
   numbers_ = {open.sources.plane_z,
               open.bundle.lens_z,
               setup.lens.focal_length,
@@ -181,16 +156,9 @@ bool DeflectionPlan::same_table(DeflectionPlan const& other) const {
   return wanted() && other.wanted() && medium_ && medium_ == other.medium_ && numbers_ == other.numbers_;
 }
 
-SceneView<double> open_view(Scene const& scene) {
-  SceneView<double> open = scene.view();
-  open.train = {};
-  open.train.append(ThinLens<double>{scene.setup.z_a, scene.setup.lens.focal_length});
-  return open;
-}
-
-DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
+DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan) {
   if (!plan.wanted()) return;
-  SceneView<double> const open = open_view(scene);
+  SceneView<double> const open = dots.open_view();
   table_ = plan.table;
   auto const for_each_node = [](SquareLattice const& lattice, auto const& visit) {
     parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
@@ -224,7 +192,7 @@ DeflectionMap::DeflectionMap(Scene const& scene, DeflectionPlan const& plan) {
           bend_slopes_[at] = node.bend;
         });
       },
-      scene.medium.view);
+      dots.scene().medium.view);
   table_.displacements = displacements_.data();
   table_.bends = bends_.data();
   table_.displacement_slopes = displacement_slopes_.data();

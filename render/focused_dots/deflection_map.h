@@ -4,25 +4,10 @@
 #include <vector>
 
 #include "render/focused_dots/deflection_table.h"
-#include "render/scene/scene.h"
+#include "render/focused_dots/focused_dots.h"
+#include "render/scene/renderer.h"
 
 namespace gladstone {
-
-/// Whether there is a table, and why not.
-enum class TableState {
-  made,
-  no_medium,        ///< nothing bends rays
-  no_sources,       ///< there is nothing to see
-  chief_rays,       ///< a dot has no cone
-  random_rays,      ///< somebody wants them as they are
-  out_of_focus,     ///< a point's rays do not meet on the sensor
-  field_too_small,  ///< it hardly reaches beyond the cones, if at all
-  field_too_fine,   ///< the table would take more rays than it saves
-  by_rays,          ///< the general renderer knows none
-  dots_too_wide,    ///< their cones change too much from place to place of a dot
-};
-/// As the end of the sentence "there is no deflection table: ..."; empty where there is one.
-char const* to_string(TableState state);
 
 /// Where a scene's deflection table has its nodes. None where rays are not traced through a medium and a focused lens
 /// with a stop, where the field is too fine for the number of sources to pay for a table, or where somebody wants
@@ -34,7 +19,7 @@ struct DeflectionPlan {
   bool wanted() const { return state == TableState::made; }
 
   DeflectionPlan() = default;
-  DeflectionPlan(Scene const& scene, DotPattern const& sources);
+  DeflectionPlan(FocusedDots const& dots, DotPattern const& sources);
   /// Whether the other plan's table is the same to the last bit: its nodes, its rays' way, and the medium, by its
   /// owner.
   bool same_table(DeflectionPlan const& other) const;
@@ -48,14 +33,11 @@ struct DeflectionPlan {
 /// ends within the view makes too large. Opens a file to see its grid. @throws DataError for one that cannot be read
 double table_bytes_needed(Setup const& setup);
 
-/// The scene as rays of the table see it: without a stop.
-SceneView<double> open_view(Scene const& scene);
-
 /// A scene's deflection table in the host's memory.
 class DeflectionMap {
  public:
   /// Traces the table's rays on all cores. @throws Interrupted
-  DeflectionMap(Scene const& scene, DeflectionPlan const& plan);
+  DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan);
   DeflectionMap(DeflectionMap const&) = delete;  // the table points into the arrays
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
@@ -74,15 +56,15 @@ class DeflectionMap {
 template <class Map>
 class KeptDeflections {
  public:
-  /// The table of a scene; valid until the next call. @param more what a Map takes beside scene and plan
+  /// The table of a scene; valid until the next call. @param more what a Map takes beside dots and plan
   template <class... More>
-  DeflectionTable table(Scene const& scene, DotPattern const& sources, More const&... more) {
-    DeflectionPlan plan(scene, sources);
+  DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, More const&... more) {
+    DeflectionPlan plan(dots, sources);
     state_ = plan.state;
     if (!plan.wanted()) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {
       map_.reset();  // first gives its memory back
-      map_ = std::make_unique<Map>(scene, plan, more...);
+      map_ = std::make_unique<Map>(dots, plan, more...);
       plan_ = std::move(plan);
     }
     return map_->table();

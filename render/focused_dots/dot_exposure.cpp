@@ -5,162 +5,9 @@
 #include <limits>
 
 namespace gladstone {
-namespace {
-
-/// Pixels that a spot about p reaches. @pre p is within the range of int
-Footprint footprint(Vec2d p, int half) {
-  return {static_cast<int>(std::floor(p.x + 0.5)) - half, static_cast<int>(std::floor(p.y + 0.5)) - half, 2 * half + 1};
-}
-
-/// Adds a series of spots to a patch: the sum over a + b <= order of moment (a, b) times the a-th shares of the columns
-/// times the b-th shares of the rows. Numbers of lanes that the compiler knows keep every loop in vector registers.
-/// @param lanes width or more @param shares [order + 1][width]
-template <int lanes>
-void add_series(double* corner, int side, int width, double weight, DisplacementMoments const& moments,
-                double const* column_shares, double const* row_shares) {
-  constexpr int order = DisplacementMoments::order;
-  double columns[order + 1][lanes] = {}, rows[order + 1][lanes] = {}, of_row[order + 1][lanes] = {};
-  for (int a = 0; a <= order; ++a) {
-    std::copy_n(column_shares + a * width, width, columns[a]);
-    std::copy_n(row_shares + a * width, width, rows[a]);
-  }
-  for (int a = 0; a <= order; ++a) {
-    for (int b = 0; a + b <= order; ++b) {
-      double const moment = weight * moments.of[DisplacementMoments::at(a, b)];
-      for (int j = 0; j < lanes; ++j) of_row[a][j] += moment * rows[b][j];
-    }
-  }
-  for (int j = 0; j < width; ++j) {
-    double line[lanes] = {};
-    for (int a = 0; a <= order; ++a) {
-      for (int i = 0; i < lanes; ++i) line[i] += of_row[a][j] * columns[a][i];
-    }
-    for (int i = 0; i < width; ++i) corner[j * side + i] += line[i];
-  }
-}
-
-}  // namespace
-
-LightPatch::LightPatch(SpotView const& spot, MomentImages const& images)
-    : spot_(spot),
-      images_(images),
-      half_(spot.half_width()),
-      side_(2 * std::max(half_, images.half) + 33),
-      light_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0.0),
-      column_shares_(static_cast<std::size_t>(2 * half_ + 1)),
-      row_shares_(column_shares_.size()),
-      of_square_(static_cast<std::size_t>(images.stride)) {}
-
-double* LightPatch::reach(Footprint const& spot, LightImage* image, double light_per_weight) {
-  int const width = spot.width;
-  bool const untouched = high_column_ == low_column_;
-  if (untouched || spot.column < left_ || spot.row < top_ || spot.column + width > left_ + side_ ||
-      spot.row + width > top_ + side_) {
-    if (!untouched) flush(image, light_per_weight);
-    left_ = spot.column - (side_ - width) / 2;
-    top_ = spot.row - (side_ - width) / 2;
-    low_column_ = low_row_ = side_;
-    high_column_ = high_row_ = 0;
-  }
-  int const c0 = spot.column - left_, r0 = spot.row - top_;
-  low_column_ = std::min(low_column_, c0);
-  high_column_ = std::max(high_column_, c0 + width);
-  low_row_ = std::min(low_row_, r0);
-  high_row_ = std::max(high_row_, r0 + width);
-  return light_.data() + r0 * side_ + c0;
-}
-
-void LightPatch::deposit(Vec2d p, double weight, LightImage* image, double light_per_weight) {
-  if (!(std::abs(p.x) < 1e8 && std::abs(p.y) < 1e8)) return;
-  Footprint const spot = footprint(p, half_);
-  double* const corner = reach(spot, image, light_per_weight);
-  int const width = spot.width;
-  switch (spot_.model) {
-    case SpotModel::none:
-      *corner += weight;
-      break;
-    case SpotModel::airy:
-      for (int j = 0; j < width; ++j) {
-        for (int i = 0; i < width; ++i) {
-          corner[j * side_ + i] +=
-              weight * spot_.airy.share(p.x - (spot.column + half_), p.y - (spot.row + half_), j, i);
-        }
-      }
-      break;
-    default: {
-      spot_.gaussian.shares(p.x, spot.column, width, column_shares_.data());
-      spot_.gaussian.shares(p.y, spot.row, width, row_shares_.data());
-      for (int j = 0; j < width; ++j) {
-        double const line = weight * row_shares_[static_cast<std::size_t>(j)];
-        for (int i = 0; i < width; ++i) corner[j * side_ + i] += line * column_shares_[static_cast<std::size_t>(i)];
-      }
-    }
-  }
-}
-
-bool LightPatch::make_series(double p, Series& series) const {
-  if (!(std::abs(p) < 1e8)) return false;
-  int const width = 2 * half_ + 1;
-  series.first = static_cast<int>(std::floor(p + 0.5)) - half_;
-  series.shares.resize(static_cast<std::size_t>((DisplacementMoments::order + 1) * width));
-  spot_.gaussian.taylor_shares(p, series.first, width, DisplacementMoments::order, series.shares.data());
-  return true;
-}
-
-void LightPatch::deposit(Series const& column, Series const& row, double weight, DisplacementMoments const& moments,
-                         LightImage* image, double light_per_weight) {
-  int const width = 2 * half_ + 1;
-  double* const corner = reach({column.first, row.first, width}, image, light_per_weight);
-  auto const add = [&]<int lanes>() {
-    add_series<lanes>(corner, side_, width, weight, moments, column.shares.data(), row.shares.data());
-  };
-  if (width <= 8) {
-    add.operator()<8>();
-  } else if (width <= 12) {
-    add.operator()<12>();
-  } else {
-    add.operator()<48>();  // light_model's by_moments() takes no wider ones
-  }
-}
-
-void LightPatch::deposit(Vec2<int> square, double weight, MomentField const& field, LightImage* image,
-                         double light_per_weight) {
-  BoxLattice const& lattice = images_.lattice;
-  int const width = images_.width();
-  double const* const images = images_.of_phase(lattice.phase(square.y) * lattice.per_pixel + lattice.phase(square.x));
-  for (int first = 0; first < images_.stride; first += MomentImages::pad) {
-    double sum[MomentImages::pad] = {};
-    double const* here = images + first;
-    for (int moment = 0; moment < DisplacementMoments::count; ++moment) {
-      for (int term = 0; term < images_.terms; ++term, here += images_.stride) {
-        double const share = weight * field.coefficient[moment][term];
-        for (int i = 0; i < MomentImages::pad; ++i) sum[i] += share * here[i];
-      }
-    }
-    std::copy_n(sum, MomentImages::pad, of_square_.data() + first);
-  }
-  double* const corner = reach({lattice.pixel(square.x) - images_.half, lattice.pixel(square.y) - images_.half, width},
-                               image, light_per_weight);
-  for (int row = 0; row < width; ++row) {
-    for (int column = 0; column < width; ++column) {
-      corner[row * side_ + column] += of_square_[static_cast<std::size_t>(row * width + column)];
-    }
-  }
-}
-
-void LightPatch::flush(LightImage* image, double light_per_weight) {
-  for (int row = low_row_; row < high_row_; ++row) {
-    double* const line = light_.data() + row * side_;
-    for (int column = low_column_; column < high_column_; ++column) {
-      if (image && line[column] != 0) image->add(column + left_, row + top_, line[column] * light_per_weight);
-      line[column] = 0;
-    }
-  }
-  low_column_ = high_column_ = low_row_ = high_row_ = 0;
-}
 
 DotExposure::DotExposure(LightModel const& model, bool with_images) : model_(model), with_images_(with_images) {
-  if (with_images) patches_.assign(frame_count, LightPatch(model.spot, model.moment_images));
+  if (with_images) patches_.assign(frame_count, DotPatch(model.spot, model.moment_images));
 }
 
 void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&images)[frame_count],
@@ -169,7 +16,7 @@ void DotExposure::begin(Vec2d centre, double radiance, LightImage* const (&image
   plan_ = DotPlan::make(model_, centre, radiance);
   light_per_weight_ = light_per_weight;
   std::copy_n(images, frame_count, images_);
-  std::fill_n(of_scramblings_, most_scramblings, RaySums{});
+  std::fill_n(of_scramblings_, most_scramblings, DotSums{});
   recorded_ = 0;
   moved_ = false;
   tabled_ = model_.tabled(centre);
@@ -191,7 +38,7 @@ void DotExposure::record(EmittedRay<double> const& emitted, RayHit<double> const
     largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
   }
   RayRecord<double> const ray = make_record(model_.image, centre_, plan_.origin, emitted, reference, flow);
-  RaySums& sums = of_scramblings_[recorded_++ % static_cast<std::uint64_t>(model_.scramblings)];
+  DotSums& sums = of_scramblings_[recorded_++ % static_cast<std::uint64_t>(model_.scramblings)];
   sums.hits[0].add(ray.reference, ray.reference_weight, ray.reference_counts);
   sums.hits[1].add(ray.flow, ray.flow_weight, ray.flow_counts);
   moved_ |= ray.moved;
@@ -249,7 +96,7 @@ void DotExposure::deposit_rays() {
   }
 }
 
-std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone(TruthErrors const& errors) {
+std::optional<DotExposure::ConeIntegral> DotExposure::integrate_cone(DotErrors const& errors) {
   if (!model_.correctable(check_, plan_.expected_weight)) return {};
   ConeIntegral integral{model_.corrected(centre_, check_), {}};
   CorrectedCone const& cone = integral.cone;
@@ -336,10 +183,10 @@ void DotExposure::deposit_narrow(ConeIntegral const& integral) {
 }
 
 void DotExposure::finish_light() {
-  RaySums all;
+  DotSums all;
   for (int i = 0; i < model_.scramblings; ++i) all += of_scramblings_[i];
   check_ = all.check;
-  TruthErrors const errors = truth_errors(of_scramblings_, model_.scramblings, all);
+  DotErrors const errors = dot_errors(of_scramblings_, model_.scramblings, all);
   truth_ = {plan_.origin, {all.hits[0], all.hits[1]}, model_.error(errors, false, false), TruthPath::rays};
   std::optional<ConeIntegral> const integral = moved_ && tabled_ ? integrate_cone(errors) : std::nullopt;
   if (!with_images_ || !model_.controlled) return;  // else every ray's light was laid down as it came

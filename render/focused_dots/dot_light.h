@@ -1,28 +1,14 @@
 #pragma once
 
+#include "render/focused_dots/bench_theory.h"
 #include "render/focused_dots/cone_moments.h"
+#include "render/focused_dots/dot_error.h"
 #include "render/focused_dots/flow_fit.h"
 #include "render/focused_dots/moment_images.h"
-#include "render/optics/lens_setup.h"
-#include "render/scene/theory.h"
-#include "render/scene/truth_error.h"
-#include "render/sensor/diffraction_spot.h"
+#include "render/scene/spot.h"
 
 /// How a dot's rays become light on the sensor, for every device: where light is to be laid down, and how much of it.
 namespace gladstone {
-
-/// The spot that every ray leaves on the sensor; one model a launch.
-struct SpotView {
-  SpotModel model = SpotModel::none;
-  GaussianSpot<double> gaussian;  ///< for the three Gaussian models
-  AiryTable::View airy;           ///< for SpotModel::airy
-
-  /// Pixels a ray's light reaches to each side of its own.
-  GLADSTONE_HD int half_width() const {
-    if (model == SpotModel::none) return 0;
-    return model == SpotModel::airy ? airy.half_width : gaussian.half_width();
-  }
-};
 
 /// Points of a unit disc (or square) with weights of sum one, as a view.
 struct CubatureView {
@@ -119,19 +105,19 @@ struct LightModel {
   /// to 0.04 of it, less than half of that with a rule twice as fine, and where the stop's edge is smoothed more with
   /// the square of the scatter over the width of the cone as the target shows it: up to four times the early plane's
   /// density.
-  GLADSTONE_HD Vec2d table_error2(TruthErrors const& errors, bool simple_edge) const {
+  GLADSTONE_HD Vec2d table_error2(DotErrors const& errors, bool simple_edge) const {
     double const cone_px = 2 * table.way * image.stop_radius * image.px_per_metre;
     double const leaves = simple_edge && cone.fine ? 0.015 : 0.04, folds = simple_edge ? 0 : 80 / cone_px;
     auto const left2 = [&](double miss2) { return (leaves * leaves + folds * folds * miss2) * miss2; };
     return errors.table2 + Vec2d{left2(errors.miss2.x), left2(errors.miss2.y)};
   }
   /// Whether many rays are better by themselves.
-  GLADSTONE_HD bool rays_are_better(TruthErrors const& errors, TableCheck const& check, bool simple_edge) const {
+  GLADSTONE_HD bool rays_are_better(DotErrors const& errors, TableCheck const& check, bool simple_edge) const {
     Vec2d const table2 = table_error2(errors, simple_edge);
     return check.rays >= 1024 && errors.rays2.x + errors.rays2.y < table2.x + table2.y;
   }
   /// Standard error of a dot's displacement. @param tabled its truth is the table's [px]
-  GLADSTONE_HD Vec2d error(TruthErrors const& errors, bool tabled, bool simple_edge) const {
+  GLADSTONE_HD Vec2d error(DotErrors const& errors, bool tabled, bool simple_edge) const {
     using std::sqrt;
     if (!image.has_stop && image.source_half == 0) return {};  // all rays of a dot are one
     Vec2d const square = tabled ? table_error2(errors, simple_edge) : errors.rays2;

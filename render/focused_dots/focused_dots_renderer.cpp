@@ -1,3 +1,5 @@
+#include "render/focused_dots/focused_dots_renderer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,12 +11,9 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/focused_dots/deflection_map.h"
 #include "render/focused_dots/dot_exposure.h"
 #include "render/focused_dots/light_model.h"
 #include "render/focused_dots/trace_pair.h"
-#include "render/scene/renderer.h"
-#include "render/scene/theory.h"
 
 namespace gladstone {
 namespace {
@@ -28,23 +27,24 @@ void record_theory(LightModel const& light, TheoryModel const& model, SceneView<
     throw_if_interrupted();
     add_straight_ray(light, model, view, medium, dot, ray, cone);
   }
-  truth.set_theory(dot, model, integrate_chief(model, view, medium, dot), cone);
+  set_theory(truth, dot, model, integrate_chief(model, view, medium, dot), cone);
 }
 
 template <class Medium>
-TracingPass trace_all(Scene const& scene, DotPattern const& sources, Medium const& medium,
+TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium const& medium,
                       DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory) {
-  TracePair<double, Medium> const pair{scene.view(sources), medium};
+  Scene const& scene = dots.scene();
+  TracePair<double, Medium> const pair{dots.view(sources), medium};
   std::size_t const count = sources.centre.size();
-  double const light_per_ray = scene.light_per_ray(sources);
+  double const light_per_ray = dots.light_per_ray(sources);
   TracingPass pass(scene, sources);
   std::optional<LightImage> images[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; spot && frame < frame_count; ++frame) {
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  OwnedLightModel const light(scene, sources, spot, deflections);
-  TheoryModel const theory_model = scene.theory_model();
+  OwnedLightModel const light(dots, sources, spot, deflections);
+  TheoryModel const theory_model = dots.theory_model();
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
@@ -84,15 +84,17 @@ void apply_polarity(Scene const& scene, LightPair& light) {
 
 }  // namespace
 
-Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
-  GLADSTONE_EXPECTS(scene.setup.on_bench());
+Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images,
+                                      RenderTheory theory) {
+  std::optional<FocusedDots> const dots = door_(scene);
+  GLADSTONE_EXPECTS(dots);
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   Rendering rendering = render_with_margin(scene, [&] {
-    DeflectionTable const deflections = deflections_.table(scene, sources);
+    DeflectionTable const deflections = deflections_.table(*dots, sources);
     return std::visit(
         [&](auto const& medium) {
-          return trace_all(scene, sources, medium, deflections, images == RenderImages::no ? nullptr : &spot, theory);
+          return trace_all(*dots, sources, medium, deflections, images == RenderImages::no ? nullptr : &spot, theory);
         },
         scene.medium.view);
   });
@@ -105,19 +107,11 @@ Rendering CpuRenderer::render(Scene& scene, DotPattern const& sources, RenderIma
   return rendering;
 }
 
-TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
-  std::size_t const count = sources.centre.size();
-  rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
-  rendering.truth.resize(count);
-  for (std::size_t dot = 0; dot < count; ++dot) {
-    rendering.truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
-  }
-}
-
 Rendering render_with_margin(Scene& scene, std::function<TracingPass()> const& trace) {
   while (true) {
     TracingPass pass = trace();
-    if (scene.covers_bend(pass.largest_bend)) return std::move(pass.rendering);
+    if (scene.chief_rays_only() || pass.largest_bend <= scene.pupil_margin) return std::move(pass.rendering);
+    scene.widen_pupil(1.02 * pass.largest_bend);
   }
 }
 

@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "render/base/parallel.h"
-#include "render/focused_dots/light_model.h"
 #include "render/rays/source_tracer.h"
 #include "render/scene/ray_scatter.h"
+#include "render/scene/spot.h"
 
 namespace gladstone {
 namespace {
@@ -143,7 +143,7 @@ class RayErrors {
 }  // namespace
 
 StepPlan plan_step_by_rays(Scene& scene) {
-  return choose_step(scene, [&](double step, auto const& search) {
+  StepPlan const plan = choose_step(scene, [&](double step, auto const& search) {
     StepProbes probes;
     probes.dots.resize(scene.dots.centre.size());
     std::iota(probes.dots.begin(), probes.dots.end(), std::size_t{0});
@@ -157,6 +157,8 @@ StepPlan plan_step_by_rays(Scene& scene) {
     };
     search(probes);
   });
+  use_step(scene, plan);
+  return plan;
 }
 
 RaysPlan plan_rays_by_rays(Scene& scene) {

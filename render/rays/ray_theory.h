@@ -1,8 +1,9 @@
 #pragma once
 
-#include "render/focused_dots/light_model.h"
 #include "render/rays/source_tracer.h"
 #include "render/scene/field_map.h"
+#include "render/scene/source_cubature.h"
+#include "render/scene/theory.h"
 
 namespace gladstone {
 

@@ -7,9 +7,9 @@
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/focused_dots/light_model.h"
 #include "render/rays/ray_theory.h"
 #include "render/rays/source_tracer.h"
+#include "render/scene/spot.h"
 
 namespace gladstone {
 namespace {

@@ -46,7 +46,7 @@ AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, double reach, d
   return bundle;
 }
 
-RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot, {}) {
+RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot) {
   bool const gaussian = launch.spot.model != SpotModel::none && launch.spot.model != SpotModel::airy;
   if (gaussian && HitGrid::pays(launch.spot.gaussian.sigma, launch.rays)) grid_.emplace(launch.spot.gaussian);
 }

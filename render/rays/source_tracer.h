@@ -7,11 +7,11 @@
 
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
-#include "render/focused_dots/dot_exposure.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/camera.h"
+#include "render/scene/light_patch.h"
 #include "render/scene/scene.h"
 #include "render/scene/truth_error.h"
 

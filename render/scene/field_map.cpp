@@ -105,10 +105,9 @@ StrainMap map_strain(Scene const& scene) {
   int const columns = std::max(3, camera.columns / spacing_px), rows = std::max(3, camera.rows / spacing_px);
 
   // the disc of the target whose chief rays cross the medium's mid-plane where a point's cone does
-  SceneView<double> const view = scene.view();
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
-  double const middle = 0.5 * (box.low.z + box.high.z);
-  double const lever = (middle - view.sources.plane_z) / (view.bundle.lens_z - middle);
+  double const plane_z = -scene.setup.z_d, middle = 0.5 * (box.low.z + box.high.z);
+  double const lever = (middle - plane_z) / (scene.setup.z_a - middle);
   double const px = scene.imaging.magnification / camera.pixel_pitch;
   double const radius_px = chief ? 0 : lever * scene.imaging.entrance_pupil / 2 * px;
   double const finest_px = (1 + lever) * scene.medium.finest * px;
@@ -135,8 +134,8 @@ StrainMap map_strain(Scene const& scene) {
             throw_if_interrupted();
             Vec2d const at = scene.to_target({fine_px * (column - margin * finer) + 0.5 * spacing_px,
                                               fine_px * (row - margin * finer) + 0.5 * spacing_px});
-            Vec3d const start{at.x, at.y, view.sources.plane_z};
-            Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, view.bundle.lens_z - start.z})};
+            Vec3d const start{at.x, at.y, plane_z};
+            Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_a - start.z})};
             along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).levered;
           }
         });

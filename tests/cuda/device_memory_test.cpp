@@ -136,9 +136,9 @@ TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
 TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
-  DeflectionPlan const plan(scene, scene.dots);
+  DeflectionPlan const plan(on_bench(scene), scene.dots);
   ASSERT_TRUE(plan.wanted());
-  ASSERT_FALSE(DeflectionPlan(few, few.dots).wanted());
+  ASSERT_FALSE(DeflectionPlan(on_bench(few), few.dots).wanted());
   render(few);  // puts the field on the device, where it stays
   {
     DeviceMemoryLimit const limit(plan.table.bytes() - 1);

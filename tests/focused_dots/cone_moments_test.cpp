@@ -101,7 +101,7 @@ TEST(ConeRule, IntegratesALensInClosedForm) {
   Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 64);
   scene.medium.finest = 1e-4;
   LensTable const lens(d, b);
-  OwnedLightModel const light(scene, scene.dots, nullptr, lens.table);
+  OwnedLightModel const light(on_bench(scene), scene.dots, nullptr, lens.table);
   CorrectedCone const cone = lens.cone();
   ConeRule const& rule = light.model.cone;
   std::vector<double> rims;
@@ -165,7 +165,7 @@ struct SeenDot {
 SeenDot see(Scene const& scene, std::size_t dot, DeflectionTable const& table) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
-  OwnedLightModel const model(scene, scene.dots, &spot, table);
+  OwnedLightModel const model(on_bench(scene), scene.dots, &spot, table);
   LightImage frames[2] = {{scene.setup.camera.columns, scene.setup.camera.rows},
                           {scene.setup.camera.columns, scene.setup.camera.rows}};
   LightImage* const images[2] = {&frames[0], &frames[1]};
@@ -174,8 +174,8 @@ SeenDot see(Scene const& scene, std::size_t dot, DeflectionTable const& table) {
   truth.resize(1);
   std::visit(
       [&](auto const& medium) {
-        TracePair<double, std::decay_t<decltype(medium)>> const pair{scene.view(), medium};
-        exposure.begin(scene.dots.centre[dot], 1.0, images, scene.light_per_ray(scene.dots));
+        TracePair<double, std::decay_t<decltype(medium)>> const pair{on_bench(scene).view(), medium};
+        exposure.begin(scene.dots.centre[dot], 1.0, images, on_bench(scene).light_per_ray(scene.dots));
         trace_dot(pair, dot, scene.rays_per_dot, exposure);
         exposure.finish(truth, 0);
       },
@@ -206,7 +206,7 @@ TEST_P(TableAgainstRays, AgreeOnTruthAndLight) {
   setup.medium.field = dns_plane(c.instant);
   Scene few = scene_with_dots(setup, lattice(256, 60, 4), c.rays);
   few.pupil_margin *= 1.5;
-  DeflectionMap const map(few, DeflectionPlan(few, few.dots));
+  DeflectionMap const map(on_bench(few), DeflectionPlan(on_bench(few), few.dots));
   ASSERT_TRUE(map.table().exists());
   Scene many = few;
   many.rays_per_dot = 32768;
@@ -257,8 +257,8 @@ TEST_P(TableUnderFineSpots, GivesTheirLight) {
     }
   }
   Scene by_rays = scene_with_dots(setup, few, 65536), by_table = scene_with_dots(setup, all, 256);
-  ASSERT_FALSE(DeflectionPlan(by_rays, by_rays.dots).wanted());
-  ASSERT_TRUE(DeflectionPlan(by_table, by_table.dots).wanted());
+  ASSERT_FALSE(DeflectionPlan(on_bench(by_rays), by_rays.dots).wanted());
+  ASSERT_TRUE(DeflectionPlan(on_bench(by_table), by_table.dots).wanted());
   Image<double> const exact = render_all(by_rays).light.flow, found = render_all(by_table).light.flow;
   EXPECT_LT(picture_error(found, exact).rms_levels, 1.5 * of_four);
 }

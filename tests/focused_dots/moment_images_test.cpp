@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "render/focused_dots/dot_exposure.h"
+#include "render/focused_dots/dot_patch.h"
 #include "render/focused_dots/light_model.h"
 
 namespace gladstone {
@@ -44,7 +44,7 @@ TEST(DotBoxes, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
 }
 
 /// A patch's light at pixels 0 .. 63.
-std::vector<double> light_of(LightPatch const& patch) {
+std::vector<double> light_of(DotPatch const& patch) {
   std::vector<double> light(64 * 64);
   patch.for_each_touched([&](int column, int row, double weight) {
     ASSERT_TRUE(column >= 0 && row >= 0 && column < 64 && row < 64);
@@ -84,7 +84,7 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
     Vec2d const d0{0.61, -0.87};
     Vec2<int> const box = boxes.box_of(d0);
     Vec2d const rest = boxes.from_middle(d0, box);
-    LightPatch direct(spot, images), by_moments(spot, images);
+    DotPatch direct(spot, images), by_moments(spot, images);
     // moments as functions of the place, term by term: (rest.x + s x)^a (rest.y - s y / 2)^b up to second order in s
     MomentField field{};
     for (int a = 0; a <= DisplacementMoments::order; ++a) {

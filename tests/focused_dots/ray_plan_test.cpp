@@ -1,5 +1,3 @@
-#include "render/scene/ray_plan.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "render/base/random.h"
 #include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_planning.h"
 #include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
@@ -229,14 +228,14 @@ TEST(MeasureRays, TellsHowFarATableLeadsTruthAstray) {
   setup.medium.field.scale *= 4;
   Scene scene = scene_with_dots(setup, lattice(64, 20, 3), 256);
   plan_step(scene);
-  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
+  ASSERT_TRUE(DeflectionPlan(on_bench(scene), scene.dots).wanted());
   DotPattern some = scene.dots;
   some.centre.clear();
   for (std::size_t i = 17; i < scene.dots.centre.size(); i += 40) some.centre.push_back(scene.dots.centre[i]);
   Scene many = scene;
   many.rays_per_dot = 65536;
   many.setup.render.seed = repeat_seed(scene.setup.render.seed, 5);
-  CpuRenderer renderer;
+  FocusedDotsRenderer renderer;
   auto const truth_of = [&](Scene& traced) {
     return renderer.render(traced, some, RenderImages::no, RenderTheory::no).truth.displacement_px;
   };

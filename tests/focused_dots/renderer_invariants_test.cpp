@@ -16,7 +16,7 @@ bool same_bits(Range const& a, Range const& b) {
 }
 
 // Interface.md, Repeatability: images accumulate in integers, a dot's sums run in the order of its rays.
-TEST(CpuRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
+TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   auto setup = table1_setup(64);
   setup.medium.field = dns_plane("kepeak");
   Scene scene = build_scene(setup);
@@ -45,7 +45,7 @@ TEST(CpuRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   set_thread_count(0);
 }
 
-TEST(CpuRenderer, WithoutAMediumBothFramesAreEqual) {
+TEST(FocusedDotsRenderer, WithoutAMediumBothFramesAreEqual) {
   auto const setup = table1_setup(48);
   Scene scene = scene_with_dots(setup, lattice(48, 4, 10), 64);
   Rendering const rendering = render_all(scene);
@@ -59,7 +59,7 @@ TEST(CpuRenderer, WithoutAMediumBothFramesAreEqual) {
 
 // A uniform slab bends nothing: with matched faces whatever its density, with refracting ones at the ambient density.
 // The interface allows 1e-11 px; rounding of positions of 1e3 px leaves 1e-13.
-TEST(CpuRenderer, UniformDensityDisplacesNothing) {
+TEST(FocusedDotsRenderer, UniformDensityDisplacesNothing) {
   std::string const path = (std::filesystem::path(testing::TempDir()) / "uniform.nrrd").string();
   write_plane(path, 16, 16, [](int, int) { return 1.7; });
   FieldSetup plane;
@@ -91,7 +91,7 @@ TEST(CpuRenderer, UniformDensityDisplacesNothing) {
 }
 
 // No medium and a point in focus: every ray of every dot lands where the pinhole would put it.
-TEST(CpuRenderer, ReferenceIsWhereThePinholeSees) {
+TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
   auto setup = table1_setup(256);
   setup.target.dot_diameter_px = 0;
   auto const at = lattice(256, 5, 45);
@@ -105,7 +105,7 @@ TEST(CpuRenderer, ReferenceIsWhereThePinholeSees) {
 }
 
 // A ray bent further than the margin planned for makes the renderer enlarge the pupil and start again.
-TEST(CpuRenderer, EnlargesThePupilWhenBendingIsStrongerThanPlanned) {
+TEST(FocusedDotsRenderer, EnlargesThePupilWhenBendingIsStrongerThanPlanned) {
   auto setup = table1_setup(64);
   setup.medium.field = uniform_gradient(100, 0);
   Scene scene = scene_with_dots(setup, {{32, 32}}, 256);
@@ -119,7 +119,7 @@ TEST(CpuRenderer, EnlargesThePupilWhenBendingIsStrongerThanPlanned) {
 }
 
 // Dots whose rays miss the sensor's area have a truth like any other; one out of the picture leaves no light in it.
-TEST(CpuRenderer, DotsOutsideThePictureHaveTruthButNoLight) {
+TEST(FocusedDotsRenderer, DotsOutsideThePictureHaveTruthButNoLight) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
   setup.medium.field = uniform_gradient(100, 0);

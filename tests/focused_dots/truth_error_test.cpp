@@ -1,5 +1,3 @@
-#include "render/scene/truth_error.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <limits>
 
 #include "render/base/random.h"
+#include "render/focused_dots/dot_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -23,7 +22,7 @@ struct Coverage {
 
 /// @param scene with its number of rays @param seeds that it is rendered with
 Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
-  CpuRenderer renderer;
+  FocusedDotsRenderer renderer(bench_rays);
   auto const truth_of = [&](std::uint64_t rays, std::uint64_t seed) {
     Scene other = scene;
     other.rays_per_dot = rays;
@@ -116,7 +115,7 @@ TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
     setup.medium.field = uniform_gradient(75, 0);
     setup.medium.thickness = thickness;
     Scene scene = scene_with_dots(setup, lattice(96, 5, 16), 64);
-    Rendering const rendering = CpuRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no);
+    Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no);
     EXPECT_EQ(rendering.table, TableState::made) << thickness;
     TruthAccuracy const accuracy = truth_accuracy(rendering.truth, 1e-3);
     EXPECT_EQ(accuracy.by_table, rendering.truth.size());
@@ -154,7 +153,7 @@ TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
 // Of groups of equal weight a weighted mean's error is the standard deviation of the groups' means over the square root
 // of their number, times Student's factor: here 1, 2, 3 and 6 about their mean 3, so sqrt(14/3/4) = 1.0801.
 TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
-  RaySums of[4], all;
+  DotSums of[4], all;
   double const place[4] = {1, 2, 3, 6};
   for (int i = 0; i < 4; ++i) {
     of[i].hits[0].add({0, 0}, 2.0, true);
@@ -164,7 +163,7 @@ TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
     of[i].check.expected = {20, 7};
     all += of[i];
   }
-  TruthErrors const errors = truth_errors(of, 4, all);
+  DotErrors const errors = dot_errors(of, 4, all);
   double const expected = student_factor(4) * std::sqrt(14.0 / 12);
   EXPECT_NEAR(std::sqrt(errors.rays2.x), expected, 1e-12);
   EXPECT_NEAR(std::sqrt(errors.table2.x), expected, 1e-12);

@@ -22,7 +22,7 @@ Both lay_down(double sigma, std::vector<Vec2d> const& hits) {
   spot.gaussian.sigma = sigma;
   LightImage gathered(side, side), laid(side, side);
   HitGrid grid(spot.gaussian);
-  LightPatch patch(spot, {});
+  LightPatch patch(spot);
   double const share = 1.0 / static_cast<double>(hits.size());
   for (Vec2d const p : hits) {
     grid.deposit(p, 1, &gathered, share);

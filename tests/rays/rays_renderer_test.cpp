@@ -164,23 +164,5 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   }
 }
 
-TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
-  auto const bench = table1_setup(64);
-  EXPECT_EQ(reason_against_focused_dots(bench), "");
-  auto const refused = [&](auto const& change) {
-    auto setup = bench;
-    change(setup);
-    return !reason_against_focused_dots(setup).empty();
-  };
-  EXPECT_TRUE(refused([](auto& s) { s.lens.prescription = std::make_shared<Lens const>(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.pose = Pose<double>{{0, 0, 0.75}}; }));
-  EXPECT_TRUE(refused([](auto& s) { s.windows.emplace_back(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.tilt.x = 1e-3; }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.scheimpflug = true; }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.distortion.k1 = 1e-3; }));
-  EXPECT_TRUE(refused([](auto& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.lens.focus = Focus::medium; }));
-}
-
 }  // namespace
 }  // namespace gladstone
