@@ -6,6 +6,7 @@
 
 #include "render/base/gauss_legendre.h"
 #include "render/base/units.h"
+#include "render/optics/ray_bundle.h"
 
 namespace gladstone {
 
@@ -40,15 +41,10 @@ void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, st
   });
 }
 
-/// Points that fill the unit disc evenly, no two at one radius or angle: turned by the golden angle from each to the
-/// next (Vogel 1979).
-std::vector<Vec2d> sunflower(int count) {
-  double const golden_angle = pi * (3 - std::sqrt(5.0));
+/// A sunflower's points, those that lie together side by side.
+std::vector<Vec2d> scattered_points(int count) {
   std::vector<Vec2d> points;
-  for (int k = 0; k < count; ++k) {
-    double const radius = std::sqrt((k + 0.5) / count);
-    points.push_back({radius * std::cos(k * golden_angle), radius * std::sin(k * golden_angle)});
-  }
+  for (int k = 0; k < count; ++k) points.push_back(sunflower(k, count));
   std::stable_sort(points.begin(), points.end(), [](Vec2d a, Vec2d b) { return z_order(a) < z_order(b); });
   return points;
 }
@@ -117,7 +113,7 @@ OwnedLightModel::OwnedLightModel(FocusedDots const& dots, DotPattern const& sour
     bool const fine = scene.medium.grid.nodes[0] <= 1 || scene.rays_per_dot >= 4096;
     make_cone_rule(table.way * stop_radius / scene.medium.finest, fine ? 2 : 1, cone_points, cone_directions);
     int const scattered = std::max(1024, 2 * static_cast<int>(cone_points.size()));
-    cone_scattered = sunflower(scattered);
+    cone_scattered = scattered_points(scattered);
     model.cone = {cone_points.data(),
                   cone_directions.data(),
                   static_cast<int>(cone_points.size()),
