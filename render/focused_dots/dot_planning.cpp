@@ -267,12 +267,7 @@ StepPlan plan_step(FocusedDots const& dots) {
 RaysPlan measure_rays(FocusedDots const& dots) { return RayErrors(dots).measure(); }
 
 RaysPlan plan_rays(FocusedDots const& dots) {
-  RaysPlan plan;
-  plan.bits = std::min(dots.scene().setup.camera.bit_depth, 12);
-  if (dots.scene().setup.render.rays_per_dot) {
-    plan.rays = *dots.scene().setup.render.rays_per_dot;
-    return plan;
-  }
+  if (auto const given = given_rays(dots.scene().setup)) return *given;
   Scene searched = dots.scene();  // at one number of rays after the other
   RayErrors const errors(dots.of(searched));
   return choose_rays(

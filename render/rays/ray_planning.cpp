@@ -162,11 +162,9 @@ StepPlan plan_step_by_rays(Scene& scene) {
 }
 
 RaysPlan plan_rays_by_rays(Scene& scene) {
-  RaysPlan plan;
-  plan.bits = std::min(scene.setup.camera.bit_depth, 12);
-  if (scene.setup.render.rays_per_dot) {
-    scene.rays_per_dot = plan.rays = *scene.setup.render.rays_per_dot;
-    return plan;
+  if (auto const given = given_rays(scene.setup)) {
+    scene.rays_per_dot = given->rays;
+    return *given;
   }
   RayErrors const errors(scene);
   // to the time of a ray through a thin lens comes that of the surfaces, in both frames [s]

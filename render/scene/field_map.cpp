@@ -10,21 +10,22 @@
 
 namespace gladstone {
 
+FieldMap FieldMap::ambient(Setup const& setup, int spacing_px) {
+  int const columns = std::max(1, setup.camera.columns / spacing_px);
+  int const rows = std::max(1, setup.camera.rows / spacing_px);
+  return {spacing_px, Image<double>(columns, rows, setup.medium.ambient_density), Image<Vec2d>(columns, rows),
+          Image<Vec2d>(columns, rows)};
+}
+
 FieldMap map_field(Scene const& scene, int spacing_px) {
-  CameraSetup const& camera = scene.setup.camera;
-  FieldMap map;
-  map.spacing_px = spacing_px;
-  int const columns = std::max(1, camera.columns / spacing_px), rows = std::max(1, camera.rows / spacing_px);
-  map.density = Image<double>(columns, rows);
-  map.density_gradient = Image<Vec2d>(columns, rows);
-  map.eq9_px = Image<Vec2d>(columns, rows);
+  FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   MediumSetup const& setup = scene.setup.medium;
   double const step = std::min(scene.step, scene.medium.coarsest_step);
   std::visit(
       [&](auto const& medium) {
-        parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
+        parallel_for(static_cast<std::size_t>(map.density.rows()), [&](std::size_t line) {
           int const row = static_cast<int>(line);
-          for (int column = 0; column < columns; ++column) {
+          for (int column = 0; column < map.density.columns(); ++column) {
             throw_if_interrupted();
             Vec2d const at = scene.to_target(map.position_px(column, row));
             Vec3d const start{at.x, at.y, -scene.setup.z_d};
@@ -34,7 +35,7 @@ FieldMap map_field(Scene const& scene, int spacing_px) {
             map.density(column, row) = along.depth > 0 ? along.refractivity * mean : setup.ambient_density;
             map.density_gradient(column, row) = along.plain * mean;
             map.eq9_px(column, row) = theory_displacement(along.plain, scene.setup.z_d, scene.imaging.magnification,
-                                                          scene.setup.ambient_index(), camera.pixel_pitch);
+                                                          scene.setup.ambient_index(), scene.setup.camera.pixel_pitch);
           }
         });
       },

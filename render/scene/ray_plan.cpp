@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "render/base/progress.h"
 #include "render/base/units.h"
 #include "render/scene/ray_hit.h"
+#include "render/scene/ray_scatter.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
@@ -85,6 +85,14 @@ double rays_seconds(Scene const& scene) {
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
   double const ray = a_ray + a_step * scene.steps_across() + frame_count * a_pixel * width * width;
   return static_cast<double>(scene.dots.centre.size()) * ray;
+}
+
+std::optional<RaysPlan> given_rays(Setup const& setup) {
+  if (!setup.render.rays_per_dot) return std::nullopt;
+  RaysPlan plan;
+  plan.rays = *setup.render.rays_per_dot;
+  plan.bits = plan_bits(setup.camera);
+  return plan;
 }
 
 RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray) {

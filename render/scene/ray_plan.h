@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "render/scene/scene.h"
@@ -68,6 +69,9 @@ StepPlan choose_step(Scene const& scene,
 
 /// Sets scene.step and scene.pupil_margin.
 void use_step(Scene& scene, StepPlan const& plan);
+
+/// The plan of a setup that says how many rays; nothing where that is to be chosen.
+std::optional<RaysPlan> given_rays(Setup const& setup);
 
 /// Chooses rays_per_dot: the smallest power of two for which less than 1e-3 px rms is measured in truth and half a grey
 /// level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most 65,536, and
