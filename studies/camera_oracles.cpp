@@ -5,10 +5,10 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/ray_plan.h"
 #include "render/scene/scene.h"
 #include "render/sensor/diffraction_spot.h"
 #include "studies/oracles.h"
+#include "studies/scene_renderer.h"
 
 namespace gladstone::oracle {
 namespace {
@@ -28,7 +28,7 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
   scene.camera = build_camera(setup);
   scene.dots.centre = points;
   scene.medium = build_medium(setup.medium);
-  plan_step(scene);
+  plan_step_of(scene);
   scene.rays_per_dot = rays;
   return renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
 }

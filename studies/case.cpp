@@ -14,8 +14,8 @@
 #include "render/base/output_folder.h"
 #include "render/base/text_encoding.h"
 #include "render/base/units.h"
+#include "render/focused_dots/focused_dots.h"
 #include "render/scene/field_coverage.h"
-#include "render/scene/focused_dots.h"
 #include "render/sensor/detector.h"
 #include "studies/json_text.h"
 #include "studies/scene_renderer.h"
@@ -43,7 +43,7 @@ void cross_check_windows(CaseSetup& loaded) {
 /// who read it.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup, field);
+    check_memory(loaded.setup, field, focused_dots_memory(loaded.setup));
   } catch (DataError const& error) {
     std::string const text = error.what();
     SetupTable root = loaded.document.root();

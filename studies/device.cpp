@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/version.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
 #include "studies/scene_renderer.h"
 #include "studies/version_text.h"
@@ -28,7 +29,7 @@ Device open_device(std::string const& wanted) {
     instead = " (" + state.text + ")";
   }
   spdlog::info("device: cpu, {} threads{}", thread_count(), instead);
-  return {std::make_unique<SceneRenderer>(std::make_unique<CpuRenderer>(), std::make_unique<RaysRenderer>()),
+  return {std::make_unique<SceneRenderer>(std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>()),
           make_correlator};
 }
 

@@ -1,10 +1,20 @@
 #include "studies/scene_renderer.h"
 
+#include "render/base/contracts.h"
+#include "render/focused_dots/dot_planning.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
-#include "render/scene/focused_dots.h"
 
 namespace gladstone {
+namespace {
+
+FocusedDots enter(Scene const& scene) {
+  std::optional<FocusedDots> const dots = focused_dots(scene);
+  GLADSTONE_EXPECTS(dots);
+  return *dots;
+}
+
+}  // namespace
 
 RenderMethod method_of(Scene const& scene) {
   RenderMethod const wanted = scene.setup.render.method;
@@ -27,11 +37,17 @@ Rendering SceneRenderer::render(Scene& scene, DotPattern const& sources, RenderI
 }
 
 StepPlan plan_step_of(Scene& scene) {
-  return method_of(scene) == RenderMethod::rays ? plan_step_by_rays(scene) : plan_step(scene);
+  if (method_of(scene) == RenderMethod::rays) return plan_step_by_rays(scene);
+  StepPlan const plan = plan_step(enter(scene));
+  use_step(scene, plan);
+  return plan;
 }
 
 RaysPlan plan_rays_of(Scene& scene) {
-  return method_of(scene) == RenderMethod::rays ? plan_rays_by_rays(scene) : plan_rays(scene);
+  if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
+  RaysPlan const plan = plan_rays(enter(scene));
+  scene.rays_per_dot = plan.rays;
+  return plan;
 }
 
 FieldMap field_of(Scene const& scene, int spacing_px) {

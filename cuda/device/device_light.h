@@ -3,7 +3,7 @@
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_frames.h"
 #include "render/scene/kept_light.h"
-#include "render/scene/trace_pair.h"
+#include "render/scene/ray_hit.h"
 
 namespace gladstone::cuda {
 

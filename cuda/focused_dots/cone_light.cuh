@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cuda/focused_dots/dot_patch.cuh"
-#include "render/scene/dot_light.h"
+#include "render/focused_dots/dot_light.h"
 
 /// A dot's truth and light from the integral over its cone, by a whole block: what DotExposure does on the CPU.
 namespace gladstone::cuda {

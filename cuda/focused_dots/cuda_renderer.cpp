@@ -12,10 +12,13 @@
 #include "cuda/device/launch.h"
 #include "cuda/focused_dots/device_deflections.h"
 #include "cuda/focused_dots/expose_dots.h"
+#include "cuda/focused_dots/scene_view_cast.h"
+#include "render/base/contracts.h"
 #include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/progress.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/focused_dots_renderer.h"
+#include "render/focused_dots/light_model.h"
 #include "render/sensor/exposure.h"
 
 namespace gladstone::cuda {
@@ -101,17 +104,18 @@ class MirroredLightModel {
 /// One try at a scene. @param dots_a_batch traced at a time @param spot null: truth only @param light_out of the
 /// images, for bright dots
 template <class T>
-TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern const& sources,
+TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotPattern const& sources,
                       MirroredSources const& on_device, MirroredMedium const& medium,
                       DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory,
                       std::shared_ptr<DeviceLight>& light_out) {
+  Scene const& scene = bench.scene();
   std::uint64_t const dots = sources.centre.size(), rays = scene.rays_per_dot;
   TracingPass pass(scene, sources);
   GroundTruth& truth = pass.rendering.truth;
 
-  OwnedLightModel const host_light(scene, sources, spot, deflections, MomentImagesBy::device);
+  OwnedLightModel const host_light(bench, sources, spot, deflections, MomentImagesBy::device);
   MirroredLightModel const light(host_light.model);
-  SceneView<double> const view = on_device.place(scene.view(sources));
+  SceneView<double> const view = on_device.place(bench.view(sources));
   SceneView<T> const traced = on_device.place([&] {
     if constexpr (std::is_same_v<T, double>) {
       return view;
@@ -119,8 +123,8 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       return cast<T>(view);
     }
   }());
-  double const light_per_ray = scene.light_per_ray(sources);
-  TheoryModel const theory_model = scene.theory_model();
+  double const light_per_ray = bench.light_per_ray(sources);
+  TheoryModel const theory_model = bench.theory_model();
   std::optional<ImagePairOnDevice> images;
   if (spot) {
     images.emplace(scene.setup.camera.columns, scene.setup.camera.rows);
@@ -161,7 +165,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, Scene const& scene, DotPattern
       std::vector<DotTheory> along(dots);
       integrals.download(along.data(), dots);
       for (std::size_t dot = 0; dot < dots; ++dot)
-        truth.set_theory(dot, theory_model, along[dot].along, along[dot].cone);
+        set_theory(truth, dot, theory_model, along[dot].along, along[dot].cone);
     }
     TraceTally counted{};
     tally.download(&counted, 1);
@@ -191,6 +195,9 @@ CudaRenderer::CudaRenderer() : uploads_(std::make_unique<Uploads>()) {
 CudaRenderer::~CudaRenderer() = default;
 
 Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
+  // dots in focus; others too, ray by ray, until the device has the general renderer
+  std::optional<FocusedDots> const bench = bench_rays(scene);
+  GLADSTONE_EXPECTS(bench);
   bool const single = scene.setup.render.precision == Precision::single;
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
@@ -203,14 +210,14 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   std::shared_ptr<DeviceLight> light;
   auto const trace = [&]<class T>(T) {
     MirroredMedium const& medium = uploads_->medium.medium();
-    DeflectionTable const deflections = uploads_->deflections.table(scene, sources, medium.view<double>());
+    DeflectionTable const deflections = uploads_->deflections.table(*bench, sources, medium.view<double>());
     std::uint64_t const dots = std::max<std::uint64_t>(1, sources.centre.size());
     double const steps = static_cast<double>(scene.rays_per_dot) * std::max(1.0, scene.steps_across());
     std::uint64_t const most = std::min(most_record_bytes / (scene.rays_per_dot * sizeof(RayRecord<T>)),
                                         static_cast<std::size_t>(most_steps_a_launch / steps));
     // where the device is short of memory, once more with smaller batches, which give the same bits
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
-        return trace_all<T>(batch, scene, sources, on_device, medium, deflections,
+        return trace_all<T>(batch, *bench, sources, on_device, medium, deflections,
                             images == RenderImages::no ? nullptr : &spot, theory, light);
       } catch (OutOfDeviceMemory const&) {
         if (batch == 1) throw;

@@ -52,10 +52,10 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& plan,
+DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan,
                                      DeviceMedium<double> const& medium) {
   if (!plan.wanted()) return;
-  SceneView<double> const open = open_view(scene);
+  SceneView<double> const open = dots.open_view();
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
   values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");
@@ -67,7 +67,7 @@ DeviceDeflections::DeviceDeflections(Scene const& scene, DeflectionPlan const& p
       [&](auto const& held) {
         auto* const kernel = deflect_kernel<std::remove_cvref_t<decltype(held)>>;
         std::size_t const all = (nodes + 4 + 4 * slopes + threads - 1) / threads;
-        double const steps = threads * std::max(1.0, scene.steps_across());
+        double const steps = threads * std::max(1.0, dots.scene().steps_across());
         std::size_t const most = std::max<std::size_t>(1, static_cast<std::size_t>(most_steps_a_launch / steps));
         for (std::size_t first = 0; first < all; first += most) {
           throw_if_interrupted();

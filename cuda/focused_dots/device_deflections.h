@@ -4,7 +4,7 @@
 
 #include "cuda/device/device_array.h"
 #include "cuda/rays/device_medium.h"
-#include "render/scene/deflection_map.h"
+#include "render/focused_dots/deflection_map.h"
 
 namespace gladstone::cuda {
 
@@ -12,7 +12,7 @@ namespace gladstone::cuda {
 class DeviceDeflections {
  public:
   /// @throws OutOfDeviceMemory naming the size of the whole table
-  DeviceDeflections(Scene const& scene, DeflectionPlan const& plan, DeviceMedium<double> const& medium);
+  DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan, DeviceMedium<double> const& medium);
 
   /// exists() only where it was wanted.
   DeflectionTable const& table() const { return table_; }

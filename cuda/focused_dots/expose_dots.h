@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "cuda/device/device_images.h"
-#include "cuda/rays/trace_rays.h"
-#include "render/scene/dot_light.h"
+#include "cuda/focused_dots/trace_rays.h"
+#include "render/focused_dots/dot_light.h"
 
 namespace gladstone::cuda {
 

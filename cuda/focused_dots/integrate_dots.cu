@@ -1,6 +1,6 @@
 #include "cuda/device/block_sum.cuh"
 #include "cuda/device/launch.h"
-#include "cuda/rays/trace_rays.cuh"
+#include "cuda/focused_dots/trace_rays.cuh"
 
 namespace gladstone::cuda {
 namespace {

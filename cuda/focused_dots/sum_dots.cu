@@ -8,8 +8,8 @@ namespace {
 
 /// What a dot's rays come to by themselves.
 struct DotRays {
-  RaySums sums;
-  TruthErrors errors;
+  DotSums sums;
+  DotErrors errors;
   bool moved;  ///< whether the flow did anything to one of them
 };
 
@@ -17,13 +17,13 @@ template <class T>
 __global__ void __launch_bounds__(dot_threads, 3)
     sum_rays_kernel(LightModel const __grid_constant__ model, SourcesView<double> const sources, Batch const batch,
                     RayRecord<T> const* const records, DotRays* const out) {
-  __shared__ __align__(16) unsigned char storage[dot_threads * sizeof(RaySums)];
+  __shared__ __align__(16) unsigned char storage[dot_threads * sizeof(DotSums)];
   static_assert(dot_threads % most_scramblings == 0, "a thread's rays are of one scrambling");
-  auto* const of_scramblings = reinterpret_cast<RaySums*>(storage);
+  auto* const of_scramblings = reinterpret_cast<DotSums*>(storage);
   for (std::uint64_t i = blockIdx.x; i < batch.dots; i += gridDim.x) {
     Vec2d const centre = sources.centre[batch.first + i];
     RayRecord<T> const* const rays = records + i * batch.rays;
-    RaySums sum;
+    DotSums sum;
     bool moved = false;
     bool const tabled = model.tabled(centre);
     for (std::uint64_t j = threadIdx.x; j < batch.rays; j += dot_threads) {
@@ -36,9 +36,9 @@ __global__ void __launch_bounds__(dot_threads, 3)
     moved = __syncthreads_or(moved);
     block_sums(sum, of_scramblings, static_cast<unsigned int>(model.scramblings));
     if (threadIdx.x == 0) {
-      RaySums all;
+      DotSums all;
       for (int scrambling = 0; scrambling < model.scramblings; ++scrambling) all += of_scramblings[scrambling];
-      out[i] = {all, truth_errors(of_scramblings, model.scramblings, all), moved};
+      out[i] = {all, dot_errors(of_scramblings, model.scramblings, all), moved};
     }
     __syncthreads();
   }

@@ -14,7 +14,7 @@
 #include "render/rays/ray_theory.h"
 #include "render/rays/rays_renderer.h"
 #include "render/rays/source_tracer.h"
-#include "render/scene/light_model.h"
+#include "render/scene/spot.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -140,8 +140,7 @@ class Batch {
     auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
     RaySums of_scramblings[most_scramblings];
     for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
-      HitSums const& here = found_[at * scene_.sums_a_source() + i];
-      for (int frame = 0; frame < frame_count; ++frame) of_scramblings[i % scramblings].hits[frame] += here.hits[frame];
+      of_scramblings[i % scramblings] += found_[at * scene_.sums_a_source() + i];
     }
     return source_truth(of_scramblings, scene_.scramblings(), sources_[at].origin);
   }
@@ -150,11 +149,11 @@ class Batch {
   LaunchOnDevice const& scene_;
   std::vector<SourceOnDevice> sources_;
   DeviceArray<SourceOnDevice> on_device_;
-  DeviceArray<HitSums> sums_;
+  DeviceArray<RaySums> sums_;
   DeviceArray<double> bend2_;
   DeviceArray<unsigned long long> ends_;
   std::vector<double> bends_;
-  std::vector<HitSums> found_;
+  std::vector<RaySums> found_;
 };
 
 /// Traces all sources of a scene; the medium is there twice, for the host aims and integrates.
@@ -179,7 +178,7 @@ class SceneTracer {
     // so many that their sums fit, and that one launch does not take long
     double const steps = static_cast<double>(launch_.rays) * std::max(1.0, scene_.steps_across());
     std::size_t const most =
-        std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(HitSums)),
+        std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(RaySums)),
                                          static_cast<std::size_t>(most_steps_a_launch / steps)),
                                 1, 1 << 16);
     Progress progress(what, count);

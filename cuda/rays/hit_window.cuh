@@ -66,7 +66,7 @@ struct HitWindow {
 /// Where the parts lie.
 struct SharedParts {
   CameraElement<double>* elements;
-  HitSums* sums;      ///< one a thread
+  RaySums* sums;      ///< one a thread
   double* rows_seen;  ///< in the place of sums, which are done with then
   double* share;      ///< of the spline
   int* nodes;         ///< of both windows; null: there are none
@@ -74,7 +74,7 @@ struct SharedParts {
   __device__ SharedParts(unsigned char* memory, SourcesLaunch const& launch) {
     elements = reinterpret_cast<CameraElement<double>*>(memory);
     memory += elements_bytes(launch);
-    sums = reinterpret_cast<HitSums*>(memory);
+    sums = reinterpret_cast<RaySums*>(memory);
     rows_seen = reinterpret_cast<double*>(memory);
     memory += common_bytes(launch);
     share = reinterpret_cast<double*>(memory);
@@ -103,7 +103,7 @@ struct SharedParts {
     return static_cast<std::size_t>(launch.camera.count) * sizeof(CameraElement<double>);
   }
   GLADSTONE_HD static std::size_t common_bytes(SourcesLaunch const& launch) {
-    std::size_t const of_sums = source_threads * sizeof(HitSums);
+    std::size_t const of_sums = source_threads * sizeof(RaySums);
     if (launch.most_window_px == 0) return of_sums;
     int const side = launch.most_window_px * launch.spline.per_px;
     std::size_t const of_rows =

@@ -45,7 +45,7 @@ __device__ void lay_down_spots(SourcesLaunch const& launch, bool mine, RayHit<do
 template <class Medium>
 __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
                             SourceOnDevice const& aim, std::uint64_t first, std::uint64_t last,
-                            HitWindow const (&window)[frame_count], unsigned int* counts, HitSums& sums,
+                            HitWindow const (&window)[frame_count], unsigned int* counts, RaySums& sums,
                             double& bend2) {
   bool const lit = launch.images.light[0] != nullptr;
   AimedBundle<double> const bundle{aim.centre, aim.a, aim.b, aim.across, launch.choice};
@@ -108,7 +108,7 @@ __global__ void __launch_bounds__(threads, 3)
       window[frame].clear();
     }
     __syncthreads();
-    HitSums sums;
+    RaySums sums;
     double bend2 = 0;
     trace_share(launch, camera, medium, aim, first, last, window, counts, sums, bend2);
     for (int step = warp_size / 2; step > 0; step /= 2) bend2 = fmax(bend2, __shfl_xor_sync(whole_warp, bend2, step));

@@ -7,7 +7,8 @@
 #include "cuda/rays/device_medium.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_spline.h"
-#include "render/scene/dot_light.h"
+#include "render/scene/spot.h"
+#include "render/scene/truth_error.h"
 
 namespace gladstone::cuda {
 
@@ -44,19 +45,9 @@ struct SourcesLaunch {
   std::uint64_t shares() const { return (rays + most_rays_a_share - 1) / most_rays_a_share; }
 };
 
-/// Sums over hits in either frame.
-struct HitSums {
-  CentroidSum<double> hits[frame_count];
-
-  GLADSTONE_HD HitSums& operator+=(HitSums const& other) {
-    for (int frame = 0; frame < frame_count; ++frame) hits[frame] += other.hits[frame];
-    return *this;
-  }
-};
-
 /// What a launch gives, on the device.
 struct SourcesTraced {
-  HitSums* sums;             ///< [source][share][scrambling]
+  RaySums* sums;             ///< [source][share][scrambling]
   double* bend2;             ///< [source]: square of the furthest that the medium moved a ray [m^2]
   unsigned long long* ends;  ///< [frame][status], counted on
 };

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "render/base/interrupt.h"
-#include "render/base/units.h"
 #include "render/optics/aim_disc.h"
+#include "render/optics/ray_bundle.h"
 
 namespace gladstone {
 namespace {
@@ -26,13 +26,6 @@ class ImagePlane {
 };
 
 Vec2d slope(Ray<double> const& ray) { return {ray.direction.x / ray.direction.z, ray.direction.y / ray.direction.z}; }
-
-/// Even spread over the unit disc.
-Vec2d sunflower(int k, int count) {
-  double const golden_angle = pi * (3 - std::sqrt(5.0));
-  double const r = std::sqrt((k + 0.5) / count);
-  return {r * std::cos(k * golden_angle), r * std::sin(k * golden_angle)};
-}
 
 class FieldTracer {
  public:
@@ -75,24 +68,16 @@ class FieldTracer {
     if (arrived.empty()) return;
     point.imaged = true;
     point.vignetting = 1 - static_cast<double>(arrived.size()) / through_stop;
-    auto const count = static_cast<double>(arrived.size());
-    Vec2d mean_slope{};
+    std::vector<Vec2d> slopes;
     for (auto const& ray : arrived) {
       point.spot.push_back(ImagePlane::meets(ray, 0));
-      point.centroid += point.spot.back() / count;
-      mean_slope += slope(ray) / count;
+      slopes.push_back(slope(ray));
     }
-    // the rms radius is a parabola along the axis: <p p> + 2 z <p s> + z^2 <s s>, about the means
-    double pp = 0, ps = 0, ss = 0;
-    for (std::size_t i = 0; i < arrived.size(); ++i) {
-      Vec2d const p = point.spot[i] - point.centroid, s = slope(arrived[i]) - mean_slope;
-      pp += dot(p, p) / count;
-      ps += dot(p, s) / count;
-      ss += dot(s, s) / count;
-    }
-    point.spot_rms = std::sqrt(pp);
-    point.best_focus = ss > 0 ? -ps / ss : 0;
-    point.best_spot_rms = std::sqrt(std::max(0.0, pp + point.best_focus * ps));
+    BundleSpot const spot = spot_of(point.spot, slopes);
+    point.centroid = spot.centroid;
+    point.spot_rms = std::sqrt(spot.mean_square);
+    point.best_focus = spot.best_focus;
+    point.best_spot_rms = std::sqrt(spot.best_mean_square);
   }
 
   void trace_chief(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {

@@ -6,8 +6,8 @@
 
 #include "render/base/parallel.h"
 #include "render/rays/source_tracer.h"
-#include "render/scene/light_model.h"
 #include "render/scene/ray_scatter.h"
+#include "render/scene/spot.h"
 
 namespace gladstone {
 namespace {
@@ -143,7 +143,7 @@ class RayErrors {
 }  // namespace
 
 StepPlan plan_step_by_rays(Scene& scene) {
-  return choose_step(scene, [&](double step, auto const& search) {
+  StepPlan const plan = choose_step(scene, [&](double step, auto const& search) {
     StepProbes probes;
     probes.dots.resize(scene.dots.centre.size());
     std::iota(probes.dots.begin(), probes.dots.end(), std::size_t{0});
@@ -157,14 +157,14 @@ StepPlan plan_step_by_rays(Scene& scene) {
     };
     search(probes);
   });
+  use_step(scene, plan);
+  return plan;
 }
 
 RaysPlan plan_rays_by_rays(Scene& scene) {
-  RaysPlan plan;
-  plan.bits = std::min(scene.setup.camera.bit_depth, 12);
-  if (scene.setup.render.rays_per_dot) {
-    scene.rays_per_dot = plan.rays = *scene.setup.render.rays_per_dot;
-    return plan;
+  if (auto const given = given_rays(scene.setup)) {
+    scene.rays_per_dot = given->rays;
+    return *given;
   }
   RayErrors const errors(scene);
   // to the time of a ray through a thin lens comes that of the surfaces, in both frames [s]

@@ -5,10 +5,10 @@
 /// The plans of ray_plan.h for any scene, by trace_ray alone.
 namespace gladstone {
 
-/// plan_step() by chief rays of all dots, and chief and rim rays of those that change most.
+/// choose_step() by chief rays of all dots, and chief and rim rays of those that change most. Sets step and margin.
 StepPlan plan_step_by_rays(Scene& scene);
 
-/// plan_rays() by the light that every ray lays down, and the scatter of centroids.
+/// choose_rays() by the light that every ray lays down, and the scatter of centroids.
 RaysPlan plan_rays_by_rays(Scene& scene);
 
 }  // namespace gladstone

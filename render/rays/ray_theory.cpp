@@ -44,21 +44,15 @@ Vec2d RayTheory::shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d leve
 }
 
 FieldMap map_field_by_rays(Scene const& scene, int spacing_px) {
-  CameraSetup const& setup = scene.setup.camera;
-  FieldMap map;
-  map.spacing_px = spacing_px;
-  int const columns = std::max(1, setup.columns / spacing_px), rows = std::max(1, setup.rows / spacing_px);
-  map.density = Image<double>(columns, rows, scene.setup.medium.ambient_density);
-  map.density_gradient = Image<Vec2d>(columns, rows);
-  map.eq9_px = Image<Vec2d>(columns, rows);
+  FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   RaysLaunch const launch(scene, SpotView{});
   RayTheory const theory(scene, launch, SourceShape::disc, false);
   CameraView<double> const camera = scene.camera.view();
   std::visit(
       [&](auto const& medium) {
-        parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
+        parallel_for(static_cast<std::size_t>(map.density.rows()), [&](std::size_t line) {
           int const row = static_cast<int>(line);
-          for (int column = 0; column < columns; ++column) {
+          for (int column = 0; column < map.density.columns(); ++column) {
             throw_if_interrupted();
             auto const seen = scene.camera.unproject(map.position_px(column, row), scene.target_plane());
             auto const chief = seen ? theory.before_medium(camera, seen->chief) : std::nullopt;

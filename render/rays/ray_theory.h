@@ -2,7 +2,8 @@
 
 #include "render/rays/source_tracer.h"
 #include "render/scene/field_map.h"
-#include "render/scene/light_model.h"
+#include "render/scene/source_cubature.h"
+#include "render/scene/theory.h"
 
 namespace gladstone {
 

@@ -9,7 +9,7 @@
 #include "render/base/progress.h"
 #include "render/rays/ray_theory.h"
 #include "render/rays/source_tracer.h"
-#include "render/scene/light_model.h"
+#include "render/scene/spot.h"
 
 namespace gladstone {
 namespace {

@@ -69,7 +69,7 @@ DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d orig
   return truth;
 }
 
-RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot, {}) {
+RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot) {
   bool const gaussian = launch.spot.model != SpotModel::none && launch.spot.model != SpotModel::airy;
   if (gaussian && HitGrid::pays(launch.spot.gaussian.sigma, launch.rays)) grid_.emplace(launch.spot.gaussian);
 }

@@ -10,7 +10,7 @@
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
 #include "render/scene/camera.h"
-#include "render/scene/dot_exposure.h"
+#include "render/scene/light_patch.h"
 #include "render/scene/scene.h"
 #include "render/scene/truth_error.h"
 

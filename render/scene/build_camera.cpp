@@ -7,6 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
+#include "render/optics/ray_bundle.h"
 
 namespace gladstone {
 namespace {
@@ -56,19 +57,11 @@ void append_prescription(Camera& camera, Setup const& setup) {
   }
 }
 
-/// Even spread over the unit disc (Vogel 1979).
-Vec2d sunflower(int k, int count) {
-  double const golden_angle = pi * (3 - std::sqrt(5.0)), r = std::sqrt((k + 0.5) / count);
-  return {r * std::cos(k * golden_angle), r * std::sin(k * golden_angle)};
-}
-
-/// By how much a sensor is to be moved along its axis, so that the bundle from a point is narrowest there: the rms
-/// radius is a parabola, <p p> + 2 z <p s> + z^2 <s s> about the means of places p and slopes s.
+/// By how much a sensor is to be moved along its axis, so that the bundle from a point is narrowest there.
 double best_focus(Camera const& camera, Vec3d point) {
   constexpr int count = 500;
   auto const disc = camera.aim_disc(point);
   std::vector<Vec2d> places, slopes;
-  Vec2d place{}, slope{};
   for (int k = 0; disc && k < count; ++k) {
     Vec2d const at = sunflower(k, count);
     Ray<double> ray{point, normalized(disc->centre + at.x * disc->a + at.y * disc->b - point)};
@@ -79,22 +72,13 @@ double best_focus(Camera const& camera, Vec3d point) {
     Vec2d const s{local.direction.x / local.direction.z, local.direction.y / local.direction.z};
     places.push_back({local.position.x - s.x * local.position.z, local.position.y - s.y * local.position.z});
     slopes.push_back(s);
-    place += places.back();
-    slope += s;
   }
   if (places.size() < 10) {
     throw DataError("lens",
                     "no light of the plane in focus passes it (too few of its axial rays reach the sensor); check "
                     "lens.focus, geometry and lens.f_number");
   }
-  auto const n = static_cast<double>(places.size());
-  double ps = 0, ss = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    Vec2d const s = slopes[i] - slope / n;
-    ps += dot(places[i] - place / n, s);
-    ss += dot(s, s);
-  }
-  return ss > 0 ? -ps / ss : 0;
+  return spot_of(places, slopes).best_focus;
 }
 
 /// Tilts of the sensor that image a plane, whose normal in the camera's frame is given, sharply all over: with the

@@ -1,35 +1,12 @@
 #include "render/scene/camera.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 namespace gladstone {
 namespace {
-
-/// Solves the square system of the columns for the right-hand side, by Gauss elimination. @return false: singular
-template <int N>
-bool solve(double (&matrix)[N][N], double (&right)[N]) {
-  for (int pivot = 0; pivot < N; ++pivot) {
-    int best = pivot;
-    for (int row = pivot + 1; row < N; ++row) {
-      if (std::abs(matrix[row][pivot]) > std::abs(matrix[best][pivot])) best = row;
-    }
-    if (!(std::abs(matrix[best][pivot]) > 0)) return false;
-    std::swap(matrix[best], matrix[pivot]);
-    std::swap(right[best], right[pivot]);
-    for (int row = pivot + 1; row < N; ++row) {
-      double const share = matrix[row][pivot] / matrix[pivot][pivot];
-      for (int column = pivot; column < N; ++column) matrix[row][column] -= share * matrix[pivot][column];
-      right[row] -= share * right[pivot];
-    }
-  }
-  for (int row = N - 1; row >= 0; --row) {
-    for (int column = row + 1; column < N; ++column) right[row] -= matrix[row][column] * right[column];
-    right[row] /= matrix[row][row];
-  }
-  return std::isfinite(right[0]);
-}
 
 constexpr int rim_points = 8;  // of the stop, that a source's sight of it is found by
 
@@ -92,9 +69,10 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
   return seen;
 }
 
+double Camera::in_stop_unit() const { return stop_radius > 0 ? stop_radius : 1e4 * aim_step; }
+
 StopSight Camera::stop_sight(Vec3d point) const {
-  double const scale = stop_radius > 0 ? stop_radius : 1e4 * aim_step;
-  return {[this, point](Vec2d aim) { return in_stop(point, aim); }, scale, aim_step};
+  return {[this, point](Vec2d aim) { return in_stop(point, aim); }, in_stop_unit(), aim_step};
 }
 
 Vec2d Camera::paraxial_aim(Vec3d point) const {
@@ -140,11 +118,13 @@ bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen
     double const apart = 2 * (k < 2 ? h : aim_step);
     by[k] = {(more->in_stop - less->in_stop) / apart, (more->pixel - less->pixel) / apart};
   }
+  Eigen::Matrix2d in_stop_by_aim;
+  in_stop_by_aim << by[2].in_stop.x, by[3].in_stop.x, by[2].in_stop.y, by[3].in_stop.y;
   for (int k = 0; k < 2; ++k) {
-    double matrix[2][2] = {{by[2].in_stop.x, by[3].in_stop.x}, {by[2].in_stop.y, by[3].in_stop.y}};
-    double right[2] = {-by[k].in_stop.x, -by[k].in_stop.y};
-    if (!solve(matrix, right)) return false;
-    (k == 0 ? seen.by_x : seen.by_y) = by[k].pixel + right[0] * by[2].pixel + right[1] * by[3].pixel;
+    Eigen::Vector2d const aim_moves =
+        in_stop_by_aim.partialPivLu().solve(Eigen::Vector2d(-by[k].in_stop.x, -by[k].in_stop.y));
+    if (!aim_moves.allFinite()) return false;
+    (k == 0 ? seen.by_x : seen.by_y) = by[k].pixel + aim_moves[0] * by[2].pixel + aim_moves[1] * by[3].pixel;
   }
   return true;
 }
@@ -172,25 +152,25 @@ std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plan
   auto here = sight(point(place), aim);
   if (!here) return std::nullopt;
   // Newton's method for place and aim together: the ray is to meet the stop's centre and the pixel
-  double const h = place_step(plane), in_stop_unit = stop_radius > 0 ? stop_radius : 1e4 * aim_step;
+  double const h = place_step(plane), unit_in_stop = in_stop_unit();
   auto const miss_of = [&](Sight const& s) {
-    return std::hypot(length(s.in_stop) / in_stop_unit, length(s.pixel - pixel));
+    return std::hypot(length(s.in_stop) / unit_in_stop, length(s.pixel - pixel));
   };
   for (int iteration = 0; iteration < 50 && miss_of(*here) > 1e-9; ++iteration) {
     Vec2d const unit[2] = {{1, 0}, {0, 1}};
-    double matrix[4][4];
+    Eigen::Matrix4d by_place_and_aim;
     for (int k = 0; k < 4; ++k) {
       auto const there =
           k < 2 ? sight(point(place + h * unit[k]), aim) : sight(point(place), aim + aim_step * unit[k - 2]);
       if (!there) return std::nullopt;
       double const by = k < 2 ? h : aim_step;
       Vec2d const stop_change = (there->in_stop - here->in_stop) / by, pixel_change = (there->pixel - here->pixel) / by;
-      double const column[4] = {stop_change.x, stop_change.y, pixel_change.x, pixel_change.y};
-      for (int row = 0; row < 4; ++row) matrix[row][k] = column[row];
+      by_place_and_aim.col(k) << stop_change.x, stop_change.y, pixel_change.x, pixel_change.y;
     }
     Vec2d const to_pixel = pixel - here->pixel;
-    double change[4] = {-here->in_stop.x, -here->in_stop.y, to_pixel.x, to_pixel.y};
-    if (!solve(matrix, change)) return std::nullopt;
+    Eigen::Vector4d const change = by_place_and_aim.partialPivLu().solve(
+        Eigen::Vector4d(-here->in_stop.x, -here->in_stop.y, to_pixel.x, to_pixel.y));
+    if (!change.allFinite()) return std::nullopt;
     bool better = false;
     for (double share = 1; share > 1e-3 && !better; share /= 2) {
       Vec2d const new_place = place + share * Vec2d{change[0], change[1]},

@@ -84,6 +84,8 @@ class Camera {
   };
   std::optional<Sight> sight(Vec3d point, Vec2d aim) const;
   std::optional<Vec2d> in_stop(Vec3d point, Vec2d aim) const;
+  /// What places in the stop are small or large beside [m].
+  double in_stop_unit() const;
   StopSight stop_sight(Vec3d point) const;
   Vec2d paraxial_aim(Vec3d point) const;
   Ray<double> towards(Vec3d point, Vec2d aim) const;

@@ -10,21 +10,22 @@
 
 namespace gladstone {
 
+FieldMap FieldMap::ambient(Setup const& setup, int spacing_px) {
+  int const columns = std::max(1, setup.camera.columns / spacing_px);
+  int const rows = std::max(1, setup.camera.rows / spacing_px);
+  return {spacing_px, Image<double>(columns, rows, setup.medium.ambient_density), Image<Vec2d>(columns, rows),
+          Image<Vec2d>(columns, rows)};
+}
+
 FieldMap map_field(Scene const& scene, int spacing_px) {
-  CameraSetup const& camera = scene.setup.camera;
-  FieldMap map;
-  map.spacing_px = spacing_px;
-  int const columns = std::max(1, camera.columns / spacing_px), rows = std::max(1, camera.rows / spacing_px);
-  map.density = Image<double>(columns, rows);
-  map.density_gradient = Image<Vec2d>(columns, rows);
-  map.eq9_px = Image<Vec2d>(columns, rows);
+  FieldMap map = FieldMap::ambient(scene.setup, spacing_px);
   MediumSetup const& setup = scene.setup.medium;
   double const step = std::min(scene.step, scene.medium.coarsest_step);
   std::visit(
       [&](auto const& medium) {
-        parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
+        parallel_for(static_cast<std::size_t>(map.density.rows()), [&](std::size_t line) {
           int const row = static_cast<int>(line);
-          for (int column = 0; column < columns; ++column) {
+          for (int column = 0; column < map.density.columns(); ++column) {
             throw_if_interrupted();
             Vec2d const at = scene.to_target(map.position_px(column, row));
             Vec3d const start{at.x, at.y, -scene.setup.z_d};
@@ -34,7 +35,7 @@ FieldMap map_field(Scene const& scene, int spacing_px) {
             map.density(column, row) = along.depth > 0 ? along.refractivity * mean : setup.ambient_density;
             map.density_gradient(column, row) = along.plain * mean;
             map.eq9_px(column, row) = theory_displacement(along.plain, scene.setup.z_d, scene.imaging.magnification,
-                                                          scene.setup.ambient_index(), camera.pixel_pitch);
+                                                          scene.setup.ambient_index(), scene.setup.camera.pixel_pitch);
           }
         });
       },
@@ -105,10 +106,9 @@ StrainMap map_strain(Scene const& scene) {
   int const columns = std::max(3, camera.columns / spacing_px), rows = std::max(3, camera.rows / spacing_px);
 
   // the disc of the target whose chief rays cross the medium's mid-plane where a point's cone does
-  SceneView<double> const view = scene.view();
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
-  double const middle = 0.5 * (box.low.z + box.high.z);
-  double const lever = (middle - view.sources.plane_z) / (view.bundle.lens_z - middle);
+  double const plane_z = -scene.setup.z_d, middle = 0.5 * (box.low.z + box.high.z);
+  double const lever = (middle - plane_z) / (scene.setup.z_a - middle);
   double const px = scene.imaging.magnification / camera.pixel_pitch;
   double const radius_px = chief ? 0 : lever * scene.imaging.entrance_pupil / 2 * px;
   double const finest_px = (1 + lever) * scene.medium.finest * px;
@@ -135,8 +135,8 @@ StrainMap map_strain(Scene const& scene) {
             throw_if_interrupted();
             Vec2d const at = scene.to_target({fine_px * (column - margin * finer) + 0.5 * spacing_px,
                                               fine_px * (row - margin * finer) + 0.5 * spacing_px});
-            Vec3d const start{at.x, at.y, view.sources.plane_z};
-            Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, view.bundle.lens_z - start.z})};
+            Vec3d const start{at.x, at.y, plane_z};
+            Ray<double> const ray{start, normalized(Vec3d{-at.x, -at.y, scene.setup.z_a - start.z})};
             along_chief(column, row) = integrate_gradient(medium, ray, scene.medium.coarsest_step).levered;
           }
         });

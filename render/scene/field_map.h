@@ -13,6 +13,8 @@ struct FieldMap {
   Image<Vec2d> density_gradient;  ///< path-averaged d rho / d(X, Y) [kg/m^4]
   Image<Vec2d> eq9_px;            ///< Eq. 9 [px]
 
+  /// Ambient density wherever the view is, and nothing that moves.
+  static FieldMap ambient(Setup const& setup, int spacing_px);
   Vec2d position_px(int column, int row) const {
     return {spacing_px * (column + 0.5) - 0.5, spacing_px * (row + 0.5) - 0.5};
   }

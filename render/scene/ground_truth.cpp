@@ -30,14 +30,6 @@ void GroundTruth::set_hits(std::size_t dot, DotTruth const& found, double light_
   path[dot] = found.path;
 }
 
-void GroundTruth::set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
-                             ConeSum const& cone) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  eq9_px[dot] = model.displacement(chief.plain, model.lever);
-  chief_px[dot] = model.displacement(chief.levered, 1.0);
-  eq9_cone_px[dot] = cone.weight > 0 ? model.displacement(cone.levered / cone.weight, 1.0) : Vec2d{nan, nan};
-}
-
 TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px) {
   TruthAccuracy accuracy;
   double squares = 0;

@@ -7,7 +7,6 @@
 #include "render/base/displacement_field.h"
 #include "render/base/ray.h"
 #include "render/base/vec.h"
-#include "render/scene/theory.h"
 
 namespace gladstone {
 
@@ -74,9 +73,6 @@ struct GroundTruth {
   void resize(std::size_t count);
   /// Writes what the rays of a dot say.
   void set_hits(std::size_t dot, DotTruth const& found, double light_per_weight);
-  /// Writes what theory says of it.
-  void set_theory(std::size_t dot, TheoryModel const& model, GradientIntegral<double> const& chief,
-                  ConeSum const& cone);
 };
 
 /// What the standard errors of the dots' displacements come to.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "render/scene/scene.h"
@@ -40,12 +41,6 @@ struct RaysPlan {
 /// times what each took on the processor of docs/benchmarks.md. Not a clock's, so that a plan is the same anywhere.
 double rays_seconds(Scene const& scene);
 
-/// Chooses the step such that halving it changes no dot's displacement by 1e-4 px, dots being probed by five rays
-/// shared by all steps (pupil centre and four points of its rim); starts from medium.coarsest_step, never above it. Of
-/// a target with more than 256 dots those 256 are probed whose chief rays change most when the first step is halved.
-/// With a step in the setup that one is used, and measured likewise. Sets scene.step and scene.pupil_margin.
-StepPlan plan_step(Scene& scene);
-
 /// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
 struct Probe {
   std::vector<Vec2d> displacement_px;
@@ -66,27 +61,22 @@ struct StepProbes {
 inline constexpr std::size_t probed_dots = 256;
 std::vector<std::size_t> largest_of(std::vector<double> const& value);
 
-/// The search of plan_step() by any probes: `prepare` makes them for the first step and hands them to the search.
-StepPlan choose_step(Scene& scene,
+/// Chooses the step such that halving it changes no dot's displacement by 1e-4 px; starts from medium.coarsest_step,
+/// never above it. With a step in the setup that one is used, and measured likewise. use_step() is left to the caller.
+/// @param prepare makes probes for the first step and hands them to the search
+StepPlan choose_step(Scene const& scene,
                      std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare);
 
-/// Sets what plan_step sets, from its result.
+/// Sets scene.step and scene.pupil_margin.
 void use_step(Scene& scene, StepPlan const& plan);
 
-/// Errors at the scene's present number of rays: how far independent scramblings of it scatter on a sample of up to 96
-/// dots spread over the target, each traced four times. Images as they are where dots overlap: pixels that several dots
-/// light have the sum of their variances, and "auto" exposes for the brightest pixel that dots at random make. To
-/// truth's scatter comes what a deflection table leaves of every ray alike: up to 24 dots are traced by 4096 to 65,536
-/// rays each without it. Of images scatter is all that is measured: a table leaves a third of a grey level of 12 bits
-/// more, and 2 to 8 levels where fronts spread a dot's rays over pixels.
-RaysPlan measure_rays(Scene const& scene);
+/// The plan of a setup that says how many rays; nothing where that is to be chosen.
+std::optional<RaysPlan> given_rays(Setup const& setup);
 
-/// Chooses rays_per_dot: the smallest power of two for which measure_rays() finds less than 1e-3 px rms in truth and
-/// half a grey level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most
-/// 65,536, and no more than rays_budget_s allows. Sets scene.rays_per_dot.
-RaysPlan plan_rays(Scene& scene);
-
-/// The same by any measure of the errors at the scene's present number of rays.
+/// Chooses rays_per_dot: the smallest power of two for which less than 1e-3 px rms is measured in truth and half a grey
+/// level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most 65,536, and
+/// no more than rays_budget_s allows. Sets scene.rays_per_dot.
+/// @param measure the errors at the scene's present number of rays
 /// @param seconds_a_ray processor time of one ray of every dot
 RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray);
 

@@ -40,6 +40,9 @@ struct Scatter {
   double brightest = 0;                         ///< pixel of both frames, where dots overlap too
 };
 
+/// Bits of the grey levels that plans count in: the camera's, or 12 if that is coarser.
+int plan_bits(CameraSetup const& camera);
+
 /// What scatter of light is measured in: grey levels of the camera's depth, or of 12 bits if that is coarser.
 struct GreyLevels {
   double density = 0;  ///< dots a pixel, placed at random

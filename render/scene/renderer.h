@@ -1,16 +1,30 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
 #include "render/base/image.h"
-#include "render/scene/deflection_map.h"
 #include "render/scene/ground_truth.h"
 #include "render/scene/kept_light.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
+
+/// Whether truth had a deflection table, and why not.
+enum class TableState {
+  made,
+  no_medium,        ///< nothing bends rays
+  no_sources,       ///< there is nothing to see
+  chief_rays,       ///< a dot has no cone
+  random_rays,      ///< somebody wants them as they are
+  out_of_focus,     ///< a point's rays do not meet on the sensor
+  field_too_small,  ///< it hardly reaches beyond the cones, if at all
+  field_too_fine,   ///< the table would take more rays than it saves
+  by_rays,          ///< the general renderer knows none
+  dots_too_wide,    ///< their cones change too much from place to place of a dot
+};
+/// As the end of the sentence "there is no deflection table: ..."; empty where there is one.
+char const* to_string(TableState state);
 
 /// What tracing a scene gives.
 struct Rendering {
@@ -39,16 +53,6 @@ class Renderer {
   virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 };
 
-/// The renderer on the CPU's cores.
-class CpuRenderer : public Renderer {
- public:
-  std::string device() const override { return "cpu"; }
-  Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
-
- private:
-  KeptDeflections<DeflectionMap> deflections_;
-};
-
 /// One try at tracing a scene.
 struct TracingPass {
   Rendering rendering;
@@ -57,13 +61,5 @@ struct TracingPass {
   /// Counts the rays and places the dots; the rest is for the device to fill in.
   TracingPass(Scene const& scene, DotPattern const& sources);
 };
-
-/// Traces a scene as often as it takes for the pupil to be wide enough for what the medium bends: what render() is on
-/// every device.
-Rendering render_with_margin(Scene& scene, std::function<TracingPass()> const& trace);
-
-/// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from;
-/// the flow does not change it, since radiance is conserved along rays.
-Image<double> white_light(Scene const& scene);
 
 }  // namespace gladstone

@@ -1,38 +1,24 @@
 #include "render/scene/scene.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
-#include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/dot_exposure.h"
+#include "render/sensor/sensor.h"
 
 namespace gladstone {
 namespace {
 
 double gigabytes(double bytes) { return bytes / 1e9; }
-
-/// What every thread keeps of one dot's rays while it renders images (DotExposure) [bytes].
-double ray_record_bytes(Setup const& setup) {
-  bool const kept =
-      setup.lens.focus == Focus::target && setup.lens.spot != SpotModel::none && std::isfinite(setup.lens.f_number);
-  if (!kept) return 0;
-  std::uint64_t const rays = setup.render.rays_per_dot.value_or(std::uint64_t{1} << 16);  // the most "auto" takes
-  // a list that doubles as it grows holds one and a half times its last size for a moment
-  return 1.5 * static_cast<double>(std::bit_ceil(rays) * sizeof(RayRecord<double>)) * thread_count();
-}
 
 /// Lowest density of a file's field [kg/m^3]. @pre its quantity is density
 double lowest_density(MediumSetup const& setup, BuiltMedium const& medium) {
@@ -71,38 +57,12 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
 
 }  // namespace
 
-SceneView<double> Scene::view(DotPattern const& sources) const {
-  SceneView<double> seen;
-  seen.sources = sources.view(-setup.z_d);
-  seen.bundle.lens_z = setup.z_a;
-  seen.bundle.pupil_radius = chief_rays_only() ? 0.0 : pupil_radius();
-  seen.bundle.seed = setup.render.seed;
-  seen.bundle.sampling = setup.render.sampling;
-  seen.bundle.scrambling_bits = scrambling_bits(rays_per_dot);
-  if (!chief_rays_only()) seen.train.append(aperture_stop());
-  seen.train.append(ThinLens<double>{setup.z_a, setup.lens.focal_length});
-  seen.sensor = {setup.z_a + imaging.image_distance, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
-  seen.tracing = {step, setup.medium.ambient_refractivity(), setup.medium.integrator, setup.medium.faces};
-  return seen;
-}
-
 double Scene::steps_across() const {
   Bounds<double> const box = std::visit([](auto const& seen) { return seen.bounds(); }, medium.view);
   return step > 0 ? (box.high.z - box.low.z) / step : 0;
 }
 
 double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
-
-ApertureStop<double> Scene::aperture_stop() const { return {setup.z_a, imaging.entrance_pupil / 2, stop_edge()}; }
-
-TheoryModel Scene::theory_model() const {
-  return {std::min(step, medium.coarsest_step),
-          setup.z_d,
-          imaging.magnification,
-          setup.ambient_index(),
-          setup.camera.pixel_pitch,
-          imaging.entrance_pupil / 2};
-}
 
 void refuse_bend_beyond_any_bench(double bend, double z_b) {
   if (bend <= z_b) return;
@@ -117,25 +77,9 @@ void Scene::widen_pupil(double margin) {
   pupil_margin = margin;
 }
 
-bool Scene::covers_bend(double largest_bend) {
-  if (chief_rays_only() || largest_bend <= pupil_margin) return true;
-  widen_pupil(1.02 * largest_bend);
-  return false;
-}
-
 double Scene::pupil_radius(double rays) const {
   double const stop = imaging.entrance_pupil / 2;
   return stop * std::sqrt(1 + stop_edge(rays) / 2) + pupil_margin;
-}
-
-double Scene::light_per_ray(DotPattern const& sources) const {
-  double const px = setup.camera.pixel_pitch / imaging.magnification;
-  double const size = sources.half_size / px;
-  double area = sources.shape == SourceShape::disc ? pi * size * size : 4 * size * size;
-  if (sources.half_size == 0) area = 1;  // a point sends as much light as a disc of one square pixel
-  double const stop = imaging.entrance_pupil / 2;
-  double const enlarged = chief_rays_only() ? 1.0 : pupil_radius() / stop;
-  return area * enlarged * enlarged / static_cast<double>(rays_per_dot);
 }
 
 double Scene::spot_scale_px() const { return setup.spot_scale_px(); }
@@ -158,7 +102,8 @@ double Scene::spot_sigma_px() const {
 
 bool Scene::in_view(Vec2d on_target) const {
   Vec2d const pixel = to_pixel(on_target);
-  return setup.on_bench() ? view().sensor.covers(pixel) : camera.sensor.covers(pixel);
+  Sensor<double> const square_to_axis{0, setup.camera.pixel_pitch, setup.camera.columns, setup.camera.rows};
+  return setup.on_bench() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
 }
 
 Vec2d Scene::to_pixel(Vec2d on_target) const {
@@ -180,29 +125,27 @@ Vec2d Scene::to_target(Vec2d pixel) const {
   return {(pixel.x - 0.5 * (setup.camera.columns - 1)) * scale, (0.5 * (setup.camera.rows - 1) - pixel.y) * scale};
 }
 
-void check_memory(Setup const& setup, FieldMemory field_memory) {
-  struct Need {
-    char const* key;  ///< that it can be reduced by
-    double bytes;
-  };
+void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<MemoryNeed> const& more) {
   double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows;
-  Need const images{"camera.pixels", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))};
-  Need const field{"medium.field.file",
-                   field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0};
-  Need const dots{"target.dots_per_32px_window", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0};
-  Need const rays{"render.rays_per_dot", ray_record_bytes(setup)};
-  Need const table{"camera.pixels", table_bytes_needed(setup)};
-  double const needed = field.bytes + images.bytes + dots.bytes + rays.bytes + table.bytes;
+  std::vector<MemoryNeed> needs{
+      {"camera.pixels", "images", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))},
+      {"medium.field.file", "field",
+       field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0},
+      {"target.dots_per_32px_window", "dots", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
+  needs.insert(needs.end(), more.begin(), more.end());
+  double needed = 0;
+  std::string sizes;
+  for (MemoryNeed const& need : needs) {
+    needed += need.bytes;
+    sizes += fmt::format("{}{} {:.3g}", sizes.empty() ? "" : ", ", need.what, gigabytes(need.bytes));
+  }
   double const available = available_memory();
   if (needed <= available) return;
-  Need const most =
-      std::max({images, field, dots, rays, table}, [](Need const& a, Need const& b) { return a.bytes < b.bytes; });
-  throw DataError(
-      most.key,
-      fmt::format("needs {:.3g} GB of memory (images {:.3g}, field {:.3g}, dots {:.3g}, rays of a dot {:.3g}, table of "
-                  "deflections {:.3g}) but this machine has {:.3g} GB free; reduce {}",
-                  gigabytes(needed), gigabytes(images.bytes), gigabytes(field.bytes), gigabytes(dots.bytes),
-                  gigabytes(rays.bytes), gigabytes(table.bytes), gigabytes(available), most.key));
+  auto const most = std::max_element(needs.begin(), needs.end(),
+                                     [](MemoryNeed const& a, MemoryNeed const& b) { return a.bytes < b.bytes; });
+  throw DataError(most->key,
+                  fmt::format("needs {:.3g} GB of memory ({}) but this machine has {:.3g} GB free; reduce {}",
+                              gigabytes(needed), sizes, gigabytes(available), most->key));
 }
 
 BuiltMedium build_checked_medium(MediumSetup const& setup) {

@@ -6,9 +6,7 @@
 #include "render/light/dot_pattern.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/camera.h"
-#include "render/scene/scene_view.h"
 #include "render/scene/setup.h"
-#include "render/scene/theory.h"
 #include "render/sensor/diffraction_spot.h"
 
 namespace gladstone {
@@ -24,31 +22,19 @@ struct Scene {
   double pupil_margin = 0;  ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
 
-  /// The view that launches take; `sources` default to the scene's own dots.
-  SceneView<double> view() const { return view(dots); }
-  SceneView<double> view(DotPattern const& sources) const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
   /// Steps that a ray along the axis takes across the medium; 0 without one.
   double steps_across() const;
   /// Width of the smoothed zone about the stop's edge, as a share of its area; falls with the number of rays [1].
   static double stop_edge(double rays);
   double stop_edge() const { return stop_edge(static_cast<double>(rays_per_dot)); }
-  /// The stop in the lens plane. @pre not chief_rays_only()
-  ApertureStop<double> aperture_stop() const;
-  /// What Eq. 9 takes.
-  TheoryModel theory_model() const;
   /// Widens the pupil by a margin [m].
-  /// @throws DataError where rays are bent by more than 45 degrees on their way: no bench sees those, and the search for
-  ///                   a margin that loses none of them would not end
+  /// @throws DataError where rays are bent by more than 45 degrees on their way: no bench sees those, and the search
+  ///                   for a margin that loses none of them would not end
   void widen_pupil(double margin);
-  /// Whether the pupil is wide enough for rays that the medium moves this far on the lens plane [m]; if not, it is
-  /// widened, and the scene is to be traced again.
-  bool covers_bend(double largest_bend);
   /// Radius of the disc in the lens plane that rays are sent to, so many of a dot [m]; falls with their number.
   double pupil_radius(double rays) const;
   double pupil_radius() const { return pupil_radius(static_cast<double>(rays_per_dot)); }
-  /// Light of one ray of weight one, in fully lit pixels: what makes images independent of rays and margin.
-  double light_per_ray(DotPattern const& sources) const;
   /// Radius of a Gaussian spot [px]; 0: none.
   double spot_sigma_px() const;
   /// As Setup::spot_scale_px.
@@ -65,9 +51,18 @@ struct Scene {
 /// Whether a setup's medium is still to be built, or in memory already.
 enum class FieldMemory { needed, taken };
 
+/// Memory that something takes, and the key that it can be reduced by.
+struct MemoryNeed {
+  char const* key;
+  char const* what;
+  double bytes;
+};
+
 /// Refuses what this machine's memory cannot hold, before any of it is allocated.
+/// @param more than images, field and dots take: a renderer's own needs
 /// @throws SetupError-like DataError naming the sizes
-void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed);
+void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
+                  std::vector<MemoryNeed> const& more = {});
 
 /// Builds dots and medium. Step, margin and rays are 0 until planned (ray_plan.h).
 /// @param medium of this very setup, if it is built already

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
-
 #include "render/base/host_device.h"
-#include "render/scene/scene_view.h"
+#include "render/medium/trace_medium.h"
 
 namespace gladstone {
 
@@ -61,50 +59,5 @@ GLADSTONE_HD Vec2<T> theory_displacement(Vec2<T> integral, T lever, T magnificat
   T const scale = magnification * lever / (n0 * pitch);
   return {-scale * integral.x, scale * integral.y};
 }
-
-/// What turns integrals along a dot's straight rays into theory; the same for all dots.
-struct TheoryModel {
-  double step = 0;           ///< [m]
-  double lever = 0;          ///< Z_D [m]
-  double magnification = 0;  ///< M [1]
-  double n0 = 1;             ///< ambient index [1]
-  double pitch = 0;          ///< [m]
-  double stop_radius = 0;    ///< rays beyond it do not count; 0: chief rays [m]
-
-  /// @param with_lever of the integral [m]; 1 for levered ones @return [px]
-  GLADSTONE_HD Vec2<double> displacement(Vec2<double> integral, double with_lever) const {
-    return theory_displacement(integral, with_lever, magnification, n0, pitch);
-  }
-};
-
-/// Along the chief ray of a dot.
-template <class Medium>
-GLADSTONE_HD GradientIntegral<double> integrate_chief(TheoryModel const& model, SceneView<double> const& view,
-                                                      Medium const& medium, std::uint64_t dot) {
-  Vec2<double> const centre = view.sources.centre[dot];
-  Vec3<double> const start{centre.x, centre.y, view.sources.plane_z};
-  return integrate_gradient(
-      medium, Ray<double>{start, normalized(Vec3<double>{-centre.x, -centre.y, view.bundle.lens_z - start.z})},
-      model.step);
-}
-
-/// A dot's average over disc and pupil, ray by ray.
-struct ConeSum {
-  Vec2<double> levered{};
-  double weight = 0;
-
-  template <class Medium>
-  GLADSTONE_HD void add(TheoryModel const& model, SceneView<double> const& view, Medium const& medium,
-                        std::uint64_t dot, std::uint64_t ray) {
-    EmittedRay<double> const emitted = emit(view.sources, view.bundle, dot, ray);
-    if (model.stop_radius > 0 && length(emitted.pupil) > model.stop_radius) return;
-    add(model, medium, emitted.ray, emitted.weight);
-  }
-  template <class Medium>
-  GLADSTONE_HD void add(TheoryModel const& model, Medium const& medium, Ray<double> const& ray, double ray_weight) {
-    levered += ray_weight * integrate_gradient(medium, ray, model.step).levered;
-    weight += ray_weight;
-  }
-};
 
 }  // namespace gladstone

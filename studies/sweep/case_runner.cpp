@@ -17,6 +17,7 @@
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/setup_node.h"
+#include "render/focused_dots/focused_dots.h"
 #include "studies/correlate.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
@@ -200,7 +201,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   if (!medium) {
     std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
     shared.media.make_room(bytes, kept_media_bytes);
-    check_memory(loaded.setup);
+    check_memory(loaded.setup, FieldMemory::needed, focused_dots_memory(loaded.setup));
     medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;

@@ -19,7 +19,7 @@ struct Room {
 };
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
-Names const renderers = {"render/rays"};
+Names const renderers = {"render/rays", "render/focused_dots"};
 Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
@@ -39,12 +39,16 @@ std::vector<Room> const& table() {
       {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/scene", render, {"Eigen"}, {"fmt"}},
       {"render/rays", render, {"Eigen"}, {"fmt"}},
+      {"render/focused_dots", render, {"Eigen"}, {"fmt"}},
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"analysis/correlation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
       {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/rays", render + Names{"render/rays", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
-      {"cuda/focused_dots", render + Names{"render/rays", "cuda/device", "cuda/rays"}, {"Eigen", "CUDA"}, {"fmt"}},
+      {"cuda/focused_dots",
+       render + Names{"render/focused_dots", "cuda/device", "cuda/rays"},
+       {"Eigen", "CUDA"},
+       {"fmt"}},
       {"cuda/correlation", render + Names{"analysis/correlation", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda", render + renderers + analysis + cuda, {"Eigen", "CUDA"}, {"fmt"}},
       {"studies",

@@ -110,7 +110,11 @@ INSTANTIATE_TEST_SUITE_P(
         Planted{"render/light/a.h", "\"render/medium/b.h\""},  // the four meet in scene
         Planted{"render/medium/a.h", "\"render/optics/b.h\""}, Planted{"render/optics/a.h", "\"render/sensor/b.h\""},
         Planted{"render/sensor/a.cpp", "\"render/light/b.h\""}, Planted{"render/optics/a.h", "\"render/scene/b.h\""},
-        Planted{"render/medium/a.cpp", "<hdf5.h>"},  // through base alone
+        Planted{"render/medium/a.cpp", "<hdf5.h>"},                  // through base alone
+        Planted{"render/scene/a.h", "\"render/focused_dots/b.h\""},  // the two renderers know the scene, not each other
+        Planted{"render/rays/a.h", "\"render/focused_dots/b.h\""},
+        Planted{"render/focused_dots/a.h", "\"render/rays/b.h\""},
+        Planted{"cuda/rays/a.h", "\"render/focused_dots/b.h\""},
         Planted{"render/scene/a.h", "\"analysis/correlation/b.h\""}, Planted{"render/scene/a.cpp", "\"cuda/b.h\""},
         Planted{"analysis/correlation/a.cpp", "\"render/scene/b.h\""},  // analysis never calls the renderer
         Planted{"analysis/correlation/a.h", "<opencv2/core.hpp>"},
@@ -167,7 +171,7 @@ TEST(Tree, KeepsCudaHeadersInTheirRoom) {
   }
   std::set<std::string> none_yet;
   EXPECT_TRUE(draws_cuda("cuda/device/launch.h", files, none_yet));  // what is looked for is there to be found
-  std::set<std::string> seen;  // by any of them, and found to draw none
+  std::set<std::string> seen;                                        // by any of them, and found to draw none
   for (auto const& [path, includes] : files) {
     if (!path.starts_with("cuda/")) {
       EXPECT_FALSE(draws_cuda(path, files, seen)) << path;

@@ -5,12 +5,12 @@
 #include <span>
 #include <string>
 
+#include "render/focused_dots/dot_planning.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 #include "render/optics/prescription.h"
-#include "render/scene/ray_plan.h"
-#include "render/scene/renderer.h"
 #include "render/scene/scene.h"
 
 namespace gladstone::bench {
@@ -18,6 +18,9 @@ namespace gladstone::bench {
 /// Width of the demo's field at the medium [m].
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
+
+inline FocusedDots enter(Scene const& scene) { return focused_dots(scene).value(); }
+inline void plan_step(Scene& scene) { use_step(scene, plan_step(enter(scene))); }
 
 /// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {

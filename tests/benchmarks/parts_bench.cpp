@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/scene/dot_exposure.h"
-#include "render/scene/light_model.h"
+#include "render/scene/light_patch.h"
 #include "render/sensor/diffraction_spot.h"
 #include "tests/benchmarks/bench_scenes.h"
 #include "tests/benchmarks/plain_loop.h"
@@ -15,7 +14,7 @@ namespace {
 /// Sobol points, sines and a square root or two: a ray as it leaves its dot.
 void emit_rays(benchmark::State& state) {
   Scene const scene = table1_scene(8, 64);
-  SceneView<double> const view = scene.view();
+  SceneView<double> const view = enter(scene).view();
   std::uint64_t ray = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(emit(view.sources, view.bundle, ray / 64 % view.sources.count, ray % 64));
@@ -45,7 +44,7 @@ BENCHMARK(spread_over_pixels);
 void deposit_spot(benchmark::State& state) {
   Scene const scene = table1_scene(2, 64);
   std::optional<AiryTable> airy;
-  LightPatch patch(make_spot(scene, airy), {});
+  LightPatch patch(make_spot(scene, airy));
   double p = 99.0;
   for (auto _ : state) {
     patch.deposit({p, 101.0 - 0.01 * p}, 1.0, nullptr, 1.0);
@@ -88,7 +87,7 @@ BENCHMARK(sample_plane);
 /// Rays through a 64^3 volume, nothing else.
 void trace_volume(benchmark::State& state) {
   Scene const scene = volume_scene(64, 32, 64);
-  SceneView<double> const view = scene.view();
+  SceneView<double> const view = enter(scene).view();
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::vector<Ray<double>> rays;
   for (std::uint64_t dot = 0; dot < view.sources.count; dot += 7)
@@ -107,7 +106,7 @@ BENCHMARK(trace_volume);
 template <int N>
 void trace_volume_together(benchmark::State& state) {
   Scene const scene = volume_scene(64, 32, 64);
-  SceneView<double> const view = scene.view();
+  SceneView<double> const view = enter(scene).view();
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
   std::uint64_t bundle = 0;
   for (auto _ : state) {

@@ -18,7 +18,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 double seconds_to_render(Scene& scene, int threads, RenderImages images = RenderImages::yes) {
   set_thread_count(threads);
   auto const start = Clock::now();
-  Rendering const rendering = CpuRenderer().render(scene, scene.dots, images, RenderTheory::no);
+  Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, images, RenderTheory::no);
   double const taken = seconds_since(start);
   benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
   set_thread_count(0);
@@ -80,7 +80,7 @@ BENCHMARK(render_empty)->Apply(four_renderings);
 
 /// The rays of a scene where they enter the volume.
 std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
-  SceneView<double> const view = scene.view();
+  SceneView<double> const view = enter(scene).view();
   std::vector<Ray<double>> rays;
   for (std::uint64_t dot = 0; dot < view.sources.count; ++dot) {
     for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {

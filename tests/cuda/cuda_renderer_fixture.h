@@ -43,7 +43,7 @@ inline bool same_bits(Image<double> const& a, Image<double> const& b) {
 
 /// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].
 struct FocusedDotsMethod {
-  using OnCpu = CpuRenderer;
+  using OnCpu = FocusedDotsRenderer;
   static std::unique_ptr<Renderer> on_device() { return cuda::make_renderer(); }
   static constexpr double levels = 0.01;
 };

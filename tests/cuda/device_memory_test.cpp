@@ -12,8 +12,8 @@
 #include "analysis/correlation/correlator.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/ray_record.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/ray_record.h"
 #include "tests/analysis/support/particle_pair.h"
 #include "tests/scene/small_scenes.h"
 
@@ -136,9 +136,9 @@ TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
 TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
-  DeflectionPlan const plan(scene, scene.dots);
+  DeflectionPlan const plan(on_bench(scene), scene.dots);
   ASSERT_TRUE(plan.wanted());
-  ASSERT_FALSE(DeflectionPlan(few, few.dots).wanted());
+  ASSERT_FALSE(DeflectionPlan(on_bench(few), few.dots).wanted());
   render(few);  // puts the field on the device, where it stays
   {
     DeviceMemoryLimit const limit(plan.table.bytes() - 1);

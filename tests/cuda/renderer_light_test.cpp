@@ -3,8 +3,8 @@
 #include <string>
 
 #include "render/base/image_file.h"
-#include "render/scene/deflection_map.h"
-#include "render/scene/light_model.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/light_model.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
 
 /// Every way in which a dot's light is laid down, on the device as on the CPU.
@@ -26,7 +26,7 @@ class CudaLightTest : public CudaRendererTest {
 
 /// Dots with cones by the table whose stop's edge is crossed more than once in some direction: they lie in a caustic.
 int dots_in_caustics(Scene const& scene) {
-  DeflectionMap const map(scene, DeflectionPlan(scene, scene.dots));
+  DeflectionMap const map(scene, DeflectionPlan(on_bench(scene), scene.dots));
   OwnedLightModel const light(scene, scene.dots, nullptr, map.table());
   LightModel const& model = light.model;
   TableCheck agreeing;
@@ -51,7 +51,7 @@ TEST_F(CudaLightTest, TablesOnPlanes) {
   for (std::string const instant : {"late", "kepeak"}) {
     SCOPED_TRACE(instant);
     Scene scene = dense_scene(instant, 1, 32);
-    ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
+    ASSERT_TRUE(DeflectionPlan(on_bench(scene), scene.dots).wanted());
     EXPECT_EQ(dots_in_caustics(scene) > 0, instant == "kepeak");
     expect_as_on_cpu(scene);
   }
@@ -63,7 +63,7 @@ TEST_F(CudaLightTest, TablesInCaustics) {
   for (std::uint64_t const rays : {64, 1100}) {
     SCOPED_TRACE(rays);
     Scene scene = dense_scene("kepeak", 4, rays);
-    ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
+    ASSERT_TRUE(DeflectionPlan(on_bench(scene), scene.dots).wanted());
     EXPECT_EQ(dots_in_caustics(scene), 400);
     EXPECT_GT(widest_dot(trace_truth(scene, RenderTheory::no)), 3);
     expect_as_on_cpu(scene);
@@ -140,7 +140,7 @@ TEST_F(CudaLightTest, DotsAtTheBorder) {
     setup.medium.field = field;
     expect_as_on_cpu(scene_with_dots(setup, few, 200));
     Scene const many = scene_with_dots(setup, lattice(96, 12, 10.71), 64);
-    EXPECT_EQ(DeflectionPlan(many, many.dots).wanted(), field.kind != FieldKind::none);
+    EXPECT_EQ(DeflectionPlan(on_bench(many), many.dots).wanted(), field.kind != FieldKind::none);
     expect_as_on_cpu(many);
   }
 }

@@ -1,4 +1,4 @@
-#include "render/scene/ray_plan.h"
+#include "render/focused_dots/dot_planning.h"
 #include "studies/ray_file.h"
 #include "tests/fuzz/input.h"
 
@@ -29,7 +29,7 @@ dots_per_32px_window = 1.0
 )",
                                                     "setup.toml");
   Scene scene = build_scene(read_setup(document.root()));
-  plan_step(scene);
+  use_step(scene, plan_step(focused_dots(scene).value()));
   return scene;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "render/base/random.h"
-#include "render/scene/dot_exposure.h"
+#include "render/focused_dots/dot_exposure.h"
 
 namespace gladstone {
 namespace {
@@ -22,7 +22,7 @@ Both lay_down(double sigma, std::vector<Vec2d> const& hits) {
   spot.gaussian.sigma = sigma;
   LightImage gathered(side, side), laid(side, side);
   HitGrid grid(spot.gaussian);
-  LightPatch patch(spot, {});
+  LightPatch patch(spot);
   double const share = 1.0 / static_cast<double>(hits.size());
   for (Vec2d const p : hits) {
     grid.deposit(p, 1, &gathered, share);

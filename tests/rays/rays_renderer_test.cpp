@@ -7,10 +7,10 @@
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "render/focused_dots/focused_dots.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/build_camera.h"
-#include "render/scene/focused_dots.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -162,24 +162,6 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   for (std::size_t dot = 0; dot < one.truth.size(); ++dot) {
     EXPECT_LT(length(one.truth.displacement_px[dot] - two.truth.displacement_px[dot]), 5 * truth_tolerance_px);
   }
-}
-
-TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
-  auto const bench = table1_setup(64);
-  EXPECT_EQ(reason_against_focused_dots(bench), "");
-  auto const refused = [&](auto const& change) {
-    auto setup = bench;
-    change(setup);
-    return !reason_against_focused_dots(setup).empty();
-  };
-  EXPECT_TRUE(refused([](auto& s) { s.lens.prescription = std::make_shared<Lens const>(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.pose = Pose<double>{{0, 0, 0.75}}; }));
-  EXPECT_TRUE(refused([](auto& s) { s.windows.emplace_back(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.tilt.x = 1e-3; }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.scheimpflug = true; }));
-  EXPECT_TRUE(refused([](auto& s) { s.camera.distortion.k1 = 1e-3; }));
-  EXPECT_TRUE(refused([](auto& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }));
-  EXPECT_TRUE(refused([](auto& s) { s.lens.focus = Focus::medium; }));
 }
 
 }  // namespace

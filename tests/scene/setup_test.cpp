@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "render/scene/deflection_map.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"
@@ -221,27 +220,12 @@ TEST(Memory, ThatTheMachineDoesNotHaveIsRefusedWithItsFigure) {
   EXPECT_THAT(
       [&] { build_scene(setup); },
       ThrowsMessage<DataError>(AllOf(HasSubstr("GB of memory"), HasSubstr("images 3.6e+04"), HasSubstr("reduce"))));
-  // and a table has at most 1e8 rays, of 20 bytes each
-  setup.medium.field = sinusoid(0.1, 4e-3);
-  EXPECT_THAT([&] { build_scene(setup); }, ThrowsMessage<DataError>(HasSubstr("table of deflections 2)")));
-}
-
-// The estimate for a table counts nodes by area; the table itself has whole numbers of rows and columns, up to two
-// more.
-TEST(Memory, OfATableIsKnownFromItsSetup) {
-  for (FieldSetup const& field : {dns_plane("late"), sinusoid(0.1, 2e-3)}) {
-    gladstone::Setup setup = table1_setup(256);
-    setup.medium.field = field;
-    Scene const scene = build_scene(setup);
-    DeflectionPlan const plan(scene, scene.dots);
-    ASSERT_TRUE(plan.wanted());
-    EXPECT_NEAR(table_bytes_needed(setup) / static_cast<double>(plan.table.bytes()), 1, 0.1);
-  }
-  gladstone::Setup setup = table1_setup(256);
-  EXPECT_EQ(table_bytes_needed(setup), 0);
-  setup.medium.field = sinusoid(0.1, 2e-3);
-  setup.lens.f_number = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(table_bytes_needed(setup), 0);
+  // and so is what a renderer needs beside images, field and dots
+  EXPECT_THAT(
+      [&] {
+        check_memory(setup, FieldMemory::needed, {{"lens", "what a renderer keeps", 2e9}});
+      },
+      ThrowsMessage<DataError>(HasSubstr("what a renderer keeps 2)")));
 }
 
 TEST(BuildScene, MakesTheDotsOfTheTarget) {

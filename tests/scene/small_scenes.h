@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "render/scene/ray_plan.h"
-#include "render/scene/renderer.h"
+#include "render/focused_dots/dot_planning.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
@@ -51,6 +51,22 @@ inline FieldSetup dns_plane(std::string const& instant) {
   return field;
 }
 
+/// Any scene on the bench, in focus or not.
+inline FocusedDots on_bench(Scene const& scene) { return bench_rays(scene).value(); }
+
+/// Plans and renderings by the fast renderer; scenes that have no tables it traces ray by ray.
+inline StepPlan plan_step(Scene& scene) {
+  StepPlan const plan = plan_step(on_bench(scene));
+  use_step(scene, plan);
+  return plan;
+}
+inline RaysPlan plan_rays(Scene& scene) {
+  RaysPlan const plan = plan_rays(on_bench(scene));
+  scene.rays_per_dot = plan.rays;
+  return plan;
+}
+inline RaysPlan measure_rays(Scene const& scene) { return measure_rays(on_bench(scene)); }
+
 /// A scene with dots at given places of the reference picture [px], its step and margin planned.
 inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
   Setup bare = setup;
@@ -67,10 +83,10 @@ inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px
 }
 
 inline Rendering render_all(Scene& scene) {
-  return CpuRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+  return FocusedDotsRenderer(bench_rays).render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
 }
 inline GroundTruth trace_truth(Scene& scene, RenderTheory theory = RenderTheory::yes) {
-  return CpuRenderer().render(scene, scene.dots, RenderImages::no, theory).truth;
+  return FocusedDotsRenderer(bench_rays).render(scene, scene.dots, RenderImages::no, theory).truth;
 }
 
 /// A lattice of points, `pitch` apart, in the middle of a square picture.

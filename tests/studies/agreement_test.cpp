@@ -34,7 +34,7 @@ TEST(AgreementOverPlane, OfOneWaveIsTheConesTransfer) {
   setup.medium.field.file = path;
   setup.medium.field.dataset = "";
   setup.medium.field.scale = 1;
-  CpuRenderer renderer;
+  FocusedDotsRenderer renderer;
   PlaneAgreement const traced = agreement_over_plane(setup, 32, 0.5e-3, renderer);
   std::filesystem::remove(path);
   EXPECT_EQ(traced.sums.dots, 96u * 96u);
@@ -61,7 +61,7 @@ TEST_P(AgreementOfTurbulence, IsWhatTheSpectrumPredicts) {
   auto const [file, nodes] = GetParam();
   gladstone::Setup const setup = table1(file, 64);
   double const spacing = 32.7 * unit::millimetre / (nodes - 1);
-  CpuRenderer renderer;
+  FocusedDotsRenderer renderer;
   PlaneAgreement const traced = agreement_over_plane(setup, nodes, spacing, renderer);
   Agreement const value = traced.sums.agreement(),
                   predicted = predicted_agreement(gradient_spectrum(field_plane(setup.medium.field)), spacing, setup);

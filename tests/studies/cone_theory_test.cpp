@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/scene/ray_plan.h"
-#include "render/scene/renderer.h"
+#include "render/focused_dots/dot_planning.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -49,7 +49,7 @@ Scene scene_of(Bench const& bench) {
     for (int i = 0; i <= side; ++i)
       scene.dots.centre.push_back({half * (2.0 * i / side - 1), half * (2.0 * j / side - 1)});
   }
-  plan_step(scene);
+  use_step(scene, plan_step(focused_dots(scene).value()));
   scene.rays_per_dot = 1024;
   return scene;
 }
@@ -175,7 +175,7 @@ class ConeTheory : public testing::TestWithParam<double> {};
 // 2)^2 / 6 = 8e-4; and the second order of the strain. Means over the view, they reach 1e-4 of Eq. 9 where the cone is
 // widest.
 TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
-  CpuRenderer renderer;
+  FocusedDotsRenderer renderer;
   double worst = 0;
   for (double const f_number : {4.0, 8.0, 16.0, 32.0}) {
     for (double const z_d_mm : {100.0, 250.0, 500.0, 1000.0}) {

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "render/focused_dots/dot_planning.h"
 #include "studies/case.h"
 #include "studies/demo.h"
+#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -13,9 +15,9 @@ namespace {
 TEST(Table1, HasTheMonteCarloErrorThatItSays) {
   CaseSetup const loaded = load_case_setup(shared_folder() + "/studies/cases/table1.toml", {});
   Scene scene = build_scene(loaded.setup);
-  plan_step(scene);
-  ASSERT_EQ(plan_rays(scene).rays, 1024u);
-  RaysPlan const error = measure_rays(scene);
+  plan_step_of(scene);
+  ASSERT_EQ(plan_rays_of(scene).rays, 1024u);
+  RaysPlan const error = measure_rays(focused_dots(scene).value());
   EXPECT_LT(error.truth_error_px, 2e-4);
   EXPECT_LT(error.image_error_levels, 0.5);
 }

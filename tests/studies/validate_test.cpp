@@ -4,11 +4,14 @@
 
 #include <limits>
 
+#include "render/focused_dots/focused_dots_renderer.h"
+#include "studies/scene_renderer.h"
+
 namespace gladstone {
 namespace {
 
 TEST(Oracles, AreMetByTheCpu) {
-  CpuRenderer renderer;
+  SceneRenderer renderer(std::make_unique<FocusedDotsRenderer>(), false);
   auto const results = run_oracles(renderer);
   EXPECT_GE(results.size(), 20u);
   for (OracleResult const& result : results) {

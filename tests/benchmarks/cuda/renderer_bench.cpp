@@ -8,7 +8,7 @@
 #include "cuda/backend.h"
 #include "render/base/progress.h"
 #include "tests/benchmarks/bench_scenes.h"
-#include "tests/scene/picture_error.h"
+#include "tests/focused_dots/picture_error.h"
 
 namespace gladstone::bench {
 namespace {

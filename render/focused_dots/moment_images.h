@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "render/focused_dots/cone_moments.h"
+#include "render/sensor/diffraction_spot.h"
+
+/// Light of dots whose displacements spread over several widths of a spot: they are sorted into squares, within each of
+/// which a few moments tell the light (Hermite series, as in the fast Gauss transform of Greengard & Strain 1991). The
+/// squares' middles lie on a lattice that divides the sensor's pixels, so that what a moment does to the image of a
+/// source is the same for all dots, and worked out once.
+namespace gladstone {
+
+/// The lattice of squares on the sensor, by its side. It lies a little aside of the pixels, whose middles and edges are
+/// where displacements of nothing put the points of regular targets: no two devices round those to different squares.
+struct BoxLattice {
+  static constexpr double aside = 0.01;  ///< middle of square 0 [px]
+  int per_pixel = 1;                     ///< squares along a pixel's side
+  int pixels = 1;                        ///< or pixels along a square's side; one of the two is 1
+
+  /// With squares no larger than `side` [px].
+  GLADSTONE_HD static BoxLattice no_coarser(double side) {
+    if (side >= 1) return {1, static_cast<int>(side)};
+    return {static_cast<int>(std::ceil(1 / side)), 1};
+  }
+  GLADSTONE_HD double side() const { return static_cast<double>(pixels) / per_pixel; }
+  GLADSTONE_HD double per_side() const { return static_cast<double>(per_pixel) / pixels; }
+  /// Where the middle of a square lies along an axis: a pixel, and which of per_pixel places about the pixel's middle.
+  GLADSTONE_HD int pixel(int square) const {
+    int const shifted = square + per_pixel / 2;
+    int const down = shifted / per_pixel - (shifted % per_pixel < 0 ? 1 : 0);
+    return down * pixels;
+  }
+  GLADSTONE_HD int phase(int square) const {
+    int const rest = (square + per_pixel / 2) % per_pixel;
+    return rest < 0 ? rest + per_pixel : rest;
+  }
+  /// From the pixel's middle to the square's [px].
+  GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
+};
+
+/// A dot's squares of displacement, counted from the one at its middle: those of the sensor or, where they would be too
+/// many, larger ones about every second or fourth of these along either axis.
+struct DotBoxes {
+  static constexpr int most_step = 4;
+  BoxLattice lattice;
+  int step = 1;           ///< squares of the sensor from one to the next
+  Vec2<int> first{0, 0};  ///< of the sensor's squares: the dot's square (0, 0)
+  Vec2d shift{};          ///< of displacement zero from that square's middle [px]
+
+  /// @param origin image of the dot displaced by zero [px]
+  GLADSTONE_HD DotBoxes(BoxLattice const& of_sensor, Vec2d origin, int squares_apart)
+      : lattice(of_sensor), step(squares_apart) {
+    using std::floor;
+    auto const nearest = [per_side = lattice.per_side()](double p) {
+      double const at = floor(p * per_side + 0.5);
+      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // beyond, displacements are too far from it to be sorted
+    };
+    origin = origin - Vec2d{BoxLattice::aside, BoxLattice::aside};
+    Vec2d const at{nearest(origin.x), nearest(origin.y)};
+    first = {static_cast<int>(at.x), static_cast<int>(at.y)};
+    shift = origin - lattice.side() * at;
+  }
+  GLADSTONE_HD Vec2<int> box_of(Vec2d displacement) const {
+    using std::floor;
+    auto const cell = [per_side = lattice.per_side() / step](double d) {
+      double const at = floor(d * per_side + 0.5);
+      return static_cast<int>(at < -1000 ? -1000 : (at > 1000 ? 1000 : at));
+    };
+    return {cell(displacement.x + shift.x), cell(displacement.y + shift.y)};
+  }
+  /// A displacement counted from a square's middle [px].
+  GLADSTONE_HD Vec2d from_middle(Vec2d displacement, Vec2<int> box) const {
+    double const side = step * lattice.side();
+    return displacement + shift - Vec2d{side * box.x, side * box.y};
+  }
+  /// The sensor's square at the middle of a box.
+  GLADSTONE_HD Vec2<int> square(Vec2<int> box) const { return first + step * box; }
+};
+
+/// The squares that a distribution of displacements spans.
+struct BoxRange {
+  Vec2<int> low{0, 0}, high{0, 0};
+
+  static constexpr int most = 576;  ///< that it pays to go through one by one
+
+  GLADSTONE_HD void include(Vec2<int> box) {
+    low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
+    high = {box.x > high.x ? box.x : high.x, box.y > high.y ? box.y : high.y};
+  }
+  GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
+  GLADSTONE_HD int rows() const { return high.y - low.y + 1; }
+  GLADSTONE_HD int count() const { return columns() * rows(); }
+  GLADSTONE_HD bool few() const { return count() <= most; }
+  GLADSTONE_HD int index(Vec2<int> box) const { return (box.y - low.y) * columns() + box.x - low.x; }
+  GLADSTONE_HD Vec2<int> box(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
+};
+
+/// Images of a source, one for each moment of its displacements within a square and each term of the place on the
+/// source, for each place of the square's middle on its pixel. A view.
+struct MomentImages {
+  BoxLattice lattice;
+  int half = 0;                    ///< pixels to each side of the square's
+  int terms = 0;                   ///< of the place: PlaceRule::terms, or 1 for a point; 0: there are no images
+  int stride = 0;                  ///< from one image to the next
+  double const* values = nullptr;  ///< [phase y][phase x][moment][term][row, column]
+
+  /// Of a source as wide as 2 half_px under a Gaussian spot, values still to be worked out; none where they would take
+  /// too much memory. @param side most of a square [px] @param terms 6, or 1 for a point
+  static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
+
+  static constexpr int pad = 16;  ///< stride is a multiple of it
+
+  GLADSTONE_HD bool exist() const { return terms > 0; }
+  GLADSTONE_HD int width() const { return 2 * half + 1; }
+  GLADSTONE_HD int count() const { return DisplacementMoments::count * terms; }
+  GLADSTONE_HD int phases() const { return lattice.per_pixel * lattice.per_pixel; }
+  /// Middle of a phase's squares, from their pixel's [px]. @param phase y times per_pixel plus x
+  GLADSTONE_HD Vec2d middle(int phase) const {
+    return {lattice.offset(phase % lattice.per_pixel), lattice.offset(phase / lattice.per_pixel)};
+  }
+  std::size_t size() const {
+    return static_cast<std::size_t>(phases()) * static_cast<std::size_t>(count()) * static_cast<std::size_t>(stride);
+  }
+  /// The first image of a phase.
+  GLADSTONE_HD double const* of_phase(int phase) const {
+    return values + static_cast<std::size_t>(phase) * count() * stride;
+  }
+};
+
+/// Works out a plan's images, on all cores. @param points in units of half_px @param weights of sum one
+std::vector<double> make_moment_images(MomentImages const& plan, std::vector<Vec2d> const& points,
+                                       std::vector<double> const& weights, double half_px,
+                                       GaussianSpot<double> const& spot);
+
+}  // namespace gladstone

@@ -1,0 +1,15 @@
+#include "render/scene/spot.h"
+
+#include "render/scene/scene.h"
+
+namespace gladstone {
+
+SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy) {
+  SpotView spot;
+  spot.model = scene.chief_rays_only() ? SpotModel::none : scene.setup.lens.spot;
+  if (spot.model == SpotModel::airy) spot.airy = airy.emplace(scene.spot_scale_px()).view();
+  spot.gaussian.sigma = scene.spot_sigma_px();
+  return spot;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "render/base/parallel.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+template <class Range>
+bool same_bits(Range const& a, Range const& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(*a.data())) == 0;
+}
+
+// Interface.md, Repeatability: images accumulate in integers, a dot's sums run in the order of its rays.
+TEST(FocusedDotsRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
+  auto setup = table1_setup(64);
+  setup.medium.field = dns_plane("kepeak");
+  Scene scene = build_scene(setup);
+  Rendering first;
+  for (int const threads : {1, 2, 7}) {
+    set_thread_count(threads);
+    Scene again = scene;
+    plan_step(again);
+    again.rays_per_dot = 32;
+    Rendering rendering = render_all(again);
+    if (threads == 1) {
+      first = std::move(rendering);
+      continue;
+    }
+    EXPECT_TRUE(same_bits(first.light.reference, rendering.light.reference)) << threads;
+    EXPECT_TRUE(same_bits(first.light.flow, rendering.light.flow)) << threads;
+    GroundTruth const &a = first.truth, &b = rendering.truth;
+    EXPECT_TRUE(same_bits(a.reference_px, b.reference_px) && same_bits(a.displacement_px, b.displacement_px))
+        << threads;
+    EXPECT_TRUE(same_bits(a.displacement_std_px, b.displacement_std_px) && same_bits(a.flux, b.flux)) << threads;
+    EXPECT_TRUE(same_bits(a.eq9_px, b.eq9_px) && same_bits(a.eq9_cone_px, b.eq9_cone_px)) << threads;
+    EXPECT_TRUE(same_bits(a.chief_px, b.chief_px) && same_bits(a.rays, b.rays)) << threads;
+    EXPECT_EQ(first.statuses, rendering.statuses) << threads;
+    EXPECT_EQ(first.rays, rendering.rays) << threads;
+  }
+  set_thread_count(0);
+}
+
+TEST(FocusedDotsRenderer, WithoutAMediumBothFramesAreEqual) {
+  auto const setup = table1_setup(48);
+  Scene scene = scene_with_dots(setup, lattice(48, 4, 10), 64);
+  Rendering const rendering = render_all(scene);
+  EXPECT_TRUE(same_bits(rendering.light.reference, rendering.light.flow));
+  for (std::size_t i = 0; i < rendering.truth.size(); ++i) {
+    EXPECT_EQ(rendering.truth.displacement_px[i], (Vec2d{0, 0}));
+    EXPECT_EQ(rendering.truth.eq9_px[i], (Vec2d{0, 0}));
+    EXPECT_EQ(rendering.truth.eq9_cone_px[i], (Vec2d{0, 0}));
+  }
+}
+
+// A uniform slab bends nothing: with matched faces whatever its density, with refracting ones at the ambient density.
+// The interface allows 1e-11 px; rounding of positions of 1e3 px leaves 1e-13.
+TEST(FocusedDotsRenderer, UniformDensityDisplacesNothing) {
+  std::string const path = (std::filesystem::path(testing::TempDir()) / "uniform.nrrd").string();
+  write_plane(path, 16, 16, [](int, int) { return 1.7; });
+  FieldSetup plane;
+  plane.kind = FieldKind::file;
+  plane.file = path;
+  plane.where = "test";
+  plane.spacing = Vec3d{5e-3, 5e-3, 1e-3};
+  plane.extrude = true;
+  struct Case {
+    FieldSetup field;
+    Faces faces;
+  };
+  for (Case const& one : {Case{plane, Faces::matched}, Case{uniform_gradient(0, 0), Faces::matched},
+                          Case{uniform_gradient(0, 0), Faces::refract}}) {
+    for (Integrator const integrator : {Integrator::rk4, Integrator::euler, Integrator::straight}) {
+      auto setup = table1_setup(512);
+      setup.medium.field = one.field;
+      setup.medium.faces = one.faces;
+      setup.medium.integrator = integrator;
+      Scene scene = scene_with_dots(setup, lattice(512, 3, 200), 64);
+      GroundTruth const truth = trace_truth(scene);
+      for (std::size_t i = 0; i < truth.size(); ++i) {
+        EXPECT_LE(std::abs(truth.displacement_px[i].x), 1e-11);
+        EXPECT_LE(std::abs(truth.displacement_px[i].y), 1e-11);
+        EXPECT_LE(length(truth.eq9_cone_px[i]), 1e-11);
+      }
+    }
+  }
+}
+
+// No medium and a point in focus: every ray of every dot lands where the pinhole would put it.
+TEST(FocusedDotsRenderer, ReferenceIsWhereThePinholeSees) {
+  auto setup = table1_setup(256);
+  setup.target.dot_diameter_px = 0;
+  auto const at = lattice(256, 5, 45);
+  Scene scene = scene_with_dots(setup, at, 64);
+  GroundTruth const truth = trace_truth(scene);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    EXPECT_NEAR(truth.reference_px[i].x, at[i].x, 1e-9);
+    EXPECT_NEAR(truth.reference_px[i].y, at[i].y, 1e-9);
+    EXPECT_GT(truth.rays[i][0], 32);
+  }
+}
+
+// A ray bent further than the margin planned for makes the renderer enlarge the pupil and start again.
+TEST(FocusedDotsRenderer, EnlargesThePupilWhenBendingIsStrongerThanPlanned) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(100, 0);
+  Scene scene = scene_with_dots(setup, {{32, 32}}, 256);
+  double const bend = 2.26e-4 * 100 * 0.01 * 0.75;  // K g L_z Z_A
+  EXPECT_NEAR(scene.pupil_margin, 1.25 * bend, 0.02 * bend);
+  scene.pupil_margin = 0;
+  GroundTruth const truth = trace_truth(scene);
+  EXPECT_GE(scene.pupil_margin, bend);
+  EXPECT_LE(scene.pupil_margin, 1.1 * bend);
+  EXPECT_LT(truth.rays[0][0], 256);
+}
+
+// Dots whose rays miss the sensor's area have a truth like any other; one out of the picture leaves no light in it.
+TEST(FocusedDotsRenderer, DotsOutsideThePictureHaveTruthButNoLight) {
+  auto setup = table1_setup(64);
+  setup.target.dot_diameter_px = 0;
+  setup.medium.field = uniform_gradient(100, 0);
+  Scene scene = scene_with_dots(setup, {{-40, 32}}, 64);
+  Rendering const rendering = render_all(scene);
+  EXPECT_NEAR(rendering.truth.reference_px[0].x, -40, 1e-9);
+  EXPECT_NEAR(rendering.truth.displacement_px[0].x, -0.66266, 0.002);
+  for (double const light : rendering.light.flow) ASSERT_EQ(light, 0.0);
+  auto const missed = static_cast<std::size_t>(RayStatus::missed_sensor);
+  EXPECT_EQ(rendering.statuses[0][missed], rendering.truth.rays[0][0]);
+  EXPECT_EQ(rendering.statuses[1][missed], rendering.truth.rays[0][1]);
+}
+
+}  // namespace
+}  // namespace gladstone

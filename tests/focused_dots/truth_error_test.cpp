@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "render/base/random.h"
+#include "render/focused_dots/dot_error.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+using BosSetup = Setup;  // testing::Test has a Setup of its own
+
+/// How many components of the dots' displacements lie within one standard error of what many more rays say.
+struct Coverage {
+  double share = 0;
+  TableState table = TableState::made;
+  double told = 0, found = 0;  ///< rms [px]
+};
+
+/// @param scene with its number of rays @param seeds that it is rendered with
+Coverage coverage_of(Scene const& scene, std::uint64_t many_rays, int seeds) {
+  FocusedDotsRenderer renderer(bench_rays);
+  auto const truth_of = [&](std::uint64_t rays, std::uint64_t seed) {
+    Scene other = scene;
+    other.rays_per_dot = rays;
+    other.setup.render.seed = repeat_seed(scene.setup.render.seed, seed);
+    return renderer.render(other, other.dots, RenderImages::no, RenderTheory::no);
+  };
+  Rendering const reference = truth_of(many_rays, 1000);
+  Coverage coverage;
+  coverage.table = reference.table;
+  double within = 0, count = 0, told2 = 0, found2 = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    GroundTruth const truth = truth_of(scene.rays_per_dot, static_cast<std::uint64_t>(seed)).truth;
+    for (std::size_t dot = 0; dot < truth.size(); ++dot) {
+      Vec2d const off = truth.displacement_px[dot] - reference.truth.displacement_px[dot];
+      Vec2d const error = truth.displacement_error_px[dot];
+      within += (std::abs(off.x) <= error.x) + (std::abs(off.y) <= error.y);
+      told2 += error.x * error.x + error.y * error.y;
+      found2 += off.x * off.x + off.y * off.y;
+      count += 2;
+    }
+  }
+  coverage.share = within / count;
+  coverage.told = std::sqrt(told2 / count);
+  coverage.found = std::sqrt(found2 / count);
+  return coverage;
+}
+
+/// A volume of one wave in x and y that ends within the view: dots there see it through its faces.
+FieldSetup small_volume(std::string const& path) {
+  constexpr int side = 24, layers = 8;
+  std::ofstream file(path, std::ios::binary);
+  file << "NRRD0004\ntype: double\ndimension: 3\nsizes: " << side << " " << side << " " << layers
+       << "\nendian: " << (std::endian::native == std::endian::little ? "little" : "big") << "\nencoding: raw\n\n";
+  for (int k = 0; k < layers; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i) {
+        double const density = 1.225 + 0.1 * std::sin(0.5 * i + 0.3 * k) * std::cos(0.4 * j);
+        file.write(reinterpret_cast<char const*>(&density), sizeof density);
+      }
+    }
+  }
+  FieldSetup field;
+  field.kind = FieldKind::file;
+  field.file = path;
+  field.where = "test";
+  field.spacing = Vec3d{0.25e-3, 0.25e-3, 0.5e-3};
+  return field;
+}
+
+// Two thirds of independent errors of known size lie within that size, 0.683 for normal ones. Whatever made truth: a
+// table's integral that rays correct (a plane of turbulence, a wave), a volume's, beside rays alone where its faces
+// part them, rays of a lens out of focus. The reference, many more rays of another seed, adds less than a tenth. With
+// some 600 components, of which the two of a dot and all seeds of it share the reference, the share scatters by 2 to 3
+// %: 0.60 to 0.76.
+TEST(TruthError, TwoThirdsOfTheDotsLieWithinIt) {
+  struct Case {
+    char const* name;
+    FieldSetup field;
+    std::uint64_t rays, many_rays;
+    TableState table;
+    std::function<void(BosSetup&)> change;
+  };
+  auto const as_is = [](BosSetup&) {};
+  auto const defocused = [](BosSetup& setup) { setup.lens.focus = Focus::medium; };
+  std::string const volume = testing::TempDir() + "truth_error_volume.nrrd";
+  for (Case const& one :
+       {Case{"late plane", dns_plane("late"), 64, 16384, TableState::made, as_is},
+        {"late plane, few rays", dns_plane("late"), 16, 16384, TableState::made, as_is},
+        {"early plane", dns_plane("kepeak"), 64, 16384, TableState::made, as_is},
+        {"wave", sinusoid(0.05, 4e-3), 64, 16384, TableState::made, as_is},
+        {"faces in view", small_volume(volume), 64, 8192, TableState::made, as_is},
+        {"out of focus", sinusoid(0.05, 4e-3), 64, 8192, TableState::out_of_focus, defocused},
+        {"out of focus, many rays", sinusoid(0.05, 4e-3), 512, 32768, TableState::out_of_focus, defocused}}) {
+    auto setup = table1_setup(96);
+    setup.medium.field = one.field;
+    one.change(setup);
+    Scene const scene = scene_with_dots(setup, lattice(96, 6, 14), one.rays);
+    Coverage const coverage = coverage_of(scene, one.many_rays, 8);
+    EXPECT_EQ(coverage.table, one.table) << one.name;
+    EXPECT_GE(coverage.share, 0.60) << one.name << ": told " << coverage.told << " px, found " << coverage.found;
+    EXPECT_LE(coverage.share, 0.76) << one.name << ": told " << coverage.told << " px, found " << coverage.found;
+  }
+}
+
+// A uniform gradient bends all rays alike, and a table knows what they do to some 1e-5 px: at any thickness, in any
+// view. Rays alone would scatter by 0.01 px, since other rays pass the stop in the flow than in the reference.
+TEST(TruthError, AUniformGradientHasATableAtAnyThickness) {
+  for (double const thickness : {10e-3, 30e-3, 50e-3, 200e-3}) {
+    auto setup = table1_setup(96);
+    setup.medium.field = uniform_gradient(75, 0);
+    setup.medium.thickness = thickness;
+    Scene scene = scene_with_dots(setup, lattice(96, 5, 16), 64);
+    Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no);
+    EXPECT_EQ(rendering.table, TableState::made) << thickness;
+    TruthAccuracy const accuracy = truth_accuracy(rendering.truth, 1e-3);
+    EXPECT_EQ(accuracy.by_table, rendering.truth.size());
+    EXPECT_EQ(accuracy.above, 0u);
+    EXPECT_LT(accuracy.largest_px, 3e-4) << thickness;
+  }
+}
+
+// What does not scatter is known exactly, and what a single ray says is not known at all.
+TEST(TruthError, IsZeroWithoutAFieldAndUnknownOfASingleRay) {
+  auto const truth_with = [](std::uint64_t rays, std::function<void(BosSetup&)> const& change) {
+    auto setup = table1_setup(64);
+    setup.medium.field = uniform_gradient(10, 0);
+    change(setup);
+    Scene scene = scene_with_dots(setup, lattice(64, 4, 14), rays);
+    return trace_truth(scene);
+  };
+  GroundTruth const empty = truth_with(64, [](BosSetup& setup) { setup.medium.field = {}; });
+  EXPECT_EQ(truth_accuracy(empty, 1e-3).largest_px, 0.0);
+  GroundTruth const chief = truth_with(1, [](BosSetup& setup) {
+    setup.lens.f_number = std::numeric_limits<double>::infinity();
+    setup.target.dot_diameter_px = 0;
+  });
+  EXPECT_EQ(truth_accuracy(chief, 1e-3).largest_px, 0.0);
+  EXPECT_EQ(truth_accuracy(chief, 1e-3).unknown, 0u);
+  // rays are sent to more than the stop: some dots' only ray misses it, and these dots are not seen
+  TruthAccuracy const single = truth_accuracy(truth_with(1, [](BosSetup&) {}), 1e-3);
+  EXPECT_GE(single.unknown, 4u);
+  EXPECT_TRUE(std::isnan(single.rms_px));
+  for (std::uint64_t const rays : {2u, 3u, 5u, 7u, 9u}) {
+    EXPECT_EQ(truth_accuracy(truth_with(rays, [](BosSetup&) {}), 1e-3).unknown, 0u) << rays;
+  }
+}
+
+// Of groups of equal weight a weighted mean's error is the standard deviation of the groups' means over the square root
+// of their number, times Student's factor: here 1, 2, 3 and 6 about their mean 3, so sqrt(14/3/4) = 1.0801.
+TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
+  DotSums of[4], all;
+  double const place[4] = {1, 2, 3, 6};
+  for (int i = 0; i < 4; ++i) {
+    of[i].hits[0].add({0, 0}, 2.0, true);
+    of[i].hits[1].add({place[i], 5}, 2.0, true);
+    of[i].check.weight = 2;
+    of[i].check.traced = {2 * place[i] + 20, 7};
+    of[i].check.expected = {20, 7};
+    all += of[i];
+  }
+  DotErrors const errors = dot_errors(of, 4, all);
+  double const expected = student_factor(4) * std::sqrt(14.0 / 12);
+  EXPECT_NEAR(std::sqrt(errors.rays2.x), expected, 1e-12);
+  EXPECT_NEAR(std::sqrt(errors.table2.x), expected, 1e-12);
+  EXPECT_EQ(errors.rays2.y, 0);
+  EXPECT_EQ(errors.table2.y, 0);
+}
+
+TEST(TruthAccuracy, CountsDotsAboveALimit) {
+  GroundTruth truth;
+  truth.resize(4);
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  truth.displacement_error_px = {{3e-4, 4e-4}, {0, 2e-3}, {nan, nan}, {nan, nan}};
+  truth.displacement_px[3] = {nan, nan};  // not seen: there is no truth whose error could be unknown
+  truth.path = {TruthPath::table, TruthPath::rays, TruthPath::rays, TruthPath::rays};
+  TruthAccuracy const accuracy = truth_accuracy(truth, 1e-3);
+  EXPECT_NEAR(accuracy.rms_px, std::sqrt((9e-8 + 16e-8 + 4e-6) / 4), 1e-15);
+  EXPECT_EQ(accuracy.largest_px, 2e-3);
+  EXPECT_EQ(accuracy.worst, 1u);
+  EXPECT_EQ(accuracy.above, 1u);
+  EXPECT_EQ(accuracy.above_by_rays, 1u);
+  EXPECT_EQ(accuracy.unknown, 1u);
+  EXPECT_EQ(accuracy.by_table, 1u);
+}
+
+}  // namespace
+}  // namespace gladstone
