@@ -1,9 +1,15 @@
 #include "studies/scene_renderer.h"
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <numeric>
+
 #include "render/base/contracts.h"
 #include "render/focused_dots/dot_planning.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
+#include "render/scene/side_faces.h"
 
 namespace gladstone {
 namespace {
@@ -12,6 +18,59 @@ FocusedDots enter(Scene const& scene) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   GLADSTONE_EXPECTS(dots);
   return *dots;
+}
+
+/// Some sources of a pattern.
+DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& numbers) {
+  DotPattern some;
+  some.half_size = all.half_size;
+  some.shape = all.shape;
+  for (std::size_t const i : numbers) {
+    some.centre.push_back(all.centre[i]);
+    if (!all.radiance.empty()) some.radiance.push_back(all.radiance[i]);
+  }
+  return some;
+}
+
+/// The numbers below `count` that a rising list leaves out.
+std::vector<std::size_t> others(std::vector<std::size_t> const& listed, std::size_t count) {
+  std::vector<std::size_t> all(count), rest;
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::set_difference(all.begin(), all.end(), listed.begin(), listed.end(), std::back_inserter(rest));
+  return rest;
+}
+
+/// A copy of a scene with other dots, so many rays each, bright.
+Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
+  Scene copy = scene;
+  copy.dots = std::move(dots);
+  copy.rays_per_dot = rays;
+  copy.setup.target.polarity = Polarity::bright;
+  return copy;
+}
+
+/// Enters what was found of some sources among all.
+void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, std::uint64_t rays) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    all.truth.copy(some.truth, i, numbers[i]);
+    all.rays_planned[numbers[i]] = rays;
+  }
+  all.rays += some.rays;
+  for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
+    for (std::size_t status = 0; status < ray_status_count; ++status) {
+      all.statuses[frame][status] += some.statuses[frame][status];
+    }
+  }
+  auto const add = [](Image<double>& to, Image<double> const& from) {
+    if (to.empty()) {
+      to = from;
+    } else {
+      std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
+    }
+  };
+  if (some.light.reference.empty()) return;
+  add(all.light.reference, some.light.reference);
+  add(all.light.flow, some.light.flow);
 }
 
 }  // namespace
@@ -29,11 +88,41 @@ SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique
 
 Rendering SceneRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   RenderMethod const method = method_of(scene);
-  Renderer& renderer = method == RenderMethod::focused_dots ? *focused_dots_ : *rays_;
-  Rendering rendering = renderer.render(scene, sources, images, theory);
+  Rendering rendering = method == RenderMethod::focused_dots ? render_focused(scene, sources, images, theory)
+                                                             : rays_->render(scene, sources, images, theory);
   rendering.method = method;
-  rendering.device = renderer.device();
+  rendering.device = device();
   return rendering;
+}
+
+Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources, RenderImages images,
+                                        RenderTheory theory) {
+  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, sources);
+  if (at_faces.empty()) return focused_dots_->render(scene, sources, images, theory);
+  std::vector<std::size_t> const clear = others(at_faces, sources.centre.size());
+  RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
+  Rendering all;
+  all.truth.resize(sources.centre.size());
+  all.rays_planned.resize(sources.centre.size());
+  std::uint64_t const rays = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
+  Scene by_rays = with_dots(scene, some_of(sources, at_faces), rays);
+  merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), at_faces, rays);
+  Scene fast = with_dots(scene, some_of(sources, clear), scene.rays_per_dot);
+  Rendering const of_clear = focused_dots_->render(fast, fast.dots, lit, theory);
+  merge(all, of_clear, clear, scene.rays_per_dot);
+  all.table = of_clear.table;
+  scene.pupil_margin = fast.pupil_margin;
+  if (lit == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {
+    Image<double> const white = white_light(scene);
+    for (Image<double>* frame : {&all.light.reference, &all.light.flow}) {
+      std::transform(white.begin(), white.end(), frame->begin(), frame->begin(), std::minus<>());
+    }
+  }
+  if (images == RenderImages::kept) {
+    all.kept = std::make_shared<HostLight const>(std::move(all.light));
+    all.light = {};
+  }
+  return all;
 }
 
 StepPlan plan_step_of(Scene& scene) {
@@ -45,8 +134,18 @@ StepPlan plan_step_of(Scene& scene) {
 
 RaysPlan plan_rays_of(Scene& scene) {
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
-  RaysPlan const plan = plan_rays(enter(scene));
+  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
+  if (at_faces.empty() || scene.setup.render.rays_per_dot) {
+    RaysPlan const plan = plan_rays(enter(scene));
+    scene.rays_per_dot = plan.rays;
+    return plan;
+  }
+  Scene const fast = with_dots(scene, some_of(scene.dots, others(at_faces, scene.dots.centre.size())), 1);
+  RaysPlan plan = plan_rays(enter(fast));
+  Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
+  plan.rays_at_side_faces = std::max(plan.rays, plan_rays_by_rays(by_rays).rays);
   scene.rays_per_dot = plan.rays;
+  scene.rays_at_side_faces = plan.rays_at_side_faces;
   return plan;
 }
 

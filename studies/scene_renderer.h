@@ -15,7 +15,8 @@ RenderMethod method_of(Scene const& scene);
 /// "rays" or "focused_dots", as files call it.
 char const* to_string(RenderMethod method);
 
-/// Renders every scene by its method, on one device.
+/// Renders every scene by its method, on one device. Of focused dots those at a side face of the medium, whose
+/// displacement jumps within their cones, go ray by ray all the same, and by a number of rays of their own.
 class SceneRenderer : public Renderer {
  public:
   /// @param focused_dots,rays the renderers of that device
@@ -25,6 +26,8 @@ class SceneRenderer : public Renderer {
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
+  Rendering render_focused(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
+
   std::unique_ptr<Renderer> focused_dots_, rays_;
 };
 

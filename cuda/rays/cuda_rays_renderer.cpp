@@ -175,12 +175,12 @@ class SceneTracer {
   double trace(char const* what) {
     std::size_t const count = truth_.size();
     aims_.resize(count);
-    // so many that their sums fit, and that one launch does not take long
+    // so many that their sums fit, that one launch does not take long, and that few wait for the first aims
     double const steps = static_cast<double>(launch_.rays) * std::max(1.0, scene_.steps_across());
     std::size_t const most =
         std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(RaySums)),
                                          static_cast<std::size_t>(most_steps_a_launch / steps)),
-                                1, 1 << 16);
+                                1, 1 << 14);
     Progress progress(what, count);
     std::vector<SourceOnDevice> next = aim(0, std::min(most, count));
     for (std::size_t first = 0; first < count; first += most) {

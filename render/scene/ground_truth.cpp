@@ -16,6 +16,17 @@ void GroundTruth::resize(std::size_t count) {
   path.resize(count);
 }
 
+void GroundTruth::copy(GroundTruth const& other, std::size_t from, std::size_t to) {
+  position_m[to] = other.position_m[from];
+  for (auto column : {&GroundTruth::reference_px, &GroundTruth::displacement_px, &GroundTruth::displacement_error_px,
+                      &GroundTruth::displacement_std_px, &GroundTruth::flux, &GroundTruth::eq9_px,
+                      &GroundTruth::chief_px, &GroundTruth::eq9_cone_px}) {
+    (this->*column)[to] = (other.*column)[from];
+  }
+  rays[to] = other.rays[from];
+  path[to] = other.path[from];
+}
+
 void GroundTruth::set_hits(std::size_t dot, DotTruth const& found, double light_per_weight) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Vec2d const none{nan, nan};

@@ -71,6 +71,8 @@ struct GroundTruth {
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);
+  /// Writes what another truth says of a source.
+  void copy(GroundTruth const& other, std::size_t from, std::size_t to);
   /// Writes what the rays of a dot say.
   void set_hits(std::size_t dot, DotTruth const& found, double light_per_weight);
 };

@@ -21,6 +21,7 @@ struct Scene {
   double step = 0;          ///< [m]
   double pupil_margin = 0;  ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
+  std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
 
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
   /// Steps that a ray along the axis takes across the medium; 0 without one.
