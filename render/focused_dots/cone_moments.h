@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/focused_dots/deflection_table.h"
+#include "render/focused_dots/displacement_moments.h"
 #include "render/focused_dots/ray_record.h"
 #include "render/scene/ground_truth.h"
 
@@ -8,27 +9,6 @@
 /// that were traced correct it. Integrals over the cone are then as good as their rule, with few rays a dot; the rule
 /// follows waves of three of the field's finest lengths, in cones up to some hundred of them wide.
 namespace gladstone {
-
-/// Moments of a distribution of displacements up to fourth order about some origin: sums of weight x^a y^b.
-struct DisplacementMoments {
-  static constexpr int order = 4;
-  static constexpr int count = 15;
-  double of[count] = {};
-
-  /// Place of x^a y^b: by total order, then by the power of y.
-  GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
-
-  /// Sum of weight (x^2 + y^2).
-  GLADSTONE_HD double square() const { return of[at(2, 0)] + of[at(0, 2)]; }
-
-  GLADSTONE_HD void add(double weight, Vec2d d) {
-    double x = weight;
-    for (int a = 0; a <= order; ++a, x *= d.x) {
-      double both = x;
-      for (int b = 0; a + b <= order; ++b, both *= d.y) of[at(a, b)] += both;
-    }
-  }
-};
 
 /// Points of a cone's cross-section, in units of the stop's radius, on rings that share their directions.
 struct ConePoint {
@@ -48,56 +28,6 @@ struct ConeRule {
   Vec2d const* scattered = nullptr;
   int scattered_count = 0;
   double smoothing = 0;  ///< of the stop's edge, as ApertureStop::edge
-};
-
-/// Places on a source at which its cone is integrated, and what makes a quadratic function of the place of the results.
-struct PlaceRule {
-  static constexpr int terms = 6;  ///< 1, x, y, x^2, x y, y^2
-  static constexpr int most_places = 9;
-  int count = 0;
-  Vec2d places[most_places];  ///< in units of the half size, y downwards
-  double weights[most_places];
-  double fit[terms][most_places];  ///< coefficient of a term = sum of fit times the values at the places
-
-  GLADSTONE_HD static void basis(Vec2d place, double (&value)[terms]) {
-    value[0] = 1;
-    value[1] = place.x;
-    value[2] = place.y;
-    value[3] = place.x * place.x;
-    value[4] = place.x * place.y;
-    value[5] = place.y * place.y;
-  }
-};
-
-/// Moments as a function of the place on the source.
-struct MomentField {
-  double coefficient[DisplacementMoments::count][PlaceRule::terms];
-
-  /// @param moments at the places of the rule
-  static MomentField fit(PlaceRule const& rule, DisplacementMoments const* moments) {
-    MomentField field;
-    for (int i = 0; i < DisplacementMoments::count; ++i) {
-      for (int term = 0; term < PlaceRule::terms; ++term) field.coefficient[i][term] = fitted(rule, moments, i, term);
-    }
-    return field;
-  }
-  GLADSTONE_HD static double fitted(PlaceRule const& rule, DisplacementMoments const* moments, int moment, int term) {
-    double sum = 0;
-    for (int place = 0; place < rule.count; ++place) sum += rule.fit[term][place] * moments[place].of[moment];
-    return sum;
-  }
-  GLADSTONE_HD double value(int moment, Vec2d place) const {
-    double basis[PlaceRule::terms];
-    PlaceRule::basis(place, basis);
-    double sum = 0;
-    for (int term = 0; term < PlaceRule::terms; ++term) sum += basis[term] * coefficient[moment][term];
-    return sum;
-  }
-  GLADSTONE_HD DisplacementMoments at(Vec2d place) const {
-    DisplacementMoments moments;
-    for (int i = 0; i < DisplacementMoments::count; ++i) moments.of[i] = value(i, place);
-    return moments;
-  }
 };
 
 /// What the traced rays of a dot say of the table: sums over rays.

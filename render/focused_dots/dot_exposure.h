@@ -29,15 +29,14 @@ class DotExposure {
 
   /// Ends the dot: its light joins the images, its truth is written.
   void finish(GroundTruth& truth, std::size_t dot);
-  /// Completes truth and patches without sending them anywhere.
-  void finish_light();
 
-  DotPatch const& patch(Frame frame) const { return patches_[static_cast<std::size_t>(frame)]; }
   StatusCounts const& statuses() const { return statuses_; }
   /// Largest distance by which the medium moved a ray on the lens plane [m].
   double largest_bend() const { return std::sqrt(largest_bend2_); }
 
  private:
+  /// Completes truth and patches without sending them anywhere.
+  void finish_light();
   void deposit(Frame frame, Deposit const& light);
   /// What the cone of a dot comes to at every place of the source; its points are in cone_points_.
   struct ConeIntegral {
@@ -87,7 +86,7 @@ void trace_dot(TracePair<double, Medium> const& pair, std::uint64_t dot, std::ui
     throw_if_interrupted();  // each of them may take a million steps
     pair.template together<2>({dot, ray}, exposure);
   }
-  if (ray < rays) pair({dot, ray}, exposure);
+  if (ray < rays) pair.template together<1>({dot, ray}, exposure);
 }
 
 }  // namespace gladstone

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "render/focused_dots/cone_moments.h"
+#include "render/focused_dots/displacement_moments.h"
 #include "render/sensor/diffraction_spot.h"
 
 /// Light of dots whose displacements spread over several widths of a spot: they are sorted into squares, within each of

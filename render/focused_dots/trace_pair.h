@@ -54,14 +54,6 @@ struct TracePair {
   SceneView<T> scene;
   Medium medium;
 
-  template <class Exposure>
-  GLADSTONE_HD void operator()(RayIndex i, Exposure& exposure) const {
-    EmittedRay<T> const emitted = emit(scene.sources, scene.bundle, i.source, i.ray);
-    RayHit<T> const reference = through_camera(scene, emitted.ray, emitted.weight);
-    RayHit<T> const flow = follow(scene, medium, emitted.ray, emitted.weight);
-    exposure.record(emitted, reference, flow);
-  }
-
   /// N rays of a source from ray i on, side by side: faster on a processor that works ahead.
   template <int N, class Exposure>
   GLADSTONE_HD void together(RayIndex i, Exposure& exposure) const {

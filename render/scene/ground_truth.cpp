@@ -70,14 +70,4 @@ TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px) {
   return accuracy;
 }
 
-DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px) {
-  DisplacementField field;
-  field.displacement_px = displacement_px;
-  field.position_px.reserve(truth.size());
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    field.position_px.push_back(truth.reference_px[i] + 0.5 * truth.displacement_px[i]);
-  }
-  return field;
-}
-
 }  // namespace gladstone

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/base/displacement_field.h"
 #include "render/base/ray.h"
 #include "render/base/vec.h"
 
@@ -92,8 +91,5 @@ TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px);
 
 /// Counts of rays by RayStatus in each frame.
 using StatusCounts = std::array<std::array<std::int64_t, ray_status_count>, 2>;
-
-/// Mid-position displacement field of the dots (reference + displacement / 2), as a symmetric correlation meets them.
-DisplacementField at_mid_position(GroundTruth const& truth, std::vector<Vec2d> const& displacement_px);
 
 }  // namespace gladstone

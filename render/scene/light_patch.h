@@ -19,16 +19,6 @@ class LightPatch {
   /// Adds what has been gathered to the image (if any) and clears the patch.
   void flush(LightImage* image, double light_per_weight);
 
-  /// Calls visit(column, row, gathered weight) for every pixel touched since the last flush.
-  template <class Visit>
-  void for_each_touched(Visit&& visit) const {
-    for (int row = low_row_; row < high_row_; ++row) {
-      for (int column = low_column_; column < high_column_; ++column) {
-        visit(column + left_, row + top_, light_[static_cast<std::size_t>(row * side_ + column)]);
-      }
-    }
-  }
-
  protected:
   SpotView const& spot() const { return spot_; }
   /// Pixels that a spot reaches to each side of its own.

@@ -159,7 +159,7 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
-  ASSERT_TRUE(DeflectionPlan(scene, scene.dots).wanted());
+  ASSERT_TRUE(DeflectionPlan(on_bench(scene), scene.dots).wanted());
   render(scene);  // puts field and table on the device, where they stay
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);

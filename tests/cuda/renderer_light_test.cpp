@@ -26,8 +26,8 @@ class CudaLightTest : public CudaRendererTest {
 
 /// Dots with cones by the table whose stop's edge is crossed more than once in some direction: they lie in a caustic.
 int dots_in_caustics(Scene const& scene) {
-  DeflectionMap const map(scene, DeflectionPlan(on_bench(scene), scene.dots));
-  OwnedLightModel const light(scene, scene.dots, nullptr, map.table());
+  DeflectionMap const map(on_bench(scene), DeflectionPlan(on_bench(scene), scene.dots));
+  OwnedLightModel const light(on_bench(scene), scene.dots, nullptr, map.table());
   LightModel const& model = light.model;
   TableCheck agreeing;
   agreeing.rays = agreeing.weight = agreeing.pupil2 = 1;

@@ -44,13 +44,10 @@ TEST(DotBoxes, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
 }
 
 /// A patch's light at pixels 0 .. 63.
-std::vector<double> light_of(DotPatch const& patch) {
-  std::vector<double> light(64 * 64);
-  patch.for_each_touched([&](int column, int row, double weight) {
-    ASSERT_TRUE(column >= 0 && row >= 0 && column < 64 && row < 64);
-    light[static_cast<std::size_t>(row * 64 + column)] = weight;
-  });
-  return light;
+Image<double> light_of(DotPatch& patch) {
+  LightImage image(64, 64);
+  patch.flush(&image, 1);
+  return image.to_light();
 }
 
 struct Source {
@@ -106,12 +103,12 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
       Vec2d const moved = d0 + slope * Vec2d{p.x, -0.5 * p.y};
       direct.deposit(at + half_px * p + moved, 2.5 * source.weights[i], nullptr, 1);
     }
-    std::vector<double> const expected = light_of(direct), found = light_of(by_moments);
+    Image<double> const expected = light_of(direct), found = light_of(by_moments);
     double const peak = *std::max_element(expected.begin(), expected.end());
     double sum = 0, worst = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      sum += found[i];
-      worst = std::max(worst, std::abs(found[i] - expected[i]));
+      sum += found.data()[i];
+      worst = std::max(worst, std::abs(found.data()[i] - expected.data()[i]));
     }
     auto const fifth = [sigma = sigma](double d) { return 5.8 / 120 * std::pow(std::abs(d) / sigma, 5); };
     double const bound = 2 * (fifth(std::abs(rest.x) + slope) + fifth(std::abs(rest.y) + slope));
