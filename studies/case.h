@@ -1,19 +1,18 @@
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/correlation/correlation_settings.h"
-#include "render/base/folder_replacement.h"
 #include "render/base/setup_table.h"
 #include "render/scene/field_map.h"
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
 #include "render/scene/setup.h"
 #include "render/sensor/detector.h"
+#include "studies/case_files.h"
 
 namespace gladstone {
 
@@ -26,6 +25,9 @@ struct CaseSetup {
   /// SHA-256 of the files that it names, as they were before the scene was built from them; empty: not hashed yet.
   std::map<std::string, std::string> input_hashes = {};
 };
+
+/// Logs a warning, and keeps it for summary.json.
+void warn(std::vector<std::string>& warnings, std::string text);
 
 /// Reads and checks a setup. @throws SetupError with all problems together
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
@@ -84,40 +86,5 @@ FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
 /// @throws DataError where a file that the setup names no longer holds what was hashed
 std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                        RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
-
-/// The name of every file in a CASE.
-namespace case_file {
-inline constexpr char const* reference = "reference.tif";
-inline constexpr char const* flow = "flow.tif";
-inline constexpr char const* truth = "truth.h5";
-inline constexpr char const* setup = "setup.toml";
-inline constexpr char const* summary = "summary.json";
-inline constexpr char const* vectors = "vectors.h5";
-inline constexpr char const* vectors_text = "vectors.csv";
-inline constexpr char const* errors = "errors.json";
-/// What correlate and compare make of a rendering: it goes when the case is rendered again.
-inline constexpr std::array derived{vectors,
-                                    vectors_text,
-                                    errors,
-                                    "displacement_maps.png",
-                                    "error_histograms.png",
-                                    "error_against_gradient.png",
-                                    "error_budget.png"};
-}  // namespace case_file
-
-/// What makes a folder a CASE, and what goes when it is rendered again.
-FolderContent case_content();
-
-/// Paths of the files of a CASE that render writes.
-std::vector<std::string> rendered_files(std::string const& folder);
-/// Paths of those derived from them.
-std::vector<std::string> derived_files(std::string const& folder);
-
-/// Makes sure that rendering into a CASE replaces or removes nothing that is read for it. @throws OutputError
-void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs);
-
-/// "folder/name"; completes a replacement of the case's files that was broken off.
-/// @throws DataError where the folder is no CASE (has no setup.toml)
-std::string in_case(std::string const& folder, std::string const& name);
 
 }  // namespace gladstone

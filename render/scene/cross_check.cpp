@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/units.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/setup.h"
+#include "render/scene/setup_checks.h"
+#include "render/sensor/diffraction_spot.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
+constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
+constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
+constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air takes a half space
+
+/// Spots whose diameter is told as four standard deviations, see Setup::spot_diameter_px.
+bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero || spot == SpotModel::seed_eq8; }
+
+/// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
+bool cross_check_camera(Setup const& setup, SetupTable root) {
+  std::string const lens = "lens: ";
+  try {
+    build_camera(setup);
+    setup.target_extent();
+    return true;
+  } catch (DataError const& error) {
+    std::string const text = error.what();
+    if (text.starts_with(lens)) {
+      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", text.substr(lens.size()));
+    } else {
+      camera_table(root).problem("pose", text.substr(text.find(' ') + 1));
+    }
+  }
+  return false;
+}
+
+/// Refuses views and targets that reach further off the axis than a lens sees: chief rays from there never end.
+void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, SetupTable root) {
+  double const widest = 2 * setup.farthest_off_axis(), mm = unit::millimetre;
+  if (std::max(view.x, view.y) > widest) {
+    camera_table(root).problem(
+        "pixel_pitch_um",
+        fmt::format("makes a field of view of {:.4g} x {:.4g} mm ({:.4g} mm at most, 168 degrees: no lens sees more); "
+                    "pitches are in um; use a longer lens or fewer or smaller pixels",
+                    view.x / mm, view.y / mm, widest / mm));
+  } else if (setup.target.extent_m && std::max(setup.target.extent_m->x, setup.target.extent_m->y) > widest) {
+    target.problem("extent_mm",
+                   fmt::format("reaches beyond what any lens sees, 168 degrees ({:.4g} mm at most, ten times "
+                               "the way to the lens to each side); use the view or a little more",
+                               widest / mm));
+  }
+}
+
+}  // namespace
+
+std::string metres_hint(double length) {
+  double const millimetres = length / unit::millimetre;
+  if (!(millimetres < 2)) return "";
+  return fmt::format(" (lengths are in mm: {0:.6g} mm was given, {0:.6g} m are {1:.6g} mm)", millimetres,
+                     1e3 * millimetres);
+}
+
+std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
+  std::vector<std::string> warnings = setup.warnings;
+  double const mm = unit::millimetre;
+  SetupTable lens = root.table("lens"), geometry = root.table("geometry"), target = root.table("target");
+  if (setup.lens.f_number < fastest_lens) {
+    lens.problem("f_number", fmt::format("is below {} (no lens in air opens wider than twice its focal length); stop "
+                                         "it down",
+                                         fastest_lens));
+    return warnings;  // everything else needs an aperture
+  }
+  if (!setup.lens.prescription && setup.focus_distance() <= setup.lens.focal_length) {
+    bool const by_distance = setup.lens.focus == Focus::distance;
+    (by_distance ? lens : geometry)
+        .problem(by_distance ? "focus_distance_mm" : "z_a_mm",
+                 fmt::format(
+                     "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
+                     "image needs more than the focal length); move the lens away or take a shorter one{}",
+                     setup.focus_distance() / mm, setup.lens.focal_length / mm, metres_hint(setup.focus_distance())));
+    return warnings;  // everything else needs an image
+  }
+  if (!setup.lens.prescription && setup.z_b() <= setup.lens.focal_length) {
+    geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
+    return warnings;
+  }
+  if (!setup.on_bench() && !cross_check_camera(setup, root)) return warnings;  // everything else needs a picture
+  if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty() && !setup.lens.prescription) {
+    warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
+  }
+  FieldKind const kind = setup.medium.field.kind;
+  if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
+    double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
+    if (-setup.z_d > centre - half) {
+      geometry.problem(
+          "z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
+                                "z_d_mm beyond {:.6g} or make the medium thinner{}",
+                                -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm,
+                                metres_hint(setup.z_d)));
+    }
+    if (setup.camera_pose().origin.z < centre + half) {
+      geometry.problem("z_a_mm",
+                       fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
+                                   "z_a_mm or make the medium thinner{}",
+                                   half / mm, metres_hint(setup.z_a)));
+    }
+  }
+  cross_check_thickness(setup, root.table("medium"), warnings);
+  if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
+    NoiseSetup const& noise = setup.camera.noise;
+    double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
+    warnings.push_back(fmt::format(
+        "camera.offset_dn: the read noise of {:.3g} grey levels is cut off at black, which makes dark pixels "
+        "{:.3g} levels too bright on average and dim ones less (levels are never below 0); set "
+        "camera.offset_dn = {:.0f} or more, as cameras do",
+        levels, clipped, std::ceil(4 * levels)));
+  }
+  cross_check_steps(setup, root.table("medium"));
+  cross_check_density(setup, root.table("medium"), warnings);
+  double const magnification = setup.imaging().magnification;
+  double const px = setup.camera.pixel_pitch / magnification;
+  Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
+  if (setup.target.extent_m && (setup.target.extent_m->x < view.x || setup.target.extent_m->y < view.y)) {
+    target.problem("extent_mm",
+                   fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target; "
+                               "enlarge the target or leave extent_mm out",
+                               view.x / mm, view.y / mm));
+  }
+  cross_check_extents(setup, view, target, root);
+  if (setup.target.kind != TargetKind::image) {
+    double const diameter_px = setup.dot_diameter() / px;
+    double const diffraction_px = setup.spot_diameter_px();
+    double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
+    if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
+      camera_table(root).problem("pixel_pitch_um",
+                                 fmt::format("makes the diffraction spot {:.4g} px wide ({} at most: nothing could be "
+                                             "seen); pitches are in um, and pixels of cameras are 1 to 20 of them wide",
+                                             diffraction_px, widest_px));
+    } else if (diffraction_px > widest_px) {
+      lens.problem("f_number",
+                   fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
+                               "the lens or focus farther away",
+                               diffraction_px, widest_px));
+    }
+    double const image_px = std::hypot(diameter_px, diffraction_px);
+    if (image_px < 2) {
+      warnings.push_back(fmt::format(
+          "dot images are {:.2f} px wide (geometric image {:.2f} px, diffraction spot {:.2f} px {}): below 2 "
+          "px correlation locks to whole pixels; enlarge target.dot_diameter_px",
+          image_px, diameter_px, diffraction_px,
+          four_sigma(setup.lens.spot) ? "over four standard deviations" : "between its first zeros"));
+    }
+    if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
+      target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
+    }
+  }
+  if (setup.target.kind == TargetKind::dots) {
+    double const count = setup.dot_count();
+    double const diameter = setup.dot_diameter();
+    Vec2d const extent = setup.target_extent();
+    double const coverage = count * pi / 4 * diameter * diameter / (extent.x * extent.y);
+    if (!(count >= 1)) {
+      target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
+    } else if (count > 4e9) {
+      target.problem(
+          "dots_per_32px_window",
+          fmt::format(
+              "gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
+              "decrease it, camera.pixels or target.extent_mm",
+              count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
+    } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
+      target.problem(
+          "dots_per_32px_window",
+          fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
+                      "fewer or smaller dots, or arrangement = \"regular\"",
+                      100 * coverage));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+#include "render/optics/glass_catalogue.h"
+#include "render/optics/paraxial.h"
+#include "render/scene/setup.h"
+#include "render/scene/setup_checks.h"
+
+namespace gladstone {
+
+SetupTable camera_table(SetupTable& root) {
+  auto cameras = root.tables("camera");
+  if (cameras.size() > 1) {
+    root.problem("camera", "is an array of several cameras, which is not available yet (one camera a setup); keep one");
+    for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].excuse();
+  }
+  return cameras.empty() ? root.table("camera") : cameras.front();
+}
+
+namespace {
+
+RenderSetup read_render_setup(SetupTable table) {
+  RenderSetup setup;
+  if (auto const rays = table.number_or_auto("rays_per_dot", Range::at_least(1, 1e7))) {
+    if (*rays != std::floor(*rays)) {
+      table.problem("rays_per_dot", "is not a whole number (rays are counted); use a whole number or \"auto\"");
+    }
+    setup.rays_per_dot = static_cast<std::uint64_t>(*rays);
+    table.resolve("rays_per_dot", static_cast<long long>(*rays));
+  }
+  if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
+  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
+  if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
+  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots"});
+  if (method == "rays") setup.method = RenderMethod::rays;
+  if (method == "focused_dots") setup.method = RenderMethod::focused_dots;
+  return setup;
+}
+
+constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a thickness of "auto" may take
+
+/// Writes down what thickness_mm = "auto" came to; a field with a size ends short of the dots and the lens.
+void resolve_thickness(Setup& setup, SetupTable medium) {
+  MediumSetup& slab = setup.medium;
+  if (!slab.automatic_thickness) return;
+  double thickness_mm = automatic_thickness_mm(slab.field);
+  if (has_size_along_z(slab.field.kind)) {
+    double const way_mm = std::min(setup.z_a, setup.z_d) / unit::millimetre;
+    thickness_mm = std::min(thickness_mm, 2 * automatic_reach * way_mm);
+  }
+  slab.thickness = thickness_mm * unit::millimetre;
+  medium.resolve("thickness_mm", thickness_mm);
+}
+
+/// Table [camera.pose]: where the camera stands and looks.
+std::optional<Pose<double>> read_pose(SetupTable table) {
+  if (!table.present()) return std::nullopt;
+  auto const vector = [&table](char const* key, std::vector<double> const& fallback, Range range) {
+    auto const v = table.numbers(key, fallback, 3, range);
+    return v.size() == 3 ? Vec3d{v[0], v[1], v[2]} : Vec3d{};
+  };
+  Range const place{-1e9, 1e9};
+  if (!table.has("position_mm")) table.problem("position_mm", "is missing (where the camera stands); add it");
+  Pose<double> pose;
+  pose.origin = vector("position_mm", {0, 0, 750}, place) * unit::millimetre;
+  if (table.has("rotation_deg")) {
+    if (table.has("look_at_mm")) {
+      table.problem("rotation_deg", "stands beside look_at_mm (one of them says where the camera looks); remove one");
+    }
+    pose = pose.turned(vector("rotation_deg", {0, 0, 0}, {-360, 360}) * unit::degree);
+  } else {
+    Vec3d const towards = pose.origin - vector("look_at_mm", {0, 0, 0}, place) * unit::millimetre;
+    Vec3d const right = cross(Vec3d{0, 1, 0}, towards);
+    if (!(length(right) > 1e-9 * length(towards)) || towards == Vec3d{}) {
+      table.problem("look_at_mm",
+                    "is straight above, below or where the camera stands (its picture has no upright then); use "
+                    "rotation_deg");
+      return std::nullopt;
+    }
+    pose.z = normalized(towards);
+    pose.x = normalized(right);
+    pose.y = cross(pose.z, pose.x);
+  }
+  double const roll = table.number("roll_deg", 0, {-360, 360}) * unit::degree;
+  pose = pose.turned({0, 0, roll});
+  constexpr double least_cosine = 0.05;
+  if (!(pose.z.z > least_cosine)) {
+    table.problem(table.has("rotation_deg") ? "rotation_deg" : "look_at_mm",
+                  "turns the camera away from the dots, or along their plane (its axis must meet Z = 0 within 87 "
+                  "degrees of the normal, from the side of positive Z); look another way");
+    return std::nullopt;
+  }
+  return pose;
+}
+
+/// The camera's place: z_a_mm, z_front_mm or a pose.
+void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
+  SetupTable pose = camera.table("pose");
+  setup.pose = read_pose(pose);
+  for (char const* key : {"z_a_mm", "z_front_mm"}) {
+    if (pose.present()) geometry.refuse(key, "stands beside camera.pose (which places the camera); remove one");
+  }
+  if (pose.present()) {
+    if (setup.pose) setup.z_a = setup.pose->origin.z / setup.pose->z.z;
+    return;
+  }
+  bool const thin = setup.lens.file.empty();
+  if (thin) geometry.refuse("z_front_mm", "is of prescriptions (a thin lens has no first vertex); use z_a_mm");
+  if (thin || !geometry.has("z_front_mm")) {
+    setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
+    return;
+  }
+  geometry.refuse("z_a_mm", "stands beside z_front_mm (one of them places the lens); remove one");
+  setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
+}
+
+/// Makes lens and windows ready at the setup's wavelength, and finds the principal plane of a lens that is placed by
+/// its first vertex.
+void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
+  SetupTable lens = root.table("lens"), geometry = root.table("geometry");
+  if (!setup.lens.file.empty()) build_prescription(setup.lens, lens, setup.medium.wavelength, warnings);
+  if (setup.lens.prescription) {
+    ParaxialLens const paraxial = paraxial_lens(*setup.lens.prescription);
+    double const principal = paraxial.front_principal_plane;
+    bool const afocal = !std::isfinite(principal), telecentric = !std::isfinite(paraxial.entrance.position);
+    if (geometry.has("z_front_mm")) {
+      if (!afocal) setup.z_a += principal;
+    } else if ((afocal || telecentric) && !setup.pose) {
+      geometry.problem("z_a_mm",
+                       fmt::format("cannot place {} lens (it is no distance of its {}); give z_front_mm, of "
+                                   "its first vertex",
+                                   afocal ? "an afocal" : "a telecentric", afocal ? "principal plane" : "perspective"));
+    }
+  }
+  for (WindowSetup& window : setup.windows) {
+    try {
+      window.index = GlassCatalogue::shipped()
+                         .find(window.glass, setup.medium.wavelength, window.where)
+                         .index(setup.medium.wavelength);
+    } catch (DataError const& error) {
+      root.problem("window", error.what());
+    }
+  }
+}
+
+}  // namespace
+
+Setup read_setup(SetupTable root) {
+  if (root.integer("schema", 1, 0, 1000000) != 1) {
+    root.problem("schema", "is not 1 (this version reads schema 1 only); use a matching version of gladstone");
+  }
+  std::string const experiment = root.word("experiment", "bos", {"bos", "piv", "calibration"});
+  if (experiment != "bos") {
+    root.problem("experiment", "\"" + experiment + "\" is not available yet (this version simulates BOS); use \"bos\"");
+  }
+  Setup setup;
+  SetupTable camera = camera_table(root);
+  setup.camera = read_camera_setup(camera);
+  setup.lens = read_lens_setup(root.table("lens"));
+  setup.windows = read_windows(root);
+  if (!setup.lens.file.empty() && setup.camera.distorted()) {
+    camera.table("sensor").problem("distortion", "is of thin lenses (a prescription has its own); remove it");
+  }
+  SetupTable geometry = root.table("geometry");
+  read_place(setup, camera, geometry);
+  setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
+  setup.medium = read_medium_setup(root.table("medium"));
+  build_optics(setup, root, setup.warnings);
+  resolve_thickness(setup, root.table("medium"));
+  setup.target = read_target_setup(root.table("target"));
+  setup.render = read_render_setup(root.table("render"));
+  for (char const* later : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
+    root.refuse(later, "is not available yet (this version simulates BOS); remove it");
+  }
+  return setup;
+}
+}  // namespace gladstone

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "render/base/folder_replacement.h"
+
+namespace gladstone {
+
+/// The name of every file in a CASE.
+namespace case_file {
+inline constexpr char const* reference = "reference.tif";
+inline constexpr char const* flow = "flow.tif";
+inline constexpr char const* truth = "truth.h5";
+inline constexpr char const* setup = "setup.toml";
+inline constexpr char const* summary = "summary.json";
+inline constexpr char const* vectors = "vectors.h5";
+inline constexpr char const* vectors_text = "vectors.csv";
+inline constexpr char const* errors = "errors.json";
+/// What correlate and compare make of a rendering: it goes when the case is rendered again.
+inline constexpr std::array derived{vectors,
+                                    vectors_text,
+                                    errors,
+                                    "displacement_maps.png",
+                                    "error_histograms.png",
+                                    "error_against_gradient.png",
+                                    "error_budget.png"};
+}  // namespace case_file
+
+/// What makes a folder a CASE, and what goes when it is rendered again.
+FolderContent case_content();
+
+/// Paths of the files of a CASE that render writes.
+std::vector<std::string> rendered_files(std::string const& folder);
+/// Paths of those derived from them.
+std::vector<std::string> derived_files(std::string const& folder);
+
+/// Makes sure that rendering into a CASE replaces or removes nothing that is read for it. @throws OutputError
+void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs);
+
+/// "folder/name"; completes a replacement of the case's files that was broken off.
+/// @throws DataError where the folder is no CASE (has no setup.toml)
+std::string in_case(std::string const& folder, std::string const& name);
+
+}  // namespace gladstone
