@@ -9,7 +9,6 @@
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/field_coverage.h"
-#include "render/scene/focused_dots.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
@@ -124,6 +123,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
+  scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
   if (!prepared.rays.converged) {
     warn(prepared.warnings,
          fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
@@ -154,7 +154,11 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
+  if (prepared.rays.rays_at_side_faces > 0) {
+    root.table("render").resolve("rays_per_dot", std::string("auto"));
+  } else {
+    root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
+  }
   if (loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();
     root.table("target").resolve("extent_mm",

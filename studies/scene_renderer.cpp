@@ -7,6 +7,7 @@
 
 #include "render/base/contracts.h"
 #include "render/focused_dots/dot_planning.h"
+#include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/side_faces.h"
@@ -50,10 +51,9 @@ Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
 }
 
 /// Enters what was found of some sources among all.
-void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, std::uint64_t rays) {
+void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     all.truth.copy(some.truth, i, numbers[i]);
-    all.rays_planned[numbers[i]] = rays;
   }
   all.rays += some.rays;
   for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
@@ -103,13 +103,12 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   Rendering all;
   all.truth.resize(sources.centre.size());
-  all.rays_planned.resize(sources.centre.size());
   std::uint64_t const rays = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
   Scene by_rays = with_dots(scene, some_of(sources, at_faces), rays);
-  merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), at_faces, rays);
+  merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), at_faces);
   Scene fast = with_dots(scene, some_of(sources, clear), scene.rays_per_dot);
   Rendering const of_clear = focused_dots_->render(fast, fast.dots, lit, theory);
-  merge(all, of_clear, clear, scene.rays_per_dot);
+  merge(all, of_clear, clear);
   all.table = of_clear.table;
   scene.pupil_margin = fast.pupil_margin;
   if (lit == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {

@@ -63,6 +63,8 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
   for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
   file.write("/dots/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted in each frame",
              "dot, frame (reference, flow)");
+  file.write("/dots/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
+             "rays that the dot was to have in each frame", "dot");
   std::vector<std::int64_t> by_table;
   for (TruthPath const by : truth.path) by_table.push_back(by == TruthPath::table ? 1 : 0);
   file.write("/dots/by_table", std::span<std::int64_t const>(by_table), {count}, "1",

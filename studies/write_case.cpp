@@ -48,6 +48,13 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
                    accuracy.largest_px, why, rays));
 }
 
+/// Least, median and most of some numbers.
+nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
+  if (numbers.empty()) return nullptr;
+  std::sort(numbers.begin(), numbers.end());
+  return {{"least", numbers.front()}, {"median", numbers[numbers.size() / 2]}, {"most", numbers.back()}};
+}
+
 nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   nlohmann::json json;
   for (std::size_t status = 0; status < ray_status_count; ++status) {
@@ -69,8 +76,9 @@ void hash_inputs(CaseSetup& loaded) {
 }
 
 /// The preview is the GPU's alone; the CPU gives better than was asked for.
-bool single_precision(Setup const& setup, Renderer const& renderer) {
-  return setup.render.precision == Precision::single && renderer.device() == "cuda";
+bool single_precision(Setup const& setup, Rendering const& rendering, Renderer const& renderer) {
+  return setup.render.precision == Precision::single && renderer.device() == "cuda" &&
+         rendering.method == RenderMethod::focused_dots;
 }
 
 /// What keeps pixels from saturation: what fills them is the light, the charge without light, or their noise.
@@ -128,7 +136,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
                        RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
   namespace fs = std::filesystem;
   std::vector<std::string> warnings = prepared.warnings;
-  if (single_precision(loaded.setup, renderer)) {
+  if (single_precision(loaded.setup, *rendered.rendering, renderer)) {
     warn(warnings,
          "render.precision = \"single\" is a preview: displacements carry some 1e-5 px of rounding; use \"double\" for "
          "truth");
@@ -193,6 +201,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
       {"step_mm", prepared.step.step_mm},
       {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
       {"rays_per_dot", prepared.rays.rays},
+      {"rays_planned", spread_of(rendering.truth.rays_planned)},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
       {"spot",
@@ -213,7 +222,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
         {"no_table_since", to_string(rendering.table)}}},
       {"method", to_string(rendering.method)},
       {"device", device},
-      {"precision", single_precision(scene.setup, renderer) ? "single (preview)" : "double"},
+      {"precision", single_precision(scene.setup, rendering, renderer) ? "single (preview)" : "double"},
       {"rays",
        {{"traced", rendering.rays},
         {"reference", status_counts(rendering.statuses, 0)},

@@ -13,6 +13,7 @@ void GroundTruth::resize(std::size_t count) {
     column->resize(count);
   }
   rays.resize(count);
+  rays_planned.resize(count);
   path.resize(count);
 }
 
@@ -24,6 +25,7 @@ void GroundTruth::copy(GroundTruth const& other, std::size_t from, std::size_t t
     (this->*column)[to] = (other.*column)[from];
   }
   rays[to] = other.rays[from];
+  rays_planned[to] = other.rays_planned[from];
   path[to] = other.path[from];
 }
 

@@ -63,6 +63,7 @@ struct GroundTruth {
   std::vector<Vec2d> displacement_std_px;         ///< weighted standard deviation of the flow hits
   std::vector<Vec2d> flux;                        ///< light in the reference (x) and the flow (y) frame [fully lit px]
   std::vector<std::array<std::int64_t, 2>> rays;  ///< counted in each frame
+  std::vector<std::int64_t> rays_planned;         ///< that it was to have
   std::vector<Vec2d> eq9_px;                      ///< Rajendran et al. eq. 9 along the chief ray, lever Z_D
   std::vector<Vec2d> chief_px;                    ///< the same with each slice's own lever
   std::vector<Vec2d> eq9_cone_px;                 ///< averaged over the disc and the stop's pupil, own levers

@@ -29,8 +29,8 @@ inline constexpr double rays_budget_s = 60;
 struct RaysPlan {
   std::uint64_t rays = 0;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
-  double truth_error_px = 0;      ///< of displacements, rms over dots, components and scramblings
-  double image_error_levels = 0;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`
+  double truth_error_px = 0;             ///< of displacements, rms over dots, components and scramblings
+  double image_error_levels = 0;         ///< rms over lit pixels of the worse frame, in grey levels of `bits`
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
   bool converged = true;      ///< false: the largest number that is taken is not enough

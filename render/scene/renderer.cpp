@@ -32,6 +32,7 @@ TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
   std::size_t const count = sources.centre.size();
   rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
   rendering.truth.resize(count);
+  rendering.truth.rays_planned.assign(count, static_cast<std::int64_t>(scene.rays_per_dot));
   for (std::size_t dot = 0; dot < count; ++dot) {
     rendering.truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
   }

@@ -33,7 +33,6 @@ struct Rendering {
   GroundTruth truth;
   StatusCounts statuses{};
   std::int64_t rays = 0;                      ///< traced, both frames
-  std::vector<std::uint64_t> rays_planned;    ///< of each source; empty: the scene's number
   TableState table = TableState::no_sources;  ///< whether truth had a deflection table
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< that rendered it; empty: the renderer's own

@@ -5,13 +5,14 @@
 #include <limits>
 
 #include "render/focused_dots/focused_dots_renderer.h"
+#include "render/rays/rays_renderer.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {
 
 TEST(Oracles, AreMetByTheCpu) {
-  SceneRenderer renderer(std::make_unique<FocusedDotsRenderer>(), false);
+  SceneRenderer renderer(std::make_unique<FocusedDotsRenderer>(), std::make_unique<RaysRenderer>());
   auto const results = run_oracles(renderer);
   EXPECT_GE(results.size(), 20u);
   for (OracleResult const& result : results) {
