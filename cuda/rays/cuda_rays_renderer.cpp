@@ -47,7 +47,7 @@ class LaunchOnDevice {
     if (host.spot.model == SpotModel::airy) {
       airy_ = DeviceArray<double>(host.spot.airy.shares, host.spot.airy.count(), "the Airy table");
       launch_.spot.airy.shares = airy_.data();
-    } else if (host.spot.model != SpotModel::none && HitSpline::serves(host.spot.gaussian.sigma)) {
+    } else if (host.spot.model != SpotModel::none && HitGrid::pays(host.spot.gaussian.sigma, host.rays)) {
       HitSpline const spline(host.spot.gaussian);
       launch_.spline = spline.view();
       share_ = DeviceArray<double>(launch_.spline.share, static_cast<std::size_t>(launch_.spline.count()), "a spline");

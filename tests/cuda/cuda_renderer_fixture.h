@@ -43,14 +43,14 @@ inline bool same_bits(Image<double> const& a, Image<double> const& b) {
 
 /// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].
 struct FocusedDotsMethod {
-  using OnCpu = FocusedDotsRenderer;
+  static FocusedDotsRenderer on_cpu() { return FocusedDotsRenderer(bench_rays); }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_renderer(); }
   static constexpr double levels = 0.01;
 };
 struct RaysMethod {
-  using OnCpu = RaysRenderer;
+  static RaysRenderer on_cpu() { return {}; }
   static std::unique_ptr<Renderer> on_device() { return cuda::make_rays_renderer(); }
-  /// the device gathers the hits of few rays on a grid, too, and in whole numbers
+  /// the device gathers hits in whole numbers
   static constexpr double levels = 1;
 };
 
@@ -100,7 +100,7 @@ class OnBothDevices : public testing::Test {
   }
 
   std::unique_ptr<Renderer> renderer_;
-  typename Method::OnCpu on_cpu_;
+  decltype(Method::on_cpu()) on_cpu_ = Method::on_cpu();
 };
 
 using CudaRendererTest = OnBothDevices<FocusedDotsMethod>;
