@@ -6,7 +6,8 @@ namespace gladstone {
 namespace {
 
 // Rays that meet in (c, z0): seen on the plane z = 0 they lie at c - z0 s. Uniform slopes over a disc of radius r have
-// a mean square of r^2 / 2; equal areas of the disc have equal numbers of a sunflower's points, to one in 500.
+// a mean square of r^2 / 2; equal areas of the disc have equal numbers of a sunflower's points, to one in 500,
+// which moves their mean by r/500.
 TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
   double const z0 = 3e-3, r = 0.05;
   Vec2d const c{1e-3, -2e-3};
@@ -19,8 +20,8 @@ TEST(RayBundle, IsNarrowestWhereItsRaysMeet) {
   EXPECT_NEAR(spot.best_focus, z0, 1e-15);
   EXPECT_NEAR(spot.best_mean_square, 0, 1e-20);
   EXPECT_NEAR(spot.mean_square / (z0 * z0 * r * r / 2), 1, 2e-3);
-  EXPECT_NEAR(spot.centroid.x, c.x - 0.1 * z0, 1e-3 * z0 * r);
-  EXPECT_NEAR(spot.centroid.y, c.y, 1e-3 * z0 * r);
+  EXPECT_NEAR(spot.centroid.x, c.x - 0.1 * z0, 2e-3 * z0 * r);
+  EXPECT_NEAR(spot.centroid.y, c.y, 2e-3 * z0 * r);
 }
 
 // A single ray, or parallel ones, are as narrow anywhere.
