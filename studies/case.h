@@ -52,7 +52,8 @@ struct KnownParts {
   StrainMap const* strain = nullptr;
 };
 
-/// Builds and plans; every "auto" but the exposure becomes a number here.
+/// Builds and plans; every "auto" becomes a number here but the exposure and, where dots at side faces have rays of
+/// their own, the rays.
 PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known = {});
 
 /// A rendered case in memory.

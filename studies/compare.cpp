@@ -15,6 +15,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/input_file.h"
 #include "render/rays/rays_renderer.h"
+#include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
 #include "studies/correlate.h"
 #include "studies/figures/error_figures.h"
@@ -178,7 +179,7 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
   DotPattern virtual_dots;
   virtual_dots.shape = scene.dots.shape;
   for (Vec2d const& c : centres_px) virtual_dots.centre.push_back(scene.to_target(c));
-  std::uint64_t const all_rays = scene.rays_per_dot;
+  std::uint64_t const all_rays = scene.rays_per_dot, all_at_faces = scene.rays_at_side_faces;
   auto const correct = [&](GroundTruth const& truth) {
     for (std::size_t i = 0; i < centres_px.size(); ++i) {
       Vec2d const shift = at == TruthAt::mid_position ? 0.5 * truth.displacement_px[i] : Vec2d{};
@@ -190,11 +191,13 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
   };
   // a point is where its dot is, but for a little that the second round takes off
   scene.rays_per_dot = std::min<std::uint64_t>(all_rays, 128);
+  scene.rays_at_side_faces = std::min<std::uint64_t>(all_at_faces, 1024);
   for (double const half_size : {0.0, scene.dots.half_size}) {
     virtual_dots.half_size = half_size;
     correct(renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth);
   }
   scene.rays_per_dot = all_rays;
+  scene.rays_at_side_faces = all_at_faces;
   return renderer.render(scene, virtual_dots, RenderImages::no, theory).truth;
 }
 
@@ -211,6 +214,8 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
   // the sensor stays where it is, and with it the magnification; the lens is made to image the target on it
   scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
   scene.setup.lens.focus = Focus::target;
+  scene.setup.lens.f_number = scene.setup.lens.focal_length / scene.imaging.entrance_pupil;
+  scene.camera = build_camera(scene.setup);
   return renderer.render(scene, virtual_dots, RenderImages::no, RenderTheory::no).truth.displacement_px;
 }
 

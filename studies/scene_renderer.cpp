@@ -109,8 +109,8 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   Scene fast = with_dots(scene, some_of(sources, clear), scene.rays_per_dot);
   Rendering const of_clear = focused_dots_->render(fast, fast.dots, lit, theory);
   merge(all, of_clear, clear);
-  all.table = of_clear.table;
-  scene.pupil_margin = fast.pupil_margin;
+  all.table = clear.empty() ? TableState::by_rays : of_clear.table;
+  scene.pupil_margin = std::max(fast.pupil_margin, by_rays.pupil_margin);
   if (lit == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {
     Image<double> const white = white_light(scene);
     for (Image<double>* frame : {&all.light.reference, &all.light.flow}) {
@@ -142,7 +142,14 @@ RaysPlan plan_rays_of(Scene& scene) {
   Scene const fast = with_dots(scene, some_of(scene.dots, others(at_faces, scene.dots.centre.size())), 1);
   RaysPlan plan = plan_rays(enter(fast));
   Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
-  plan.rays_at_side_faces = std::max(plan.rays, plan_rays_by_rays(by_rays).rays);
+  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
+  plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
+  plan.truth_error_px = std::max(plan.truth_error_px, at_side_faces.truth_error_px);
+  plan.image_error_levels = std::max(plan.image_error_levels, at_side_faces.image_error_levels);
+  plan.extrapolated = plan.extrapolated || at_side_faces.extrapolated;
+  plan.converged = plan.converged && at_side_faces.converged;
+  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);
+  plan.seconds += at_side_faces.seconds;
   scene.rays_per_dot = plan.rays;
   scene.rays_at_side_faces = plan.rays_at_side_faces;
   return plan;

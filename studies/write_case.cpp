@@ -149,7 +149,12 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   CameraSetup const& camera = scene.setup.camera;
   std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
-  loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
+  // where the rays are planned again, they are planned for the same exposure
+  if (prepared.rays.rays_at_side_faces > 0 && !camera.exposure_e) {
+    loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
+  } else {
+    loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
+  }
   // what "auto" takes for other scenes hangs on the device, and on what is compared
   if (rendering.method == RenderMethod::focused_dots) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));

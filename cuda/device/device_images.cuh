@@ -4,9 +4,8 @@
 
 namespace gladstone::cuda {
 
-/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact (up
-/// to 2^53, 512 fully lit pixels), so that images depend neither on the order of deposits nor on where they are
-/// gathered on their way to the image.
+/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact, so
+/// that images depend neither on the order of deposits nor on where they are gathered on their way to the image.
 __device__ inline double whole_units(double units) { return rint(units); }
 
 /// @param units whole

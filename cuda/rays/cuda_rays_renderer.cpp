@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,8 @@ constexpr std::size_t most_sum_bytes = std::size_t{256} << 20;
 class LaunchOnDevice {
  public:
   /// @param images null: truth only
-  LaunchOnDevice(RaysLaunch const& host, DotPattern const& pattern, double plane_z, ImagePairOnDevice* images)
+  LaunchOnDevice(RaysLaunch const& host, DotPattern const& pattern, double plane_z, DeviceMedium<double> const& medium,
+                 ImagePairOnDevice* images)
       : host_(host),
         pattern_{pattern.view(plane_z)},
         source_px_(pattern_.reach() / std::sqrt(host.point_area)),
@@ -53,6 +55,7 @@ class LaunchOnDevice {
       share_ = DeviceArray<double>(launch_.spline.share, static_cast<std::size_t>(launch_.spline.count()), "a spline");
       launch_.spline.share = share_.data();
     }
+    widest_window_px_ = widest_window_px(launch_, medium);
   }
 
   LambertSources<double> const& pattern() const { return pattern_; }
@@ -64,15 +67,17 @@ class LaunchOnDevice {
     SourceOnDevice placed{source, bundle.centre, bundle.a, bundle.b, bundle.across, aim.origin};
     // four times what a ray through the middle weighs: rays through a wide disc differ, but not by so much
     placed.most_weight = 4 * std::abs(ray_to(pattern_, bundle, source, {}, {}).weight);
-    if (!launch_.spline.share || !launch_.images.light[0]) return placed;
-    double wide = 0;
+    if (widest_window_px_ == 0) return placed;
+    double wide = 0, far = 0;
     for (int frame = 0; frame < frame_count; ++frame) {
       Vec2d const extent = aim.high[frame] - aim.low[frame];
       wide = std::max({wide, extent.x, extent.y});
+      far = std::max({far, length(aim.high[frame]), length(aim.low[frame])});
     }
+    if (!(far < 1e7)) return placed;
     // a tenth for rims wider than what is seen of the stop, and a pixel on either side for the nodes about a hit
     double const wanted = std::ceil(1.1 * wide + 2 * source_px_) + 4;
-    placed.window_px = static_cast<int>(std::min<double>(wanted, most_window_nodes / launch_.spline.per_px));
+    placed.window_px = static_cast<int>(std::min<double>(wanted, widest_window_px_));
     for (int frame = 0; frame < frame_count; ++frame) {
       Vec2d const middle = 0.5 * (aim.low[frame] + aim.high[frame]);
       placed.left[frame] = static_cast<int>(std::lround(middle.x)) - placed.window_px / 2;
@@ -81,14 +86,20 @@ class LaunchOnDevice {
     return placed;
   }
 
+  /// Operations of all rays of a source, in steps across a medium, for the length of a launch.
+  double steps_a_source(double across_medium) const {
+    int const wide = 2 * launch_.spot.half_width() + 1;
+    double const light = !launch_.images.light[0] ? 0 : (widest_window_px_ > 0 ? 2 : wide * wide / 16.0);
+    return static_cast<double>(launch_.rays) * (across_medium + 2.0 * launch_.camera.count + light);
+  }
+
   /// @param sign of the light that is laid down
-  SourcesLaunch launch(std::vector<SourceOnDevice> const& sources, DeviceMedium<double> const& medium,
-                       double sign) const {
+  SourcesLaunch launch(std::vector<SourceOnDevice> const& sources, double sign) const {
     SourcesLaunch launch = launch_;
     launch.sign = sign;
-    for (SourceOnDevice const& source : sources)
+    for (SourceOnDevice const& source : sources) {
       launch.most_window_px = std::max(launch.most_window_px, source.window_px);
-    if (!fits_shared_memory(launch, medium)) launch.most_window_px = 0;
+    }
     return launch;
   }
 
@@ -96,27 +107,38 @@ class LaunchOnDevice {
   RaysLaunch const& host_;
   LambertSources<double> pattern_;
   double source_px_;  ///< half size of a source's image on the axis [px]
+  int widest_window_px_ = 0;
   DeviceArray<CameraElement<double>> elements_;
   DeviceArray<Vec2d> centres_;
   DeviceArray<double> radiances_, airy_, share_;
   SourcesLaunch launch_;
 };
 
+/// Some sources, and how they were aimed.
+struct AimedSources {
+  std::vector<SourceOnDevice> placed;
+  std::vector<SourceAim> aims;
+
+  void add(SourceOnDevice const& source, SourceAim const& aim) {
+    placed.push_back(source);
+    aims.push_back(aim);
+  }
+};
+
 /// Some sources on their way through the device.
 class Batch {
  public:
-  Batch(LaunchOnDevice const& scene, DeviceMedium<double> const& medium, std::vector<SourceOnDevice> sources,
-        double sign)
+  Batch(LaunchOnDevice const& scene, DeviceMedium<double> const& medium, AimedSources sources, double sign)
       : scene_(scene),
         sources_(std::move(sources)),
-        on_device_(sources_.data(), sources_.size(), "the sources"),
-        sums_(sources_.size() * scene.sums_a_source(), "the sums over a batch's rays"),
-        bend2_(sources_.size(), "the sums over a batch's rays"),
+        on_device_(sources_.placed.data(), sources_.placed.size(), "the sources"),
+        sums_(sources_.placed.size() * scene.sums_a_source(), "the sums over a batch's rays"),
+        bend2_(sources_.placed.size(), "the sums over a batch's rays"),
         ends_(frame_count * ray_status_count, "the sums over a batch's rays") {
     bend2_.zero();
     ends_.zero();
-    if (sources_.empty()) return;
-    trace_sources(scene.launch(sources_, medium, sign), medium, on_device_.data(), sources_.size(),
+    if (sources_.placed.empty()) return;
+    trace_sources(scene.launch(sources_.placed, sign), medium, on_device_.data(), sources_.placed.size(),
                   {sums_.data(), bend2_.data(), ends_.data()});
   }
 
@@ -127,13 +149,13 @@ class Batch {
     for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
       statuses[i / ray_status_count][i % ray_status_count] += sign * static_cast<std::int64_t>(ends[i]);
     }
-    bends_.resize(sources_.size());
+    bends_.resize(sources_.placed.size());
     bend2_.download(bends_.data(), bends_.size());
     found_.resize(sums_.size());
     sums_.download(found_.data(), found_.size());
   }
 
-  std::vector<SourceOnDevice> const& sources() const { return sources_; }
+  AimedSources const& sources() const { return sources_; }
   /// Furthest that the medium moved a ray of a source on the aim plane [m].
   double bend(std::size_t at) const { return std::sqrt(bends_[at]); }
   DotTruth truth(std::size_t at) const {
@@ -142,12 +164,12 @@ class Batch {
     for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
       of_scramblings[i % scramblings] += found_[at * scene_.sums_a_source() + i];
     }
-    return source_truth(of_scramblings, scene_.scramblings(), sources_[at].origin);
+    return source_truth(of_scramblings, scene_.scramblings(), sources_.placed[at].origin);
   }
 
  private:
   LaunchOnDevice const& scene_;
-  std::vector<SourceOnDevice> sources_;
+  AimedSources sources_;
   DeviceArray<SourceOnDevice> on_device_;
   DeviceArray<RaySums> sums_;
   DeviceArray<double> bend2_;
@@ -174,69 +196,71 @@ class SceneTracer {
   /// @return the widest that any source was aimed beyond the stop [m]
   double trace(char const* what) {
     std::size_t const count = truth_.size();
-    aims_.resize(count);
     // so many that their sums fit, that one launch does not take long, and that few wait for the first aims
-    double const steps = static_cast<double>(launch_.rays) * std::max(1.0, scene_.steps_across());
+    double const launches_at_once = most_steps_a_launch / on_device_.steps_a_source(scene_.steps_across());
     std::size_t const most =
         std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(RaySums)),
-                                         static_cast<std::size_t>(most_steps_a_launch / steps)),
+                                         static_cast<std::size_t>(std::min(launches_at_once, 1e9))),
                                 1, 1 << 14);
     Progress progress(what, count);
-    std::vector<SourceOnDevice> next = aim(0, std::min(most, count));
+    AimedSources next = aim(0, std::min(most, count));
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
-      Batch batch(on_device_, mirrored_, std::move(next), 1);
+      auto batch = std::make_unique<Batch>(on_device_, mirrored_, std::move(next), 1);
       // meanwhile
       std::size_t const after = std::min(first + most, count);
       next = aim(after, std::min(after + most, count));
-      finish(batch);
+      finish(std::move(batch));
       progress.advance(after - first);
     }
     return largest_margin_;
   }
 
  private:
-  std::vector<SourceOnDevice> aim(std::size_t begin, std::size_t end) {
-    std::vector<SourceOnDevice> placed(end - begin);
-    parallel_chunks(placed.size(), 8, [&](std::size_t low, std::size_t high) {
+  AimedSources aim(std::size_t begin, std::size_t end) {
+    std::vector<SourceAim> aims(end - begin);
+    parallel_chunks(aims.size(), 8, [&](std::size_t low, std::size_t high) {
       for (std::size_t i = low; i < high; ++i) {
         throw_if_interrupted();
-        SourceAim& aimed = aims_[begin + i];
-        aimed = aim_at_stop(launch_, launch_.camera.view(), medium_, on_device_.pattern().middle(begin + i));
-        if (aimed.disc) {
-          placed[i] = on_device_.place(begin + i, aimed);
-        } else {
-          truth_.set_hits(begin + i, source_truth(nullptr, 0, {}), light_per_weight_);
-        }
+        aims[i] = aim_at_stop(launch_, launch_.camera.view(), medium_, on_device_.pattern().middle(begin + i));
       }
     });
-    std::size_t i = begin;
-    std::erase_if(placed, [&](SourceOnDevice const&) { return !aims_[i++].disc; });
-    return placed;
+    AimedSources aimed;
+    for (std::size_t i = 0; i < aims.size(); ++i) {
+      if (aims[i].disc) {
+        aimed.add(on_device_.place(begin + i, aims[i]), aims[i]);
+      } else {
+        truth_.set_hits(begin + i, source_truth(nullptr, 0, {}), light_per_weight_);
+      }
+    }
+    return aimed;
   }
 
   /// Takes in what a batch came to. Sources of which a ray was bent beyond their margin are taken back and traced
   /// again.
-  void finish(Batch& batch) {
-    batch.finish(1, statuses_);
-    std::vector<SourceOnDevice> missed, wider;
-    for (std::size_t at = 0; at < batch.sources().size(); ++at) {
-      SourceOnDevice const& placed = batch.sources()[at];
-      SourceAim& aimed = aims_[placed.source];
-      if (launch_.camera.chief_rays_only() || !(batch.bend(at) > aimed.margin)) {
-        largest_margin_ = std::max(largest_margin_, aimed.margin);
-        truth_.set_hits(placed.source, batch.truth(at), light_per_weight_);
-        continue;
+  void finish(std::unique_ptr<Batch> batch) {
+    while (batch) {
+      batch->finish(1, statuses_);
+      AimedSources missed, wider;
+      AimedSources const& sources = batch->sources();
+      for (std::size_t at = 0; at < sources.placed.size(); ++at) {
+        SourceOnDevice const& placed = sources.placed[at];
+        SourceAim aim = sources.aims[at];
+        if (launch_.camera.chief_rays_only() || !(batch->bend(at) > aim.margin)) {
+          largest_margin_ = std::max(largest_margin_, aim.margin);
+          truth_.set_hits(placed.source, batch->truth(at), light_per_weight_);
+          continue;
+        }
+        missed.add(placed, aim);
+        aim.margin = launch_.wider_margin(batch->bend(at));
+        wider.add(on_device_.place(placed.source, aim), aim);
       }
-      missed.push_back(placed);
-      aimed.margin = launch_.wider_margin(batch.bend(at));
-      wider.push_back(on_device_.place(placed.source, aimed));
+      batch.reset();
+      if (missed.placed.empty()) return;
+      throw_if_interrupted();
+      Batch(on_device_, mirrored_, std::move(missed), -1).finish(-1, statuses_);
+      batch = std::make_unique<Batch>(on_device_, mirrored_, std::move(wider), 1);
     }
-    if (missed.empty()) return;
-    throw_if_interrupted();
-    Batch(on_device_, mirrored_, std::move(missed), -1).finish(-1, statuses_);
-    Batch again(on_device_, mirrored_, std::move(wider), 1);
-    finish(again);
   }
 
   Scene const& scene_;
@@ -247,7 +271,6 @@ class SceneTracer {
   GroundTruth& truth_;
   StatusCounts& statuses_;
   double light_per_weight_;
-  std::vector<SourceAim> aims_;
   double largest_margin_ = 0;
 };
 
@@ -270,7 +293,7 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
-  LaunchOnDevice const on_device(launch, sources, -scene.setup.z_d, frames ? &*frames : nullptr);
+  LaunchOnDevice const on_device(launch, sources, -scene.setup.z_d, mirrored, frames ? &*frames : nullptr);
   TracingPass pass(scene, sources);
   Rendering& rendering = pass.rendering;
   RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);

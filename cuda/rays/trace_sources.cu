@@ -132,13 +132,17 @@ __global__ void __launch_bounds__(threads, 3)
 
 }  // namespace
 
-bool fits_shared_memory(SourcesLaunch const& launch, DeviceMedium<double> const& medium) {
-  return std::visit(
-      [&](auto const& held) {
-        return SharedParts::bytes(launch) <=
-               most_shared_bytes(trace_sources_kernel<std::remove_cvref_t<decltype(held)>>);
-      },
+int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& medium) {
+  std::size_t const there = std::visit(
+      [](auto const& held) { return most_shared_bytes(trace_sources_kernel<std::remove_cvref_t<decltype(held)>>); },
       medium);
+  if (!launch.spline.share || there < most_block_bytes) return 0;
+  SourcesLaunch probe = launch;
+  for (probe.most_window_px = most_window_nodes / launch.spline.per_px; probe.most_window_px > 0;
+       --probe.most_window_px) {
+    if (SharedParts::bytes(probe) <= most_block_bytes) break;
+  }
+  return probe.most_window_px;
 }
 
 void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medium, SourceOnDevice const* sources,

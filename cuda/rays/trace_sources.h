@@ -15,8 +15,10 @@ namespace gladstone::cuda {
 /// Rays of a source that one block traces; sources of more rays are shared between several.
 inline constexpr std::uint64_t most_rays_a_share = 16384;
 
-/// The widest window that any source has, in nodes: 90 kB of shared memory for both frames.
+/// The widest window that any source has, in nodes, and what a block may take of shared memory for it: so much has
+/// every card since 2020. A card with less lays every ray down by itself.
 inline constexpr int most_window_nodes = 88;
+inline constexpr std::size_t most_block_bytes = 96 * 1024;
 
 /// How the rays of a source are sent, and where most of their light is expected.
 struct SourceOnDevice {
@@ -52,8 +54,8 @@ struct SourcesTraced {
   unsigned long long* ends;  ///< [frame][status], counted on
 };
 
-/// Whether blocks have the shared memory for a launch.
-bool fits_shared_memory(SourcesLaunch const& launch, DeviceMedium<double> const& medium);
+/// The widest window that sources of a launch may have [px]: not of any one of them, so that none depends on others.
+int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& medium);
 
 /// Traces all rays of `count` sources in both frames, a block for each share of a source: sums, ends, light. Sums have
 /// an order and light is in whole units, so that results hang on nothing but the source.

@@ -19,7 +19,7 @@ HitGrid::HitGrid(GaussianSpot<double> const& spot)
 }
 
 void HitGrid::deposit(Vec2d p, double weight, LightImage* image, double light_per_weight) {
-  if (!(std::abs(p.x) < 1e8 && std::abs(p.y) < 1e8)) return;
+  if (!(std::abs(p.x) < 1e7 && std::abs(p.y) < 1e7)) return;
   auto const within = [this](DealtHit const& hit) { return hit.first >= 0 && hit.first + 4 <= side_; };
   bool const untouched = columns_.high == columns_.low;
   DealtHit x((p.x - left_) * view_.per_px), y((p.y - top_) * view_.per_px);

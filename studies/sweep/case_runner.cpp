@@ -216,8 +216,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   if (!known.rays) shared.rays.keep(keys.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // of the dots: for truth.h5
-  std::string const frames_key =
-      fmt::format("{}\nrays {}{}", keys.scene, prepared.rays.rays, keep.empty() ? "" : ", theory");
+  std::string const frames_key = fmt::format("{}\nrays {}, at side faces {}{}", keys.scene, prepared.rays.rays,
+                                             prepared.rays.rays_at_side_faces, keep.empty() ? "" : ", theory");
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);

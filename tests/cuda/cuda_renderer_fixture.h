@@ -23,7 +23,11 @@ inline double grey_level(Image<double> const& frame) {
 
 inline double largest_difference(Image<double> const& a, Image<double> const& b) {
   double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a.data()[i] - b.data()[i]));
+  if (a.size() != b.size()) return 1e300;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double const here = std::abs(a.data()[i] - b.data()[i]);
+    most = here >= 0 ? std::max(most, here) : 1e300;
+  }
   return most;
 }
 
@@ -38,7 +42,7 @@ inline double largest_difference(std::vector<Vec2d> const& a, std::vector<Vec2d>
 }
 
 inline bool same_bits(Image<double> const& a, Image<double> const& b) {
-  return std::equal(a.begin(), a.end(), b.begin());
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
 }
 
 /// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].

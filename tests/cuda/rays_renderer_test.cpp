@@ -105,6 +105,13 @@ TEST_F(CudaRaysTest, ASourceAloneIsTheSourceAmongMany) {
   Rendering const of_many = on_device(many), of_one = on_device(alone);
   EXPECT_EQ(of_many.truth.displacement_px[0], of_one.truth.displacement_px[0]);
   EXPECT_EQ(of_many.truth.displacement_error_px[0], of_one.truth.displacement_error_px[0]);
+  // its light, too: no neighbour's comes within 5 px of it
+  Vec2d const at = of_one.truth.reference_px[0];
+  for (int row = static_cast<int>(at.y) - 5; row <= static_cast<int>(at.y) + 5; ++row) {
+    for (int column = static_cast<int>(at.x) - 5; column <= static_cast<int>(at.x) + 5; ++column) {
+      EXPECT_EQ(of_many.light.flow(column, row), of_one.light.flow(column, row));
+    }
+  }
 }
 
 // A block without the memory for windows lays every ray down by itself, to the same images.
