@@ -14,11 +14,11 @@ export ASAN_OPTIONS="allocator_may_return_null=1:detect_leaks=0${ASAN_OPTIONS:+:
 for target in $targets; do
   name=${target##*/fuzz_}
   mkdir -p "$out/$name/found"
-  # A crash, a sanitizer's report, 10 s without an answer, 1 GiB, or 256 MiB at once. What damaged files make HDF5 ask
+  # A crash, a sanitizer's report, a minute without an answer (a ray along a slab takes a million steps, 7 s), 1 GiB, or 256 MiB at once. What damaged files make HDF5 ask
   # for is its own affair: it is told that there is none, and only memory that it uses counts.
   at_once=256
   [ "$name" != hdf5_bytes ] || at_once=2000000
-  "$target" -seed=1 -max_total_time=$((each > 0 ? each : 1)) -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=$at_once \
+  "$target" -seed=1 -max_total_time=$((each > 0 ? each : 1)) -timeout=60 -rss_limit_mb=1024 -malloc_limit_mb=$at_once \
     -max_len=8192 -detect_leaks=0 -print_final_stats=1 -artifact_prefix="$out/$name/fault-" \
     "$out/$name/found" "$source/corpus/$name" "$build/tests/fuzz/corpus/$name" >"$out/$name/log" 2>&1 || {
     tail -n 40 "$out/$name/log"
