@@ -9,6 +9,7 @@ find_package(CLI11 REQUIRED)
 # through pkg-config: its CMake package also asks for the command line tools
 pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
 find_package(OpenCVModules REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(TomlPlusPlus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)

@@ -9,6 +9,7 @@
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/field_coverage.h"
+#include "studies/cameras.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
@@ -52,7 +53,8 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
 /// Refuses the fast renderer where it does not hold.
 void cross_check_method(CaseSetup& loaded) {
   if (loaded.setup.render.method != RenderMethod::focused_dots) return;
-  std::string const reason = reason_against_focused_dots(loaded.setup);
+  std::string const reason = loaded.setup.calibration() ? "the dots of a calibration are on several planes"
+                                                        : reason_against_focused_dots(loaded.setup);
   if (reason.empty()) return;
   loaded.document.root().table("render").problem("method",
                                                  "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
@@ -72,10 +74,14 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  CaseSetup loaded{std::move(document), {}, {}, {}, {}};
+  CaseSetup loaded{with_own_lens(std::move(document)), {}, {}, {}, {}};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
-  loaded.correlate = read_correlation_settings(root.table("correlate"));
+  if (loaded.setup.calibration()) {
+    root.pass_over("correlate");
+  } else {
+    loaded.correlate = read_correlation_settings(root.table("correlate"));
+  }
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;
@@ -85,7 +91,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   }
   if (!loaded.document.has_problems()) {
     loaded.warnings = cross_check(loaded.setup, root);
-    cross_check_windows(loaded);
+    if (!loaded.setup.calibration()) cross_check_windows(loaded);
     cross_check_method(loaded);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);

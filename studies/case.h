@@ -80,6 +80,12 @@ struct FinishedCase {
   std::string summary;
 };
 
+/// Hashes the files that a setup names, before anything is made of them.
+void hash_inputs(CaseSetup& loaded);
+
+/// Renders a case as far as memory; its summary is still empty.
+FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known = {});
+
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json.
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 

@@ -1,24 +1,55 @@
 #include "studies/case_files.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "render/base/error.h"
+#include "render/base/nearest_name.h"
 #include "render/base/output_file.h"
+#include "render/base/setup_node.h"
+#include "studies/cameras.h"
 
 namespace gladstone {
-
-FolderContent case_content() { return {case_file::setup, {case_file::derived.begin(), case_file::derived.end()}}; }
-
 namespace {
+
+namespace fs = std::filesystem;
 
 template <class Names>
 std::vector<std::string> in_folder(std::string const& folder, Names const& names) {
   std::vector<std::string> paths;
-  for (char const* name : names) paths.push_back((std::filesystem::path(folder) / name).string());
+  for (char const* name : names) paths.push_back((fs::path(folder) / name).string());
   return paths;
 }
 
+/// Says why a case has no pair of frames where it is not to have one.
+void require_pair(std::string const& folder) {
+  std::error_code error;
+  if (fs::exists(fs::path(folder) / case_file::reference, error)) return;
+  SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
+  if (std::vector<std::string> const names = camera_names(setup); !names.empty()) {
+    throw DataError(folder, fmt::format("holds a case of each of its cameras, {}; name one of them: {}",
+                                        quoted_list(names), (fs::path(folder) / names.front()).string()));
+  }
+  SetupNode const* const experiment = setup.find({"experiment"});
+  if (experiment && experiment->text == "calibration") {
+    throw DataError(
+        folder, "is a calibration (it has planes of dots and no pair of frames); use gladstone calibrate " + folder);
+  }
+}
+
 }  // namespace
+
+std::string case_file::plane(std::size_t index) { return fmt::format("plane_{:03}.tif", index); }
+
+FolderContent case_content() {
+  FolderContent content{case_file::setup, {case_file::derived.begin(), case_file::derived.end()}};
+  for (char const* other : {case_file::reference, case_file::flow, case_file::truth, case_file::any_plane,
+                            case_file::calibration, case_file::calibration_figure}) {
+    content.derived.emplace_back(other);
+  }
+  return content;
+}
 
 std::vector<std::string> rendered_files(std::string const& folder) {
   return in_folder(folder, std::array{case_file::reference, case_file::flow, case_file::truth, case_file::setup,
@@ -30,14 +61,25 @@ std::vector<std::string> derived_files(std::string const& folder) { return in_fo
 void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs) {
   refuse_inputs_as_outputs(rendered_files(folder), inputs);
   refuse_inputs_as_outputs(derived_files(folder), inputs);
+  std::vector<std::string> there;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (is_derived(entry->path().filename().string(), case_content())) there.push_back(entry->path().string());
+  }
+  refuse_inputs_as_outputs(there, inputs);
 }
 
-std::string in_case(std::string const& folder, std::string const& name) {
-  namespace fs = std::filesystem;
+void require_case(std::string const& folder) {
+  finish_replacement_above(folder, case_content());
   if (!is_complete(folder, case_content())) {
     throw DataError(folder,
                     "is not a case (it holds no setup.toml); make one with: gladstone render SETUP.toml -o " + folder);
   }
+}
+
+std::string in_case(std::string const& folder, std::string const& name) {
+  require_case(folder);
+  if (name != case_file::setup) require_pair(folder);
   return (fs::path(folder) / name).string();
 }
 

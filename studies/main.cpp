@@ -23,7 +23,7 @@ namespace {
 
 /// One row a command.
 constexpr std::array commands{
-    Command{"render", "Trace the reference and the flow frame of a setup into a case folder",
+    Command{"render", "Trace the frames of a setup, a pair or the planes of a calibration, into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
     Command{"correlate", "Measure the displacement between two frames", "gladstone correlate out/case",
             attach_correlate},
@@ -33,6 +33,8 @@ constexpr std::array commands{
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
     Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
+    Command{"calibrate", "Fit cameras to the dots of a calibration case", "gladstone calibrate out/calibration",
+            attach_calibrate},
     Command{"sweep", "Parameter studies: plan, run, status, collect",
             "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
             attach_sweep},

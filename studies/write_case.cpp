@@ -71,10 +71,6 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
   return picture;
 }
 
-void hash_inputs(CaseSetup& loaded) {
-  for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
-}
-
 /// The preview is the GPU's alone; the CPU gives better than was asked for.
 bool single_precision(Setup const& setup, Rendering const& rendering, Renderer const& renderer) {
   return setup.render.precision == Precision::single && renderer.device() == "cuda" &&
@@ -98,6 +94,10 @@ std::string saturation_cure(CameraSetup const& camera, double light_e) {
 
 }  // namespace
 
+void hash_inputs(CaseSetup& loaded) {
+  for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
+}
+
 double exposure_of(CameraSetup const& camera, KeptLight const& light) {
   return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, light.brightest());
 }
@@ -118,13 +118,18 @@ RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& r
   return rendered.rendering->kept->record(Detector(prepared.scene.setup.camera, rendered.exposure_e));
 }
 
-FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
-  OutputFolder output(folder, case_content());
+FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known) {
   FinishedCase finished;
   hash_inputs(loaded);
-  finished.prepared = prepare_case(loaded);
+  finished.prepared = prepare_case(loaded, known);
   finished.rendered = render_case(finished.prepared, renderer, RenderTheory::yes);
   finished.frames = record_frames(finished.prepared, finished.rendered);
+  return finished;
+}
+
+FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder) {
+  OutputFolder output(folder, case_content());
+  FinishedCase finished = finish_case(loaded, renderer);
   output.fill([&](std::string const& place) {
     finished.summary = write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <system_error>
 #include <thread>
 
@@ -58,10 +59,20 @@ std::vector<fs::path> files_below(fs::path const& folder, std::string const& mar
   return files;
 }
 
-/// The files of a folder that a replacement takes away, the marker first.
-std::vector<fs::path> files_to_retire(fs::path const& staged, FolderContent const& content) {
+/// The files of a folder that a replacement takes away, the marker first: those that are written anew, and what is
+/// derived in the folders that they stand in.
+std::vector<fs::path> files_to_retire(fs::path const& staged, fs::path const& folder, FolderContent const& content) {
   std::vector<fs::path> files = files_below(staged, content.marker);
-  files.insert(files.end(), content.derived.begin(), content.derived.end());
+  std::set<fs::path> const anew(files.begin(), files.end());
+  std::set<fs::path> parts{fs::path()};
+  for (fs::path const& file : anew) parts.insert(file.parent_path());
+  for (fs::path const& part : parts) {
+    std::error_code error;
+    for (fs::directory_iterator entry(folder / part, error), end; !error && entry != end; entry.increment(error)) {
+      fs::path const file = part / entry->path().filename();
+      if (is_derived(file.filename().string(), content) && !anew.contains(file)) files.push_back(file);
+    }
+  }
   std::stable_partition(files.begin(), files.end(), [&](fs::path const& file) { return file == content.marker; });
   return files;
 }
@@ -70,7 +81,7 @@ void retire(fs::path const& folder, FolderContent const& content) {
   fs::path const work = folder / replacing;
   if (is_there(work / retired_files)) return;
   if (::mkdir((work / old_files).c_str(), 0777) != 0 && errno != EEXIST) throw MoveError{work / old_files, errno};
-  for (fs::path const& file : files_to_retire(work / staged_files, content)) {
+  for (fs::path const& file : files_to_retire(work / staged_files, folder, content)) {
     move_file(folder / file, work / old_files / file);
   }
   move_file(work / old_files, work / retired_files);
@@ -103,7 +114,7 @@ void go_back(fs::path const& folder, FolderContent const& content, std::vector<f
 /// A folder where a file belongs, or the other way round, is found before anything is moved.
 void refuse_folders_in_the_way(fs::path const& staged, fs::path const& folder, std::string const& asked,
                                FolderContent const& content) {
-  for (fs::path const& file : files_to_retire(staged, content)) {
+  for (fs::path const& file : files_to_retire(staged, folder, content)) {
     std::error_code error;
     if (fs::is_directory(fs::symlink_status(folder / file, error))) {
       throw OutputError((fs::path(asked) / file).string(), "is a folder where a file belongs; move it elsewhere");
@@ -117,6 +128,23 @@ void refuse_folders_in_the_way(fs::path const& staged, fs::path const& folder, s
 }
 
 }  // namespace
+
+bool is_derived(std::string const& name, FolderContent const& content) {
+  return std::any_of(content.derived.begin(), content.derived.end(), [&name](std::string const& pattern) {
+    auto const star = pattern.find('*');
+    if (star == std::string::npos) return name == pattern;
+    return name.size() + 1 >= pattern.size() && name.starts_with(pattern.substr(0, star)) &&
+           name.ends_with(pattern.substr(star + 1));
+  });
+}
+
+void finish_replacement_above(std::string const& folder, FolderContent const& content) {
+  fs::path const part = fs::absolute(fs::path(folder) / "").parent_path();
+  fs::path const work = part.parent_path() / replacing;
+  for (char const* of : {staged_files, old_files, retired_files}) {
+    if (is_there(work / of / part.filename())) return finish_replacement(part.parent_path().string(), content);
+  }
+}
 
 bool is_complete(std::string const& folder, FolderContent const& content) {
   fs::path const marker = fs::path(folder) / content.marker, work = fs::path(folder) / replacing;

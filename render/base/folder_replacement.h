@@ -9,9 +9,14 @@ namespace gladstone {
 
 /// Which files of a folder belong together.
 struct FolderContent {
-  std::string marker;                ///< without it the folder is incomplete: it goes first and comes last
-  std::vector<std::string> derived;  ///< names of files that make no sense beside new ones
+  std::string marker;  ///< without it the folder is incomplete: it goes first and comes last
+  /// Names of files that make no sense beside new ones, in every folder of it that gets some; one * in a name stands
+  /// for any characters.
+  std::vector<std::string> derived;
 };
+
+/// Whether a file of this name is derived.
+bool is_derived(std::string const& name, FolderContent const& content);
 
 /// Inside a partial folder: where the new files are put.
 inline constexpr char const* staged_files = "new";
@@ -34,6 +39,10 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
 /// Completes a replacement that was broken off; waits, up to five seconds, for one that goes on.
 /// @throws OutputError where it goes on still, its writer cannot be asked (another host), or a file cannot be moved
 void finish_replacement(std::string const& folder, FolderContent const& content);
+
+/// The same where the folder is a part of the one above it, which is being replaced as a whole.
+/// @param content of the folder above
+void finish_replacement_above(std::string const& folder, FolderContent const& content);
 
 /// Whether a folder has its marker; waits for a replacement that goes on, and completes one that was broken off.
 /// @throws OutputError as finish_replacement

@@ -47,6 +47,10 @@ TargetSetup read_target_setup(SetupTable table) {
     auto const extent = table.numbers("extent_mm", {}, 2, Range::positive());
     if (extent.size() == 2) setup.extent_m = Vec2d{extent[0] * unit::millimetre, extent[1] * unit::millimetre};
   }
+  if (table.has("center_mm") && setup.kind != TargetKind::points) {
+    auto const centre = table.numbers("center_mm", {}, 2, {-1e9, 1e9});
+    if (centre.size() == 2) setup.centre_m = Vec2d{centre[0] * unit::millimetre, centre[1] * unit::millimetre};
+  }
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 7, 0, std::numeric_limits<long long>::max()));
   return setup;
 }

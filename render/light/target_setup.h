@@ -9,7 +9,12 @@
 
 namespace gladstone {
 
-enum class TargetKind { dots, points, image };
+enum class TargetKind {
+  dots,
+  points,
+  image,
+  lattice,  ///< dots of a calibration target
+};
 enum class DotArrangement { random, regular };
 enum class Polarity { bright, dark };
 
@@ -21,9 +26,11 @@ struct TargetSetup {
   std::optional<double> dot_diameter_m;         ///< on the target [m]
   DotArrangement arrangement = DotArrangement::random;
   Polarity polarity = Polarity::bright;
-  std::optional<Vec2d> extent_m;  ///< width and height, centred on the axis [m]; else view plus one window all round
+  std::optional<Vec2d> extent_m;  ///< width and height [m]; else view plus one window all round
+  std::optional<Vec2d> centre_m;  ///< of the target on its plane [m]; else where the camera's axis meets it
   std::string file;               ///< points: CSV x_mm,y_mm; image: a picture
   std::uint64_t seed = 7;
+  double spacing = 0;  ///< of a lattice [m]
 };
 
 TargetSetup read_target_setup(SetupTable table);

@@ -17,6 +17,7 @@ std::vector<WindowSetup> read_windows(SetupTable root) {
     if (position.size() == 3) window.position = Vec3d{position[0], position[1], position[2]} * unit::millimetre;
     auto const tilt = table.numbers("tilt_deg", {0, 0}, 2, {-80, 80});
     if (tilt.size() == 2) window.tilt = Vec2d{tilt[0], tilt[1]} * unit::degree;
+    table.pass_over("cameras");  // those that look through it, where there are several
     windows.push_back(window);
   }
   return windows;

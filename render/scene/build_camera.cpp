@@ -91,6 +91,11 @@ Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
 
 }  // namespace
 
+Vec2d sensor_tilt(Setup const& setup) {
+  if (!setup.camera.scheimpflug) return setup.camera.tilt;
+  return scheimpflug_tilt(setup.camera_pose().direction_inwards({0, 0, 1}), setup.imaging().magnification);
+}
+
 ParaxialCamera paraxial_camera(Setup const& setup) {
   ParaxialCamera paraxial;
   for (WindowSetup const& window : setup.windows) paraxial.window_shift += window.shift();
@@ -180,10 +185,7 @@ Camera build_camera(Setup const& setup) {
     Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
     camera.sensor.pose = camera.sensor.pose.moved({0, 0, best_focus(camera, point)});
   }
-  Vec2d tilt = setup.camera.tilt;
-  if (setup.camera.scheimpflug) {
-    tilt = scheimpflug_tilt(camera.pose.direction_inwards({0, 0, 1}), setup.imaging().magnification);
-  }
+  Vec2d const tilt = sensor_tilt(setup);
   camera.sensor.pose = camera.sensor.pose.turned({tilt.x, tilt.y, 0});
   return camera;
 }

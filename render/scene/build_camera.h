@@ -11,6 +11,10 @@ ParaxialCamera paraxial_camera(Setup const& setup);
 /// Sizes that follow from it, see Setup::imaging().
 ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial);
 
+/// Tilt of a setup's sensor about its x, then its turned y: the camera's own, or for scheimpflug = "auto" the one that
+/// images Z = const through the point in focus sharply all over [rad].
+Vec2d sensor_tilt(Setup const& setup);
+
 /// Width and height about target_centre() of what a turned or tilted camera sees of the dots' plane, with the setup's
 /// margin all round [m].
 Vec2d posed_extent(Setup const& setup);

@@ -5,6 +5,7 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/calibration_planes.h"
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 #include "render/sensor/diffraction_spot.h"
@@ -55,24 +56,28 @@ void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, Setu
   }
 }
 
-}  // namespace
-
-std::string metres_hint(double length) {
-  double const millimetres = length / unit::millimetre;
-  if (!(millimetres < 2)) return "";
-  return fmt::format(" (lengths are in mm: {0:.6g} mm was given, {0:.6g} m are {1:.6g} mm)", millimetres,
-                     1e3 * millimetres);
+/// Warns of read noise that is cut off at black.
+void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
+  if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
+    NoiseSetup const& noise = setup.camera.noise;
+    double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
+    warnings.push_back(fmt::format(
+        "camera.offset_dn: the read noise of {:.3g} grey levels is cut off at black, which makes dark pixels "
+        "{:.3g} levels too bright on average and dim ones less (levels are never below 0); set "
+        "camera.offset_dn = {:.0f} or more, as cameras do",
+        levels, clipped, std::ceil(4 * levels)));
+  }
 }
 
-std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
-  std::vector<std::string> warnings = setup.warnings;
+/// Whether lens and camera make an image of the dots at all.
+bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
-  SetupTable lens = root.table("lens"), geometry = root.table("geometry"), target = root.table("target");
+  SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   if (setup.lens.f_number < fastest_lens) {
     lens.problem("f_number", fmt::format("is below {} (no lens in air opens wider than twice its focal length); stop "
                                          "it down",
                                          fastest_lens));
-    return warnings;  // everything else needs an aperture
+    return false;
   }
   if (!setup.lens.prescription && setup.focus_distance() <= setup.lens.focal_length) {
     bool const by_distance = setup.lens.focus == Focus::distance;
@@ -82,16 +87,22 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                      "focus is impossible: the plane in focus lies {:.6g} mm from a lens of {:.6g} mm focal length (an "
                      "image needs more than the focal length); move the lens away or take a shorter one{}",
                      setup.focus_distance() / mm, setup.lens.focal_length / mm, metres_hint(setup.focus_distance())));
-    return warnings;  // everything else needs an image
+    return false;
   }
   if (!setup.lens.prescription && setup.z_b() <= setup.lens.focal_length) {
     geometry.problem("z_a_mm", "the dots lie within the focal length (no image of them exists); move the lens away");
-    return warnings;
+    return false;
   }
-  if (!setup.on_bench() && !cross_check_camera(setup, root)) return warnings;  // everything else needs a picture
+  if (!setup.on_bench() && !cross_check_camera(setup, root)) return false;
   if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty() && !setup.lens.prescription) {
     warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
   }
+  return true;
+}
+
+/// Refuses dots or a lens inside the medium.
+void cross_check_geometry(Setup const& setup, SetupTable geometry) {
+  double const mm = unit::millimetre;
   FieldKind const kind = setup.medium.field.kind;
   if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
     double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
@@ -109,43 +120,44 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
                                    half / mm, metres_hint(setup.z_a)));
     }
   }
-  cross_check_thickness(setup, root.table("medium"), warnings);
-  if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
-    NoiseSetup const& noise = setup.camera.noise;
-    double const levels = noise.read_noise_e * (std::pow(2.0, setup.camera.bit_depth) - 1) / noise.full_well_e;
-    warnings.push_back(fmt::format(
-        "camera.offset_dn: the read noise of {:.3g} grey levels is cut off at black, which makes dark pixels "
-        "{:.3g} levels too bright on average and dim ones less (levels are never below 0); set "
-        "camera.offset_dn = {:.0f} or more, as cameras do",
-        levels, clipped, std::ceil(4 * levels)));
+}
+
+/// Refuses diffraction spots in which nothing could be seen.
+void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens, SetupTable root) {
+  double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
+  if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
+    camera_table(root).problem("pixel_pitch_um",
+                               fmt::format("makes the diffraction spot {:.4g} px wide ({} at most: nothing could be "
+                                           "seen); pitches are in um, and pixels of cameras are 1 to 20 of them wide",
+                                           diffraction_px, widest_px));
+  } else if (diffraction_px > widest_px) {
+    lens.problem("f_number",
+                 fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
+                             "the lens or focus farther away",
+                             diffraction_px, widest_px));
   }
-  cross_check_steps(setup, root.table("medium"));
-  cross_check_density(setup, root.table("medium"), warnings);
+}
+
+/// The target's size and the look of its dots.
+void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+  double const mm = unit::millimetre;
+  SetupTable lens = root.table("lens"), target = root.table("target");
   double const magnification = setup.imaging().magnification;
   double const px = setup.camera.pixel_pitch / magnification;
   Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
-  if (setup.target.extent_m && (setup.target.extent_m->x < view.x || setup.target.extent_m->y < view.y)) {
+  Vec2d const needed = view + setup.beyond_view();
+  if (setup.target.extent_m && (setup.target.extent_m->x < needed.x || setup.target.extent_m->y < needed.y)) {
     target.problem("extent_mm",
-                   fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target; "
-                               "enlarge the target or leave extent_mm out",
-                               view.x / mm, view.y / mm));
+                   fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target, or lies "
+                               "partly beside it ({:.4g} x {:.4g} mm about its middle hold all of the view); enlarge "
+                               "the target or leave extent_mm out",
+                               view.x / mm, view.y / mm, needed.x / mm, needed.y / mm));
   }
   cross_check_extents(setup, view, target, root);
   if (setup.target.kind != TargetKind::image) {
     double const diameter_px = setup.dot_diameter() / px;
     double const diffraction_px = setup.spot_diameter_px();
-    double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
-    if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
-      camera_table(root).problem("pixel_pitch_um",
-                                 fmt::format("makes the diffraction spot {:.4g} px wide ({} at most: nothing could be "
-                                             "seen); pitches are in um, and pixels of cameras are 1 to 20 of them wide",
-                                             diffraction_px, widest_px));
-    } else if (diffraction_px > widest_px) {
-      lens.problem("f_number",
-                   fmt::format("the diffraction spot would be {:.4g} px wide ({} at most: nothing could be seen); open "
-                               "the lens or focus farther away",
-                               diffraction_px, widest_px));
-    }
+    cross_check_spot(setup, diffraction_px, lens, root);
     double const image_px = std::hypot(diameter_px, diffraction_px);
     if (image_px < 2) {
       warnings.push_back(fmt::format(
@@ -158,28 +170,58 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
     }
   }
-  if (setup.target.kind == TargetKind::dots) {
-    double const count = setup.dot_count();
-    double const diameter = setup.dot_diameter();
-    Vec2d const extent = setup.target_extent();
-    double const coverage = count * pi / 4 * diameter * diameter / (extent.x * extent.y);
-    if (!(count >= 1)) {
-      target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
-    } else if (count > 4e9) {
-      target.problem(
-          "dots_per_32px_window",
-          fmt::format(
-              "gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
-              "decrease it, camera.pixels or target.extent_mm",
-              count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
-    } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
-      target.problem(
-          "dots_per_32px_window",
-          fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
-                      "fewer or smaller dots, or arrangement = \"regular\"",
-                      100 * coverage));
-    }
+}
+
+/// The number of random or regular dots.
+void cross_check_dot_count(Setup const& setup, SetupTable target) {
+  double const mm = unit::millimetre;
+  double const count = setup.dot_count();
+  double const diameter = setup.dot_diameter();
+  Vec2d const extent = setup.target_extent();
+  double const coverage = count * pi / 4 * diameter * diameter / (extent.x * extent.y);
+  if (!(count >= 1)) {
+    target.problem("dots_per_32px_window", "gives no dot at all on this target; increase it");
+  } else if (count > 4e9) {
+    target.problem(
+        "dots_per_32px_window",
+        fmt::format("gives {:.3g} dots on {:.4g} x {:.4g} mm (4e9 at most; they alone would need {:.3g} GB of memory); "
+                    "decrease it, camera.pixels or target.extent_mm",
+                    count, extent.x / mm, extent.y / mm, count * 200 / 1e9));
+  } else if (setup.target.arrangement == DotArrangement::random && coverage > 0.5) {
+    target.problem(
+        "dots_per_32px_window",
+        fmt::format("dots would cover {:.0f} % of the target (random discs without overlap reach about 50 %); use "
+                    "fewer or smaller dots, or arrangement = \"regular\"",
+                    100 * coverage));
   }
+}
+
+}  // namespace
+
+std::string metres_hint(double length) {
+  double const millimetres = length / unit::millimetre;
+  if (!(millimetres < 2)) return "";
+  return fmt::format(" (lengths are in mm: {0:.6g} mm was given, {0:.6g} m are {1:.6g} mm)", millimetres,
+                     1e3 * millimetres);
+}
+
+std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
+  std::vector<std::string> warnings = setup.warnings;
+  if (!cross_check_lens(setup, root, warnings)) return warnings;  // everything else needs a picture
+  if (setup.calibration()) {
+    cross_check_noise(setup, warnings);
+    cross_check_spot(setup, setup.spot_diameter_px(), root.table("lens"), root);
+    cross_check_calibration(setup, root, warnings);
+    return warnings;
+  }
+  SetupTable medium = root.table("medium");
+  cross_check_geometry(setup, root.table("geometry"));
+  cross_check_thickness(setup, medium, warnings);
+  cross_check_noise(setup, warnings);
+  cross_check_steps(setup, medium);
+  cross_check_density(setup, medium, warnings);
+  cross_check_target(setup, root, warnings);
+  if (setup.target.kind == TargetKind::dots) cross_check_dot_count(setup, root.table("target"));
   return warnings;
 }
 

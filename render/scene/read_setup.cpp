@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/light/calibration_target.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/setup.h"
@@ -15,7 +16,9 @@ namespace gladstone {
 SetupTable camera_table(SetupTable& root) {
   auto cameras = root.tables("camera");
   if (cameras.size() > 1) {
-    root.problem("camera", "is an array of several cameras, which is not available yet (one camera a setup); keep one");
+    root.problem("camera",
+                 "is an array of several cameras, of which one is needed here (gladstone render makes a case of each); "
+                 "keep one, or take the setup.toml of its case");
     for (std::size_t other = 1; other < cameras.size(); ++other) cameras[other].excuse();
   }
   return cameras.empty() ? root.table("camera") : cameras.front();
@@ -147,6 +150,18 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
   }
 }
 
+void read_target(Setup& setup, SetupTable root) {
+  setup.target = read_target_setup(root.table("target"));
+  root.refuse("calibration", "stands in a setup of BOS (it is of experiment = \"calibration\"); remove it");
+}
+
+void read_calibration(Setup& setup, SetupTable root) {
+  CalibrationTarget read = read_calibration_target(root.table("calibration"));
+  setup.target = std::move(read.target);
+  setup.planes = std::move(read.planes);
+  root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
+}
+
 }  // namespace
 
 Setup read_setup(SetupTable root) {
@@ -154,8 +169,9 @@ Setup read_setup(SetupTable root) {
     root.problem("schema", "is not 1 (this version reads schema 1 only); use a matching version of gladstone");
   }
   std::string const experiment = root.word("experiment", "bos", {"bos", "piv", "calibration"});
-  if (experiment != "bos") {
-    root.problem("experiment", "\"" + experiment + "\" is not available yet (this version simulates BOS); use \"bos\"");
+  if (experiment == "piv") {
+    root.problem("experiment",
+                 "\"piv\" is not available yet (this version simulates BOS and calibrations); use \"bos\"");
   }
   Setup setup;
   SetupTable camera = camera_table(root);
@@ -167,14 +183,23 @@ Setup read_setup(SetupTable root) {
   }
   SetupTable geometry = root.table("geometry");
   read_place(setup, camera, geometry);
-  setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
+  bool const calibration = experiment == "calibration";
+  if (calibration) {
+    geometry.refuse("z_d_mm", "is of BOS (calibration.planes_mm places the dots); remove it");
+    setup.z_d = 0;
+  } else {
+    setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
+  }
   setup.medium = read_medium_setup(root.table("medium"));
+  if (calibration && setup.medium.field.kind != FieldKind::none) {
+    root.table("medium").problem("field", "is of BOS (a camera is calibrated without flow); remove it");
+  }
   build_optics(setup, root, setup.warnings);
   resolve_thickness(setup, root.table("medium"));
-  setup.target = read_target_setup(root.table("target"));
+  calibration ? read_calibration(setup, root) : read_target(setup, root);
   setup.render = read_render_setup(root.table("render"));
-  for (char const* later : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
-    root.refuse(later, "is not available yet (this version simulates BOS); remove it");
+  for (char const* later : {"particles", "laser_sheet", "velocity", "requirements"}) {
+    root.refuse(later, "is not available yet (this version simulates BOS and calibrations); remove it");
   }
   return setup;
 }

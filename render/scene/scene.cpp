@@ -10,6 +10,7 @@
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
+#include "render/light/calibration_target.h"
 #include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
@@ -177,6 +178,9 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
         scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
       }
       break;
+    case TargetKind::lattice:
+      scene.dots.centre = Lattice(setup.target).dots();
+      break;
     case TargetKind::points:
       scene.dots.centre = dots_from_csv(setup.target.file, setup.farthest_off_axis());
       break;
@@ -185,8 +189,8 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
       break;
   }
   if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
-  if (setup.pose && setup.target.kind != TargetKind::points) {
-    for (Vec2d& centre : scene.dots.centre) centre = centre + setup.target_centre();
+  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
+    for (Vec2d& centre : scene.dots.centre) centre = centre + middle;
   }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);

@@ -27,7 +27,9 @@ ImagingGeometry Setup::imaging() const {
   return paraxial_imaging(*this, paraxial_camera(*this));
 }
 
-Vec2d Setup::target_centre() const {
+Vec2d Setup::target_centre() const { return target.centre_m ? *target.centre_m : axis_on_target(); }
+
+Vec2d Setup::axis_on_target() const {
   if (!pose) return {};
   Vec3d const there = pose->origin - z_b() * pose->z;
   return {there.x, there.y};
@@ -38,8 +40,13 @@ Vec2d Setup::target_extent() const {
   if (pose || camera.tilted()) return posed_extent(*this);
   // through mm, so that the resolved setup, which holds mm, gives the same dots to the last bit
   double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
-  return Vec2d{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm} *
-         unit::millimetre;
+  Vec2d const view_mm{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm};
+  return view_mm * unit::millimetre + beyond_view();
+}
+
+Vec2d Setup::beyond_view() const {
+  Vec2d const off = target_centre() - axis_on_target();
+  return {2 * std::abs(off.x), 2 * std::abs(off.y)};
 }
 
 double Setup::dot_diameter() const {

@@ -35,15 +35,16 @@ struct RenderSetup {
   RenderMethod method = RenderMethod::automatic;
 };
 
-/// Everything that rendering a BOS pair needs, in SI.
+/// Everything that rendering a BOS pair or a calibration needs, in SI.
 struct Setup {
   CameraSetup camera;
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
+  std::vector<double> planes;  ///< Z of each that a calibration shows its target on [m]; empty: no calibration
   RenderSetup render;
-  double z_a = 0.75;                  ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
-  double z_d = 0.25;                  ///< the medium's mid-plane to the dots, along Z [m]
+  double z_a = 0.75;  ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  double z_d = 0.25;  ///< the medium's mid-plane to the dots, along Z [m]; 0 for a calibration: see plane_setup
   std::optional<Pose<double>> pose;   ///< of the camera: see camera_pose(); empty: on the Z axis, looking along -Z
   std::vector<WindowSetup> windows;   ///< in the order light meets them
   std::vector<std::string> warnings;  ///< of what was read
@@ -55,12 +56,17 @@ struct Setup {
   /// Front principal plane to the dots along the camera's axis [m].
   double z_b() const { return z_a + z_d / camera_pose().z.z; }
   /// Where the camera's axis meets the dots' plane [m].
+  Vec2d axis_on_target() const;
+  /// Middle of the target on its plane: there, or as the setup says [m].
   Vec2d target_centre() const;
+  /// By how much a target is to be larger than the view, since its middle lies elsewhere [m].
+  Vec2d beyond_view() const;
   /// Whether the camera is an ideal thin lens on the Z axis with nothing before it, and its sensor square to it: what
   /// closed forms describe.
   bool on_bench() const {
     return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted();
   }
+  bool calibration() const { return !planes.empty(); }
   double focus_distance() const;
   /// How far off the axis, in x or y, anything may lie that a lens is to see: ten times the way from the dots to it, 84
   /// degrees [m].
@@ -83,7 +89,7 @@ struct Setup {
   double dot_count() const;
 };
 
-/// Reads the tables of a BOS setup through the rooms' readers; what is due later is refused by name.
+/// Reads the tables of a setup of BOS or calibration through the rooms' readers; what is due later is refused by name.
 Setup read_setup(SetupTable root);
 
 /// Cross-checks by physics: focus, planes, steps across the medium, field of view, dot size, dot coverage. Of files

@@ -11,6 +11,7 @@ namespace gladstone {
 
 CameraSetup read_camera_setup(SetupTable table) {
   CameraSetup setup;
+  if (table.has("name")) table.text("name", "");  // of its folder, where there are several
   auto const pixels = table.integers("pixels", {512, 512}, 2, 2, 1, 1000000);
   if (pixels.size() == 2) {
     setup.columns = static_cast<int>(pixels[0]);

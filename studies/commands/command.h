@@ -51,6 +51,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
 
 /// Of `gladstone sweep`: its own commands.

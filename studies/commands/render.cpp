@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "studies/case.h"
 #include "studies/commands/command.h"
+#include "studies/render_setup.h"
 
 namespace gladstone {
 namespace {
@@ -24,6 +25,20 @@ constexpr char const* example_setup =
   kind = "uniform_gradient"
   gradient_kg_m4 = [20.0, 10.0, 0.0])";
 
+/// A line on a camera's case.
+std::string in_words(std::string const& folder, nlohmann::ordered_json const& summary) {
+  std::string text = fmt::format("{}: ", folder);
+  if (summary.contains("planes")) text += fmt::format("{} planes, ", summary["planes"].size());
+  text += fmt::format("{} dots, {} rays each, ", summary["dots"].get<long long>(),
+                      summary["rays_per_dot"].get<long long>());
+  if (summary.contains("step_mm")) {
+    text += fmt::format("step {:.4g} mm, magnification {:.6g}, ", summary["step_mm"].get<double>(),
+                        summary["magnification"].get<double>());
+  }
+  return text +
+         fmt::format("{:.2f} s on {}", summary["seconds_render"].get<double>(), summary["device"].get<std::string>());
+}
+
 }  // namespace
 
 CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
@@ -40,18 +55,20 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->trigger_on_parse(false);
   return [arguments, &options] {
-    CaseSetup loaded = load_case_setup(arguments->setup, arguments->overrides);
-    std::vector<std::string> inputs = loaded.document.file_names();
-    inputs.push_back(arguments->setup);
-    refuse_case_over_inputs(arguments->folder, inputs);
+    SetupRendering rendering(arguments->setup, arguments->overrides);
+    rendering.refuse_over_inputs(arguments->folder);
     auto const renderer = options.open_device().renderer;
-    std::string const summary = render_to_folder(loaded, *renderer, arguments->folder).summary;
-    auto const json = nlohmann::json::parse(summary);
-    print_result(options, summary,
-                 fmt::format("{}: {} dots, {} rays each, step {:.4g} mm, magnification {:.6g}, {:.2f} s on {}",
-                             arguments->folder, json["dots"].get<long long>(), json["rays_per_dot"].get<long long>(),
-                             json["step_mm"].get<double>(), json["magnification"].get<double>(),
-                             json["seconds_render"].get<double>(), json["device"].get<std::string>()));
+    std::string const summary = rendering.render(*renderer, arguments->folder);
+    auto const json = nlohmann::ordered_json::parse(summary);
+    std::string text;
+    if (json.contains("cameras")) {
+      for (auto const& [name, one] : json["cameras"].items()) {
+        text += in_words((std::filesystem::path(arguments->folder) / name).string(), one) + '\n';
+      }
+    } else {
+      text = in_words(arguments->folder, json);
+    }
+    print_result(options, summary, text);
     return ok;
   };
 }

@@ -20,7 +20,7 @@ struct Room {
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots"};
-Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors"};
+Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names operator+(Names a, Names const& b) {
@@ -43,6 +43,7 @@ std::vector<Room> const& table() {
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"analysis/correlation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
       {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
+      {"analysis/calibration", {"render/base"}, {"Eigen"}, {"OpenCV", "Ceres", "fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/rays", render + Names{"render/rays", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/focused_dots",

@@ -324,6 +324,41 @@ TEST_F(OutputFolderTest, WhereAFileCannotBeMovedAllGoBack) {
   }
 }
 
+// What is derived goes wherever new files come, by name or by a pattern; elsewhere it stays, and so does what is not.
+TEST_F(OutputFolderTest, WhatIsDerivedGoesInEveryFolderThatGetsNewFiles) {
+  FolderContent const content{"setup.toml", {"vectors.h5", "plane_*.tif"}};
+  auto const write_cameras = [&](std::vector<std::string> const& cameras) {
+    OutputFolder folder(in_folder("case"), content);
+    std::ofstream(folder.temporary_path() + "/setup.toml") << "all";
+    for (std::string const& camera : cameras) {
+      fs::create_directory(folder.temporary_path() + "/" + camera);
+      std::ofstream(folder.temporary_path() + "/" + camera + "/plane_000.tif") << "new";
+    }
+    folder.commit();
+  };
+  write_cameras({"left", "right"});
+  for (std::string const camera : {"left", "right"}) {
+    for (std::string const name : {"vectors.h5", "plane_001.tif", "plane_.png", "notes.txt"}) {
+      write("case/" + camera + "/" + name, "old");
+    }
+  }
+  write_cameras({"left"});
+  EXPECT_THAT(names("case/left"), ElementsAre("notes.txt", "plane_.png", "plane_000.tif"));
+  EXPECT_THAT(names("case/right"),
+              ElementsAre("notes.txt", "plane_.png", "plane_000.tif", "plane_001.tif", "vectors.h5"));
+}
+
+TEST_F(OutputFolderTest, AReplacementThatWasBrokenOffIsCompletedForItsParts) {
+  write_old_case();
+  ASSERT_FALSE(replace_and_die(3));
+  ASSERT_TRUE(has(".replacing"));
+  finish_replacement_above(in_folder("case/elsewhere"), content_of_case);
+  EXPECT_TRUE(has(".replacing"));
+  finish_replacement_above(in_folder("case/maps/"), content_of_case);
+  EXPECT_FALSE(has(".replacing"));
+  EXPECT_TRUE(is_of("new"));
+}
+
 TEST_F(OutputFolderTest, AReplacementByAWriterThatCannotBeAskedIsRefusedByName) {
   write_old_case();
   fs::create_directories(folder_ / "case/.replacing/new");

@@ -186,7 +186,7 @@ TEST_F(SetupErrors, WhatIsDueLaterIsRefusedByName) {
   refused("\"bos\"", "\"piv\"", "experiment", {"\"piv\" is not available yet"});
   refused("[correlate]", "[correlate]\nmethod = \"rpc\"", "method", {"\"rpc\" is not available yet", "use \"scc\""});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
-  expect_setup_refused(two, {"several cameras, which is not available yet"});
+  expect_setup_refused(two, {"camera.name", "is missing"});
   expect_setup_refused(std::string(small_setup) + "[velocity]\nkind = \"uniform\"\n",
                        {"velocity", "not available yet"});
 }

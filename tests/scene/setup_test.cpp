@@ -168,8 +168,6 @@ TEST(Setup, DotsThatCannotFindRoomAreRefused) {
 
 TEST(Setup, WhatIsDueLaterIsRefusedByName) {
   EXPECT_THAT([] { read_setup_text("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
-  EXPECT_THAT([] { read_setup_text("experiment = \"calibration\"\n"); },
-              refused("1:1", "\"calibration\" is not available yet"));
   EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
   for (std::string const table : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
     EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;

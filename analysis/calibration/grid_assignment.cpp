@@ -1,0 +1,181 @@
+#include "analysis/calibration/grid_assignment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <utility>
+
+namespace gladstone {
+namespace {
+
+constexpr double reach = 0.3;  // of a step, within which a neighbour is to lie of where it is foretold
+
+/// Pixels from a dot to its neighbours along X and Y.
+struct Steps {
+  Vec2d x, y;
+};
+
+using Places = std::map<std::pair<int, int>, std::size_t>;
+
+double length2(Vec2d v) { return dot(v, v); }
+
+/// Where places are counted from.
+struct Beginning {
+  std::size_t dot;
+  Steps steps;
+};
+
+std::size_t nearest_to(std::vector<DetectedDot> const& dots, Vec2d at) {
+  auto const nearer = [at](DetectedDot const& a, DetectedDot const& b) {
+    return length2(a.centre_px - at) < length2(b.centre_px - at);
+  };
+  return static_cast<std::size_t>(std::min_element(dots.begin(), dots.end(), nearer) - dots.begin());
+}
+
+/// The step to the nearest dot within 45 degrees of a direction.
+std::optional<Vec2d> first_step(std::vector<DetectedDot> const& dots, std::size_t from, Vec2d direction) {
+  std::optional<Vec2d> nearest;
+  for (std::size_t k = 0; k < dots.size(); ++k) {
+    Vec2d const step = dots[k].centre_px - dots[from].centre_px;
+    double const along = dot(step, direction);
+    if (k == from || !(along > 0) || !(2 * along * along >= length2(step) * length2(direction))) continue;
+    if (!nearest || length2(step) < length2(*nearest)) nearest = step;
+  }
+  return nearest;
+}
+
+double median(std::vector<double> values) {
+  auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One of the dots about the middle of all: that whose steps are most like the others' median, so that neither a
+/// missing neighbour nor a stranger leads astray.
+std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedView const& expected) {
+  constexpr std::size_t most = 25;  // a square of five by five
+  Vec2d middle{};
+  for (DetectedDot const& dot : dots) middle += dot.centre_px / static_cast<double>(dots.size());
+  std::vector<std::size_t> order(dots.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return length2(dots[a].centre_px - middle) < length2(dots[b].centre_px - middle);
+  });
+  std::vector<Beginning> candidates;
+  for (std::size_t k = 0; k < std::min(most, order.size()); ++k) {
+    auto const x = first_step(dots, order[k], expected.along_x_px), y = first_step(dots, order[k], expected.along_y_px);
+    if (x && y) candidates.push_back({order[k], {*x, *y}});
+  }
+  if (candidates.empty()) return std::nullopt;
+  auto const middle_of = [&candidates](auto const& component) {
+    std::vector<double> values;
+    for (Beginning const& candidate : candidates) values.push_back(component(candidate.steps));
+    return median(std::move(values));
+  };
+  Vec2d const x{middle_of([](Steps const& s) { return s.x.x; }), middle_of([](Steps const& s) { return s.x.y; })};
+  Vec2d const y{middle_of([](Steps const& s) { return s.y.x; }), middle_of([](Steps const& s) { return s.y.y; })};
+  auto const off = [&](Beginning const& candidate) {
+    return length2(candidate.steps.x - x) + length2(candidate.steps.y - y);
+  };
+  return *std::min_element(candidates.begin(), candidates.end(),
+                           [&off](Beginning const& a, Beginning const& b) { return off(a) < off(b); });
+}
+
+/// Places from neighbour to neighbour, counted from the dot that it begins at.
+Places spread(std::vector<DetectedDot> const& dots, Beginning const& beginning) {
+  Places places{{{0, 0}, beginning.dot}};
+  std::vector<bool> taken(dots.size());
+  taken[beginning.dot] = true;
+  struct Open {
+    int i, j;
+    Steps steps;
+  };
+  std::queue<Open> open;
+  open.push({0, 0, beginning.steps});
+  while (!open.empty()) {
+    Open const here = open.front();
+    open.pop();
+    Vec2d const at = dots[places.at({here.i, here.j})].centre_px;
+    for (int k = 0; k < 4; ++k) {
+      int const di = k == 0 ? 1 : k == 1 ? -1 : 0, dj = k == 2 ? 1 : k == 3 ? -1 : 0;
+      std::pair<int, int> const place{here.i + di, here.j + dj};
+      if (places.contains(place)) continue;
+      Vec2d const step = static_cast<double>(di + dj) * (di != 0 ? here.steps.x : here.steps.y);
+      std::size_t const found = nearest_to(dots, at + step);
+      Vec2d const made = dots[found].centre_px - at;
+      if (taken[found] || length2(made - step) > reach * reach * length2(step)) continue;
+      taken[found] = true;
+      places[place] = found;
+      Steps next = here.steps;
+      (di != 0 ? next.x : next.y) = static_cast<double>(di + dj) * made;
+      open.push({place.first, place.second, next});
+    }
+  }
+  return places;
+}
+
+/// Columns and rows that places take.
+struct Span {
+  int left = std::numeric_limits<int>::max(), right = std::numeric_limits<int>::min();
+  int low = left, high = right;
+};
+
+Span span_of(Places const& places) {
+  Span span;
+  for (auto const& [place, dot] : places) {
+    span = {std::min(span.left, place.first), std::max(span.right, place.first), std::min(span.low, place.second),
+            std::max(span.high, place.second)};
+  }
+  return span;
+}
+
+/// The place that lies nearest to a pixel, with the steps at the nearest dot.
+std::pair<int, int> place_at(std::vector<DetectedDot> const& dots, Places const& places, Vec2d pixel,
+                             Steps const& first) {
+  auto nearest = places.begin();
+  for (auto place = places.begin(); place != places.end(); ++place) {
+    if (length2(dots[place->second].centre_px - pixel) < length2(dots[nearest->second].centre_px - pixel))
+      nearest = place;
+  }
+  auto const [i, j] = nearest->first;
+  Vec2d const at = dots[nearest->second].centre_px;
+  auto const step = [&](int di, int dj, Vec2d otherwise) {
+    if (auto const next = places.find({i + di, j + dj}); next != places.end()) return dots[next->second].centre_px - at;
+    if (auto const last = places.find({i - di, j - dj}); last != places.end()) return at - dots[last->second].centre_px;
+    return otherwise;
+  };
+  Vec2d const x = step(1, 0, first.x), y = step(0, 1, first.y), way = pixel - at;
+  double const area = x.x * y.y - x.y * y.x;
+  return {i + static_cast<int>(std::lround((way.x * y.y - way.y * y.x) / area)),
+          j + static_cast<int>(std::lround((x.x * way.y - x.y * way.x) / area))};
+}
+
+}  // namespace
+
+AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGrid const& grid,
+                            ExpectedView const& expected) {
+  AssignedDots assigned;
+  if (dots.size() < 3) return assigned;
+  std::optional<Beginning> const beginning = begin(dots, expected);
+  if (!beginning) return assigned;
+  Places const places = spread(dots, *beginning);
+  Span const span = span_of(places);
+  bool const whole = span.right - span.left == 2 * grid.half_columns && span.high - span.low == 2 * grid.half_rows;
+  std::pair<int, int> origin{span.left + grid.half_columns, span.low + grid.half_rows};
+  if (!whole) {
+    assigned.middle_by = MiddleBy::expected_view;
+    origin = place_at(dots, places, expected.middle_px, beginning->steps);
+  }
+  for (auto const& [place, dot] : places) {
+    int const i = place.first - origin.first, j = place.second - origin.second;
+    if (std::abs(i) > grid.half_columns || std::abs(j) > grid.half_rows) continue;
+    assigned.dots.push_back({i, j, dots[dot].centre_px});
+  }
+  return assigned;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,77 @@
+#include "render/scene/calibration_planes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/base/units.h"
+#include "render/scene/build_camera.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double least_dot_px = 3;  // narrower ones are found, but their centres hang on where pixels lie
+constexpr double least_gap_px = 4;  // between dots, for their background
+
+}  // namespace
+
+Setup plane_setup(Setup const& setup, double z) {
+  Setup there = setup;
+  there.camera.tilt = sensor_tilt(setup);
+  there.camera.scheimpflug = false;
+  there.lens.focus_distance = setup.focus_distance();
+  there.lens.focus = Focus::distance;
+  there.z_d = -z;
+  return there;
+}
+
+std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera) {
+  bool const tilted = !(sensor_tilt(setup) == Vec2d{});
+  if (setup.lens.prescription || !setup.windows.empty() || (tilted && setup.camera.distorted())) return std::nullopt;
+  PosedSensor<double> const& sensor = camera.sensor;
+  Vec3d const to_sensor = sensor.pose.origin - camera.pose.origin;
+  double const distance = dot(to_sensor, sensor.pose.z);
+  Pinhole pinhole;
+  pinhole.fx = pinhole.fy = distance / sensor.pitch;
+  pinhole.cx = sensor.axis_pixel().x + dot(to_sensor, sensor.pose.x) / sensor.pitch;
+  pinhole.cy = sensor.axis_pixel().y - dot(to_sensor, sensor.pose.y) / sensor.pitch;
+  pinhole.brown = sensor.distortion;
+  pinhole.rows = {sensor.pose.x, -sensor.pose.y, -sensor.pose.z};
+  Vec3d const centre = camera.pose.origin;
+  pinhole.translation = {-dot(pinhole.rows[0], centre), -dot(pinhole.rows[1], centre), -dot(pinhole.rows[2], centre)};
+  return pinhole;
+}
+
+void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+  SetupTable calibration = root.table("calibration");
+  double const mm = unit::millimetre, nearest = *std::max_element(setup.planes.begin(), setup.planes.end());
+  double const least = setup.lens.prescription ? 0.0 : setup.lens.focal_length;
+  if (double const way = plane_setup(setup, nearest).z_b(); !(way > least)) {
+    calibration.problem("planes_mm",
+                        fmt::format("has the plane Z = {:.6g} mm, {:.6g} mm before the lens (within its focal length, "
+                                    "or behind it: there is no image); move the planes or the camera",
+                                    nearest / mm, way / mm));
+  }
+  for (WindowSetup const& window : setup.windows) {
+    if (window.position.z - window.thickness / 2 > nearest) continue;
+    calibration.problem("planes_mm",
+                        fmt::format("has the plane Z = {:.6g} mm, at or before the window at Z = {:.6g} mm "
+                                    "(which is to stand between all planes and the camera); move one",
+                                    nearest / mm, window.position.z / mm));
+  }
+  double const px = setup.camera.pixel_pitch / setup.imaging().magnification, diameter_px = setup.dot_diameter() / px;
+  if (diameter_px < least_dot_px) {
+    warnings.push_back(
+        fmt::format("calibration.dot_diameter_mm: dots are {:.2f} px wide in the picture, which leaves "
+                    "their centres to the pixels; {} px or more are better",
+                    diameter_px, least_dot_px));
+  }
+  if (double const gap_px = setup.target.spacing / px - diameter_px; gap_px < least_gap_px) {
+    warnings.push_back(
+        fmt::format("calibration.spacing_mm: dots are {:.2f} px apart in the picture, edge to edge, "
+                    "where {} px are needed to tell them from their background; use a wider spacing",
+                    gap_px, least_gap_px));
+  }
+}
+
+}  // namespace gladstone

@@ -1,0 +1,142 @@
+#include "studies/calibrate.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "render/base/hdf5_file.h"
+#include "render/base/image_file.h"
+#include "render/base/units.h"
+#include "render/light/calibration_target.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/calibration_planes.h"
+#include "studies/case.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t least_dots = 12;  // on a plane
+
+/// How the setup's camera sees the grid of a plane.
+ExpectedView expected_view(Setup const& setup, double z, std::string const& folder) {
+  Camera const camera = build_camera(plane_setup(setup, z));
+  auto const middle = camera.project({0, 0, z});
+  auto const seen = camera.see({}, Pose<double>{{0, 0, z}});
+  if (!middle || !seen) {
+    throw DataError(folder, fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
+                                        "which tells the dots apart; check camera.pose and lens",
+                                        z / unit::millimetre));
+  }
+  return {*middle, setup.target.spacing * seen->by_x, setup.target.spacing * seen->by_y};
+}
+
+CalibrationGrid grid_of(Setup const& setup) {
+  Lattice const lattice(setup.target);
+  return {lattice.half_columns, lattice.half_rows, lattice.spacing, setup.dot_diameter()};
+}
+
+/// Detects the dots of a plane and adds them to the points.
+void add_plane(Calibration& calibration, Setup const& setup, std::string const& folder, std::size_t plane) {
+  CalibratedPlane added;
+  added.z = setup.planes[plane];
+  added.file = (std::filesystem::path(folder) / case_file::plane(plane)).string();
+  ImageMetadata metadata;
+  Image<double> const picture = read_image(added.file, &metadata);
+  std::string const name = std::filesystem::path(added.file).stem().string();
+  calibration.sources.add(name, added.file, SourceFiles::Holds::pixels, pixel_sha256(picture, metadata.sample_bits));
+  bool const first = calibration.planes.empty();
+  if (!first && (picture.columns() != calibration.columns || picture.rows() != calibration.rows)) {
+    throw DataError(added.file,
+                    fmt::format("is {} x {} px where the planes before it are {} x {}; take all pictures by "
+                                "one camera",
+                                picture.columns(), picture.rows(), calibration.columns, calibration.rows));
+  }
+  calibration.columns = picture.columns();
+  calibration.rows = picture.rows();
+  if (count_not_finite(picture) > 0) throw DataError(added.file, "has pixels that are nan or infinite; export it anew");
+  std::vector<DetectedDot> const dots = detect_dots(picture);
+  CalibrationGrid const grid = grid_of(setup);
+  AssignedDots const assigned = assign_to_grid(dots, grid, expected_view(setup, added.z, folder));
+  added.found = dots.size();
+  added.used = assigned.dots.size();
+  added.middle_by = assigned.middle_by;
+  if (added.used < least_dots) {
+    throw DataError(added.file,
+                    fmt::format("shows {} dots of the grid, where {} are needed ({} spots look like dots); look at "
+                                "focus, light and contrast, and at [calibration] in setup.toml",
+                                added.used, least_dots, added.found));
+  }
+  for (GridDot const& dot : assigned.dots) {
+    calibration.points.world.push_back({grid.spacing * dot.i, grid.spacing * dot.j, added.z});
+    calibration.points.pixel.push_back(dot.pixel);
+    calibration.plane_of.push_back(plane);
+    calibration.index.push_back({dot.i, dot.j});
+  }
+  calibration.planes.push_back(std::move(added));
+}
+
+/// The pinhole camera that a truth.h5 knows; nothing where it knows none, or there is none.
+std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCamera const& fitted) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  Hdf5Reader const file(path);
+  if (!file.has("/pinhole/camera_matrix")) return std::nullopt;
+  auto const read = [&](char const* name, std::size_t count) {
+    std::vector<double> values = file.read(name);
+    if (values.size() != count) throw DataError(path, std::string(name) + " has a wrong shape; render the case again");
+    return values;
+  };
+  std::vector<double> const matrix = read("/pinhole/camera_matrix", 9), brown = read("/pinhole/distortion", 4),
+                            t = read("/pinhole/tvec", 3);
+  std::vector<double> r = read("/pinhole/rvec", 3);
+  // r and r (1 - 2 pi / |r|) are one rotation: that which is nearer to the fitted one
+  double const angle = std::hypot(r[0], r[1], r[2]);
+  double along = 0;
+  for (std::size_t i = 0; i < 3; ++i) along += r[i] * fitted.value[8 + i];
+  if (along < 0 && angle > 0) {
+    for (double& component : r) component *= 1 - 2 * pi / angle;
+  }
+  return PinholeCamera{{matrix[0], matrix[4], matrix[2], matrix[5], brown[0], brown[1], brown[2], brown[3], r[0], r[1],
+                        r[2], t[0], t[1], t[2]}};
+}
+
+}  // namespace
+
+Calibration calibrate_case(std::string const& folder) {
+  require_case(folder);
+  std::string const setup_path = (std::filesystem::path(folder) / case_file::setup).string();
+  Calibration calibration;
+  calibration.sources.on_change("run gladstone calibrate " + folder + " again");
+  calibration.sources.add("", setup_path, SourceFiles::Holds::bytes);
+  CaseSetup loaded = load_case_setup(setup_path, {});
+  Setup const& setup = loaded.setup;
+  if (!setup.calibration()) {
+    throw DataError(folder,
+                    "is a case of BOS, by which no camera is calibrated; render a setup with experiment = "
+                    "\"calibration\" and a table [calibration]");
+  }
+  if (setup.planes.size() < 2) {
+    throw DataError(setup_path,
+                    "calibration.planes_mm names one plane (a camera's distance and its focal length cannot be told "
+                    "apart by one); give two planes or more, three for the polynomial's terms with Z^2");
+  }
+  calibration.setup = loaded.document.resolved();
+  calibration.seed = setup.render.seed;
+  calibration.points.dot_radius = setup.dot_diameter() / 2;
+  for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) add_plane(calibration, setup, folder, plane);
+  try {
+    calibration.pinhole =
+        fit_pinhole(calibration.points, {0.5 * (calibration.columns - 1), 0.5 * (calibration.rows - 1)});
+    calibration.soloff = fit_soloff(calibration.points);
+  } catch (std::invalid_argument const& reason) {
+    throw DataError(folder,
+                    fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", reason.what()));
+  }
+  calibration.rendered =
+      rendered_camera((std::filesystem::path(folder) / case_file::truth).string(), calibration.pinhole.camera);
+  return calibration;
+}
+
+}  // namespace gladstone

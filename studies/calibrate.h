@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/calibration/grid_assignment.h"
+#include "analysis/calibration/pinhole_fit.h"
+#include "analysis/calibration/soloff_fit.h"
+#include "render/base/source_files.h"
+
+namespace gladstone {
+
+/// What one plane of a calibration showed.
+struct CalibratedPlane {
+  std::string file;
+  double z = 0;           ///< [m]
+  std::size_t found = 0;  ///< what looks like a dot
+  std::size_t used = 0;   ///< of these, those with a place on the grid
+  MiddleBy middle_by = MiddleBy::whole_grid;
+};
+
+/// A camera calibrated by the pictures of a CASE.
+struct Calibration {
+  int columns = 0, rows = 0;  ///< of the pictures
+  std::vector<CalibratedPlane> planes;
+  CalibrationPoints points;
+  std::vector<std::size_t> plane_of;      ///< every point
+  std::vector<std::array<int, 2>> index;  ///< its place on the grid
+  PinholeFit pinhole;
+  SoloffFit soloff;
+  std::optional<PinholeCamera> rendered;  ///< that the truth of the case knows, for comparison alone
+  SourceFiles sources;
+  std::string setup;  ///< resolved
+  std::uint64_t seed = 0;
+};
+
+/// Detects the dots of all planes, puts them on the grid and fits both models. @throws DataError where the case is no
+/// calibration, a picture shows too few dots, or the planes are too few
+Calibration calibrate_case(std::string const& folder);
+
+/// Writes calibration.h5 (docs/file-formats.md).
+void write_calibration_file(std::string const& path, Calibration const& calibration);
+
+/// Draws the residuals of both models over the picture. @throws GnuplotMissing
+void draw_calibration(std::string const& path, Calibration const& calibration);
+
+/// One JSON object, and the same as a table.
+std::string calibration_json(Calibration const& calibration);
+std::string calibration_table(Calibration const& calibration);
+
+}  // namespace gladstone

@@ -1,0 +1,136 @@
+#include "studies/calibration_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/image_file.h"
+#include "render/base/output_file.h"
+#include "render/base/random.h"
+#include "render/base/units.h"
+#include "render/scene/calibration_planes.h"
+#include "studies/json_text.h"
+#include "studies/scene_renderer.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::uint64_t least_rays = 1024;  // that "auto" takes: centres are then good to 1e-3 px, see the tests
+constexpr int dots_for_a_fit = 12;          // on a plane: what a homography and its check need
+
+/// A plane's scene, ready to trace: without a medium, in which a step would matter.
+Scene plane_scene(Setup const& setup, double z) {
+  Scene scene = build_scene(plane_setup(setup, z));
+  scene.setup.render.method = RenderMethod::rays;
+  plan_step_of(scene);
+  return scene;
+}
+
+/// Rays a dot for all planes: what the plane needs that is farthest out of focus.
+std::uint64_t rays_for(Setup const& setup) {
+  if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
+  auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
+  return std::max(least_rays, plan_rays_of(scene).rays);
+}
+
+/// The camera with another noise for each frame.
+CameraSetup camera_of_frame(CameraSetup camera, std::size_t frame) {
+  camera.noise.seed = repeat_seed(camera.noise.seed, frame);
+  return camera;
+}
+
+}  // namespace
+
+RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
+  auto const start = std::chrono::steady_clock::now();
+  Setup const& setup = loaded.setup;
+  RenderedCalibration rendered;
+  for (auto const& text : loaded.warnings) warn(rendered.warnings, text);
+  rendered.rays = rays_for(setup);
+  double brightest = 0;
+  for (double const z : setup.planes) {
+    RenderedPlane plane;
+    plane.z = z;
+    plane.scene = plane_scene(setup, z);
+    plane.scene.rays_per_dot = rendered.rays;
+    auto const in_view = std::count_if(plane.scene.dots.centre.begin(), plane.scene.dots.centre.end(),
+                                       [&](Vec2d centre) { return plane.scene.in_view(centre); });
+    if (in_view < dots_for_a_fit) {
+      warn(rendered.warnings,
+           fmt::format("calibration: {} dots of the plane Z = {:.6g} mm lie in the view, too few to calibrate by ({} "
+                       "are needed); change the camera's place, or calibration.spacing_mm and extent_mm",
+                       in_view, z / unit::millimetre, dots_for_a_fit));
+    }
+    Rendering traced = renderer.render(plane.scene, plane.scene.dots, RenderImages::yes, RenderTheory::no);
+    plane.light = std::move(traced.light.reference);
+    plane.truth = std::move(traced.truth);
+    plane.statuses = traced.statuses;
+    rendered.device = traced.device.empty() ? renderer.device() : traced.device;
+    brightest = std::max(brightest, *std::max_element(plane.light.begin(), plane.light.end()));
+    rendered.planes.push_back(std::move(plane));
+  }
+  CameraSetup const& camera = setup.camera;
+  rendered.exposure_e = camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, brightest);
+  SetupTable root = loaded.document.root();
+  root.table("render").resolve("rays_per_dot", static_cast<long long>(rendered.rays));
+  root.table("render").resolve("method", std::string(to_string(RenderMethod::rays)));
+  root.table("camera").resolve("exposure", rendered.exposure_e);
+  rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return rendered;
+}
+
+std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder) {
+  CameraSetup const& camera = loaded.setup.camera;
+  std::string const resolved = loaded.document.resolved();
+  auto const place = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
+  FileOrigin origin{"gladstone calibration truth", 1, resolved, loaded.setup.render.seed, rendered.device};
+  std::vector<std::string> warnings = rendered.warnings;
+  nlohmann::json planes = nlohmann::json::array();
+  std::size_t dots = 0, all_saturated = 0;
+  for (std::size_t i = 0; i < rendered.planes.size(); ++i) {
+    RenderedPlane const& plane = rendered.planes[i];
+    Detector const detector(camera_of_frame(camera, i), rendered.exposure_e);
+    Recording const frame = detector.record(plane.light, RandomStream::noise_reference);
+    std::string const name = case_file::plane(i);
+    write_tiff(place(name), frame.image, {camera.bit_depth, camera.pixel_pitch, resolved});
+    origin.sources.add_known(name.substr(0, name.find('.')), pixel_sha256(frame.image));
+    auto const unseen = std::count_if(plane.truth.reference_px.begin(), plane.truth.reference_px.end(),
+                                      [](Vec2d p) { return std::isnan(p.x); });
+    dots += plane.truth.size();
+    all_saturated += frame.saturated;
+    planes.push_back({{"file", name},
+                      {"z_mm", plane.z / unit::millimetre},
+                      {"dots", plane.truth.size()},
+                      {"dots_unseen", unseen},
+                      {"saturated", frame.saturated},
+                      {"magnification", plane.scene.imaging.magnification},
+                      {"sha256", pixel_sha256(frame.image)}});
+  }
+  if (all_saturated > 0) {
+    warn(warnings, fmt::format("{} pixels are saturated, which moves the centres of their dots; lower camera.exposure",
+                               all_saturated));
+  }
+  for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
+  origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
+  write_calibration_truth(place(case_file::truth), rendered, origin);
+  OutputFile::write_text(place(case_file::setup), resolved);
+  nlohmann::json const summary{{"experiment", "calibration"},
+                               {"planes", planes},
+                               {"dots", dots},
+                               {"rays_per_dot", rendered.rays},
+                               {"exposure", rendered.exposure_e},
+                               {"method", to_string(RenderMethod::rays)},
+                               {"device", rendered.device},
+                               {"warnings", warnings},
+                               {"seconds_render", rendered.seconds}};
+  std::string const text = json_text(summary) + "\n";
+  OutputFile::write_text(place(case_file::summary), text);
+  return text;
+}
+
+}  // namespace gladstone

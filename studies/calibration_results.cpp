@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/base/hdf5_file.h"
+#include "render/base/units.h"
+#include "studies/calibrate.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+namespace {
+
+std::span<double const> flat(std::vector<Vec2d> const& values) {
+  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
+  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
+}
+
+double largest(std::vector<Vec2d> const& residuals) {
+  double most = 0;
+  for (Vec2d const r : residuals) most = std::max(most, length(r));
+  return most;
+}
+
+void write_pinhole(Hdf5Writer& file, PinholeFit const& fit) {
+  auto const& p = fit.camera.value;
+  std::size_t const count = PinholeCamera::count;
+  std::vector<double> const matrix{p[0], 0, p[2], 0, p[1], p[3], 0, 0, 1};
+  file.write("/pinhole/camera_matrix", std::span<double const>(matrix), {3, 3}, "px",
+             "fx, 0, cx; 0, fy, cy; 0, 0, 1, as OpenCV writes it", "row, column");
+  file.write("/pinhole/distortion", std::span(p).subspan(4, 4), {4}, "1", "k1, k2, p1, p2 as in OpenCV", "coefficient");
+  file.write("/pinhole/rvec", std::span(p).subspan(8, 3), {3}, "rad",
+             "rotation R from the world to the camera (x right, y down, z into the scene), as axis times angle",
+             "axis");
+  file.write("/pinhole/tvec", std::span(p).subspan(11, 3), {3}, "m", "t of R X + t", "axis");
+  file.write("/pinhole/standard_errors", std::span<double const>(fit.standard_error), {count}, "of the parameter",
+             "standard errors, from the scatter of the residuals", "fx, fy, cx, cy, k1, k2, p1, p2, rvec, tvec");
+  file.write("/pinhole/covariance", std::span<double const>(fit.covariance), {count, count}, "of both parameters",
+             "covariance of the parameters", "parameter, parameter");
+  file.attribute("/pinhole", "rms_px", fit.rms_px);
+}
+
+void write_soloff(Hdf5Writer& file, SoloffFit const& fit) {
+  SoloffPolynomial const& polynomial = fit.polynomial;
+  std::size_t const count = polynomial.exponents.size();
+  std::vector<std::int64_t> exponents;
+  for (auto const& term : polynomial.exponents) exponents.insert(exponents.end(), term.begin(), term.end());
+  file.write("/soloff/exponents", std::span<std::int64_t const>(exponents), {count, 3}, "1",
+             "powers of X, Y, Z in every term", "term, (X, Y, Z)");
+  file.write("/soloff/coefficients", flat(polynomial.coefficients), {count, 2}, "px / m^(sum of exponents)",
+             "pixel = sum of coefficients times X^i Y^j Z^k, in metres (Soloff, Adrian & Liu 1997)",
+             "term, (column, row)");
+  file.write("/soloff/standard_errors", flat(fit.standard_error), {count, 2}, "px / m^(sum of exponents)",
+             "standard errors of the coefficients", "term, (column, row)");
+  file.attribute("/soloff", "rms_px", fit.rms_px);
+}
+
+/// Arrows of one model's residuals, drawn larger.
+void draw_panel(GnuplotFigure& plot, Calibration const& calibration, std::vector<Vec2d> const& residuals,
+                std::string const& title, double enlarged) {
+  plot.command(fmt::format("set title {} font 'DejaVu Sans Bold,12'", GnuplotFigure::quoted(title)));
+  std::string commands = "plot ";
+  for (std::size_t plane = 0; plane < calibration.planes.size(); ++plane) {
+    std::vector<std::vector<double>> columns(4);
+    for (std::size_t k = 0; k < residuals.size(); ++k) {
+      if (calibration.plane_of[k] != plane) continue;
+      Vec2d const at = calibration.points.pixel[k];
+      columns[0].push_back(at.x);
+      columns[1].push_back(at.y);
+      columns[2].push_back(enlarged * residuals[k].x);
+      columns[3].push_back(enlarged * residuals[k].y);
+    }
+    commands += fmt::format(
+        "{}{} using 1:2:3:4 with vectors head filled size 6,20 linewidth 1.2 linecolor '{}' title {}",
+        plane > 0 ? ", " : "", plot.add_table(columns), house_colour(plane),
+        GnuplotFigure::quoted(fmt::format("Z = {:.4g} mm", calibration.planes[plane].z / unit::millimetre)));
+  }
+  plot.command(commands);
+}
+
+}  // namespace
+
+void write_calibration_file(std::string const& path, Calibration const& calibration) {
+  FileOrigin origin{"gladstone calibration", 1, calibration.setup, calibration.seed, "cpu", calibration.sources};
+  Hdf5Writer file(path, origin);
+  write_pinhole(file, calibration.pinhole);
+  write_soloff(file, calibration.soloff);
+  std::size_t const count = calibration.points.size();
+  std::vector<double> position;
+  std::vector<std::int64_t> plane_of, index;
+  for (std::size_t k = 0; k < count; ++k) {
+    Vec3d const at = calibration.points.world[k];
+    position.insert(position.end(), {at.x, at.y, at.z});
+    plane_of.push_back(static_cast<std::int64_t>(calibration.plane_of[k]));
+    index.insert(index.end(), calibration.index[k].begin(), calibration.index[k].end());
+  }
+  file.write("/dots/position_m", std::span<double const>(position), {count, 3}, "m", "dot centres in the world frame",
+             "dot, (x, y, z)");
+  file.write("/dots/image_px", flat(calibration.points.pixel), {count, 2}, "px", "centroids that were detected",
+             "dot, (column, row)");
+  file.write("/dots/plane", std::span<std::int64_t const>(plane_of), {count}, "1", "its plane, from 0", "dot");
+  file.write("/dots/index", std::span<std::int64_t const>(index), {count, 2}, "1",
+             "place on the grid in spacings from its middle, along X and Y", "dot, (x, y)");
+  file.write("/dots/pinhole_residual_px", flat(calibration.pinhole.residual_px), {count, 2}, "px",
+             "detected minus fitted, pinhole", "dot, (column, row)");
+  file.write("/dots/soloff_residual_px", flat(calibration.soloff.residual_px), {count, 2}, "px",
+             "detected minus fitted, polynomial", "dot, (column, row)");
+  file.close();
+}
+
+void draw_calibration(std::string const& path, Calibration const& calibration) {
+  constexpr int width = 1180, height = 620;
+  constexpr double longest = 0.06;  // of the picture's width, that the longest arrow takes
+  GnuplotFigure plot(width, height);
+  double const most = std::max(largest(calibration.pinhole.residual_px), largest(calibration.soloff.residual_px));
+  double const enlarged = most > 0 ? std::pow(10, std::floor(std::log10(longest * calibration.columns / most))) : 1;
+  plot.command("set multiplot layout 1,2");
+  plot.command("set size ratio -1; set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
+  plot.command(fmt::format("set xrange [0:{}]; set yrange [{}:0]", calibration.columns, calibration.rows));
+  plot.command("set xlabel 'column [px]'; set ylabel 'row [px]'; set key outside bottom center horizontal");
+  draw_panel(
+      plot, calibration, calibration.pinhole.residual_px,
+      fmt::format("pinhole and distortion: {:.3g} px rms, {:.0f} times enlarged", calibration.pinhole.rms_px, enlarged),
+      enlarged);
+  draw_panel(
+      plot, calibration, calibration.soloff.residual_px,
+      fmt::format("third-order polynomial: {:.3g} px rms, {:.0f} times enlarged", calibration.soloff.rms_px, enlarged),
+      enlarged);
+  plot.command("unset multiplot");
+  plot.write(path);
+}
+
+std::string calibration_json(Calibration const& calibration) {
+  using nlohmann::ordered_json;
+  ordered_json planes = ordered_json::array(), pinhole;
+  for (CalibratedPlane const& plane : calibration.planes) {
+    planes.push_back({{"file", plane.file},
+                      {"z_mm", plane.z / unit::millimetre},
+                      {"found", plane.found},
+                      {"used", plane.used},
+                      {"middle_by", plane.middle_by == MiddleBy::whole_grid ? "whole_grid" : "setup"}});
+  }
+  PinholeFit const& fit = calibration.pinhole;
+  auto const finite = [](double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); };
+  for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
+    ordered_json& entry = pinhole[PinholeCamera::names[i]];
+    entry = {{"value", fit.camera.value[i]},
+             {"standard_error", finite(fit.standard_error[i])},
+             {"unit", PinholeCamera::units[i]}};
+    if (calibration.rendered) entry["rendered"] = calibration.rendered->value[i];
+  }
+  ordered_json const json{
+      {"dots", calibration.points.size()},
+      {"planes", planes},
+      {"pinhole", {{"parameters", pinhole}, {"rms_px", fit.rms_px}, {"largest_px", largest(fit.residual_px)}}},
+      {"soloff",
+       {{"terms", calibration.soloff.polynomial.exponents.size()},
+        {"rms_px", calibration.soloff.rms_px},
+        {"largest_px", largest(calibration.soloff.residual_px)}}}};
+  return json_text(json) + "\n";
+}
+
+std::string calibration_table(Calibration const& calibration) {
+  PinholeFit const& fit = calibration.pinhole;
+  std::string text = fmt::format("{:<10}{:>20}{:>16}", "", "fitted", "standard error");
+  if (calibration.rendered) text += fmt::format("{:>20}{:>8}", "rendered", "off by");
+  text += '\n';
+  for (std::size_t i = 0; i < PinholeCamera::count; ++i) {
+    text += fmt::format("{:<10}{:>20.9g}{:>16.2g}",
+                        fmt::format("{} [{}]", PinholeCamera::names[i], PinholeCamera::units[i]), fit.camera.value[i],
+                        fit.standard_error[i]);
+    if (calibration.rendered) {
+      double const truth = calibration.rendered->value[i];
+      text += fmt::format("{:>20.9g}{:>8.1f}", truth, (fit.camera.value[i] - truth) / fit.standard_error[i]);
+    }
+    text += '\n';
+  }
+  if (calibration.rendered) text += "(off by: in standard errors)\n";
+  for (CalibratedPlane const& plane : calibration.planes) {
+    text += fmt::format(
+        "Z = {:.6g} mm: {} of {} dots found are on the grid{}\n", plane.z / unit::millimetre, plane.used, plane.found,
+        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle is where the setup's camera sees it");
+  }
+  return text + fmt::format(
+                    "residuals, rms per component and largest: pinhole {:.3g} and {:.3g} px, polynomial {:.3g} "
+                    "and {:.3g} px",
+                    fit.rms_px, largest(fit.residual_px), calibration.soloff.rms_px,
+                    largest(calibration.soloff.residual_px));
+}
+
+}  // namespace gladstone

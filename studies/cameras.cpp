@@ -1,0 +1,196 @@
+#include "studies/cameras.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "render/base/nearest_name.h"
+#include "render/base/random.h"
+#include "render/base/setup_node.h"
+#include "studies/case.h"
+#include "studies/shared_target.h"
+
+namespace gladstone {
+namespace {
+
+using Kind = SetupNode::Kind;
+
+/// The cameras of a setup that has several; null where it has one.
+SetupNode const* several_cameras(SetupDocument const& setup) {
+  SetupNode const* const cameras = setup.find({"camera"});
+  if (!cameras || cameras->kind != Kind::array || cameras->elements.size() < 2) return nullptr;
+  bool const tables = std::all_of(cameras->elements.begin(), cameras->elements.end(),
+                                  [](SetupNode const& camera) { return camera.kind == Kind::table; });
+  return tables ? cameras : nullptr;  // else the readers say what is wrong
+}
+
+/// Takes a key out of a table. @return its value, or nothing
+std::optional<SetupNode> take(SetupNode& table, std::string const& key) {
+  auto const found = std::find_if(table.members.begin(), table.members.end(),
+                                  [&key](SetupMember const& member) { return member.key == key; });
+  if (found == table.members.end()) return std::nullopt;
+  SetupNode taken = std::move(found->value);
+  table.members.erase(found);
+  return taken;
+}
+
+/// Leaves the windows that a camera looks through, without the key that says so.
+/// @param names of all cameras
+void keep_own_windows(SetupDocument& document, std::string const& camera, std::vector<std::string> const& names) {
+  SetupNode const* const all = document.find({"window"});
+  if (!all || (all->kind != Kind::array && all->kind != Kind::table)) return;
+  std::vector<SetupNode> windows = all->kind == Kind::array ? all->elements : std::vector{*all};
+  SetupDocument places = document.copy();  // asked where things stand: what was asked is part of a resolved setup
+  SetupNode kept = *all;
+  kept.kind = Kind::array;
+  kept.members.clear();
+  kept.elements.clear();
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    std::optional<SetupNode> const seen_by = take(windows[i], "cameras");
+    bool seen = !seen_by || (seen_by->kind == Kind::array && seen_by->elements.empty());
+    auto const problem = [&](std::string const& message) {
+      std::vector<SetupTable> tables = places.root().tables("window");
+      document.add_problem(i < tables.size() ? tables[i].where("cameras") : "window",
+                           "window[" + std::to_string(i) + "].cameras: " + message);
+    };
+    if (seen_by && seen_by->kind != Kind::array) {
+      problem("must be an array of names of cameras; write [\"left\", \"right\"]");
+    } else if (seen_by) {
+      for (SetupNode const& name : seen_by->elements) {
+        seen = seen || (name.kind == Kind::text && name.text == camera);
+        if (name.kind == Kind::text && std::find(names.begin(), names.end(), name.text) != names.end()) continue;
+        problem(toml_text(name) + " is no camera's name; " +
+                (names.empty() ? "give camera.name" : "cameras are " + quoted_list(names)));
+      }
+    }
+    if (seen) kept.elements.push_back(windows[i]);
+  }
+  document.set({"window"}, kept);
+}
+
+/// Leaves one camera, with what is its own.
+void keep_camera(SetupDocument& document, SetupNode camera, std::vector<std::string> const& names) {
+  SetupNode const* const name = camera.find("name");
+  std::string const own = name && name->kind == Kind::text ? name->text : "";
+  if (std::optional<SetupNode> const lens = take(camera, "lens")) document.set({"lens"}, *lens);
+  document.set({"camera"}, camera);
+  keep_own_windows(document, own, names);
+}
+
+void check_name(SetupTable camera, std::string const& name, std::set<std::string>& others) {
+  if (name.empty()) {
+    camera.problem("name", "is missing (it is that of the camera's folder); give each of several cameras a name");
+    return;
+  }
+  bool const plain = std::all_of(name.begin(), name.end(),
+                                 [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+  if (!plain) camera.problem("name", "is no name of a folder; use letters, digits, _ and -");
+  if (!others.insert(name).second) camera.problem("name", "is another camera's name too; give each its own");
+}
+
+/// Noise of camera `index` that is independent of the others', whatever seeds they have.
+void give_own_noise(SetupDocument& document, std::size_t index) {
+  SetupNode const* const noise = document.find({"camera", "noise"});
+  if (!noise || noise->kind != Kind::table || index == 0) return;
+  SetupNode const* const seed = noise->find("seed");
+  if (seed && (seed->kind != Kind::integer || seed->integer < 0)) return;  // the reader says what is wrong
+  SetupNode own;
+  own.kind = Kind::integer;
+  if (seed) own.place = seed->place;
+  own.integer = static_cast<long long>(repeat_seed(seed ? static_cast<std::uint64_t>(seed->integer) : 1, index) >> 1);
+  document.set({"camera", "noise", "seed"}, own);
+}
+
+/// The place of cameras without a pose is none of those that have one.
+void leave_place_to_others(SetupDocument& document) {
+  SetupNode const* const found = document.find({"geometry"});
+  if (!found || found->kind != Kind::table) return;
+  SetupNode geometry = *found;
+  take(geometry, "z_a_mm");
+  take(geometry, "z_front_mm");
+  document.set({"geometry"}, geometry);
+}
+
+}  // namespace
+
+std::vector<std::string> camera_names(SetupDocument const& setup) {
+  std::vector<std::string> names;
+  SetupNode const* const cameras = several_cameras(setup);
+  if (!cameras) return names;
+  for (SetupNode const& camera : cameras->elements) {
+    SetupNode const* const name = camera.find("name");
+    names.push_back(name && name->kind == Kind::text ? name->text : "");
+  }
+  return names;
+}
+
+SetupDocument with_own_lens(SetupDocument setup) {
+  SetupNode const* node = setup.find({"camera"});
+  if (several_cameras(setup)) return setup;
+  if (node && node->kind == Kind::array && node->elements.size() == 1) node = &node->elements.front();
+  SetupNode const camera = node ? *node : SetupNode{};
+  SetupNode const* const windows = setup.find({"window"});
+  bool const chosen =
+      windows && (windows->find("cameras") || std::any_of(windows->elements.begin(), windows->elements.end(),
+                                                          [](SetupNode const& one) { return one.find("cameras"); }));
+  if (camera.kind != Kind::table || (!camera.find("lens") && !chosen)) return setup;
+  if (camera.find("lens") && setup.find({"lens"})) {
+    setup.root().problem("lens", "stands beside the camera's own lens (camera.lens); remove one");
+  }
+  SetupNode const* const name = camera.find("name");
+  keep_camera(setup, camera, name && name->kind == Kind::text ? std::vector{name->text} : std::vector<std::string>{});
+  return setup;
+}
+
+std::vector<CameraCase> camera_cases(SetupDocument const& setup) {
+  std::vector<CameraCase> cases;
+  SetupNode const* const cameras = several_cameras(setup);
+  if (!cameras) {
+    cases.push_back({"", setup.copy()});
+    return cases;
+  }
+  std::vector<SetupNode> const& all = cameras->elements;
+  std::vector<std::string> const names = camera_names(setup);
+  auto const has = [&all](char const* table) {
+    return std::count_if(all.begin(), all.end(), [&](SetupNode const& camera) { return camera.find(table); });
+  };
+  auto const count = static_cast<std::ptrdiff_t>(all.size()), posed = has("pose");
+  bool const lens_unused = has("lens") == count && setup.find({"lens"});
+  std::set<std::string> others;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SetupDocument document = setup.copy();
+    if (lens_unused) {
+      document.root().problem("lens", "is no camera's (each has a lens of its own); remove it");
+    }
+    keep_camera(document, all[i], names);
+    check_name(document.root().table("camera"), names[i], others);
+    give_own_noise(document, i);
+    if (posed < count && all[i].find("pose")) leave_place_to_others(document);
+    cases.push_back({names[i], std::move(document)});
+  }
+  std::vector<Setup> read;
+  std::vector<SetupProblem> problems;
+  std::size_t more = 0;
+  for (CameraCase const& one : cases) {
+    try {
+      read.push_back(load_case_setup(one.document.copy()).setup);
+    } catch (SetupError const& error) {
+      for (SetupProblem const& problem : error.problems()) {
+        bool const told = std::any_of(problems.begin(), problems.end(), [&problem](SetupProblem const& other) {
+          return other.where == problem.where && other.message == problem.message;
+        });
+        if (!told) problems.push_back(problem);
+      }
+      more = std::max(more, error.more());
+    }
+  }
+  if (!problems.empty()) throw SetupError(problems, more);
+  share_target(cases, read);
+  return cases;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,72 @@
+#include "studies/calibrate.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "studies/cameras.h"
+#include "studies/case_files.h"
+#include "studies/commands/command.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folders of a CASE that hold a camera each, by the camera's name; the CASE itself has none.
+std::vector<std::pair<std::string, std::string>> camera_folders(std::string const& folder) {
+  require_case(folder);
+  std::vector<std::pair<std::string, std::string>> folders;
+  SetupDocument const setup = SetupDocument::from_file((fs::path(folder) / case_file::setup).string());
+  for (std::string const& name : camera_names(setup)) folders.emplace_back(name, (fs::path(folder) / name).string());
+  if (folders.empty()) folders.emplace_back("", folder);
+  return folders;
+}
+
+void write_results(std::string const& folder, Calibration const& calibration, bool figures) {
+  write_calibration_file((fs::path(folder) / case_file::calibration).string(), calibration);
+  if (!figures) return;
+  std::string const figure = (fs::path(folder) / case_file::calibration_figure).string();
+  try {
+    draw_calibration(figure, calibration);
+    spdlog::info("drew {}", figure);
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+  }
+}
+
+}  // namespace
+
+CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    std::string folder;
+    bool no_figures = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("case", arguments->folder, "Case folder of a calibration, of one camera or several")->required();
+  app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
+  return [arguments, &options] {
+    auto const folders = camera_folders(arguments->folder);
+    std::vector<Calibration> calibrations;
+    for (auto const& [name, folder] : folders) calibrations.push_back(calibrate_case(folder));
+    nlohmann::ordered_json cameras;
+    std::string text;
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+      auto const& [name, folder] = folders[i];
+      write_results(folder, calibrations[i], !arguments->no_figures);
+      cameras[name] = nlohmann::ordered_json::parse(calibration_json(calibrations[i]));
+      if (!name.empty()) text += fmt::format("{}camera {}\n", i > 0 ? "\n\n" : "", name);
+      text += calibration_table(calibrations[i]);
+    }
+    bool const several = !folders.front().first.empty();
+    print_result(options, json_text(several ? nlohmann::ordered_json{{"cameras", cameras}} : cameras[""]), text);
+    return ok;
+  };
+}
+
+}  // namespace gladstone

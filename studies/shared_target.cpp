@@ -1,0 +1,77 @@
+#include "studies/shared_target.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/setup_node.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+SetupNode node(double number) {
+  SetupNode made;
+  made.kind = SetupNode::Kind::number;
+  made.number = number;
+  return made;
+}
+
+SetupNode node(Vec2d pair) {
+  SetupNode made;
+  made.kind = SetupNode::Kind::array;
+  made.elements = {node(pair.x), node(pair.y)};
+  return made;
+}
+
+/// Width and height of a target about `middle` that covers every camera's own [mm].
+Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
+  Vec2d half{};
+  for (Setup const& one : read) {
+    Vec2d const off = one.target_centre() - middle, extent = one.target_extent();
+    half = {std::max(half.x, std::abs(off.x) + extent.x / 2), std::max(half.y, std::abs(off.y) + extent.y / 2)};
+  }
+  // in whole micrometres: the same number for all, however it is written
+  auto const in_mm = [](double metres) { return std::ceil(metres / unit::micrometre) * 1e-3; };
+  return {in_mm(2 * half.x), in_mm(2 * half.y)};
+}
+
+/// Area of the target that a camera's pixel sees [m^2].
+double pixel_area(Setup const& setup) {
+  double const px = setup.camera.pixel_pitch / setup.imaging().magnification;
+  return px * px;
+}
+
+/// The first camera's dots in the words of another one.
+void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
+  if (first.target.kind == TargetKind::dots) {
+    // a density that gives the very same number, to the last dot
+    double const density = first.dot_count() * 1024.0 * pixel_area(own) / (extent.x * extent.y);
+    document.set({"target", "dots_per_32px_window"}, node(density));
+  }
+  if (first.target.dot_diameter_m) return;
+  if (SetupNode const* const table = document.find({"target"}); table && table->find("dot_diameter_px")) {
+    SetupNode without = *table;
+    std::erase_if(without.members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
+    document.set({"target"}, without);
+  }
+  document.set({"target", "dot_diameter_mm"}, node(first.dot_diameter() / unit::millimetre));
+}
+
+}  // namespace
+
+void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read) {
+  Setup first = read.front();
+  if (first.target.kind == TargetKind::points || first.target.kind == TargetKind::lattice) return;  // the same as it is
+  Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
+  Vec2d const extent_mm =
+      first.target.extent_m ? *first.target.extent_m / unit::millimetre : extent_of_all(read, middle);
+  if (!first.target.extent_m) first.target.extent_m = extent_mm * unit::millimetre;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SetupDocument& document = cases[i].document;
+    if (!read[i].target.extent_m) document.set({"target", "extent_mm"}, node(extent_mm));
+    if (!read[i].target.centre_m) document.set({"target", "center_mm"}, node(middle));
+    if (first.target.kind != TargetKind::image) share_dots(document, first, read[i], *first.target.extent_m);
+  }
+}
+
+}  // namespace gladstone

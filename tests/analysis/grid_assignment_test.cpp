@@ -1,0 +1,87 @@
+#include "analysis/calibration/grid_assignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace gladstone {
+namespace {
+
+constexpr CalibrationGrid grid{6, 4, 2.5e-3, 0.8e-3};
+
+/// A plane that is seen slantingly, turned by 12 degrees: perspective changes the steps by a third across the picture.
+Vec2d seen(double i, double j) {
+  double const c = std::cos(0.21), s = std::sin(0.21), x = 40 * (c * i + s * j), y = 40 * (s * i - c * j);
+  double const depth = 1 + 0.0007 * x;
+  return {300 + x / depth, 220 + y / depth};
+}
+
+ExpectedView expected() { return {seen(0, 0), seen(1, 0) - seen(0, 0), seen(0, 1) - seen(0, 0)}; }
+
+/// The dots of some columns and rows, in no order.
+std::vector<DetectedDot> dots_of(int left, int right, int low, int high) {
+  std::vector<DetectedDot> dots;
+  for (int i = left; i <= right; ++i) {
+    for (int j = low; j <= high; ++j) dots.push_back({seen(i, j), 1, 6});
+  }
+  std::shuffle(dots.begin(), dots.end(), std::mt19937(1));
+  return dots;
+}
+
+void expect_right(AssignedDots const& assigned) {
+  for (GridDot const& dot : assigned.dots) {
+    EXPECT_LT(length(dot.pixel - seen(dot.i, dot.j)), 1e-9) << dot.i << ' ' << dot.j;
+  }
+}
+
+TEST(GridAssignment, FollowsThePerspective) {
+  AssignedDots const assigned = assign_to_grid(dots_of(-6, 6, -4, 4), grid, expected());
+  EXPECT_EQ(assigned.dots.size(), 13u * 9u);
+  EXPECT_EQ(assigned.middle_by, MiddleBy::whole_grid);
+  expect_right(assigned);
+}
+
+// Where the whole grid is seen the setup's camera may be wrong by spacings, and by 40 degrees.
+TEST(GridAssignment, OfAWholeGridNeedsNoGoodGuess) {
+  ExpectedView wrong = expected();
+  wrong.middle_px += Vec2d{130, -90};
+  double const c = std::cos(0.6), s = std::sin(0.6);
+  for (Vec2d* step : {&wrong.along_x_px, &wrong.along_y_px}) {
+    *step = 0.5 * Vec2d{c * step->x - s * step->y, s * step->x + c * step->y};
+  }
+  AssignedDots const assigned = assign_to_grid(dots_of(-6, 6, -4, 4), grid, wrong);
+  EXPECT_EQ(assigned.dots.size(), 13u * 9u);
+  expect_right(assigned);
+}
+
+// A part of the grid, its own middle far from the grid's: only the expected view can tell, within half a spacing.
+TEST(GridAssignment, OfAPartTakesTheExpectedMiddle) {
+  ExpectedView rough = expected();
+  rough.middle_px += Vec2d{15, 10};
+  AssignedDots const assigned = assign_to_grid(dots_of(-1, 6, -4, 2), grid, rough);
+  EXPECT_EQ(assigned.dots.size(), 8u * 7u);
+  EXPECT_EQ(assigned.middle_by, MiddleBy::expected_view);
+  expect_right(assigned);
+}
+
+TEST(GridAssignment, GoesAroundMissingDotsAndLeavesOutStrangers) {
+  std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
+  std::erase_if(dots, [](DetectedDot const& dot) {
+    return length(dot.centre_px - seen(0, 0)) < 1 || length(dot.centre_px - seen(-3, 2)) < 1;
+  });
+  dots.push_back({seen(2.5, 1.5), 1, 6});
+  AssignedDots const assigned = assign_to_grid(dots, grid, expected());
+  EXPECT_EQ(assigned.dots.size(), 13u * 9u - 2);
+  expect_right(assigned);
+}
+
+TEST(GridAssignment, TooFewDotsAreNoGrid) {
+  EXPECT_TRUE(assign_to_grid({}, grid, expected()).dots.empty());
+  EXPECT_TRUE(assign_to_grid(dots_of(0, 1, 0, 0), grid, expected()).dots.empty());
+}
+
+}  // namespace
+}  // namespace gladstone

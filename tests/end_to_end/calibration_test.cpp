@@ -1,0 +1,223 @@
+#include <cmath>
+
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A 24 mm lens 300 mm before dots 1 mm wide, on three planes 40 mm apart.
+constexpr char const* wide = R"(experiment = "calibration"
+
+[camera]
+pixels = [640, 480]
+pixel_pitch_um = 10.0
+bit_depth = 12
+offset_dn = 50
+[camera.noise]
+read_noise_e = 5.0
+
+[lens]
+focal_length_mm = 24.0
+f_number = 11.0
+
+[geometry]
+z_a_mm = 300.0
+
+[calibration]
+planes_mm = [-20.0, 0.0, 20.0]
+spacing_mm = 5.0
+dot_diameter_mm = 1.5
+extent_mm = [60.0, 45.0]
+
+[render]
+rays_per_dot = 1024
+)";
+
+class Calibrations : public Workplace {
+ protected:
+  std::vector<double> dataset(std::string const& file, std::string const& name) const {
+    return Hdf5Reader(in(file).string()).read(name);
+  }
+  nlohmann::json calibrate(std::string const& folder) const {
+    return json_of({"calibrate", folder, "--quiet", "--no-figures"});
+  }
+  /// Every parameter lies within three of its standard errors of the camera that rendered it.
+  static void expect_recovered(nlohmann::json const& calibration) {
+    for (auto const& [name, parameter] : calibration["pinhole"]["parameters"].items()) {
+      double const off = parameter["value"].get<double>() - parameter["rendered"].get<double>();
+      EXPECT_LT(std::abs(off), 3 * parameter["standard_error"].get<double>()) << name << "\n" << parameter;
+    }
+  }
+};
+
+TEST_F(Calibrations, RenderPlanesOfDotsAndTheirTruth) {
+  write("setup.toml", wide);
+  auto const json = json_of({"render", "setup.toml", "-o", "case", "--quiet"});
+  EXPECT_EQ(names("case"), (std::vector<std::string>{"plane_000.tif", "plane_001.tif", "plane_002.tif", "setup.toml",
+                                                     "summary.json", "truth.h5"}));
+  EXPECT_EQ(json["planes"].size(), 3u);
+  EXPECT_EQ(json["dots"], 3 * 13 * 9);
+  auto const position = dataset("case/truth.h5", "/dots/position_m"),
+             image = dataset("case/truth.h5", "/dots/image_px"), chief = dataset("case/truth.h5", "/dots/chief_px");
+  ASSERT_EQ(position.size(), 3u * 3 * 13 * 9);
+  // a thin lens in focus on Z = 0: z_i = f (z_a) / (z_a - f), pixel = middle + z_i / p times (x, -y) / (z_a - z)
+  double const scale = 24e-3 * 0.3 / (0.3 - 24e-3) / 10e-6;
+  for (std::size_t k = 0; k < position.size() / 3; ++k) {
+    double const depth = 0.3 - position[3 * k + 2];
+    double const column = 319.5 + scale * position[3 * k] / depth, row = 239.5 - scale * position[3 * k + 1] / depth;
+    EXPECT_NEAR(chief[2 * k], column, 1e-7);
+    EXPECT_NEAR(chief[2 * k + 1], row, 1e-7);
+    // centroids: 1024 random rays over 13 px would scatter by 13 / 4 / sqrt(1024) = 0.1 px, Sobol's by a tenth of that
+    EXPECT_NEAR(image[2 * k], column, 0.05);
+    EXPECT_NEAR(image[2 * k + 1], row, 0.05);
+  }
+}
+
+TEST_F(Calibrations, RecoverTheCamera) {
+  write("setup.toml", wide);
+  render("case");
+  auto const json = calibrate("case");
+  EXPECT_EQ(json["dots"], 3 * 13 * 9);
+  expect_recovered(json);
+  EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);
+  EXPECT_LT(json["soloff"]["rms_px"].get<double>(), 0.1);
+  EXPECT_EQ(dataset("case/calibration.h5", "/pinhole/camera_matrix")[0], json["pinhole"]["parameters"]["fx"]["value"]);
+  EXPECT_EQ(dataset("case/calibration.h5", "/soloff/exponents").size(), 19u * 3);
+}
+
+// Where dots are found is where their light is.
+TEST_F(Calibrations, DetectionAgreesWithTheTruth) {
+  write("setup.toml", wide);
+  render("case");
+  calibrate("case");
+  auto const truth = dataset("case/truth.h5", "/dots/image_px"),
+             seen = dataset("case/calibration.h5", "/dots/image_px");
+  auto const index = dataset("case/calibration.h5", "/dots/index"),
+             plane = dataset("case/calibration.h5", "/dots/plane");
+  double squares = 0;
+  std::size_t const count = plane.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    auto const dot = static_cast<std::size_t>(plane[k] * 117 + (index[2 * k + 1] + 4) * 13 + index[2 * k] + 6);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      double const error = seen[2 * k + axis] - truth[2 * dot + axis];
+      EXPECT_LT(std::abs(error), 0.02) << k;
+      squares += error * error;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / (2.0 * static_cast<double>(count))), 5e-3);
+}
+
+// Brown's coefficients, and with them the picture's distortion to 0.01 px wherever there were dots.
+TEST_F(Calibrations, RecoverDistortion) {
+  write("setup.toml", with(wide, "[lens]", "[camera.sensor]\ndistortion = [-0.2, 0.1, 0.002, -0.001]\n[lens]"));
+  render("case");
+  auto const json = calibrate("case");
+  expect_recovered(json);
+  auto const value = [&](char const* name, char const* which) {
+    return json["pinhole"]["parameters"][name][which].get<double>();
+  };
+  // on places (x, y) / z_i about the principal point, in px
+  auto const distortion = [&](char const* which, double x, double y) {
+    double const r2 = x * x + y * y, radial = r2 * (value("k1", which) + r2 * value("k2", which));
+    double const p1 = value("p1", which), p2 = value("p2", which);
+    return std::pair{value("fx", which) * (x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)),
+                     value("fy", which) * (y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y)};
+  };
+  for (double x = -0.1; x <= 0.101; x += 0.02) {
+    for (double y = -0.075; y <= 0.076; y += 0.025) {
+      auto const [u, v] = distortion("value", x, y);
+      auto const [u0, v0] = distortion("rendered", x, y);
+      // p1 and p2 look like a turn of the camera over so narrow a view, and a shift of the principal point: what they
+      // have in common with these is taken away, as what is left of the whole map (below) shows
+      EXPECT_NEAR(std::hypot(u - u0, v - v0), 0, 0.05) << x << ' ' << y;
+    }
+  }
+  auto const residual = dataset("case/calibration.h5", "/dots/pinhole_residual_px");
+  double sum = 0;
+  for (double const r : residual) sum += r * r;
+  EXPECT_LT(std::sqrt(sum / static_cast<double>(residual.size())), 0.01);
+}
+
+std::string stereo() {
+  std::string const camera = with(wide, "[geometry]\nz_a_mm = 300.0\n", "");
+  std::string const one =
+      camera.substr(camera.find("[camera]") + 9, camera.find("[lens]") - camera.find("[camera]") - 9);
+  auto const tables = [&](std::string const& name, std::string const& x) {
+    return "[[camera]]\nname = \"" + name + "\"\n" + one + "[camera.pose]\nposition_mm = [" + x +
+           ", 0.0, 280.0]\n[camera.sensor]\nscheimpflug = \"auto\"\n";
+  };
+  return "experiment = \"calibration\"\n" + tables("left", "-110.0") + tables("right", "110.0") +
+         camera.substr(camera.find("[lens]"));
+}
+
+TEST_F(Calibrations, RecoverAStereoPairWithScheimpflug) {
+  write("setup.toml", stereo());
+  render("case");
+  auto const json = calibrate("case");
+  ASSERT_EQ(json["cameras"].size(), 2u);
+  for (std::string const name : {"left", "right"}) {
+    expect_recovered(json["cameras"][name]);
+    EXPECT_TRUE(fs::exists(in("case/" + name + "/calibration.h5")));
+  }
+  // the principal point lies where the sensor's normal through the lens meets it, z_i tan(tilt) off the middle
+  EXPECT_GT(std::abs(json["cameras"]["left"]["pinhole"]["parameters"]["cx"]["value"].get<double>() - 319.5), 50);
+}
+
+// A thick slanted window is no pinhole: the polynomial follows it.
+TEST_F(Calibrations, ThroughAWindowThePolynomialHolds) {
+  write("setup.toml",
+        std::string(wide) + "[[window]]\nposition_mm = [0, 0, 80]\nthickness_mm = 30\ntilt_deg = [15, 0]\n");
+  render("case");
+  auto const json = calibrate("case");
+  EXPECT_FALSE(json["pinhole"]["parameters"]["fx"].contains("rendered"));
+  EXPECT_LT(json["soloff"]["rms_px"].get<double>(), 0.1);
+  EXPECT_EQ(json["dots"], 3 * 13 * 9);
+}
+
+TEST_F(Calibrations, FiguresShowTheResiduals) {
+  write("setup.toml", wide);
+  render("case");
+  succeed({"calibrate", "case", "--quiet"});
+  EXPECT_TRUE(fs::exists(in("case/calibration_residuals.png")));
+  render("case");  // what was derived from the old planes goes
+  EXPECT_FALSE(fs::exists(in("case/calibration_residuals.png")));
+  EXPECT_FALSE(fs::exists(in("case/calibration.h5")));
+}
+
+TEST_F(Calibrations, WhatCannotBeCalibratedIsRefused) {
+  write("setup.toml", with(wide, "[-20.0, 0.0, 20.0]", "[0.0]"));
+  render("one");
+  expect_refused({"calibrate", "one"}, 2, {"one/setup.toml", "names one plane", "two planes or more"});
+  write("setup.toml", with(wide, "extent_mm = [60.0, 45.0]", "extent_mm = [10.0, 10.0]"));
+  render("few");
+  expect_refused({"calibrate", "few"}, 2, {"few/plane_000.tif", "shows 9 dots of the grid, where 12 are needed"});
+  write("setup.toml", small_setup);
+  render("bos");
+  expect_refused({"calibrate", "bos"}, 2, {"bos: is a case of BOS", "experiment = \"calibration\""});
+  expect_refused({"calibrate", "nowhere"}, 2, {"nowhere: is not a case"});
+  write("setup.toml", wide);
+  render("case");
+  fs::copy_file(in("bos/reference.tif"), in("case/plane_001.tif"), fs::copy_options::overwrite_existing);
+  expect_refused({"calibrate", "case"}, 2,
+                 {"case/plane_001.tif", "is 64 x 64 px where the planes before it are 640 x 480"});
+  fs::remove(in("case/plane_001.tif"));
+  expect_refused({"calibrate", "case"}, 2, {"case/plane_001.tif"});
+}
+
+TEST_F(Calibrations, NoDotsAtAllAreToldSo) {
+  write("setup.toml", with(wide, "bit_depth = 12", "bit_depth = 12\nexposure = 1.0"));
+  render("dark");
+  expect_refused({"calibrate", "dark"}, 2, {"dark/plane_000.tif", "shows 0 dots", "focus, light and contrast"});
+}
+
+TEST_F(Calibrations, OtherCommandsSayWhatTheCaseIs) {
+  write("setup.toml", wide);
+  render("case");
+  expect_refused({"correlate", "case"}, 2, {"case: is a calibration", "gladstone calibrate case"});
+  expect_refused({"compare", "case"}, 2, {"case: is a calibration"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
