@@ -114,20 +114,18 @@ void draw_calibration(std::string const& path, Calibration const& calibration) {
   constexpr int width = 1180, height = 620;
   constexpr double longest = 0.06;  // of the picture's width, that the longest arrow takes
   GnuplotFigure plot(width, height);
-  double const most = std::max(largest(calibration.pinhole.residual_px), largest(calibration.soloff.residual_px));
-  double const enlarged = most > 0 ? std::pow(10, std::floor(std::log10(longest * calibration.columns / most))) : 1;
+  auto const panel = [&](std::vector<Vec2d> const& residuals, char const* model, double rms) {
+    double const most = largest(residuals);
+    double const enlarged = most > 0 ? std::pow(10, std::floor(std::log10(longest * calibration.columns / most))) : 1;
+    draw_panel(plot, calibration, residuals,
+               fmt::format("{}: {:.3g} px rms, {:.0f} times enlarged", model, rms, enlarged), enlarged);
+  };
   plot.command("set multiplot layout 1,2");
   plot.command("set size ratio -1; set grid linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command(fmt::format("set xrange [0:{}]; set yrange [{}:0]", calibration.columns, calibration.rows));
   plot.command("set xlabel 'column [px]'; set ylabel 'row [px]'; set key outside bottom center horizontal");
-  draw_panel(
-      plot, calibration, calibration.pinhole.residual_px,
-      fmt::format("pinhole and distortion: {:.3g} px rms, {:.0f} times enlarged", calibration.pinhole.rms_px, enlarged),
-      enlarged);
-  draw_panel(
-      plot, calibration, calibration.soloff.residual_px,
-      fmt::format("third-order polynomial: {:.3g} px rms, {:.0f} times enlarged", calibration.soloff.rms_px, enlarged),
-      enlarged);
+  panel(calibration.pinhole.residual_px, "pinhole and distortion", calibration.pinhole.rms_px);
+  panel(calibration.soloff.residual_px, "third-order polynomial", calibration.soloff.rms_px);
   plot.command("unset multiplot");
   plot.write(path);
 }

@@ -27,27 +27,56 @@ void project(T const* p, T const* world, T* pixel) {
   pixel[1] = p[1] * (y * radial + p[6] * (r2 + 2.0 * y * y) + 2.0 * p[7] * x * y) + p[3];
 }
 
-/// Mean of the projections of a dot's disc_points.
+/// From the camera to a point of the world, in the camera's axes.
 template <class T>
-void project_dot(T const* p, Vec3d const& centre, double radius, T* pixel) {
+void look_at(T const* p, T const* world, T* d) {
+  ceres::AngleAxisRotatePoint(p + 8, world, d);
+  for (int axis = 0; axis < 3; ++axis) d[axis] += p[11 + axis];
+}
+
+template <class T>
+T dot3(T const* a, T const* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// The centroid of the image of a Lambertian dot: the mean of its disc_points' images, each weighted by the light that
+/// it sends through the lens, cos(slant of the plane) cos(slant of the lens) / distance^2. The lens faces `middle`.
+template <class T>
+void project_dot(T const* p, Vec3d const& centre, double radius, Vec3d const& middle, T* pixel) {
+  T const normal[3] = {T(0.0), T(0.0), T(1.0)}, faced[3] = {T(middle.x), T(middle.y), T(middle.z)};
+  T across[3], axis[3], sum(0.0);
+  ceres::AngleAxisRotatePoint(p + 8, normal, across);
+  look_at(p, faced, axis);
   pixel[0] = pixel[1] = T(0.0);
   for (Vec2d const off : disc_points) {
     T const world[3] = {T(centre.x + radius * off.x), T(centre.y + radius * off.y), T(centre.z)};
-    T one[2];
+    T one[2], way[3];
     project(p, world, one);
-    pixel[0] += 0.25 * one[0];
-    pixel[1] += 0.25 * one[1];
+    look_at(p, world, way);
+    T const distance2 = dot3(way, way), light = dot3(across, way) * dot3(axis, way) / (distance2 * distance2);
+    pixel[0] += light * one[0];
+    pixel[1] += light * one[1];
+    sum += light;
   }
+  pixel[0] /= sum;
+  pixel[1] /= sum;
+}
+
+Vec3d mean_of(std::vector<Vec3d> const& points) {
+  Vec3d sum{};
+  for (Vec3d const& point : points) sum = sum + point;
+  return sum / static_cast<double>(points.size());
 }
 
 struct Residual {
   Vec3d centre;
   Vec2d pixel;
   double radius;
+  Vec3d middle;
 
   template <class T>
   bool operator()(T const* parameters, T* residual) const {
-    project_dot(parameters, centre, radius, residual);
+    project_dot(parameters, centre, radius, middle, residual);
     residual[0] = pixel.x - residual[0];
     residual[1] = pixel.y - residual[1];
     return true;
@@ -58,11 +87,12 @@ struct Residual {
 /// @return half the sum of squares
 double refine(CalibrationPoints const& points, Parameters& parameters) {
   double cost = 0;
+  Vec3d const middle = mean_of(points.world);
   for (std::vector<int> const& held : {std::vector<int>{2, 3, 4, 5, 6, 7}, std::vector<int>{4, 5, 6, 7}, {}}) {
     ceres::Problem problem;
     for (std::size_t k = 0; k < points.size(); ++k) {
       problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 2, static_cast<int>(PinholeCamera::count)>(
-                                   new Residual{points.world[k], points.pixel[k], points.dot_radius}),
+                                   new Residual{points.world[k], points.pixel[k], points.dot_radius, middle}),
                                nullptr, parameters.data());
     }
     if (!held.empty()) {
@@ -85,9 +115,10 @@ Eigen::MatrixXd jacobian(CalibrationPoints const& points, Parameters const& para
   constexpr auto columns = static_cast<int>(PinholeCamera::count);
   Eigen::Matrix<double, Eigen::Dynamic, columns, Eigen::RowMajor> all(2 * static_cast<Eigen::Index>(points.size()),
                                                                       columns);
+  Vec3d const middle = mean_of(points.world);
   for (std::size_t k = 0; k < points.size(); ++k) {
     ceres::AutoDiffCostFunction<Residual, 2, columns> const cost(
-        new Residual{points.world[k], points.pixel[k], points.dot_radius});
+        new Residual{points.world[k], points.pixel[k], points.dot_radius, middle});
     double const* const blocks[] = {parameters.data()};
     double residual[2];
     double* rows[] = {all.row(2 * static_cast<Eigen::Index>(k)).data()};
@@ -123,9 +154,9 @@ Vec2d PinholeCamera::project(Vec3d world) const {
   return {pixel[0], pixel[1]};
 }
 
-Vec2d PinholeCamera::image_of_dot(Vec3d centre, double radius) const {
+Vec2d PinholeCamera::image_of_dot(Vec3d centre, double radius, Vec3d middle) const {
   double pixel[2];
-  project_dot(value.data(), centre, radius, pixel);
+  project_dot(value.data(), centre, radius, middle, pixel);
   return {pixel[0], pixel[1]};
 }
 
@@ -146,8 +177,9 @@ PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px) {
   }
   if (!std::isfinite(least)) throw std::invalid_argument("no pinhole camera fits the points");
   double squares = 0;
+  Vec3d const middle = mean_of(points.world);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    Vec2d const residual = points.pixel[k] - fit.camera.image_of_dot(points.world[k], points.dot_radius);
+    Vec2d const residual = points.pixel[k] - fit.camera.image_of_dot(points.world[k], points.dot_radius, middle);
     fit.residual_px.push_back(residual);
     squares += dot(residual, residual);
   }

@@ -27,8 +27,8 @@ struct PinholeCamera {
   double cy() const { return value[3]; }
   /// The pixel of a point in the world.
   Vec2d project(Vec3d world) const;
-  /// The centroid of the image of a dot, see disc_points.
-  Vec2d image_of_dot(Vec3d centre, double radius) const;
+  /// The centroid of the image of a Lambertian dot, see disc_points. @param middle of what the lens faces [m]
+  Vec2d image_of_dot(Vec3d centre, double radius, Vec3d middle = {}) const;
 };
 
 /// A camera fitted to points.

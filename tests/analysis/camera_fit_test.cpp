@@ -50,13 +50,14 @@ TEST(Pinhole, IsOpenCVsModel) {
   EXPECT_NEAR(pixel.y, 400 + 1100 * 0.002 * r2, 1e-9);
 }
 
-// A disc's image lies off the image of its centre by (r^2 / 8) times the map's Laplacian; of x / (1 + a x), seen
-// squarely from 1 m, that is -2 a.
+// A disc's image lies off the image of its centre by (r^2 / 8) times the map's Laplacian and, where light changes over
+// the disc, by (r^2 / 4) times the slope of its logarithm times the map's. Seen from 1 m with a slant of a,
+// d = (x cos a, y, 1 - x sin a): the map is 1000 x cos a / (1 - x sin a) with the Laplacian 2000 cos a sin a, the light
+// (1 - x sin a) / |d|^4 with the slope 3 sin a.
 TEST(Pinhole, ADotsImageIsNotThatOfItsCentre) {
   double const slant = 0.5, c = std::cos(slant), s = std::sin(slant), radius = 0.01;
   PinholeCamera const camera{{1000, 1000, 0, 0, 0, 0, 0, 0, 0, slant, 0, 0, 0, 1}};
-  // d = (c x, y, 1 - s x): pixel x = 1000 c x / (1 - s x), whose second derivative at 0 is 2000 c s
-  double const expected = radius * radius / 8 * 2000 * c * s;
+  double const expected = radius * radius * (2000.0 / 8 + 3000.0 / 4) * c * s;
   Vec2d const shift = camera.image_of_dot({}, radius) - camera.project({});
   EXPECT_NEAR(shift.x, expected, 1e-3 * expected);
   EXPECT_NEAR(shift.y, 0, 1e-12);

@@ -15,8 +15,7 @@ struct Both {
   Image<double> grid, spots;
 };
 
-Both lay_down(double sigma, std::vector<Vec2d> const& hits) {
-  constexpr int side = 40;
+Both lay_down(double sigma, std::vector<Vec2d> const& hits, int side = 40) {
   SpotView spot;
   spot.model = SpotModel::gaussian;
   spot.gaussian.sigma = sigma;
@@ -70,6 +69,24 @@ TEST(HitGrid, MovesOnWhereRaysSpread) {
   double sum = 0;
   for (double const light : both.grid) sum += light;
   EXPECT_NEAR(sum, 4.0 / 7, 1e-6);
+}
+
+// Images wider than all tiles together: some take others' places in turn.
+TEST(HitGrid, LaysWideDotsDownInTiles) {
+  for (double const radius : {14.0, 80.0, 140.0}) {
+    std::vector<Vec2d> hits;
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+      double const r = radius * std::sqrt(to_unit(random_bits(1, RandomStream::pupil, i, 0)));
+      double const turn = 6.283185307179586 * to_unit(random_bits(1, RandomStream::pupil, i, 1));
+      hits.push_back({150 + r * std::cos(turn), 150 + r * std::sin(turn)});
+    }
+    Both const both = lay_down(0.5, hits, 300);
+    // 5e-5 at worst of each ray that lights a pixel: those of the nine pixels about it
+    EXPECT_LT(largest_difference(both), 5e-5 * 9 / (3.14 * radius * radius)) << radius;
+    double sum = 0;
+    for (double const light : both.grid) sum += light;
+    EXPECT_NEAR(sum, 1, 1e-9);
+  }
 }
 
 }  // namespace
