@@ -141,7 +141,7 @@ std::pair<int, int> place_at(std::vector<DetectedDot> const& dots, Places const&
     if (length2(dots[place->second].centre_px - pixel) < length2(dots[nearest->second].centre_px - pixel))
       nearest = place;
   }
-  auto const [i, j] = nearest->first;
+  int const i = nearest->first.first, j = nearest->first.second;  // clang 14 captures no structured bindings
   Vec2d const at = dots[nearest->second].centre_px;
   auto const step = [&](int di, int dj, Vec2d otherwise) {
     if (auto const next = places.find({i + di, j + dj}); next != places.end()) return dots[next->second].centre_px - at;
