@@ -41,7 +41,7 @@ space := $(subst ,, )
 TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
 
-.PHONY: build test demo studies bench fuzz soak lint format install clean help packages configure
+.PHONY: build test demo gallery studies bench fuzz soak lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
@@ -60,6 +60,10 @@ demo: build  ## the seed's experiment from setup to error report, into out/demo;
 		FNR == NR { if (/^## /) told = 1; if (FNR > 1 && !told) { gsub(/\]\(/, "](docs/"); story = story $$0 "\n" } next } \
 		/^## / { inside = 0 } !inside; /^## What the demo shows/ { inside = 1; printf "%s", story }' \
 		out/demo/summary.md README.md > out/demo/README.md && cp out/demo/README.md README.md; }
+
+gallery: build  ## particle images with what spoils them, the seed's Figure 1, into out/gallery; the document's figure: DOCS=1
+	$(BUILD)/bin/gladstone gallery -o out/gallery --device $(DEVICE)
+	@[ -z "$(DOCS)" ] || cp out/gallery/gallery.png docs/gallery.png
 
 studies: build  ## the shipped studies into out/studies; some: STUDIES='f_number z_d'; a GPU: DEVICE=cuda; docs' figures: DOCS=1
 	@for study in $(STUDIES); do run=out/studies/$$study; \

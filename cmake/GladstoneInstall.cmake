@@ -7,7 +7,10 @@ get_property(rooms GLOBAL PROPERTY GLADSTONE_ROOMS)
 target_compile_options(gladstone_base INTERFACE
   $<INSTALL_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:${GLADSTONE_USAGE_FLAGS}>>)
 install(TARGETS ${rooms} EXPORT gladstoneTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# loaded when a picture is first read or written
+install(TARGETS gladstone_image_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET gladstone)
+  set_target_properties(gladstone PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS gladstone RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 

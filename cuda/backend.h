@@ -33,8 +33,8 @@ std::unique_ptr<Renderer> make_renderer();
 /// The general renderer on the GPU. @throws DeviceError where device_state() is not usable
 std::unique_ptr<Renderer> make_rays_renderer();
 
-/// The correlator on the GPU, for the same methods as gladstone::make_correlator.
-/// @throws DeviceError where device_state() is not usable
+/// The correlator on the GPU, for what gladstone::missing_on_gpu() does not name.
+/// @throws DeviceError where device_state() is not usable, or for another method
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
 }  // namespace gladstone::cuda

@@ -19,8 +19,10 @@
 namespace gladstone {
 namespace {
 
-constexpr std::uint64_t least_rays = 1024;  // that "auto" takes: centres are then good to 1e-3 px, see the tests
-constexpr int dots_for_a_fit = 12;          // on a plane: what a homography and its check need
+constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // that "auto" takes
+constexpr double place_tolerance_px = 1e-3;                    // rms of dots' places, that "auto" takes rays for
+constexpr std::size_t dots_traced_again = 64;
+constexpr int dots_for_a_fit = 12;  // on a plane: what a homography and its check need
 
 /// A plane's scene, ready to trace: without a medium, in which a step would matter.
 Scene plane_scene(Setup const& setup, double z) {
@@ -30,12 +32,62 @@ Scene plane_scene(Setup const& setup, double z) {
   return scene;
 }
 
+/// Some of a scene's dots, all over it.
+DotPattern some_dots(Scene const& scene) {
+  DotPattern some = scene.dots;
+  some.centre.clear();
+  std::size_t const count = scene.dots.centre.size(), taken = std::min(count, dots_traced_again);
+  for (std::size_t k = 0; k < taken; ++k) some.centre.push_back(scene.dots.centre[k * count / taken]);
+  return some;
+}
+
+PlaceError place_error(Scene scene, Renderer& renderer) {
+  PlaceError error;
+  if (scene.chief_rays_only()) return error;
+  DotPattern const some = some_dots(scene);
+  auto const places = [&](std::uint64_t repeat) {
+    Scene other = scene;
+    other.setup.render.seed = repeat_seed(scene.setup.render.seed, repeat);
+    return renderer.render(other, some, RenderImages::no, RenderTheory::no).truth.reference_px;
+  };
+  std::vector<Vec2d> const one = places(1), two = places(2);
+  double squares = 0;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    Vec2d const apart = (one[k] - two[k]) / std::sqrt(2.0);
+    if (!std::isfinite(apart.x)) continue;
+    ++error.dots;
+    squares += dot(apart, apart);
+    error.largest_px = std::max({error.largest_px, std::abs(apart.x), std::abs(apart.y)});
+  }
+  error.rms_px = std::sqrt(squares / (2.0 * static_cast<double>(error.dots)));
+  return error;
+}
+
 /// Rays a dot for all planes: what the plane needs that is farthest out of focus.
-std::uint64_t rays_for(Setup const& setup) {
+std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
-  return std::max(least_rays, plan_rays_of(scene).rays);
+  scene.rays_per_dot = std::max(least_rays, plan_rays_of(scene).rays);
+  while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
+    scene.rays_per_dot *= 2;
+  }
+  return scene.rays_per_dot;
+}
+
+/// Says where places are not as good as a calibration asks for.
+void warn_of_place_errors(RenderedCalibration& rendered) {
+  double worst = 0, at = 0;
+  for (RenderedPlane const& plane : rendered.planes) {
+    if (!(plane.place_error.rms_px > worst)) continue;
+    worst = plane.place_error.rms_px;
+    at = plane.z;
+  }
+  if (worst <= place_tolerance_px) return;
+  warn(rendered.warnings,
+       fmt::format("{} rays a dot leave errors of {:.2g} px rms in the places of the dots on Z = {:.6g} mm (more than "
+                   "{:g} px); raise render.rays_per_dot, or stop the lens down",
+                   rendered.rays, worst, at / unit::millimetre, place_tolerance_px));
 }
 
 /// The camera with another noise for each frame.
@@ -51,7 +103,7 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   Setup const& setup = loaded.setup;
   RenderedCalibration rendered;
   for (auto const& text : loaded.warnings) warn(rendered.warnings, text);
-  rendered.rays = rays_for(setup);
+  rendered.rays = rays_for(setup, renderer);
   double brightest = 0;
   for (double const z : setup.planes) {
     RenderedPlane plane;
@@ -70,10 +122,12 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
     plane.light = std::move(traced.light.reference);
     plane.truth = std::move(traced.truth);
     plane.statuses = traced.statuses;
+    plane.place_error = place_error(plane.scene, renderer);
     rendered.device = traced.device.empty() ? renderer.device() : traced.device;
     brightest = std::max(brightest, *std::max_element(plane.light.begin(), plane.light.end()));
     rendered.planes.push_back(std::move(plane));
   }
+  warn_of_place_errors(rendered);
   CameraSetup const& camera = setup.camera;
   rendered.exposure_e = camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, brightest);
   SetupTable root = loaded.document.root();
@@ -83,6 +137,15 @@ RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer) {
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
+
+namespace {
+
+nlohmann::json place_error_json(PlaceError const& error) {
+  auto const rms = std::isfinite(error.rms_px) ? nlohmann::json(error.rms_px) : nlohmann::json(nullptr);
+  return {{"rms", rms}, {"largest", error.largest_px}, {"dots", error.dots}};
+}
+
+}  // namespace
 
 std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder) {
   CameraSetup const& camera = loaded.setup.camera;
@@ -108,6 +171,8 @@ std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rend
                       {"dots", plane.truth.size()},
                       {"dots_unseen", unseen},
                       {"saturated", frame.saturated},
+                      {"rays_planned", rendered.rays},
+                      {"place_error_px", place_error_json(plane.place_error)},
                       {"magnification", plane.scene.imaging.magnification},
                       {"sha256", pixel_sha256(frame.image)}});
   }

@@ -8,6 +8,14 @@
 
 namespace gladstone {
 
+/// What a finite number of rays leaves in the places of a plane's dots, from some of them traced once more with rays of
+/// other random numbers: two independent places differ by sqrt(2) of what either is off.
+struct PlaceError {
+  std::size_t dots = 0;   ///< that were traced again and seen
+  double rms_px = 0;      ///< over them and components; NaN: none was seen
+  double largest_px = 0;  ///< of a component
+};
+
 /// What a camera sees of one plane of a calibration.
 struct RenderedPlane {
   double z = 0;  ///< [m]
@@ -15,6 +23,7 @@ struct RenderedPlane {
   Image<double> light;  ///< in fully lit pixels on the axis
   GroundTruth truth;
   StatusCounts statuses{};
+  PlaceError place_error;
 };
 
 /// A calibration as far as memory.

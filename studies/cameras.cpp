@@ -112,6 +112,7 @@ void leave_place_to_others(SetupDocument& document) {
   SetupNode geometry = *found;
   take(geometry, "z_a_mm");
   take(geometry, "z_front_mm");
+  take(geometry, "z_sensor_mm");
   document.set({"geometry"}, geometry);
 }
 

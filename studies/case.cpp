@@ -9,6 +9,7 @@
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/field_coverage.h"
+#include "render/scene/particle_scene.h"
 #include "studies/cameras.h"
 #include "studies/scene_renderer.h"
 
@@ -33,7 +34,7 @@ void cross_check_windows(CaseSetup& loaded) {
 /// who read it.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
-    check_memory(loaded.setup, field, focused_dots_memory(loaded.setup));
+    check_memory(loaded.setup, field, loaded.setup.piv ? std::vector<MemoryNeed>{} : focused_dots_memory(loaded.setup));
   } catch (DataError const& error) {
     std::string const text = error.what();
     SetupTable root = loaded.document.root();
@@ -47,6 +48,9 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     place("medium.field.file", root.table("medium").tables("field"));
     place("target.dots_per_32px_window", {});
     place("render.rays_per_dot", {});
+    for (char const* const key : {"number", "per_mm3", "per_pixel", "volume_mm"}) {
+      place(std::string("particles.") + key, {});
+    }
   }
 }
 
@@ -66,6 +70,27 @@ void warn(std::vector<std::string>& warnings, std::string text) {
   spdlog::warn("{}", text);
   warnings.push_back(std::move(text));
 }
+
+namespace {
+
+/// Warns where the camera sees nothing of what there is.
+void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
+  if (scene.setup.piv) {
+    for (auto const& text : warnings_of_particles(scene)) warn(warnings, text);
+    return;
+  }
+  auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
+  if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
+    warn(warnings,
+         fmt::format("none of {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be empty; "
+                     "check the target's file (places are in mm) or increase target.dots_per_32px_window",
+                     scene.dots.centre.size(),
+                     scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
+                     scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
+  }
+}
+
+}  // namespace
 
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides) {
   SetupDocument document = SetupDocument::from_file(path);
@@ -118,15 +143,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
         fmt::format("step_mm = {:.4g}: halving it would still change dot {} by {:.2g} px; use a smaller medium.step_mm",
                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
-  auto const in_view = [&scene](Vec2d centre) { return scene.in_view(centre); };
-  if (std::none_of(scene.dots.centre.begin(), scene.dots.centre.end(), in_view)) {
-    warn(prepared.warnings,
-         fmt::format("none of {} dots lies in the view, {:.4g} x {:.4g} mm about the axis: the images will be empty; "
-                     "check the target's file (places are in mm) or increase target.dots_per_32px_window",
-                     scene.dots.centre.size(),
-                     loaded.setup.camera.columns * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
-                     loaded.setup.camera.rows * loaded.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
-  }
+  warn_of_view(scene, prepared.warnings);
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
@@ -139,7 +156,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
                      prepared.rays.truth_error_px, image_tolerance_levels, truth_tolerance_px,
                      prepared.rays.rays_wanted, rays_seconds(scene) * prepared.rays.rays_wanted, rays_budget_s));
   }
-  if (loaded.setup.medium.field.kind != FieldKind::none) {
+  if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
     std::string const coverage = field_coverage(box, loaded.setup).warning();
@@ -165,7 +182,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));
   }
-  if (loaded.setup.target.kind != TargetKind::points) {
+  if (!loaded.setup.piv && loaded.setup.target.kind != TargetKind::points) {
     Vec2d const extent = loaded.setup.target_extent();
     root.table("target").resolve("extent_mm",
                                  std::vector<double>{extent.x / unit::millimetre, extent.y / unit::millimetre});

@@ -11,6 +11,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/errors/scattered_grid.h"
+#include "analysis/errors/uncertainty_quality.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/input_file.h"
@@ -21,6 +22,7 @@
 #include "studies/figures/error_figures.h"
 #include "studies/figures/map_figures.h"
 #include "studies/json_text.h"
+#include "studies/particle_points.h"
 #include "studies/scene_renderer.h"
 #include "studies/truth_file.h"
 
@@ -68,6 +70,25 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   json["rms_without_offset_px"] = number(detected.without_offset.rms_px);
   json["tried"] = nlohmann::ordered_json::array();
   for (ConventionFit const& fit : detected.tried) json["tried"].push_back(fit_json(fit));
+  return json;
+}
+
+/// How well the measurement's own uncertainties tell its errors against the truth on the window, and against that at
+/// the point, which the window's averaging adds to; nothing where there are none.
+nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
+  DisplacementField const& measured = comparison.measured;
+  auto const is_known = [](Vec2d sigma) { return std::isfinite(sigma.x) && std::isfinite(sigma.y); };
+  if (std::none_of(measured.sigma_px.begin(), measured.sigma_px.end(), is_known)) return {};
+  nlohmann::ordered_json json;
+  for (auto const& [name, truth] : {std::pair("window_truth", &comparison.window.displacement_px),
+                                    std::pair("ray_truth", &comparison.point.displacement_px)}) {
+    UncertaintyQuality const quality =
+        uncertainty_quality(measured.displacement_px, *truth, measured.sigma_px, comparison.mask);
+    for (auto const& [measure, value] : quality_measures(quality)) {
+      bool const is_count = measure == "count" || measure == "gross";
+      json[name][std::string(measure)] = is_count ? nlohmann::json(static_cast<long long>(value)) : number(value);
+    }
+  }
   return json;
 }
 
@@ -223,6 +244,10 @@ PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, st
                             TruthAt at) {
   Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
   PointTruth truth;
+  if (scene.setup.piv) {
+    ParticlePoints points = particle_points(scene, renderer, position_px, at);
+    return {std::move(points.seen), {}, std::move(points.flow_px), std::move(points.ambient_px)};
+  }
   truth.point = truth_at_points(scene, renderer, position_px, at, RenderTheory::yes);
   truth.thin_lens = ideal_lens_truth(scene, renderer, truth.point);
   return truth;
@@ -258,6 +283,9 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   comparison.detected = vectors.detected;
   comparison.point = std::move(truth.point);
   comparison.thin_lens = std::move(truth.thin_lens);
+  comparison.flow_px = std::move(truth.flow_px);
+  comparison.ambient_px = std::move(truth.ambient_px);
+  if (prepared.scene.setup.piv) comparison.chain = BudgetChain::piv;
   DisplacementField const& measured = comparison.measured;
 
   CorrelationSettings const& settings = vectors.settings;
@@ -271,9 +299,13 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 
-  std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.point.eq9_px,
-                                                 comparison.point.eq9_cone_px, comparison.thin_lens,
-                                                 comparison.window.displacement_px};
+  bool const piv = comparison.chain == BudgetChain::piv;
+  std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.window.displacement_px};
+  if (piv) {
+    references.insert(references.end(), {comparison.flow_px, comparison.ambient_px});
+  } else {
+    references.insert(references.end(), {comparison.point.eq9_px, comparison.point.eq9_cone_px, comparison.thin_lens});
+  }
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
@@ -282,13 +314,21 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
         "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
         "the vectors and --conventions");
   }
-  std::vector<BudgetStage> const stages{
-      {"eq9", comparison.point.eq9_px},           {"straight", comparison.point.chief_px},
-      {"eq9_cone", comparison.point.eq9_cone_px}, {"thin_lens", comparison.thin_lens},
-      {"lens", comparison.point.displacement_px}, {"window", comparison.window.displacement_px},
-      {"noise_free", comparison.noise_free},      {"measured", measured.displacement_px},
-  };
-  comparison.budget = error_budget(stages, comparison.mask);
+  std::vector<BudgetStage> stages{{"window", comparison.window.displacement_px},
+                                  {"noise_free", comparison.noise_free},
+                                  {"measured", measured.displacement_px}};
+  if (piv) {
+    stages.insert(
+        stages.end(),
+        {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}});
+  } else {
+    stages.insert(stages.end(), {{"eq9", comparison.point.eq9_px},
+                                 {"straight", comparison.point.chief_px},
+                                 {"eq9_cone", comparison.point.eq9_cone_px},
+                                 {"thin_lens", comparison.thin_lens},
+                                 {"lens", comparison.point.displacement_px}});
+  }
+  comparison.budget = error_budget(stages, comparison.mask, comparison.chain);
   return comparison;
 }
 
@@ -303,9 +343,17 @@ std::string errors_json(Comparison const& comparison) {
     return measures;
   };
   json["ray_truth"] = summary(comparison.point.displacement_px);
-  json["eq9"] = summary(comparison.point.eq9_px);
-  json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
+  if (comparison.chain == BudgetChain::piv) {
+    json["flow"] = summary(comparison.flow_px);
+    json["ambient_truth"] = summary(comparison.ambient_px);
+    json["eq9"] = json["eq9_cone"] = nullptr;  // it is of BOS
+  } else {
+    json["eq9"] = summary(comparison.point.eq9_px);
+    json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
+  }
   json["window_truth"] = summary(comparison.window.displacement_px);
+  if (nlohmann::ordered_json const quality = uncertainty_json(comparison); !quality.empty())
+    json["uncertainty"] = quality;
   nlohmann::ordered_json budget;
   nlohmann::json names = nlohmann::json::array();
   for (BudgetTerm const& term : comparison.budget.terms) {
@@ -344,6 +392,7 @@ std::string errors_json(Comparison const& comparison) {
 
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
+  bool const piv = comparison.chain == BudgetChain::piv;
   std::vector<std::string> drawn;
   auto const difference = [&](std::vector<Vec2d> const& from) {
     std::vector<Vec2d> error(measured.size());
@@ -367,15 +416,26 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     axes.x_step = measured.position_px[1].x - axes.x_first;
     axes.y_first = measured.position_px.front().y;
     axes.y_step = measured.position_px[static_cast<std::size_t>(measured.columns)].y - axes.y_first;
+    std::vector<NamedMaps> drawings{maps("ray truth", comparison.point.displacement_px)};
+    if (piv) {
+      drawings.push_back(maps("flow", comparison.flow_px));
+      drawings.push_back(maps("without medium", comparison.ambient_px));
+    } else {
+      drawings.push_back(maps("Eq. 9", comparison.point.eq9_px));
+      drawings.push_back(maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px));
+    }
+    drawings.push_back(maps("measurement", measured.displacement_px));
     drawn.push_back(folder + "/displacement_maps.png");
-    write_displacement_maps(
-        drawn.back(), "Displacement, and differences from ray truth", axes,
-        {maps("ray truth", comparison.point.displacement_px), maps("Eq. 9", comparison.point.eq9_px),
-         maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px), maps("measurement", measured.displacement_px)});
+    write_displacement_maps(drawn.back(), "Displacement, and differences from ray truth", axes, drawings);
   }
-  std::vector<ErrorSeries> const series{{"against ray truth", difference(comparison.point.displacement_px)},
-                                        {"against Eq. 9", difference(comparison.point.eq9_px)},
-                                        {"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)}};
+  std::vector<ErrorSeries> series{{"against ray truth", difference(comparison.point.displacement_px)}};
+  if (piv) {
+    series.push_back({"against the flow", difference(comparison.flow_px)});
+    series.push_back({"against truth without medium", difference(comparison.ambient_px)});
+  } else {
+    series.push_back({"against Eq. 9", difference(comparison.point.eq9_px)});
+    series.push_back({"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)});
+  }
   drawn.push_back(folder + "/error_histograms.png");
   write_error_histograms(drawn.back(), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
@@ -385,7 +445,10 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", truth, series);
   }
   drawn.push_back(folder + "/error_budget.png");
-  write_budget_bars(drawn.back(), "Error budget, from Eq. 9 to the measurement", comparison.budget);
+  write_budget_bars(
+      drawn.back(),
+      piv ? "Error budget, from the flow to the measurement" : "Error budget, from Eq. 9 to the measurement",
+      comparison.budget);
   return drawn;
 }
 

@@ -27,8 +27,10 @@ struct CompareOptions {
 /// Everything that is known at every vector: the chain from Eq. 9 to the measurement.
 struct Comparison {
   DisplacementField measured;
-  GroundTruth point;             ///< truth and theory of the virtual dot whose place the vector is
-  std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them
+  BudgetChain chain = BudgetChain::bos;
+  GroundTruth point;  ///< truth and theory of the virtual dot (particle) whose place the vector is; of PIV no theory
+  std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them; not PIV
+  std::vector<Vec2d> flow_px, ambient_px;  ///< of PIV alone: see ParticlePoints
   WindowTruth window;
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
   VectorMask mask;
@@ -68,6 +70,7 @@ struct MeasuredVectors {
 struct PointTruth {
   GroundTruth point;
   std::vector<Vec2d> thin_lens;
+  std::vector<Vec2d> flow_px, ambient_px;  ///< of PIV alone
 };
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at);

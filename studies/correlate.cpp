@@ -8,6 +8,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/pair_verdict.h"
+#include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
@@ -18,8 +19,8 @@ namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
   SetupTable root = document.root();
-  for (char const* other :
-       {"schema", "experiment", "camera", "lens", "geometry", "medium", "target", "render"}) {  // of a whole setup
+  for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "medium", "target", "particles",
+                            "laser", "flow", "render"}) {  // of a whole setup
     if (root.has(other)) root.pass_over(other);
   }
   for (auto const& assignment : overrides) {
@@ -95,6 +96,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
   Measurement measurement{correlator->correlate_pair(frames), 0};
   judge_pair(measurement.field, frames, *correlator, settings);
+  estimate_uncertainty(measurement.field, frames, settings);
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }

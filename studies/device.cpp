@@ -15,6 +15,20 @@
 #include "studies/version_text.h"
 
 namespace gladstone {
+namespace {
+
+/// The correlator of a GPU; what that does not have the CPU does, unless only the GPU is wanted.
+std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
+  std::string const missing = missing_on_gpu(settings);
+  if (missing.empty()) return cuda::make_correlator(settings);
+  if (only_gpu)
+    throw DeviceError("--device cuda: correlate." + missing +
+                      " is computed on the CPU alone; use --device auto, or \"scc\" with \"gauss3\"");
+  spdlog::info("correlate.{} is computed on the CPU, {} threads", missing, thread_count());
+  return make_correlator(settings);
+}
+
+}  // namespace
 
 Device open_device(std::string const& wanted) {
   std::string instead;
@@ -22,8 +36,11 @@ Device open_device(std::string const& wanted) {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer()),
-              cuda::make_correlator};
+      // particles are rendered on the CPU: "auto" takes it, "cuda" is refused where there are any
+      std::unique_ptr<Renderer> particles;
+      if (wanted == "auto") particles = std::make_unique<RaysRenderer>();
+      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer(), std::move(particles)),
+              [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
     }
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");
     instead = " (" + state.text + ")";

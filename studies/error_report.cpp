@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <vector>
 
 namespace gladstone {
 
@@ -11,10 +11,15 @@ std::string error_report(Comparison const& comparison) {
     char const* name;
     std::vector<Vec2d> const& truth;
   };
-  std::array<Row, 4> const rows{{{"ray truth", comparison.point.displacement_px},
-                                 {"Eq. 9", comparison.point.eq9_px},
-                                 {"cone-filtered Eq. 9", comparison.point.eq9_cone_px},
-                                 {"ray truth on the window", comparison.window.displacement_px}}};
+  std::vector<Row> rows{{"ray truth", comparison.point.displacement_px}};
+  if (comparison.chain == BudgetChain::piv) {
+    rows.push_back({"flow", comparison.flow_px});
+    rows.push_back({"ray truth without medium", comparison.ambient_px});
+  } else {
+    rows.push_back({"Eq. 9", comparison.point.eq9_px});
+    rows.push_back({"cone-filtered Eq. 9", comparison.point.eq9_cone_px});
+  }
+  rows.push_back({"ray truth on the window", comparison.window.displacement_px});
   std::string text = fmt::format("Measurement against   [px]  {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u",
                                  "bias v", "random u", "random v", "rms", "p95", "gross");
   ErrorSummary last{};
@@ -24,8 +29,9 @@ std::string error_report(Comparison const& comparison) {
                         last.bias_u_px, last.bias_v_px, last.random_u_px, last.random_v_px, last.rms_px, last.p95_px,
                         100 * last.gross_fraction);
   }
-  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three dots\n", last.count,
-                      comparison.vectors_in_file(), comparison.window.left_out);
+  text += fmt::format("  over {} of {} vectors; {} left out for fewer than three {}\n", last.count,
+                      comparison.vectors_in_file(), comparison.window.left_out,
+                      comparison.chain == BudgetChain::piv ? "particles" : "dots");
   if (comparison.left_out.all() > 0) text += "  left out as well: " + comparison.left_out.text() + '\n';
   if (comparison.detected) text += "  " + comparison.report + '\n';
   text += '\n';

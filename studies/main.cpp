@@ -31,7 +31,8 @@ constexpr std::array commands{
             attach_compare},
     Command{"trace", "Trace given rays and say where they end and why",
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
-    Command{"info", "Describe a field or an image", "gladstone info field slice.h5", attach_info},
+    Command{"info", "Describe a field, an image, a lens, a sphere or a setup's particles",
+            "gladstone info field slice.h5", attach_info},
     Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
     Command{"calibrate", "Fit cameras to the dots of a calibration case", "gladstone calibrate out/calibration",
             attach_calibrate},
@@ -39,6 +40,8 @@ constexpr std::array commands{
             "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
             attach_sweep},
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
+    Command{"gallery", "Render particle images as they should be, and with what spoils them",
+            "gladstone gallery -o out/gallery", attach_gallery},
 };
 
 /// Says what is wrong with a command line that names no command, or things that nobody knows.

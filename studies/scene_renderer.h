@@ -19,16 +19,19 @@ char const* to_string(RenderMethod method);
 /// displacement jumps within their cones, go ray by ray all the same, and by a number of rays of their own.
 class SceneRenderer : public Renderer {
  public:
-  /// @param focused_dots,rays the renderers of that device
-  SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
+  /// @param focused_dots,rays the renderers of that device @param particles who renders particles; null: `rays`
+  SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
+                std::unique_ptr<Renderer> particles = nullptr);
 
   std::string device() const override { return rays_->device(); }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                             RenderImages images) override;
 
  private:
   Rendering render_focused(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
 
-  std::unique_ptr<Renderer> focused_dots_, rays_;
+  std::unique_ptr<Renderer> focused_dots_, rays_, particles_;
 };
 
 /// What plans a scene and maps its field, by its method.

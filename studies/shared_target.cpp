@@ -5,6 +5,7 @@
 
 #include "render/base/setup_node.h"
 #include "render/base/units.h"
+#include "render/scene/particle_scene.h"
 
 namespace gladstone {
 namespace {
@@ -57,10 +58,26 @@ void share_dots(SetupDocument& document, Setup const& first, Setup const& own, V
   document.set({"target", "dot_diameter_mm"}, node(first.dot_diameter() / unit::millimetre));
 }
 
+/// As many particles for all cameras as the first one's picture asks for.
+void share_particles(std::vector<CameraCase>& cases, Setup const& first) {
+  if (first.piv->particles.count != ParticleCount::per_pixel) return;
+  SetupNode const number = node(std::round(particle_count(first)));
+  for (CameraCase& one : cases) {
+    SetupNode particles = *one.document.find({"particles"});
+    std::erase_if(particles.members, [](SetupMember const& member) { return member.key == "per_pixel"; });
+    one.document.set({"particles"}, particles);
+    one.document.set({"particles", "number"}, number);
+  }
+}
+
 }  // namespace
 
 void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read) {
   Setup first = read.front();
+  if (first.piv) {
+    share_particles(cases, first);
+    return;
+  }
   if (first.target.kind == TargetKind::points || first.target.kind == TargetKind::lattice) return;  // the same as it is
   Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
   Vec2d const extent_mm =

@@ -7,7 +7,8 @@
 
 namespace gladstone {
 
-/// Gives all cameras of a setup one target: the first camera's dots, on a target that covers all views, at one place.
+/// Gives all cameras of a setup one target (of PIV the same particles): the first camera's dots, on a target that
+/// covers all views, at one place.
 /// @param read what the cases' documents say, one by one
 void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
 

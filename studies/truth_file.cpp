@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "studies/particle_case.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
@@ -114,6 +115,7 @@ void require_length(std::string const& path, std::string const& dataset, std::si
 
 GroundTruth read_truth(std::string const& path) {
   Hdf5Reader const file(path);
+  if (file.has("/particles/position_m")) return read_particle_truth(path);
   GroundTruth truth;
   std::vector<double> const position = file.read("/dots/position_m");
   truth.resize(position.size() / 3);

@@ -14,6 +14,7 @@
 #include "render/sensor/detector.h"
 #include "studies/case.h"
 #include "studies/json_text.h"
+#include "studies/particle_case.h"
 #include "studies/scene_renderer.h"
 #include "studies/truth_file.h"
 
@@ -23,29 +24,31 @@ namespace {
 constexpr int map_spacing_px = 2;  // of the maps in truth.h5: turbulence's fronts are a few pixels wide
 
 /// Warns of a truth that is not known well, and says what would cure it.
+/// @param sources what they are: dots or particles
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
-                   std::uint64_t rays) {
+                   std::uint64_t rays, std::string_view sources) {
   if (accuracy.unknown > 0) {
-    warn(warnings, fmt::format("truth: how well the displacements of {} of {} dots are known cannot be told (a single "
+    warn(warnings, fmt::format("truth: how well the displacements of {} of {} {} are known cannot be told (a single "
                                "ray has no scatter); increase render.rays_per_dot to 8 or more",
-                               accuracy.unknown, rendering.truth.size()));
+                               accuracy.unknown, rendering.truth.size(), sources));
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
   std::string why;
-  if (rendering.table != TableState::made) {
+  if (rendering.table != TableState::made && sources == "dots") {
     why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
-  } else if (accuracy.above_by_rays > 0) {
+  } else if (accuracy.above_by_rays > 0 && sources == "dots") {
     why = fmt::format(
         "; the truth of {} of these is that of rays alone, which meet the faces of the field or lose "
         "their way in it",
         accuracy.above_by_rays);
   }
-  warn(warnings,
-       fmt::format("truth: displacements are known to {:.2g} px only (rms of the dots' standard errors): {} of "
-                   "{} dots are worse than {} px, the worst is dot {} with {:.2g} px{}; increase "
-                   "render.rays_per_dot, {} now, if that matters",
-                   accuracy.rms_px, accuracy.above, rendering.truth.size(), truth_tolerance_px, accuracy.worst,
-                   accuracy.largest_px, why, rays));
+  warn(
+      warnings,
+      fmt::format("truth: displacements are known to {:.2g} px only (rms of the standard errors): {} of {} {} are "
+                  "worse than {} px, the worst is number {} with {:.2g} px{}; increase render.rays_per_dot, {} now, if "
+                  "that matters",
+                  accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
+                  accuracy.largest_px, why, rays));
 }
 
 /// Least, median and most of some numbers.
@@ -98,7 +101,9 @@ void hash_inputs(CaseSetup& loaded) {
   for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
 }
 
-double exposure_of(CameraSetup const& camera, KeptLight const& light) {
+double exposure_of(Scene const& scene, KeptLight const& light) {
+  CameraSetup const& camera = scene.setup.camera;
+  if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
   return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, light.brightest());
 }
 
@@ -106,10 +111,11 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
-  rendered.rendering =
-      std::make_shared<Rendering const>(renderer.render(scene, scene.dots, RenderImages::kept, theory));
+  rendered.rendering = std::make_shared<Rendering const>(
+      scene.setup.piv ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::kept)
+                      : renderer.render(scene, scene.dots, RenderImages::kept, theory));
   rendered.pupil_margin = scene.pupil_margin;
-  rendered.exposure_e = exposure_of(scene.setup.camera, *rendered.rendering->kept);
+  rendered.exposure_e = exposure_of(scene, *rendered.rendering->kept);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
@@ -155,7 +161,9 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
   // where the rays are planned again, they are planned for the same exposure
-  if (prepared.rays.rays_at_side_faces > 0 && !camera.exposure_e) {
+  if (camera.absolute_exposure) {
+    loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
+  } else if (prepared.rays.rays_at_side_faces > 0 && !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
@@ -184,13 +192,17 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   if (loaded.input_hashes.empty()) hash_inputs(loaded);
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
-  write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
-              rendering.method, origin);
+  if (scene.setup.piv) {
+    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, origin);
+  } else {
+    write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
+                rendering.method, origin);
+  }
   OutputFile::write_text(place(case_file::setup), resolved);
 
   auto const unseen = std::count_if(rendering.truth.displacement_px.begin(), rendering.truth.displacement_px.end(),
                                     [](Vec2d d) { return std::isnan(d.x); });
-  if (unseen > 0) {
+  if (unseen > 0 && !scene.setup.piv) {  // of particles those are meant that are beside the light
     double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
     double const passing = static_cast<double>(scene.rays_per_dot) * (stop * stop) / (disc * disc);
     constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
@@ -205,7 +217,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
                                scene.dots.centre.size(), why));
   }
   TruthAccuracy const accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
-  warn_of_truth(warnings, rendering, accuracy, prepared.rays.rays);
+  warn_of_truth(warnings, rendering, accuracy, prepared.rays.rays, scene.setup.piv ? "particles" : "dots");
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
@@ -218,7 +230,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
        {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
         {"first_zero_diameter_px", scene.setup.spot_diameter_px()},
         {"sigma_px", scene.spot_sigma_px() > 0 ? nlohmann::json(scene.spot_sigma_px()) : nlohmann::json(nullptr)}}},
-      {"dots", scene.dots.centre.size()},
+      {"experiment", scene.setup.piv ? "piv" : "bos"},
+      {"dots", rendering.truth.size()},
       {"dots_unseen", unseen},
       {"truth_error_px",
        {{"rms", accuracy.rms_px},
@@ -228,7 +241,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
         {"dots_unknown", accuracy.unknown}}},
       {"estimator",
        {{"dots_by_table", accuracy.by_table},
-        {"dots_by_rays", scene.dots.centre.size() - accuracy.by_table},
+        {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
         {"no_table_since", to_string(rendering.table)}}},
       {"method", to_string(rendering.method)},
       {"device", device},
@@ -246,6 +259,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
       {"warnings", warnings},
       {"seconds_render", rendered.seconds},
   };
+  if (scene.setup.piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
   if (!scene.setup.render.rays_per_dot) {
     summary["rays_plan"] = {{"truth_error_px", prepared.rays.truth_error_px},
                             {"image_error_levels", prepared.rays.image_error_levels},

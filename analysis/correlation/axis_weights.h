@@ -37,8 +37,15 @@ class AxisWeights {
     int const lags = AxisWeightsView::lags(size_);
     weights_.reserve(static_cast<std::size_t>(windows) * size_);
     autocorrelations_.reserve(static_cast<std::size_t>(windows) * lags);
+    int whole_one = -1;  // a window that no border cuts: the others are like it
     for (int k = 0; k < windows; ++k) {
       int const first = first_px_ + k * spacing_px_;
+      bool const whole = first >= 0 && first + size_ <= image_length;
+      if (whole && whole_one >= 0) {
+        repeat(whole_one, lags);
+        continue;
+      }
+      if (whole) whole_one = k;
       for (int i = 0; i < size_; ++i) {
         bool const inside = first + i >= 0 && first + i < image_length;
         double const offset = i - 0.5 * (size_ - 1);
@@ -65,6 +72,13 @@ class AxisWeights {
   std::vector<double> const& sums() const { return sums_; }
 
  private:
+  void repeat(int window, int lags) {
+    for (int i = 0; i < size_; ++i) weights_.push_back(weights_[static_cast<std::size_t>(window) * size_ + i]);
+    for (int i = 0; i < lags; ++i)
+      autocorrelations_.push_back(autocorrelations_[static_cast<std::size_t>(window) * lags + i]);
+    sums_.push_back(sums_[static_cast<std::size_t>(window)]);
+  }
+
   int size_;
   int first_px_;
   int spacing_px_;

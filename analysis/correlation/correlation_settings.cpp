@@ -5,22 +5,9 @@
 #include <algorithm>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/correlation/subpixel_fit.h"
 
 namespace gladstone {
-namespace {
-
-/// A word of a closed set; names that are planned are refused as such.
-std::string available_word(SetupTable& table, std::string const& key, std::string const& fallback,
-                           std::vector<std::string> const& words, std::string const& planned) {
-  if (table.is_string(key) && table.text(key, fallback) == planned) {
-    table.problem(key, fmt::format("\"{}\" is not available yet; use \"{}\"", planned, fallback));
-    return fallback;
-  }
-  return table.word(key, fallback, words);
-}
-
-}  // namespace
-
 CorrelationSettings read_correlation_settings(SetupTable table) {
   CorrelationSettings settings;
   std::vector<long long> const fallback(settings.window_px.begin(), settings.window_px.end());
@@ -33,18 +20,27 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
     table.problem("window_px",
                   "a window larger than that of the pass before (passes refine); order them from large to small");
   settings.overlap = table.number("overlap", settings.overlap, Range::at_least(0.0, 0.95));
-  settings.method = available_word(table, "method", settings.method, correlation_methods(), "rpc");
-  settings.subpixel = available_word(table, "subpixel", settings.subpixel, {"gauss3"}, "gauss2d");
+  settings.method = table.word("method", settings.method, correlation_methods());
+  settings.subpixel = table.word("subpixel", settings.subpixel, subpixel_fits());
   settings.weighting = table.word("weighting", settings.weighting, {"gaussian", "uniform"});
   settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic"});
   settings.final_passes = static_cast<int>(table.integer("final_passes", settings.final_passes, 1, 5));
   settings.max_displacement_px =
-      table.number_or_word("max_displacement_px", {{}, "none"}, {"none"}, Range::positive(512.0)).number;
-  settings.median_threshold = table.number("median_threshold", settings.median_threshold, Range::positive());
+      table.number_or_word("max_displacement_px", {{}, "none"}, {"none", "off"}, Range::positive(512.0)).number;
+  settings.median_threshold =
+      table.number_or_word("median_threshold", {settings.median_threshold, {}}, {"off"}, Range::positive()).number;
   settings.median_epsilon_px = table.number("median_epsilon_px", settings.median_epsilon_px, Range::positive());
-  settings.trusted_peak_ratio =
-      table.number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}}, {"none"}, Range::at_least(1.0))
-          .number;
+  settings.trusted_peak_ratio = table
+                                    .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
+                                                    {"none", "off"}, Range::at_least(1.0))
+                                    .number;
+  settings.uncertainty =
+      table.word("uncertainty", settings.uncertainty,
+                 {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation"});
+  settings.least_peak_ratio =
+      table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
+  settings.least_correlation =
+      table.number_or_word("least_correlation", {{}, "off"}, {"off"}, Range::at_least(0.0, 1.0)).number;
   return settings;
 }
 

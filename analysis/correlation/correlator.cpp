@@ -1,37 +1,26 @@
 #include "analysis/correlation/correlator.h"
 
-#include <array>
+#include <fmt/format.h>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/window_ops.h"
-#include "render/base/contracts.h"
 
 namespace gladstone {
-namespace {
-
-struct Method {
-  char const* name;
-  std::unique_ptr<Correlator> (*make)(CorrelationSettings const&);
-};
-
-/// Every correlation method, one row each.
-constexpr std::array methods{
-    Method{"scc", make_standard_correlator},
-};
-
-}  // namespace
-
 std::vector<std::string> correlation_methods() {
   std::vector<std::string> names;
-  for (Method const& method : methods) names.emplace_back(method.name);
+  for (CorrelationMethod const& method : all_correlation_methods()) names.emplace_back(method.name);
   return names;
 }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
-  for (Method const& method : methods)
-    if (settings.method == method.name) return method.make(settings);
-  GLADSTONE_EXPECTS(!"settings.method is a known correlation method");
-  return nullptr;
+  return make_standard_correlator(settings);
+}
+
+std::string missing_on_gpu(CorrelationSettings const& settings) {
+  for (CorrelationMethod const& method : all_correlation_methods())
+    if (settings.method == method.name && !method.on_gpu) return fmt::format("method = \"{}\"", method.name);
+  return subpixel_fit_on_gpu(settings.subpixel) ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
 }
 
 double window_weight(CorrelationSettings const& settings, double dx_px, double dy_px) {

@@ -35,6 +35,9 @@ std::vector<std::string> correlation_methods();
 /// The correlator that the settings ask for. @pre settings.method is one of correlation_methods()
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
+/// What these settings ask for that the correlator of CUDA does not have, as `method = "rpc"`; empty: it has all.
+std::string missing_on_gpu(CorrelationSettings const& settings);
+
 /// Weight W put on either image at an offset from a window's centre [px] in the last pass; 1 at the centre. A particle
 /// counts with W^2 in the product of both images.
 double window_weight(CorrelationSettings const& settings, double dx_px, double dy_px);

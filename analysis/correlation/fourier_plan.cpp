@@ -12,16 +12,16 @@ class OpenCvFourierPlan final : public FourierPlan {
  public:
   explicit OpenCvFourierPlan(int size)
       : size_(size),
-        forward_(cv::hal::DFT2D::create(size, size, CV_32F, 2, 2, CV_HAL_DFT_IS_CONTINUOUS)),
-        inverse_(cv::hal::DFT2D::create(size, size, CV_32F, 2, 2, CV_HAL_DFT_IS_CONTINUOUS | CV_HAL_DFT_INVERSE)) {}
+        forward_(cv::hal::DFT2D::create(size, size, CV_64F, 2, 2, CV_HAL_DFT_IS_CONTINUOUS)),
+        inverse_(cv::hal::DFT2D::create(size, size, CV_64F, 2, 2, CV_HAL_DFT_IS_CONTINUOUS | CV_HAL_DFT_INVERSE)) {}
 
   int size() const override { return size_; }
-  void forward(std::complex<float> const* in, std::complex<float>* out) override { apply(*forward_, in, out); }
-  void inverse(std::complex<float> const* in, std::complex<float>* out) override { apply(*inverse_, in, out); }
+  void forward(std::complex<double> const* in, std::complex<double>* out) override { apply(*forward_, in, out); }
+  void inverse(std::complex<double> const* in, std::complex<double>* out) override { apply(*inverse_, in, out); }
 
  private:
-  void apply(cv::hal::DFT2D& transform, std::complex<float> const* in, std::complex<float>* out) const {
-    std::size_t const step = static_cast<std::size_t>(size_) * sizeof(std::complex<float>);
+  void apply(cv::hal::DFT2D& transform, std::complex<double> const* in, std::complex<double>* out) const {
+    std::size_t const step = static_cast<std::size_t>(size_) * sizeof(std::complex<double>);
     transform.apply(reinterpret_cast<uchar const*>(in), step, reinterpret_cast<uchar*>(out), step);
   }
 

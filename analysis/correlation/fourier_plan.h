@@ -13,9 +13,9 @@ class FourierPlan {
   /// Values along one side of the square.
   virtual int size() const = 0;
   /// out(k) = sum over x of in(x) exp(-2 pi i k.x / size), row by row; `in` and `out` are different arrays of size^2.
-  virtual void forward(std::complex<float> const* in, std::complex<float>* out) = 0;
+  virtual void forward(std::complex<double> const* in, std::complex<double>* out) = 0;
   /// The same with the opposite sign in the exponent, without the division by size^2.
-  virtual void inverse(std::complex<float> const* in, std::complex<float>* out) = 0;
+  virtual void inverse(std::complex<double> const* in, std::complex<double>* out) = 0;
 };
 
 /// OpenCV's transform (cv::hal::DFT2D: the tables of cv::dft, made once).

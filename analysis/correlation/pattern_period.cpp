@@ -30,7 +30,7 @@ class Autocorrelation {
       : size_(size), plan_(make_fourier_plan(size)), values_(count()), spectrum_(count()) {}
 
   /// The plane of a window of the reference; the next call overwrites it.
-  PlaneView<float> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
+  PlaneView<double> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
     double weights = 0.0, sum = 0.0;
     auto const for_each_pixel = [&](auto const& visit) {
       for (int j = 0; j < size_; ++j)
@@ -50,9 +50,9 @@ class Autocorrelation {
     float const mean = weights > 0.0 ? static_cast<float>(sum / weights) : 0.0f;
     for_each_pixel([&](std::size_t k, float weight, float value) { values_[k] = weight * (value - mean); });
     plan_->forward(values_.data(), spectrum_.data());
-    for (std::complex<float>& value : spectrum_) value = std::norm(value);
+    for (std::complex<double>& value : spectrum_) value = std::norm(value);
     plan_->inverse(spectrum_.data(), values_.data());
-    return {reinterpret_cast<float const*>(values_.data()), size_, 2};
+    return {reinterpret_cast<double const*>(values_.data()), size_, 2};
   }
 
  private:
@@ -60,7 +60,7 @@ class Autocorrelation {
 
   int size_;
   std::unique_ptr<FourierPlan> plan_;
-  std::vector<std::complex<float>> values_, spectrum_;
+  std::vector<std::complex<double>> values_, spectrum_;
 };
 
 /// Part of a window's autocorrelation at no shift that a pattern must reach one pixel beside it, else it is not seen.
@@ -71,7 +71,7 @@ double least_seen(int window_px) { return 8.0 / window_px; }
 /// Geometric mean of a peak's heights one pixel from its middle along either axis, on the Gaussian of its samples: that
 /// falls by the square root of what both samples beside the highest have fallen by together.
 /// @param fall_off of the plane that the weights cause, divided out
-double height_beside(PlaneView<float> const& plane, PlanePeak<float> const& peak, double fall_off) {
+double height_beside(PlaneView<double> const& plane, PlanePeak<double> const& peak, double fall_off) {
   double const centre = plane(peak.x, peak.y);
   double const beside[4] = {plane(peak.x - 1, peak.y), plane(peak.x + 1, peak.y), plane(peak.x, peak.y - 1),
                             plane(peak.x, peak.y + 1)};
@@ -97,13 +97,13 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
   std::optional<PatternPeriod> period;
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
-      PlaneView<float> const plane = autocorrelation.of(pair, x, column, y, row);
+      PlaneView<double> const plane = autocorrelation.of(pair, x, column, y, row);
       double const across = 0.5 * (plane(-1, 0) + plane(1, 0)), down = 0.5 * (plane(0, -1) + plane(0, 1));
       double const main = std::sqrt(std::max(0.0, across) * std::max(0.0, down));
-      PeakList<float> const found = find_peaks(plane, radius);
+      PeakList<double> const found = find_peaks(plane, radius);
       bool repeats = false;
       for (int k = 0; k < found.count; ++k) {
-        PlanePeak<float> const& peak = found.peak[k];
+        PlanePeak<double> const& peak = found.peak[k];
         if (peak.x == 0 && peak.y == 0) continue;
         double const fall_off = x.autocorrelation(column, peak.x) * y.autocorrelation(row, peak.y) /
                                 (x.autocorrelation(column, 0) * y.autocorrelation(row, 0));
@@ -113,7 +113,7 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
         double const height = std::max(whole, beside);
         if (height < nearly_as_high) continue;
         repeats = true;
-        RefinedPeak<float> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
+        RefinedPeak<double> const at = refined_peak(plane, peak.x, peak.y, plane(peak.x, peak.y));
         double const pitch = std::hypot(at.x, at.y);
         if (!period || pitch < period->pitch_px) period = {pitch, height};
       }

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "analysis/correlation/fft_correlation.h"
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -17,7 +17,11 @@ namespace {
 
 class StandardCorrelator final : public Correlator {
  public:
-  explicit StandardCorrelator(CorrelationSettings const& settings) : settings_(settings), schedule_(settings) {}
+  explicit StandardCorrelator(CorrelationSettings const& settings)
+      : settings_(settings),
+        schedule_(settings),
+        correlate_(correlation_method(settings.method)),
+        fit_(subpixel_fit(settings.subpixel)) {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     int const columns = reference.columns(), rows = reference.rows();
@@ -32,8 +36,8 @@ class StandardCorrelator final : public Correlator {
       InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
       ImagePair const pair = predictor ? deformer->deform(*predictor) : make_image_pair(reference, flow);
       std::vector<WindowCorrelation> const windows =
-          correlate_windows(pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass),
-                            fmt::format("correlate {}/{}", pass + 1, schedule_.passes()));
+          correlate_({pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass), fit_,
+                      fmt::format("correlate {}/{}", pass + 1, schedule_.passes())});
       std::vector<GridVector> vectors(windows.size());
       auto const predicted = [&](std::size_t i) { return predictor ? predictor->at(grid.centre(i)) : Vec2d{}; };
       AmbiguousPlaces const before{grid_before, pass > 0 ? ambiguous.data() : nullptr};
@@ -57,6 +61,8 @@ class StandardCorrelator final : public Correlator {
  private:
   CorrelationSettings settings_;
   CorrelationSchedule schedule_;
+  CorrelateWindows correlate_;
+  SubpixelFit fit_;
 };
 
 }  // namespace
@@ -64,9 +70,12 @@ class StandardCorrelator final : public Correlator {
 CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
     : windows_(settings.window_px),
       overlap_(settings.overlap),
-      last_rule_{settings.median_threshold, settings.median_epsilon_px,
+      last_rule_{settings.median_threshold.value_or(std::numeric_limits<double>::infinity()),
+                 settings.median_epsilon_px,
                  settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity()),
-                 settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity())},
+                 settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity()),
+                 settings.least_peak_ratio.value_or(0.0),
+                 settings.least_correlation.value_or(0.0)},
       weighting_(window_weighting(settings)),
       spline_degree_(settings.deformation == "cubic" ? 3 : 5) {
   GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
@@ -82,7 +91,10 @@ int CorrelationSchedule::search_radius_px(int pass) const {
 
 ValidationRule CorrelationSchedule::rule(int pass) const {
   ValidationRule rule = last_rule_;
-  if (!is_last(pass)) rule.epsilon_px = std::max(rule.epsilon_px, 0.5);
+  if (!is_last(pass)) {
+    rule.epsilon_px = std::max(rule.epsilon_px, 0.5);
+    rule.least_peak_ratio = rule.least_correlation = 0.0;
+  }
   if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
   return rule;
 }

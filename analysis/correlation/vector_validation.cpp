@@ -3,15 +3,26 @@
 #include <utility>
 
 #include "render/base/contracts.h"
+#include "render/base/parallel.h"
 
 namespace gladstone {
+namespace {
+
+constexpr std::size_t vectors_per_chunk = 256;
+
+}  // namespace
 
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   GLADSTONE_EXPECTS(columns > 0 && vectors.size() % columns == 0);
   int const count = static_cast<int>(vectors.size()), rows = count / columns;
+  std::vector<char> doubtful(vectors.size());
+  parallel_chunks(vectors.size(), vectors_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      doubtful[i] = is_spurious(vectors.data(), static_cast<int>(i), columns, rows, rule);
+  });
   std::vector<int> spurious;
   for (int i = 0; i < count; ++i)
-    if (is_spurious(vectors.data(), i, columns, rows, rule)) spurious.push_back(i);
+    if (doubtful[i]) spurious.push_back(i);
   for (int const i : spurious) take_out(vectors[i]);
 
   // rounds from the rim of a spurious patch inwards; within a round only what was sound before counts

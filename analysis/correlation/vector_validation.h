@@ -54,11 +54,16 @@ struct Neighbours {
 
 /// Normalised median residual of a vector, Westerweel & Scarano, Exp. Fluids 39 (2005) 1096, eq. 2: for each component
 /// the distance from the neighbours' median over (median of the neighbours' own distances + epsilon), both joined as
-/// the length of a vector. Above about 2 a vector is spurious. @param epsilon expected noise [px] @pre count > 0
+/// the length of a vector. Above about 2 a vector is spurious.
+/// @param epsilon expected noise [px]
+/// @param enough  a bound that is not above this may stand for the residual: it takes half the time @pre count > 0
 template <class T>
-GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon) {
+GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon, T enough = T(0)) {
   using std::abs;
   Vec2<T> const median = neighbours.median();
+  // the neighbours' own distances only lower it
+  Vec2<T> const most{(vector.x - median.x) / epsilon, (vector.y - median.y) / epsilon};
+  if (length(most) <= enough) return length(most);
   T const spread_x = neighbours.median_of([&](int k) { return abs(neighbours.value[k].x - median.x); });
   T const spread_y = neighbours.median_of([&](int k) { return abs(neighbours.value[k].y - median.y); });
   return length(Vec2<T>{(vector.x - median.x) / (spread_x + epsilon), (vector.y - median.y) / (spread_y + epsilon)});
@@ -86,6 +91,8 @@ struct ValidationRule {
   double epsilon_px = 0.1;     ///< its noise level
   double trusted_ratio = 2.0;  ///< peak ratio from which a window is trusted against its neighbours
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
+  double least_peak_ratio = 0.0;   ///< below it a vector is spurious whatever its neighbours say
+  double least_correlation = 0.0;  ///< the same for the coefficient of its peak [1]
 };
 
 /// Most by which a trusted window may differ from its neighbours' median [px]. Windows that overlap share dots: did
@@ -188,7 +195,7 @@ struct Surroundings {
 GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surroundings const& around,
                                 ValidationRule const& rule) {
   auto const is_near = [&](Vec2d value, Neighbours<double> const& neighbours) {
-    return normalised_median_residual(value, neighbours, rule.epsilon_px) <= rule.threshold;
+    return normalised_median_residual(value, neighbours, rule.epsilon_px, rule.threshold) <= rule.threshold;
   };
   Vec2d const increment = displacement - predictor;
   if (is_near(increment, around.increment)) return true;
@@ -197,11 +204,13 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
                                 is_near(displacement, without_slope(around.displacement, around.offset)));
 }
 
-/// Whether vector i is valid but does not agree with its valid neighbours (validate_vectors).
+/// Whether vector i is valid but its peak is too low or too much like the next, or it does not agree with its valid
+/// neighbours (validate_vectors).
 GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
                                      ValidationRule const& rule) {
   GridVector const& vector = vectors[i];
   if (vector.status != VectorStatus::valid) return false;
+  if (vector.peak_ratio < rule.least_peak_ratio || vector.correlation < rule.least_correlation) return true;
   Surroundings const around(vectors, i, columns, rows, [&](int k) { return vectors[k].status == VectorStatus::valid; });
   return around.increment.count >= fewest_neighbours && !agrees(vector.displacement, vector.predictor, around, rule) &&
          !is_trusted(vector, around.increment, rule);

@@ -11,6 +11,55 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t rows_per_chunk = 8;
+constexpr std::size_t pixels_per_chunk = std::size_t{1} << 16;
+
+/// The extremes of finite grey levels.
+struct GreyLevels {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  bool gaps = false;  ///< whether some are not finite
+
+  void include(GreyLevels const& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+    gaps = gaps || other.gaps;
+  }
+  /// Takes `level` off the values and looks at them on the way.
+  void take(double const* values, std::size_t count, double level, float* out) {
+    constexpr std::size_t lanes = 8;
+    double least[lanes], most[lanes], zero[lanes] = {};
+    std::fill_n(least, lanes, low);
+    std::fill_n(most, lanes, high);
+    auto const look = [&](double value, std::size_t l) {
+      double const gap = value - value;  // 0, or NaN where it is not finite
+      bool const finite = gap == 0.0;
+      zero[l] += gap;
+      least[l] = finite && value < least[l] ? value : least[l];
+      most[l] = finite && value > most[l] ? value : most[l];
+    };
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes)
+      for (std::size_t l = 0; l < lanes; ++l) {
+        out[i + l] = static_cast<float>(values[i + l] - level);
+        look(values[i + l], l);
+      }
+    for (; i < count; ++i) {
+      out[i] = static_cast<float>(values[i] - level);
+      look(values[i], 0);
+    }
+    for (std::size_t l = 0; l < lanes; ++l) include({least[l], most[l], !(zero[l] == 0.0)});
+  }
+};
+
+/// The middle of the extremes of some thousand finite grey levels, evenly taken; 0 where there are none.
+double middle_level(Image<double> const& reference, Image<double> const& flow) {
+  std::size_t const step = std::max<std::size_t>(1, reference.size() / 4096) | 1;  // odd: not always the same column
+  GreyLevels some;
+  for (std::size_t i = 0; i < reference.size(); i += step)
+    for (double const value : {reference.data()[i], flow.data()[i]})
+      if (std::isfinite(value)) some.include({value, value, false});
+  return some.low <= some.high ? 0.5 * (some.low + some.high) : 0.0;
+}
 
 template <int degree>
 void deform_rows(BsplineView<float> reference, BsplineView<float> flow, ImagePair const& original,
@@ -41,31 +90,29 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   ImagePair pair;
   pair.columns = reference.columns();
   pair.rows = reference.rows();
-  // the level between the extremes, taken off in double, keeps faint contrast on a bright ground in float
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  bool gaps = false;
-  for (Image<double> const* image : {&reference, &flow})
-    for (double const value : *image) {
-      if (!std::isfinite(value)) {
-        gaps = true;
-        continue;
-      }
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-  double const level = low <= high ? 0.5 * (low + high) : 0.0;
-  pair.contrast = low <= high ? static_cast<float>(high - low) : 0.0f;
-  auto const take = [&](Image<double> const& image, std::vector<float>& out) {
-    out.resize(image.size());
-    for (std::size_t i = 0; i < out.size(); ++i)
-      out[i] = std::isfinite(image.data()[i]) ? static_cast<float>(image.data()[i] - level) : 0.0f;
-  };
-  take(reference, pair.reference);
-  take(flow, pair.flow);
-  if (gaps) {
-    pair.available.resize(reference.size());
-    for (std::size_t i = 0; i < reference.size(); ++i)
-      pair.available[i] = std::isfinite(reference.data()[i]) && std::isfinite(flow.data()[i]) ? 1.0f : 0.0f;
+  // a level between the extremes, taken off in double, keeps faint contrast on a bright ground in float
+  double const level = middle_level(reference, flow);
+  pair.reference.resize(reference.size());
+  pair.flow.resize(reference.size());
+  std::vector<GreyLevels> levels((reference.size() + pixels_per_chunk - 1) / pixels_per_chunk);
+  parallel_chunks(reference.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
+    GreyLevels here;
+    here.take(reference.data() + begin, end - begin, level, pair.reference.data() + begin);
+    here.take(flow.data() + begin, end - begin, level, pair.flow.data() + begin);
+    levels[begin / pixels_per_chunk] = here;
+  });
+  GreyLevels all;
+  for (GreyLevels const& piece : levels) all.include(piece);
+  pair.contrast = all.low <= all.high ? static_cast<float>(all.high - all.low) : 0.0f;
+  if (!all.gaps) return pair;
+  // unknown pixels take the middle of all, whichever level was taken off
+  float const middle = all.low <= all.high ? static_cast<float>(0.5 * (all.low + all.high) - level) : 0.0f;
+  pair.available.resize(reference.size());
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    bool const in_reference = std::isfinite(reference.data()[i]), in_flow = std::isfinite(flow.data()[i]);
+    if (!in_reference) pair.reference[i] = middle;
+    if (!in_flow) pair.flow[i] = middle;
+    pair.available[i] = in_reference && in_flow ? 1.0f : 0.0f;
   }
   return pair;
 }

@@ -18,15 +18,27 @@ struct Link {
   std::string_view stage;
   std::string_view term;
 };
-constexpr std::array<Link, 9> chain{{{"eq9", ""},
-                                     {"straight", "small_angle"},
-                                     {"eq9_cone", "cone"},
-                                     {"thin_lens", "refraction"},
-                                     {"lens", "aberration"},
-                                     {"window", "window"},
-                                     {"estimator", "estimator"},
-                                     {"noise_free", "pattern"},
-                                     {"measured", "noise"}}};
+constexpr std::array<Link, 9> bos_chain{{{"eq9", ""},
+                                         {"straight", "small_angle"},
+                                         {"eq9_cone", "cone"},
+                                         {"thin_lens", "refraction"},
+                                         {"lens", "aberration"},
+                                         {"window", "window"},
+                                         {"estimator", "estimator"},
+                                         {"noise_free", "pattern"},
+                                         {"measured", "noise"}}};
+constexpr std::array<Link, 7> piv_chain{{{"flow", ""},
+                                         {"ambient", "projection"},
+                                         {"seen", "refraction"},
+                                         {"window", "window"},
+                                         {"estimator", "estimator"},
+                                         {"noise_free", "pattern"},
+                                         {"measured", "noise"}}};
+
+std::span<Link const> links_of(BudgetChain chain) {
+  if (chain == BudgetChain::piv) return piv_chain;
+  return bos_chain;
+}
 
 using Differences = std::vector<Vec2d>;  // of one term, over the vectors that count; empty: unknown
 
@@ -84,25 +96,29 @@ void fill_covariance(std::vector<Differences> const& terms, ErrorBudget& budget)
 
 }  // namespace
 
-std::vector<std::string_view> budget_stage_names() {
+std::vector<std::string_view> budget_stage_names(BudgetChain chain) {
   std::vector<std::string_view> names;
-  for (Link const& link : chain) names.push_back(link.stage);
+  for (Link const& link : links_of(chain)) names.push_back(link.stage);
   return names;
 }
 
-std::vector<std::string_view> budget_term_names() {
+std::vector<std::string_view> budget_term_names(BudgetChain chain) {
   std::vector<std::string_view> names;
-  for (Link const& link : std::span(chain).subspan(1)) names.push_back(link.term);
+  for (Link const& link : links_of(chain).subspan(1)) names.push_back(link.term);
   return names;
 }
 
-ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask) {
-  // The present stages in the order of the chain.
-  std::array<std::vector<Vec2d> const*, chain.size()> at{};
-  for (BudgetStage const& stage : stages) {
-    auto const* const link = std::find_if(chain.begin(), chain.end(), [&](Link l) { return l.stage == stage.name; });
+ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask, BudgetChain kind) {
+  std::span<Link const> const chain = links_of(kind);
+  auto const place_of = [chain](std::string_view stage) {
+    auto const link = std::find_if(chain.begin(), chain.end(), [&](Link const& l) { return l.stage == stage; });
     GLADSTONE_EXPECTS(link != chain.end());
-    auto& place = at[static_cast<std::size_t>(link - chain.begin())];
+    return static_cast<std::size_t>(link - chain.begin());
+  };
+  // The present stages in the order of the chain.
+  std::vector<std::vector<Vec2d> const*> at(chain.size());
+  for (BudgetStage const& stage : stages) {
+    auto& place = at[place_of(stage.name)];
     GLADSTONE_EXPECTS(place == nullptr);
     if (stage.displacement_px.empty()) continue;
     GLADSTONE_EXPECTS(stage.displacement_px.size() == mask.size());
@@ -160,8 +176,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
   }
 
   // Estimator error of this pattern where there are noise-free images, of the measurement otherwise.
-  constexpr std::size_t window = 5, noise_free = 7, measured = 8;
-  static_assert(chain[window].stage == "window" && chain[noise_free].stage == "noise_free");
+  std::size_t const window = place_of("window"), noise_free = place_of("noise_free"), measured = place_of("measured");
   std::size_t const estimate = at[noise_free] ? noise_free : measured;
   budget.peak_locking_px = nan;
   if (at[window] && at[estimate]) {

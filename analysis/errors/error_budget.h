@@ -17,14 +17,23 @@ struct BudgetStage {
   std::vector<Vec2d> displacement_px;  ///< empty: cannot be computed
 };
 
-/// The stages in the order of the chain:
+/// Which chain of causes a budget follows.
+enum class BudgetChain {
+  bos,  ///< from Eq. 9
+  piv,  ///< from the flow's displacement
+};
+
+/// The stages in the order of the chain. Of BOS:
 /// eq9, straight (oblique chief ray, own lever per slice), eq9_cone, thin_lens (ray truth through the ideal lens at
 /// the point), lens (ray truth through the actual lens), window (truth on the window), estimator (window plus mean
 /// estimator error over K patterns; repeats only), noise_free (measurement on noise-free images), measured.
-std::vector<std::string_view> budget_stage_names();
+/// Of PIV: flow (the flow's velocity at the vector times dt, in the sheet, seen along the camera's local scale),
+/// ambient (ray truth at the point without the medium), seen (ray truth with it), then window and all that follows.
+std::vector<std::string_view> budget_stage_names(BudgetChain chain = BudgetChain::bos);
 
-/// The terms in the same order: small_angle, cone, refraction, aberration, window, estimator, pattern, noise.
-std::vector<std::string_view> budget_term_names();
+/// The terms in the same order: small_angle, cone, refraction, aberration, window, estimator, pattern, noise; of PIV
+/// projection, refraction, window, estimator, pattern, noise.
+std::vector<std::string_view> budget_term_names(BudgetChain chain = BudgetChain::bos);
 
 /// The difference of consecutive stages over the vectors that count.
 /// All numbers [px]; NaN (null in errors.json) where the term cannot be computed.
@@ -63,7 +72,8 @@ struct ErrorBudget {
 /// @param stages absent ones may be left out; the order is free; lengths equal mask.size()
 /// @param mask   the common mask; vectors where a present stage is not finite are left out as well
 /// @pre stage names are known and unique
-ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask);
+ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& mask,
+                         BudgetChain chain = BudgetChain::bos);
 
 /// Peak locking: the rms over the fractional part of the true displacement (20 bins of 0.05 px, both components
 /// together, empty bins left out) of the mean error in the bin [px]. NaN of nothing.

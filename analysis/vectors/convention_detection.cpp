@@ -70,6 +70,7 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   }
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   ConventionFit fit{conventions, nan, nan, nan, nan};
+  fit.components = count;
   if (count > 0) fit.rms_px = std::sqrt(differences / static_cast<double>(count));
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
   if (signal > 0.0) {
@@ -106,6 +107,14 @@ std::vector<VectorConventions> every_choice(VectorConventions const& own) {
     }
   }
   return choices;
+}
+
+/// Whether a fits better than b by more than chance: twice the logarithm of their likelihoods' ratio, of normal errors,
+/// beyond 9 as three standard deviations are. At an overlap of one half every vector shares its image with three
+/// others.
+bool surely_better(ConventionFit const& a, ConventionFit const& b) {
+  double const independent = 0.25 * static_cast<double>(a.components);
+  return a.rms_px < b.rms_px && independent * 2.0 * std::log(b.rms_px / a.rms_px) > 9.0;
 }
 
 bool better(ConventionFit const& a, ConventionFit const& b) { return a.rms_px < b.rms_px; }
@@ -233,6 +242,9 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   // Axes and sign by the best fit; the offset stays the format's own unless another is clearly better.
   ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
   ConventionFit chosen = with_offset(best.conventions, own.offset_px);
+  // Codes that deform images put their vectors where their grid says: what one pass of the same code has half a pixel
+  // off is right after several. Which it was the file does not say.
+  if (ConventionFit const plain = with_offset(best.conventions, 0.0); surely_better(plain, chosen)) chosen = plain;
   if (best.rms_px < 0.95 * chosen.rms_px) chosen = best;
 
   DetectedConventions result;

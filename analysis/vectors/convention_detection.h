@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct ConventionFit {
   /// Share of the true displacement that the vectors follow, sum m t / sum t^2: 1 for right ones however noisy they
   /// are, 0 for unrelated ones.
   double slope = 0.0;
-  double slope_error = 0.0;  ///< its standard error, neighbours taken to share half of their image
+  double slope_error = 0.0;    ///< its standard error, neighbours taken to share half of their image
+  std::size_t components = 0;  ///< of vectors, that were compared
 };
 
 /// What detect_conventions found.

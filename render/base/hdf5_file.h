@@ -57,10 +57,16 @@ class Hdf5Reader {
   std::unique_ptr<Handle> handle_;
 };
 
+/// Where a file grows until it is closed.
+enum class Hdf5Growth {
+  in_memory,  ///< and goes to disk at once
+  on_disk,    ///< for files larger than memory, by rows
+};
+
 /// Writes one file; nothing is on disk under its final name before close() returns.
 class Hdf5Writer {
  public:
-  Hdf5Writer(std::string const& path, FileOrigin const& origin);
+  explicit Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth = Hdf5Growth::in_memory);
   ~Hdf5Writer();
 
   /// @param dataset absolute name; groups on the way are made
@@ -70,6 +76,17 @@ class Hdf5Writer {
              std::string const& units, std::string const& description, std::string const& axes);
   void write(std::string const& dataset, std::span<std::int64_t const> data, std::vector<std::size_t> const& shape,
              std::string const& units, std::string const& description, std::string const& axes);
+  /// A dataset to be filled by write_rows(): deflated chunks; what is never written reads as 0.
+  /// @param chunk of every axis, at most its size
+  template <class Value>
+  void make_rows(std::string const& dataset, std::vector<std::size_t> const& shape,
+                 std::vector<std::size_t> const& chunk, std::string const& units, std::string const& description,
+                 std::string const& axes);
+  /// Writes rows [first, first + n) of the leading axis; `data` has exactly their size. Value is that of make_rows():
+  /// std::uint16_t or double.
+  /// @throws OutputError where the disk has no room for them; nothing is left of the file
+  template <class Value>
+  void write_rows(std::string const& dataset, std::size_t first, std::span<Value const> data);
   void attribute(std::string const& object, std::string const& name, std::string const& value);
   void attribute(std::string const& object, std::string const& name, double value);
   void attribute(std::string const& object, std::string const& name, std::int64_t value);

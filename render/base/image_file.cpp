@@ -1,7 +1,5 @@
 #include "render/base/image_file.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +16,7 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/image_codecs.h"
 #include "render/base/input_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
@@ -52,16 +51,15 @@ bool parse_description(std::string const& text, ImageMetadata& metadata) {
   return true;
 }
 
-ImageMetadata metadata_of(OIIO::ImageSpec const& spec) {
+ImageMetadata metadata_of(PageHeader const& header) {
   ImageMetadata metadata;
-  std::string const description = spec.get_string_attribute("ImageDescription");
-  if (parse_description(description, metadata)) return metadata;
-  metadata.description = description;
-  metadata.bit_depth = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+  if (parse_description(header.description, metadata)) return metadata;
+  metadata.description = header.description;
+  metadata.bit_depth = header.bits;
   // A resolution without a unit, or in inches as printers' settings, says nothing about a sensor.
-  float const resolution = spec.get_float_attribute("XResolution");
-  bool const in_centimetres = spec.get_string_attribute("ResolutionUnit") == "cm";
-  if (in_centimetres && resolution > 0.0f) metadata.pixel_pitch_m = 0.01 / static_cast<double>(resolution);
+  bool const in_centimetres = header.resolution_unit == "cm";
+  if (in_centimetres && header.resolution > 0.0f)
+    metadata.pixel_pitch_m = 0.01 / static_cast<double>(header.resolution);
   return metadata;
 }
 
@@ -72,15 +70,14 @@ constexpr double always_believed = 16e6;  // bytes: nothing is lost by asking fo
 constexpr int most_pages_counted = 1000;
 
 /// A header is believed where the file is long enough for its pixels, and memory for them.
-void check_size(OIIO::ImageSpec const& spec, std::string const& path, std::uint64_t file_bytes) {
+void check_size(PageHeader const& spec, std::string const& path, std::uint64_t file_bytes) {
   double const pixels = static_cast<double>(spec.width) * spec.height * spec.depth;
-  double const samples = pixels * spec.nchannels;
-  std::string const sizes = fmt::format("{} x {} px of {} {}", spec.width, spec.height, spec.nchannels,
-                                        spec.nchannels == 1 ? "value" : "values");
-  int const bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
-  double const stored = samples * std::max(bits, 1) / 8;
+  double const samples = pixels * spec.channels;
+  std::string const sizes = fmt::format("{} x {} px of {} {}", spec.width, spec.height, spec.channels,
+                                        spec.channels == 1 ? "value" : "values");
+  double const stored = samples * std::max(spec.bits, 1) / 8;
   // without compression, one byte of a palette's indices gives three of colours
-  bool const packed = spec.get_string_attribute("compression", "unknown") != "none";
+  bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
     throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
@@ -89,23 +86,20 @@ void check_size(OIIO::ImageSpec const& spec, std::string const& path, std::uint6
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
   // the library's tile or strip, the samples as stored and as numbers, and the picture
-  double const tile = static_cast<double>(spec.tile_width) * spec.tile_height * std::max(spec.tile_depth, 1);
-  double const tile_bytes = tile * spec.nchannels * static_cast<double>(spec.format.size());
-  double const sample_bytes = static_cast<double>(spec.format.size()) + sizeof(double);
+  double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
+  double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
+  double const sample_bytes = static_cast<double>(spec.sample_bytes) + sizeof(double);
   require_memory(path, "a picture of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
 }
 
 /// All samples as stored. OpenImageIO widens 10, 12 and other odd depths to 8 or 16 bits by scaling; `shift` undoes it.
 template <class Stored>
-std::vector<double> read_samples(OIIO::ImageInput& input, std::string const& path, int shift) {
-  OIIO::ImageSpec const& spec = input.spec();
-  std::vector<Stored> samples(spec.image_pixels() * static_cast<std::size_t>(spec.nchannels));
-  bool const read = input.read_image(input.current_subimage(), 0, 0, spec.nchannels, OIIO::BaseTypeFromC<Stored>::value,
-                                     samples.data());
-  if (!read || input.has_error()) {  // of a TIFF cut short it says true, and leaves an error for every missing strip
-    input.geterror();
+std::vector<double> read_samples(PageReader& input, std::string const& path, int shift) {
+  PageHeader const spec = input.header();
+  std::vector<Stored> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                              static_cast<std::size_t>(spec.channels));
+  if (!input.read(samples.data()))
     throw DataError(path, "cannot be read to its end (it is damaged or cut short); copy it again");
-  }
   throw_if_interrupted();
   std::vector<double> values(samples.size());
   double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
@@ -115,41 +109,37 @@ std::vector<double> read_samples(OIIO::ImageInput& input, std::string const& pat
   return values;
 }
 
-std::vector<double> read_samples(OIIO::ImageInput& input, std::string const& path) {
-  OIIO::ImageSpec const& spec = input.spec();
-  int const held = static_cast<int>(8 * spec.format.size());
-  int const bits = spec.get_int_attribute("oiio:BitsPerSample", held);
-  int const shift = bits > 0 && bits < held ? held - bits : 0;
-  switch (spec.format.basetype) {
-    case OIIO::TypeDesc::UINT8:
+std::vector<double> read_samples(PageReader& input, std::string const& path) {
+  PageHeader const spec = input.header();
+  int const held = static_cast<int>(8 * spec.sample_bytes);
+  int const shift = spec.bits > 0 && spec.bits < held ? held - spec.bits : 0;
+  switch (spec.type) {
+    case SampleType::uint8:
       return read_samples<std::uint8_t>(input, path, shift);
-    case OIIO::TypeDesc::UINT16:
+    case SampleType::uint16:
       return read_samples<std::uint16_t>(input, path, shift);
-    case OIIO::TypeDesc::INT16:
+    case SampleType::int16:
       return read_samples<std::int16_t>(input, path, 0);
-    case OIIO::TypeDesc::UINT32:
+    case SampleType::uint32:
       return read_samples<std::uint32_t>(input, path, 0);
-    case OIIO::TypeDesc::INT32:
+    case SampleType::int32:
       return read_samples<std::int32_t>(input, path, 0);
-    case OIIO::TypeDesc::HALF:
-    case OIIO::TypeDesc::FLOAT:
+    case SampleType::float32:
       return read_samples<float>(input, path, 0);
-    case OIIO::TypeDesc::DOUBLE:
+    case SampleType::float64:
       return read_samples<double>(input, path, 0);
-    default:
-      throw DataError(path, std::string("has samples of type ") + spec.format.c_str() + ", which is not read");
+    case SampleType::other:
+      break;
   }
+  throw DataError(path, "has samples of type " + spec.type_name + ", which is not read");
 }
 
 /// A picture file, open at its first page.
 class Picture {
  public:
   explicit Picture(std::string const& path) : path_(path), file_(path, "a picture") {
-    OIIO::ImageSpec configuration;
-    configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
-    input_ = OIIO::ImageInput::open(path, &configuration);
+    input_ = image_codecs().open(path);
     if (!input_) {
-      OIIO::geterror();
       throw DataError(path,
                       "cannot be read as a picture (it is of another format, damaged or cut short); give TIFF, "
                       "PNG or EXR, if need be written anew without compression");
@@ -161,13 +151,13 @@ class Picture {
   std::size_t pages() const { return pages_.size(); }
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
-    if (!input_->seek_subimage(pages_[page], 0)) {
+    if (!input_->seek(pages_[page])) {
       throw DataError(path_, fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
     }
-    OIIO::ImageSpec const spec = input_->spec();
+    PageHeader const spec = input_->header();
     check_size(spec, path_, file_.size());
     auto const samples = read_samples(*input_, path_);
-    std::size_t const channels = static_cast<std::size_t>(spec.nchannels);
+    std::size_t const channels = static_cast<std::size_t>(spec.channels);
     Image<double> image(spec.width, spec.height);
     for (std::size_t i = 0; i < image.size(); ++i) {
       double const* const sample = samples.data() + i * channels;
@@ -175,28 +165,28 @@ class Picture {
     }
     if (metadata) {
       *metadata = metadata_of(spec);
-      metadata->channels = spec.nchannels;
-      metadata->sample_bits = spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
+      metadata->channels = spec.channels;
+      metadata->sample_bits = spec.bits;
     }
     return image;
   }
 
  private:
   void count_pages() {
-    OIIO::ImageSpec const first = input_->spec();
-    for (int page = 1; page < most_pages_counted && input_->seek_subimage(page, 0); ++page) {
+    PageHeader const first = input_->header();
+    for (int page = 1; page < most_pages_counted && input_->seek(page); ++page) {
       throw_if_interrupted();
-      OIIO::ImageSpec const& spec = input_->spec();
+      PageHeader const spec = input_->header();
       if (spec.width < first.width && spec.height < first.height) continue;
       pages_.push_back(page);
     }
-    input_->geterror();
-    input_->seek_subimage(0, 0);
+    input_->clear_errors();
+    input_->seek(0);
   }
 
   std::string path_;
   InputFile file_;
-  std::unique_ptr<OIIO::ImageInput> input_;
+  std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
 };
 
@@ -249,26 +239,12 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
   auto const fail = [&](std::string const& why) {
     throw OutputError(path, "the image cannot be written (" + why + ')');
   };
-  OIIO::ImageSpec spec(image.columns(), image.rows(), 1, OIIO::TypeDesc::UINT16);
-  spec["compression"] = "none";
-  spec["ImageDescription"] = described(metadata);
-  spec["Software"] = "gladstone " + std::string(version);
-  spec["DateTime"] = 0;  // not a text, so that no date is written: equal images are equal files
-  if (metadata.pixel_pitch_m > 0.0) {
-    float const pixels_per_centimetre = static_cast<float>(0.01 / metadata.pixel_pitch_m);
-    spec["XResolution"] = pixels_per_centimetre;
-    spec["YResolution"] = pixels_per_centimetre;
-    spec["ResolutionUnit"] = "cm";
-  }
+  GreyPage page{image.columns(), image.rows(), image.data(), described(metadata), "gladstone " + std::string(version)};
+  if (metadata.pixel_pitch_m > 0.0) page.pixels_per_centimetre = 0.01 / metadata.pixel_pitch_m;
 
   // Into memory first: libtiff does not say when a disk is full.
-  auto const output = OIIO::ImageOutput::create("tif");
-  if (!output) fail("no writer of TIFF is installed");
   std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  bool const written = output->set_ioproxy(&memory) && output->open(path, spec) &&
-                       output->write_image(OIIO::TypeDesc::UINT16, image.data());
-  if (!output->close() || !written) fail("out of memory?");
+  if (std::string const why = image_codecs().encode_tiff(path, page, bytes); !why.empty()) fail(why);
 
   OutputFile file(path);
   file.write(bytes.data(), bytes.size());

@@ -2,18 +2,17 @@
 
 #include <new>
 #include <type_traits>
+#include <variant>
 
 #include "render/base/host_device.h"
 
 namespace gladstone {
 
-/// A closed set of trivially copyable types, one of them held at a time: what a list of optical elements is made of.
-/// Unlike std::variant it can be handed to a device, and visiting is a chain of comparisons that a compiler sees
-/// through.
+/// A closed set of types, one of them held at a time: what a list of optical elements is made of. Trivially copyable
+/// ones, unlike those of a std::variant, can be handed to a device, and visiting is a chain of comparisons that a
+/// compiler sees through.
 template <class First, class... Rest>
 class OneOf {
-  static_assert(std::is_trivially_copyable_v<First> && (std::is_trivially_copyable_v<Rest> && ...));
-
  public:
   OneOf() = default;
   template <class Held>
@@ -53,6 +52,24 @@ class OneOf {
 
   alignas(16) unsigned char storage_[largest()]{};
   int which_ = 0;
+};
+
+/// The same for types of a host's scalar, such as a ceres::Jet, which no device takes.
+template <class First, class... Rest>
+requires(!(std::is_trivially_copyable_v<First> && (std::is_trivially_copyable_v<Rest> && ...)))  //
+    class OneOf<First, Rest...> {
+ public:
+  OneOf() = default;
+  template <class Held>
+  requires(std::is_same_v<Held, First> || (std::is_same_v<Held, Rest> || ...)) OneOf(Held const& held) : held_(held) {}
+
+  template <class Visitor>
+  auto visit(Visitor&& visitor) const {
+    return std::visit(visitor, held_);
+  }
+
+ private:
+  std::variant<First, Rest...> held_;
 };
 
 }  // namespace gladstone

@@ -193,6 +193,10 @@ bool SetupTable::is_array(std::string const& key) const {
   return has(key) && state_->find(below(path_, key))->kind == Kind::array;
 }
 
+bool SetupTable::is_table(std::string const& key) const {
+  return has(key) && state_->find(below(path_, key))->kind == Kind::table;
+}
+
 bool SetupTable::present() const {
   auto const* const node = state_->find(path_);
   return node && node->kind == Kind::table;

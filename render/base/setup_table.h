@@ -109,6 +109,7 @@ class SetupTable {
   bool has(std::string const& key) const;
   bool is_string(std::string const& key) const;
   bool is_array(std::string const& key) const;
+  bool is_table(std::string const& key) const;
   /// True where the table itself is written in the file (or by --set).
   bool present() const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "render/base/available_memory.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
@@ -22,7 +23,7 @@ Sha256 started_picture(int columns, int rows, int sample_bits, char const* numbe
   return hash;
 }
 
-void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& name) {
+void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& path, std::string const& name) {
   std::vector<std::size_t> const shape = file.shape(name);
   std::string head = "gladstone dataset " + name;
   std::size_t count = 1;
@@ -39,6 +40,8 @@ void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& name) 
   }
   constexpr std::size_t most = std::size_t{1} << 20;  // values at a time
   std::size_t const row = count / shape[0], rows = std::max<std::size_t>(1, most / row);
+  // what the header says may be far from what the file holds
+  require_memory(path, "a row of dataset \"" + name + '"', 1.0 * sizeof(double) * static_cast<double>(row));
   std::vector<double> values;
   for (std::size_t first = 0; first < shape[0]; first += rows) {
     throw_if_interrupted();
@@ -96,7 +99,7 @@ std::string dataset_sha256(std::string const& path) {
   Sha256 hash;
   for (std::string const& name : file.number_datasets()) {
     std::string const last = name.substr(name.rfind('/') + 1);
-    if (!last.starts_with("seconds_") && last != "device") add_dataset(hash, file, name);
+    if (!last.starts_with("seconds_") && last != "device") add_dataset(hash, file, path, name);
   }
   return hash.finish();
 }

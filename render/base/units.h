@@ -10,6 +10,7 @@ inline constexpr double metre = 1.0;
 inline constexpr double millimetre = 1e-3;
 inline constexpr double micrometre = 1e-6;
 inline constexpr double nanometre = 1e-9;
+inline constexpr double microsecond = 1e-6;
 inline constexpr double degree = pi / 180.0;
 }  // namespace unit
 
@@ -17,6 +18,9 @@ inline constexpr double degree = pi / 180.0;
 namespace constant {
 /// Ratio of specific heats of dry air near room temperature (NACA Report 1135, 1953).
 inline constexpr double gamma_air = 1.4;
+/// Speed of light in vacuum [m/s] and Planck's constant [J s], exact by definition (BIPM, SI Brochure, 9th ed., 2019).
+inline constexpr double speed_of_light = 299792458.0;
+inline constexpr double planck = 6.62607015e-34;
 }  // namespace constant
 
 }  // namespace gladstone

@@ -72,11 +72,14 @@ double FocusedDots::light_per_ray(DotPattern const& sources) const {
 }
 
 std::string reason_against_focused_dots(Setup const& setup) {
+  if (setup.piv) return "particles are no flat dots";
   if (setup.lens.prescription) return "the lens is a prescription";
   if (setup.pose) return "the camera has a pose of its own";
   if (!setup.windows.empty()) return "there are windows";
   if (setup.camera.tilted()) return "the sensor is tilted";
   if (setup.camera.distorted()) return "the lens distorts";
+  if (setup.lenslets) return "there are lenslets before the sensor";
+  if (!setup.on_bench()) return "the camera is no ideal thin lens alone on its axis";
   if (std::isinf(setup.lens.f_number)) return "the lens has no stop (f_number = inf)";
   if (!(std::abs(setup.focus_distance() - setup.z_b()) <= 1e-12 * setup.z_b())) return "the dots are out of focus";
   return "";

@@ -2,10 +2,12 @@
 
 #include <type_traits>
 
+#include "render/base/in_scalar.h"
 #include "render/base/one_of.h"
 #include "render/base/pose.h"
 #include "render/optics/aperture_stop.h"
 #include "render/optics/lens_surface.h"
+#include "render/optics/lenslet_array.h"
 
 namespace gladstone {
 
@@ -33,6 +35,11 @@ struct PosedStop {
     account.weight = account.weight * ApertureStop<T>{T(0), radius, edge}.transmission(p.x, p.y);
     return p.x * p.x + p.y * p.y > radius * radius ? RayStatus::vignetted : RayStatus::alive;
   }
+
+  template <class U>
+  PosedStop<U> in_scalar() const {
+    return {gladstone::in_scalar<U>(pose), U(radius), U(edge)};
+  }
 };
 
 /// An ideal thin lens anywhere, facing any way: ThinLens in its own frame. Light runs along its z.
@@ -55,14 +62,25 @@ struct PosedThinLens {
     ray = pose.outwards(Ray<T>{{x, y, T(0)}, normalized(turned)});
     return RayStatus::alive;
   }
+
+  template <class U>
+  PosedThinLens<U> in_scalar() const {
+    return {gladstone::in_scalar<U>(pose), U(focal_length)};
+  }
 };
 
 /// Every element that a ray can meet between its source and the sensor. An element owns its pose in the world, takes
 /// rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. Adding one: its struct, and its
 /// name here.
 template <class T>
-using CameraElement =
-    OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>>;
+using CameraElement = OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>,
+                            ShapedSurface<T, EvenAsphere<T>>, LensletArray<T>>;
+
+/// The same element in another scalar: in ceres::Jets, rays through it carry their derivatives by its place and form.
+template <class U, class T>
+CameraElement<U> in_scalar(CameraElement<T> const& element) {
+  return element.visit([](auto const& held) -> CameraElement<U> { return held.template in_scalar<U>(); });
+}
 
 /// Takes a ray to an element of a known kind and through it; its weight is 0 where it ends there. The smoothed rim of a
 /// stop lets a share of vignetted rays pass: theirs is not 0.

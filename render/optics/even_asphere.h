@@ -40,6 +40,13 @@ struct EvenAsphere {
 
   GLADSTONE_HD Vec3<T> normal(Vec3<T> const& p) const { return normalized(gradient(p)); }
 
+  template <class U>
+  EvenAsphere<U> in_scalar() const {
+    EvenAsphere<U> same{conic.template in_scalar<U>(), {}};
+    for (int i = 0; i < terms; ++i) same.a[i] = U(a[i]);
+    return same;
+  }
+
  private:
   static constexpr int most_steps = 30;
   static constexpr double tolerance = 1e-9;  // [m]; met or not by many orders

@@ -1,9 +1,10 @@
 #include "render/optics/field_analysis.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "render/base/interrupt.h"
-#include "render/optics/aim_disc.h"
 #include "render/optics/ray_bundle.h"
 
 namespace gladstone {
@@ -35,7 +36,7 @@ class FieldTracer {
   FieldPoint at(double angle) const {
     FieldPoint point;
     point.angle = angle;
-    RayOrigin const origin = origin_of(angle);
+    RayOrigin const origin = field_origin(lens_, paraxial_, angle);
     auto const disc = find_aim_disc(lens_, origin);
     if (!disc) return point;
     trace_spot(origin, *disc, point);
@@ -44,26 +45,26 @@ class FieldTracer {
   }
 
  private:
-  RayOrigin origin_of(double angle) const {
-    double const distance = lens_.prescription.object_distance;
-    if (!std::isfinite(distance)) return RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
-    // a field angle is seen from the entrance pupil
-    double const from_pupil =
-        distance + (std::isfinite(paraxial_.entrance.position) ? paraxial_.entrance.position : 0.0);
-    return RayOrigin::point({0, -from_pupil * std::tan(angle), -distance});
-  }
-
   void trace_spot(RayOrigin const& origin, AimDisc const& disc, FieldPoint& point) const {
     int through_stop = 0;
+    std::map<std::pair<int, RayStatus>, int> lost;
     std::vector<Ray<double>> arrived;
     for (int k = 0; k < rays_; ++k) {
       Ray<double> ray = origin.ray_through(disc.at(sunflower(k, rays_)));
       auto const in_stop = place_in_stop(lens_, ray);
-      if (!in_stop || length(*in_stop) > lens_.stop_radius) continue;
-      ++through_stop;
+      if (in_stop && length(*in_stop) > lens_.stop_radius) continue;  // never meant to pass
+      through_stop += in_stop ? 1 : 0;
       RayAccount<double> account;
-      if (lens_.view().carry(ray, account) != RayStatus::alive) continue;
-      arrived.push_back(plane_.in_its_frame(ray));
+      int failed_at;
+      RayStatus const status = lens_.view().carry(ray, account, 0, lens_.view().count, failed_at);
+      if (status == RayStatus::alive) {
+        arrived.push_back(plane_.in_its_frame(ray));
+      } else {
+        ++lost[{failed_at, status}];
+      }
+    }
+    for (auto const& [where, count] : lost) {
+      point.lost.push_back({where.first, where.second, static_cast<double>(count) / rays_});
     }
     if (arrived.empty()) return;
     point.imaged = true;
@@ -73,7 +74,7 @@ class FieldTracer {
       point.spot.push_back(ImagePlane::meets(ray, 0));
       slopes.push_back(slope(ray));
     }
-    BundleSpot const spot = spot_of(point.spot, slopes);
+    BundleSpot<double> const spot = spot_of(point.spot, slopes);
     point.centroid = spot.centroid;
     point.spot_rms = std::sqrt(spot.mean_square);
     point.best_focus = spot.best_focus;
@@ -134,6 +135,14 @@ double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
 }
 
 }  // namespace
+
+RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double angle) {
+  double const distance = lens.prescription.object_distance;
+  if (!std::isfinite(distance)) return RayOrigin::direction({0, std::sin(angle), std::cos(angle)});
+  // of a pupil that is infinitely far the angle is seen from the first vertex
+  double const from_pupil = distance + (std::isfinite(paraxial.entrance.position) ? paraxial.entrance.position : 0.0);
+  return RayOrigin::point({0, -from_pupil * std::tan(angle), -distance});
+}
 
 FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int rays) {
   FieldAnalysis analysis;

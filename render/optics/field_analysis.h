@@ -3,10 +3,18 @@
 #include <limits>
 #include <vector>
 
+#include "render/optics/aim_disc.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 
 namespace gladstone {
+
+/// Rays that passed the stop, or would have, and ended at one surface for one cause.
+struct LostRays {
+  int surface;
+  RayStatus cause;
+  double share;  ///< of all that were sent towards the stop [1]
+};
 
 /// How a lens images one point of its object field.
 struct FieldPoint {
@@ -21,7 +29,8 @@ struct FieldPoint {
   double distortion = 0;        ///< chief ray's height over the paraxial chief ray's, less one [1]
   double tangential_focus = 0;  ///< of a narrow bundle about the chief ray, from the image plane [m]
   double sagittal_focus = 0;
-  double vignetting = 0;  ///< share of the stop's rays that another edge takes [1]
+  double vignetting = 0;       ///< share of the stop's rays that another edge takes [1]
+  std::vector<LostRays> lost;  ///< by surface, then by cause
 };
 
 /// What becomes of a lens' light over its field.
@@ -29,6 +38,10 @@ struct FieldAnalysis {
   double image_plane = 0;  ///< behind the last vertex: the prescription's, else the paraxial image [m]
   std::vector<FieldPoint> points;
 };
+
+/// Where the light of a field angle comes from: its direction, or the point of the object plane that the entrance pupil
+/// sees under it.
+RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double angle);
 
 /// Traces `rays` rays for every field angle of the prescription, spread evenly over the stop as the field point sees it
 /// (Vogel 1979). The object stands where the prescription says.

@@ -61,38 +61,34 @@ class LensBuilder {
   /// Finds the stop's radius and gives it to the stop.
   void open_stop() {
     PrescribedAperture const& aperture = lens_.prescription.aperture;
-    RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
-    double pupil = 0;  // diameter of the entrance pupil
-    if (options_.f_number) {
-      pupil = paraxial_lens(lens_).effective_focal_length / *options_.f_number;
-    } else if (aperture.kind == PrescribedAperture::Kind::f_number) {
-      pupil = paraxial_lens(lens_).effective_focal_length / aperture.value;
-    } else if (aperture.kind == PrescribedAperture::Kind::entrance_pupil) {
-      pupil = aperture.value;
-    }
-    pupil = std::abs(pupil);
+    using Kind = PrescribedAperture::Kind;
     PrescribedSurface const& stop = lens_.prescription.surfaces[static_cast<std::size_t>(lens_.stop)];
-    if (pupil > 0) {
-      if (!std::isfinite(pupil)) {
-        throw DataError(lens_.prescription.file,
-                        "an f-number sets no stop of an afocal lens; give the entrance pupil or the "
-                        "stop's semi-diameter");
-      }
-      Ray<double> const rim{{pupil / 2, 0, -start_}, {0, 0, 1}};
-      lens_.paraxial_stop_radius = std::abs(to_stop.a) * pupil / 2;
-      lens_.stop_radius = height_at_stop(rim).value_or(lens_.paraxial_stop_radius);
-    } else if (aperture.kind == PrescribedAperture::Kind::object_na &&
-               std::isfinite(lens_.prescription.object_distance)) {
-      double const s = std::min(aperture.value, 1.0), distance = lens_.prescription.object_distance;
-      double const slope = s / std::sqrt(std::max(1 - s * s, 1e-12));
-      Ray<double> const rim{{0, 0, -distance}, {s, 0, std::sqrt(std::max(0.0, 1 - s * s))}};
-      lens_.paraxial_stop_radius = std::abs(to_stop.a * distance + to_stop.b) * slope;
-      lens_.stop_radius = height_at_stop(rim).value_or(lens_.paraxial_stop_radius);
+    bool const telecentric = is_telecentric(ray_transfer(lens_, 0, lens_.stop));
+    double const prescribed = lens_.prescription.object_distance;
+    if (options_.f_number && telecentric) {
+      open_by_cone(*options_.f_number, options_.object_distance.value_or(prescribed));
+    } else if (options_.f_number) {
+      open_by_pupil(paraxial_lens(lens_).effective_focal_length / *options_.f_number);
+    } else if (aperture.kind == Kind::working_f_number && std::isfinite(prescribed)) {
+      open_by_cone(aperture.value, prescribed);
+    } else if (aperture.kind == Kind::f_number || aperture.kind == Kind::working_f_number) {
+      open_by_pupil(paraxial_lens(lens_).effective_focal_length / aperture.value);
+    } else if (aperture.kind == Kind::entrance_pupil) {
+      open_by_pupil(aperture.value);
+    } else if (aperture.kind == Kind::object_na && std::isfinite(prescribed)) {
+      double const s = std::min(aperture.value, 1.0);
+      open_by_slope(s / std::sqrt(std::max(1 - s * s, 1e-12)), prescribed);
     } else {
       lens_.stop_radius = lens_.paraxial_stop_radius = stop.semi_diameter;
     }
+    if (stop.has_aperture) {  // closes what the system's aperture opens too far
+      lens_.stop_radius = std::min(lens_.stop_radius, stop.semi_diameter);
+      lens_.paraxial_stop_radius = std::min(lens_.paraxial_stop_radius, stop.semi_diameter);
+    }
     if (!(lens_.stop_radius > 0) || !std::isfinite(lens_.stop_radius)) {
-      throw DataError(stop.where, "no light passes the stop (its aperture comes to nothing or to no end)");
+      throw DataError(stop.where,
+                      "no light passes the stop (its aperture comes to nothing or to no end); give the entrance pupil, "
+                      "the f-number or the stop's semi-diameter another value");
     }
     auto& surface = lens_.surfaces[static_cast<std::size_t>(lens_.stop)];
     surface = surface.visit([&](auto opened) -> LensSurface<double> {
@@ -101,7 +97,56 @@ class LensBuilder {
     });
   }
 
+  /// Refuses a lens whose axial ray ends within it: nothing could be said of its picture.
+  void follow_axis() const {
+    Ray<double> ray{{0, 0, -start_}, {0, 0, 1}};
+    RayAccount<double> account;
+    int failed_at;
+    RayStatus const status = lens_.view().carry(ray, account, 0, lens_.view().count, failed_at);
+    if (status == RayStatus::alive || status == RayStatus::vignetted) return;
+    PrescribedSurface const& surface = lens_.prescription.surfaces[static_cast<std::size_t>(failed_at)];
+    char const* const why =
+        status == RayStatus::total_internal_reflection
+            ? "the ray along the axis is totally reflected here; check the surface's tilt and radius "
+              "and the glass before it"
+            : "the ray along the axis does not meet this surface; check its radius, its tilt and "
+              "decentre, and the thickness before it";
+    throw DataError(surface.where, fmt::format("surface {}: {}", failed_at + 1, why));
+  }
+
  private:
+  /// Opens the stop to the rim of an entrance pupil of this diameter [m].
+  void open_by_pupil(double diameter) {
+    double const radius = std::abs(diameter) / 2;
+    if (!std::isfinite(radius)) {
+      throw DataError(lens_.prescription.file,
+                      "an f-number sets no stop of an afocal lens; give the entrance pupil or the "
+                      "stop's semi-diameter");
+    }
+    lens_.paraxial_stop_radius = std::abs(ray_transfer(lens_, 0, lens_.stop).a) * radius;
+    lens_.stop_radius = height_at_stop({{radius, 0, -start_}, {0, 0, 1}}).value_or(lens_.paraxial_stop_radius);
+  }
+
+  /// Opens it to the rim of a cone from the axis point at a distance, of this slope against the axis.
+  void open_by_slope(double slope, double distance) {
+    RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
+    lens_.paraxial_stop_radius = std::abs(to_stop.a * distance + to_stop.b) * slope;
+    lens_.stop_radius =
+        height_at_stop({{0, 0, -distance}, normalized(Vec3d{slope, 0, 1})}).value_or(lens_.paraxial_stop_radius);
+  }
+
+  /// Opens it to a cone towards the image of this working f-number.
+  void open_by_cone(double f_number, double distance) {
+    RayTransfer const all = ray_transfer(lens_, 0, static_cast<int>(lens_.paraxial.size()));
+    double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d));
+    if (!std::isfinite(distance) || !std::isfinite(slope)) {
+      throw DataError(lens_.prescription.file,
+                      "an f-number sets no stop of a telecentric lens whose object stands nowhere; give the file's "
+                      "object distance, or the stop's semi-diameter");
+    }
+    open_by_slope(slope, distance);
+  }
+
   static Pose<double> broken(Pose<double> frame, CoordinateBreak const& here) {
     Vec3d const shift{here.decentre.x, here.decentre.y, 0};
     if (here.tilt_first) {
@@ -140,6 +185,7 @@ class LensBuilder {
     surface.absorption = before.absorption;
     surface.action = action;
     surface.fresnel = options_.fresnel;
+    surface.obscured = prescribed.obscured;
     lens_.surfaces.push_back(surface);
     lens_.poses.push_back(frame);
   }
@@ -173,9 +219,11 @@ Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, doub
   Lens lens;
   lens.prescription = std::move(prescription);
   lens.wavelength = wavelength;
+  lens.warnings = lens.prescription.warnings;
   LensBuilder builder(lens, catalogue, options);
   builder.place_surfaces();
   builder.open_stop();
+  builder.follow_axis();
   return lens;
 }
 

@@ -64,9 +64,13 @@ struct Lens {
 };
 
 struct LensOptions {
-  std::optional<double> f_number;  ///< sets the stop in place of the prescription's aperture [1]
-  bool fresnel = false;            ///< take reflections of bare surfaces off the light
-  bool absorption = false;         ///< and what glass absorbs
+  /// Sets the stop in place of the prescription's aperture: effective focal length over the entrance pupil's diameter;
+  /// of a telecentric lens, whose pupil has no width, the working f-number of the cone towards the image [1].
+  std::optional<double> f_number = std::nullopt;
+  /// From the first vertex to what a telecentric lens is focused on [m]; empty: as the prescription says.
+  std::optional<double> object_distance = std::nullopt;
+  bool fresnel = false;     ///< take reflections of bare surfaces off the light
+  bool absorption = false;  ///< and what glass absorbs
 };
 
 /// Finds the glasses and places the surfaces. The stop opens as far as the aperture says: to the height of the real

@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-LensSetup read_lens_setup(SetupTable table) {
+LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   LensSetup setup;
   Range aperture = Range::positive();
   aperture.allow_inf = true;
@@ -25,13 +25,16 @@ LensSetup read_lens_setup(SetupTable table) {
   if (table.has("focus_distance_mm")) {
     if (table.has("focus")) {
       table.problem("focus_distance_mm", "stands beside focus (one of them is enough); remove one");
-      table.word("focus", "target", {"target", "medium"});
+      table.word("focus", focus_on, {focus_on, "medium"});
     }
     setup.focus = Focus::distance;
     setup.focus_distance = table.number("focus_distance_mm", 1000.0, Range::positive()) * unit::millimetre;
-  } else if (table.word("focus", "target", {"target", "medium"}) == "medium") {
+  } else if (table.word("focus", focus_on, {focus_on, "medium"}) == "medium") {
     setup.focus = Focus::medium;
   }
+  std::string const passes = table.word("transmittance", "ideal", {"ideal", "surfaces", "glass"});
+  if (passes == "surfaces") setup.transmittance = Transmittance::surfaces;
+  if (passes == "glass") setup.transmittance = Transmittance::glass;
   std::string const psf =
       table.word("psf", "gaussian", {"gaussian", "airy", "gaussian_first_zero", "seed_eq8", "none"});
   if (psf == "airy") setup.spot = SpotModel::airy;
@@ -41,8 +44,12 @@ LensSetup read_lens_setup(SetupTable table) {
   return setup;
 }
 
-void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::vector<std::string>& warnings) {
+void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::optional<double> object_distance,
+                        std::vector<std::string>& warnings) {
   LensOptions options;
+  options.object_distance = object_distance;
+  options.fresnel = setup.transmittance != Transmittance::ideal;
+  options.absorption = setup.transmittance == Transmittance::glass;
   if (std::isfinite(setup.f_number)) options.f_number = setup.f_number;
   try {
     auto const lens = std::make_shared<Lens const>(

@@ -11,6 +11,13 @@ namespace gladstone {
 enum class Focus { target, medium, distance };
 enum class SpotModel { airy, gaussian, gaussian_first_zero, seed_eq8, none };
 
+/// What glass takes off the light: of lenses and of windows.
+enum class Transmittance {
+  ideal,     ///< nothing
+  surfaces,  ///< what bare surfaces reflect (Fresnel)
+  glass,     ///< that, and what the glass absorbs as its catalogue says
+};
+
 /// Table [lens] of a setup, in SI.
 struct LensSetup {
   double focal_length = 0.105;  ///< infinite for afocal prescriptions [m]
@@ -18,16 +25,20 @@ struct LensSetup {
   Focus focus = Focus::target;
   double focus_distance = 0.0;  ///< from the front principal plane, for Focus::distance [m]
   SpotModel spot = SpotModel::gaussian;
+  Transmittance transmittance = Transmittance::ideal;
   std::string file;                          ///< of a prescription; empty: an ideal thin lens
   std::shared_ptr<Lens const> prescription;  ///< made ready at the setup's wavelength; null: an ideal thin lens
 };
 
 /// Reads [lens]. A prescription is named only; build_prescription() makes it ready.
-LensSetup read_lens_setup(SetupTable table);
+/// @param focus_on what focus = "..." calls the plane of the sources: "target", or "sheet" for PIV; it is the default
+LensSetup read_lens_setup(SetupTable table, std::string const& focus_on = "target");
 
 /// Reads the prescription that a setup names, at the setup's wavelength [m]: sets focal length and f-number too.
-/// Problems go to the key `file`. @param warnings of glasses that are not known well
-void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::vector<std::string>& warnings);
+/// Problems go to the key `file`. @param object_distance from the first vertex to the plane in focus, that the f-number
+/// of a telecentric lens is of [m]; empty: not known @param warnings of glasses that are not known well
+void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::optional<double> object_distance,
+                        std::vector<std::string>& warnings);
 
 /// Image distance and magnifications of a thin lens (Raffel 2015, Exp. Fluids 56:60), or of one that is as good as it
 /// about the axis.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <type_traits>
+
+#include "render/base/in_scalar.h"
 #include "render/base/one_of.h"
 #include "render/base/pose.h"
 #include "render/optics/even_asphere.h"
@@ -33,6 +36,7 @@ struct ShapedSurface {
   T absorption{};  ///< of the medium before it, in light per length [1/m]
   SurfaceAction action = SurfaceAction::refract;
   bool fresnel = false;  ///< whether a bare surface's reflection is taken off the light
+  T obscured{};          ///< rays that meet it nearer to its axis are vignetted; 0: none [m]
 
   /// Where a ray meets the surface, across the axis of its vertex [m]. @return false where it misses it
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
@@ -55,7 +59,7 @@ struct ShapedSurface {
     if (absorption > T(0)) account.weight = account.weight * exp(-absorption * way);
     RayStatus status = RayStatus::alive;
     T const r2 = local.position.x * local.position.x + local.position.y * local.position.y;
-    if (r2 > semi_diameter * semi_diameter) status = RayStatus::vignetted;
+    if (r2 > semi_diameter * semi_diameter || r2 < obscured * obscured) status = RayStatus::vignetted;
     if (action != SurfaceAction::pass) {
       Vec3<T> const normal = shape.normal(local.position);
       if (action == SurfaceAction::reflect) {
@@ -72,6 +76,20 @@ struct ShapedSurface {
     }
     ray = pose.outwards(local);
     return status;
+  }
+
+  template <class U>
+  auto in_scalar() const {
+    auto const same = shape.template in_scalar<U>();
+    return ShapedSurface<U, std::remove_const_t<decltype(same)>>{gladstone::in_scalar<U>(pose),
+                                                                 same,
+                                                                 U(semi_diameter),
+                                                                 U(n_before),
+                                                                 U(n_after),
+                                                                 U(absorption),
+                                                                 action,
+                                                                 fresnel,
+                                                                 U(obscured)};
   }
 };
 

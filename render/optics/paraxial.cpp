@@ -44,8 +44,14 @@ ParaxialLens paraxial_lens(Lens const& lens) {
   // through the stop's centre: a y + b n u = 0 before it; y = b, n u = d behind the last surface
   result.entrance = {finite(before.b, before.a, 1), std::abs(finite(diameter, before.a, 1))};
   result.exit = {finite(-after.b, after.d, 1), std::abs(finite(diameter, after.d, 1))};
-  result.f_number = std::isfinite(result.entrance.diameter) ? std::abs(f) / result.entrance.diameter : infinite;
+  result.telecentric = is_telecentric(before);
+  result.f_number = result.telecentric ? infinite : std::abs(f) / result.entrance.diameter;
   return result;
+}
+
+bool is_telecentric(RayTransfer const& to_stop) {
+  constexpr double magnified = 20;
+  return magnified * std::abs(to_stop.a) < 1;
 }
 
 }  // namespace gladstone

@@ -20,8 +20,9 @@ struct ParaxialLens {
   double rear_principal_plane = 0;    ///< from the last vertex [m]
   Pupil entrance;                     ///< from the first vertex
   Pupil exit;                         ///< from the last vertex
+  bool telecentric = false;           ///< towards the object: see is_telecentric()
   double f_number = 0;                ///< effective focal length over the entrance pupil's diameter [1]; infinite for
-                                      ///< afocal lenses, and where that pupil is infinitely far and wide
+                                      ///< afocal and telecentric lenses
 };
 
 /// @pre the lens has a stop
@@ -33,5 +34,10 @@ struct RayTransfer {
   double a = 1, b = 0, c = 0, d = 1;  ///< y' = a y + b (n u), (n u)' = c y + d (n u)
 };
 RayTransfer ray_transfer(Lens const& lens, int first, int last);
+
+/// Whether the entrance pupil is the stop magnified more than twenty times, and so about as far away: chief rays of a
+/// field as wide as the lens then run parallel to its axis within a twentieth of the lens' own field. At one wavelength
+/// a lens of glass has its pupil at infinity, at others but far away.
+bool is_telecentric(RayTransfer const& to_stop);
 
 }  // namespace gladstone

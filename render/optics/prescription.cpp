@@ -89,6 +89,7 @@ void check_prescription(Prescription const& lens) {
   }
   std::string stop;
   bool any_real = false;
+  double forwards = 1;  // sense of the light, which mirrors turn
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     PrescribedSurface const& surface = lens.surfaces[i];
     bool const last = i + 1 == lens.surfaces.size();
@@ -98,18 +99,39 @@ void check_prescription(Prescription const& lens) {
       stop = surface.where;
     }
     if (!(std::abs(surface.thickness) <= longest) && !last) {
-      throw DataError(surface.where, fmt::format("a thickness of {:.4g} mm is no distance within a lens",
-                                                 surface.thickness / unit::millimetre));
+      throw DataError(surface.where,
+                      fmt::format("a thickness of {:.4g} mm is no distance within a lens (at most a kilometre is)",
+                                  surface.thickness / unit::millimetre));
     }
-    if (!(surface.semi_diameter > 0)) throw DataError(surface.where, "the semi-diameter is not positive");
+    if (!(surface.semi_diameter > 0)) {
+      throw DataError(surface.where, "the semi-diameter is not positive; give the radius that light passes within");
+    }
+    if (!(surface.obscured >= 0 && surface.obscured < surface.semi_diameter)) {
+      throw DataError(surface.where,
+                      fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "
+                                  "make it smaller",
+                                  surface.obscured / unit::millimetre, surface.semi_diameter / unit::millimetre));
+    }
+    if (surface.after.is_mirror()) forwards = -forwards;
+    if (!surface.after.is_mirror() && !surface.after.is_air() && forwards * surface.thickness < 0 && !last) {
+      throw DataError(
+          surface.where,
+          fmt::format("a thickness of {:.4g} mm of glass runs against the light, which goes {} here; change "
+                      "its sign (behind an odd number of mirrors thicknesses are negative)",
+                      surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
+    }
     if (std::isfinite(surface.semi_diameter) && !std::isfinite(sag(surface, surface.semi_diameter))) {
       throw DataError(surface.where,
-                      fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm",
+                      fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; make "
+                                  "the radius larger or the semi-diameter smaller",
                                   1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre));
     }
     if (auto const* const index = std::get_if<PrescribedMedium::Described>(&surface.after.is)) {
       if (!(index->nd > 1 && index->nd < 5 && index->vd > 0)) {
-        throw DataError(surface.where, fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass", index->nd, index->vd));
+        throw DataError(surface.where,
+                        fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
+                                    "correct it or name a glass",
+                                    index->nd, index->vd));
       }
     }
     if (!last && is_real(lens, i) && is_real(lens, i + 1)) refuse_overlap(surface, lens.surfaces[i + 1]);

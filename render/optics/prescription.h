@@ -49,6 +49,8 @@ struct PrescribedSurface {
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
   bool semi_diameter_is_an_edge = true;  ///< false: the width of some beam, as design programs fill it in
+  bool has_aperture = false;             ///< an aperture of that semi-diameter stands on it, which bounds a stop too
+  double obscured = 0;                   ///< radius within which no light passes [m]
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< breaks in the frame ahead of it
 };
@@ -56,10 +58,11 @@ struct PrescribedSurface {
 /// What sets the width of the stop.
 struct PrescribedAperture {
   enum class Kind {
-    stop,            ///< the stop surface's own semi-diameter
-    entrance_pupil,  ///< diameter of the entrance pupil [m]
-    f_number,        ///< effective focal length over that diameter [1]
-    object_na,       ///< numerical aperture on the object's side [1]
+    stop,              ///< the stop surface's own semi-diameter
+    entrance_pupil,    ///< diameter of the entrance pupil [m]
+    f_number,          ///< effective focal length over that diameter [1]
+    object_na,         ///< numerical aperture on the object's side [1]
+    working_f_number,  ///< one over twice the slope of the axial cone's rim towards the image [1]
   };
   Kind kind = Kind::stop;
   double value = 0;
@@ -73,8 +76,9 @@ struct Prescription {
   std::vector<PrescribedSurface> surfaces;
   double object_distance = std::numeric_limits<double>::infinity();  ///< to the first surface [m]
   PrescribedAperture aperture;
-  double primary_wavelength = 0;     ///< [m]; 0: the file says none
-  std::vector<double> field_angles;  ///< of the object at infinity, against the axis, in the y-z plane [rad]
+  double primary_wavelength = 0;      ///< [m]; 0: the file says none
+  std::vector<double> field_angles;   ///< of the object at infinity, against the axis, in the y-z plane [rad]
+  std::vector<std::string> warnings;  ///< of what a file says that is not traced
 };
 
 /// Reads a prescription: one row per format in prescription.cpp (.toml, Zemax .zmx, CODE V .seq), and checks that it

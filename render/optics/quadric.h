@@ -57,6 +57,11 @@ struct Quadric {
     return conic == T(0) && along_y == T(1) ? along : normalized(along);
   }
 
+  template <class U>
+  Quadric<U> in_scalar() const {
+    return {U(curvature), U(conic), U(along_y)};
+  }
+
  private:
   /// The sheet through the vertex is where dF/dz stays positive.
   GLADSTONE_HD bool on_sheet(T const& z) const { return T(1) - (T(1) + conic) * curvature * z >= T(0); }

@@ -14,11 +14,12 @@ enum class WindowSide { target, camera };
 struct WindowSetup {
   WindowSide side = WindowSide::camera;
   std::string glass;
-  std::string where;     ///< file:line of the glass, for messages
-  double index = 1;      ///< of the glass at the setup's wavelength, against its surroundings [1]
-  double thickness = 0;  ///< [m]
-  Vec3d position{};      ///< of its centre [m]
-  Vec2d tilt{};          ///< right-handed about x, then about the turned y [rad]
+  std::string where;      ///< file:line of the glass, for messages
+  double index = 1;       ///< of the glass at the setup's wavelength, against its surroundings [1]
+  double absorption = 0;  ///< of the glass, in light per length; 0 unless asked for [1/m]
+  double thickness = 0;   ///< [m]
+  Vec3d position{};       ///< of its centre [m]
+  Vec2d tilt{};           ///< right-handed about x, then about the turned y [rad]
 
   /// By how much it brings nearer what is seen through it squarely, t (1 - 1/n) [m].
   double shift() const { return thickness * (1 - 1 / index); }

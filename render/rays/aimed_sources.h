@@ -55,8 +55,8 @@ struct AimedRay {
 };
 
 /// The ray from a place of source i to a point of the aim disc, which is a unit disc.
-template <class T, template <class> class Sources>
-GLADSTONE_HD AimedRay<T> ray_to(Sources<T> const& sources, AimedBundle<T> const& bundle, std::uint64_t i, Vec2<T> place,
+template <class T, class Sources>
+GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i, Vec2<T> place,
                                 Vec2<T> at) {
   Vec3<T> const start = sources.point(i, place);
   Vec3<T> const way = bundle.centre + at.x * bundle.a + at.y * bundle.b - start;
@@ -73,8 +73,8 @@ GLADSTONE_HD AimedRay<T> ray_to(Sources<T> const& sources, AimedBundle<T> const&
 /// Rays of a scrambling come in pairs, to one point of the disc from opposite places of the source: what the stop takes
 /// of them in one frame and not in the other then moves the centroid by the source's middle, not by the scatter of
 /// places over it.
-template <class T, template <class> class Sources>
-GLADSTONE_HD AimedRay<T> aim_ray(Sources<T> const& sources, AimedBundle<T> const& bundle, std::uint64_t i,
+template <class T, class Sources>
+GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i,
                                  std::uint64_t j) {
   using std::sqrt;
   int const bits = bundle.choice.scrambling_bits;

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "render/base/parallel.h"
-#include "render/rays/source_tracer.h"
+#include "render/rays/trace_particles.h"
 #include "render/scene/ray_scatter.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
 namespace {
+
+constexpr double not_in_picture = std::numeric_limits<double>::quiet_NaN();
 
 /// Rays from the middle of a source to points of the unit disc that its aim disc is.
 std::vector<Vec2d> const chief_ray{{0, 0}};
@@ -28,8 +31,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
       [&](auto const& medium) {
         parallel_chunks(dots.size(), 16, [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
-            Vec2d const centre = scene.dots.centre[dots[i]];
-            Vec3d const start{centre.x, centre.y, -scene.setup.z_d};
+            Vec3d const start = scene.source_place(dots[i]);
             auto const disc = scene.camera.aim_disc(start);
             Vec2d sum{};
             int seen = 0;
@@ -62,7 +64,11 @@ class RayErrors {
     std::vector<std::size_t> const in_view = dots_in_view(scene);
     levels_ = GreyLevels(scene.setup.camera, in_view.size());
     sample_ = choose_sample(in_view, plan_sample_dots);
-    for (std::size_t const dot : sample_) at_.push_back(scene.to_pixel(scene.dots.centre[dot]));
+    for (std::size_t const dot : sample_) {
+      at_.push_back(scene.setup.piv
+                        ? scene.camera.project(scene.source_place(dot)).value_or(Vec2d{not_in_picture, not_in_picture})
+                        : scene.to_pixel(scene.dots.centre[dot]));
+    }
     side_ = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(widest_image_px(), 100.0));
   }
 
@@ -82,23 +88,20 @@ class RayErrors {
 
  private:
   Sampled sample(std::size_t place, int scrambling) const {
-    RaysLaunch launch(scene_, spot_);
-    launch.choice.seed = repeat_seed(launch.choice.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-    // pixels are counted from the window's corner: the sensor's own first pixel moves, its axis does not
     Vec2d const at = at_[place];
     if (!std::isfinite(at.x)) return {{}, std::vector<double>(static_cast<std::size_t>(frame_count * side_ * side_))};
     int const left = static_cast<int>(std::floor(at.x)) - side_ / 2,
               top = static_cast<int>(std::floor(at.y)) - side_ / 2;
-    launch.camera.sensor.columns -= 2 * left;
-    launch.camera.sensor.rows -= 2 * top;
+    auto const change = [&](RaysLaunch& launch) {
+      launch.choice.seed = repeat_seed(launch.choice.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
+      // pixels are counted from the window's corner: the sensor's own first pixel moves, its axis does not
+      launch.camera.sensor.columns -= 2 * left;
+      launch.camera.sensor.rows -= 2 * top;
+    };
     LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
-    LambertSources<double> const lambert{scene_.dots.view(-scene_.setup.z_d)};
-    DotTruth const truth = std::visit(
-        [&](auto const& medium) {
-          return SourceTracer(launch, launch.camera.view(), lambert, medium, true).trace(sample_[place], images);
-        },
-        scene_.medium.view);
+    DotTruth const truth =
+        scene_.setup.piv ? particle(change, sample_[place], images) : dot(change, sample_[place], images);
     Sampled sampled;
     Vec2d const displacement = truth.hits[1].mean() - truth.hits[0].mean();
     if (std::isfinite(displacement.x)) sampled.displacement = displacement;
@@ -109,13 +112,35 @@ class RayErrors {
     return sampled;
   }
 
+  template <class Change>
+  DotTruth dot(Change const& change, std::size_t source, LightImage* const (&images)[frame_count]) const {
+    RaysLaunch launch(scene_, spot_);
+    change(launch);
+    LambertSources<double> const lambert{scene_.dots.view(-scene_.setup.z_d)};
+    return std::visit(
+        [&](auto const& medium) {
+          return SourceTracer(launch, launch.camera.view(), lambert, medium, true).trace(source, images);
+        },
+        scene_.medium.view);
+  }
+  template <class Change>
+  DotTruth particle(Change const& change, std::size_t source, LightImage* const (&images)[frame_count]) const {
+    ParticleLaunch launch(scene_, spot_);
+    change(launch.smooth);
+    change(launch.sharp);
+    double const light_per_weight = 1 / (static_cast<double>(launch.smooth.rays) * scene_.photon_unit);
+    return with_particles(
+        scene_, scene_.particles, ParticleLight::scattered, [&](auto const& pulses, auto const& medium) {
+          return ParticleTracer(launch, pulses, medium, true).trace(source, images, light_per_weight).truth;
+        });
+  }
+
   /// Width of the sample's images without diffraction and medium [px].
   double widest_image_px() const {
     double widest = 0;
     CameraView<double> const camera = scene_.camera.view();
     for (std::size_t const dot : sample_) {
-      Vec2d const centre = scene_.dots.centre[dot];
-      Vec3d const start{centre.x, centre.y, -scene_.setup.z_d};
+      Vec3d const start = scene_.source_place(dot);
       auto const disc = scene_.camera.aim_disc(start);
       if (!disc) continue;
       std::optional<Vec2d> chief;
@@ -145,7 +170,7 @@ class RayErrors {
 StepPlan plan_step_by_rays(Scene& scene) {
   StepPlan const plan = choose_step(scene, [&](double step, auto const& search) {
     StepProbes probes;
-    probes.dots.resize(scene.dots.centre.size());
+    probes.dots.resize(scene.source_count());
     std::iota(probes.dots.begin(), probes.dots.end(), std::size_t{0});
     if (probes.dots.size() > probed_dots) {
       Probe const coarse = probe_dots(scene, probes.dots, chief_ray, step);
@@ -170,7 +195,7 @@ RaysPlan plan_rays_by_rays(Scene& scene) {
   // to the time of a ray through a thin lens comes that of the surfaces, in both frames [s]
   constexpr double a_surface = 60e-9;
   double const surfaces = a_surface * frame_count * static_cast<double>(scene.camera.elements.size());
-  double const seconds = rays_seconds(scene) + surfaces * static_cast<double>(scene.dots.centre.size());
+  double const seconds = rays_seconds(scene) + surfaces * static_cast<double>(scene.source_count());
   return choose_rays(
       scene, [&] { return errors.measure(); }, seconds);
 }

@@ -9,6 +9,7 @@
 #include "render/base/progress.h"
 #include "render/rays/ray_theory.h"
 #include "render/rays/source_tracer.h"
+#include "render/rays/trace_particles.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
@@ -101,6 +102,11 @@ Rendering RaysRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
     rendering.light = {};
   }
   return rendering;
+}
+
+Rendering RaysRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                                         RenderImages images) {
+  return trace_particles(scene, particles, light, images);
 }
 
 std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources) {

@@ -11,6 +11,8 @@ class RaysRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                             RenderImages images) override;
 };
 
 /// Displacements of sources as an ideal lens in their place would image them [px]: every ray of the actual camera that

@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown)
+RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
     : camera(scene.camera),
       tracing{scene.step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
               scene.setup.medium.faces},
@@ -16,7 +16,7 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown)
   choice.seed = scene.setup.render.seed;
   choice.sampling = scene.setup.render.sampling;
   choice.scrambling_bits = scrambling_bits(rays);
-  if (!camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
+  if (rim == StopRim::smooth && !camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
   // the light of a pixel on the axis: the area that it sees times the cosine and the solid angle that it sees it by
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
   if (!seen) throw DataError("lens", "the camera's axis meets no place of the dots' plane; check the geometry");

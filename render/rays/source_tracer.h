@@ -16,9 +16,15 @@
 
 namespace gladstone {
 
+/// The rim of a launch's stop.
+enum class StopRim {
+  smooth,  ///< for rays that are clipped there: as wide as their number asks for
+  sharp,   ///< as it is, for rays that fill the stop and nothing else
+};
+
 /// What all sources of a launch share.
 struct RaysLaunch {
-  Camera camera;  ///< its stop with a rim for this number of rays
+  Camera camera;  ///< its stop with the rim asked for
   TracingOptions<double> tracing;
   BundleView<double> choice;
   SpotView spot;
@@ -27,7 +33,7 @@ struct RaysLaunch {
   double light_unit = 1;  ///< of weight times source area: a fully lit pixel on the axis [m^2]
   double point_area = 0;  ///< that a source of no size counts as: what a pixel on the axis sees [m^2]
 
-  RaysLaunch(Scene const& scene, SpotView const& spot);
+  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth);
 
   /// Light of one unit of a ray's weight [fully lit px].
   double light_per_weight(double source_area) const {

@@ -7,7 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "render/optics/ray_bundle.h"
+#include "render/scene/best_focus.h"
 
 namespace gladstone {
 namespace {
@@ -15,16 +15,18 @@ namespace {
 constexpr double sharp = 0;  // rim of a stop
 
 /// The window's two faces, in the order that light along +Z meets them.
-void append_window(Camera& camera, WindowSetup const& window) {
+void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
   Pose<double> const middle = Pose<double>{window.position}.turned({window.tilt.x, window.tilt.y, 0});
   ShapedSurface<double, Quadric<double>> face;
   face.semi_diameter = std::numeric_limits<double>::infinity();
   face.pose = middle.moved({0, 0, -window.thickness / 2});
   face.n_after = window.index;
+  face.fresnel = fresnel;
   camera.elements.push_back(face);
   face.pose = middle.moved({0, 0, window.thickness / 2});
   face.n_before = window.index;
   face.n_after = 1;
+  face.absorption = window.absorption;
   camera.elements.push_back(face);
 }
 
@@ -57,28 +59,11 @@ void append_prescription(Camera& camera, Setup const& setup) {
   }
 }
 
-/// By how much a sensor is to be moved along its axis, so that the bundle from a point is narrowest there.
-double best_focus(Camera const& camera, Vec3d point) {
-  constexpr int count = 500;
-  auto const disc = camera.aim_disc(point);
-  std::vector<Vec2d> places, slopes;
-  for (int k = 0; disc && k < count; ++k) {
-    Vec2d const at = sunflower(k, count);
-    Ray<double> ray{point, normalized(disc->centre + at.x * disc->a + at.y * disc->b - point)};
-    RayAccount<double> account;
-    CameraView<double> const view = camera.view();
-    if (carry(view, 0, view.count, ray, account) != RayStatus::alive) continue;
-    Ray<double> const local = camera.sensor.pose.inwards(ray);
-    Vec2d const s{local.direction.x / local.direction.z, local.direction.y / local.direction.z};
-    places.push_back({local.position.x - s.x * local.position.z, local.position.y - s.y * local.position.z});
-    slopes.push_back(s);
-  }
-  if (places.size() < 10) {
-    throw DataError("lens",
-                    "no light of the plane in focus passes it (too few of its axial rays reach the sensor); check "
-                    "lens.focus, geometry and lens.f_number");
-  }
-  return spot_of(places, slopes).best_focus;
+/// Puts lenslets where the sensor stood, and the sensor behind them.
+void append_lenslets(Camera& camera, LensletSetup const& lenslets) {
+  camera.elements.push_back(
+      LensletArray<double>{camera.sensor.pose, lenslets.pitch, lenslets.focal_length, lenslets.layout});
+  camera.sensor.pose = camera.sensor.pose.moved({0, 0, lenslets.to_sensor});
 }
 
 /// Tilts of the sensor that image a plane, whose normal in the camera's frame is given, sharply all over: with the
@@ -156,7 +141,7 @@ Camera build_camera(Setup const& setup) {
   camera.aim_plane = camera.pose.moved({0, 0, paraxial.front});
   for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
     for (WindowSetup const& window : setup.windows) {
-      if (window.side == side) append_window(camera, window);
+      if (window.side == side) append_window(camera, window, setup.lens.transmittance != Transmittance::ideal);
     }
     if (side == WindowSide::target) camera.before_medium = static_cast<int>(camera.elements.size());
   }
@@ -187,6 +172,7 @@ Camera build_camera(Setup const& setup) {
   }
   Vec2d const tilt = sensor_tilt(setup);
   camera.sensor.pose = camera.sensor.pose.turned({tilt.x, tilt.y, 0});
+  if (setup.lenslets) append_lenslets(camera, *setup.lenslets);
   return camera;
 }
 

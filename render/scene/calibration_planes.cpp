@@ -27,7 +27,8 @@ Setup plane_setup(Setup const& setup, double z) {
 
 std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera) {
   bool const tilted = !(sensor_tilt(setup) == Vec2d{});
-  if (setup.lens.prescription || !setup.windows.empty() || (tilted && setup.camera.distorted())) return std::nullopt;
+  bool const thin = !setup.lens.prescription && setup.windows.empty() && !setup.lenslets;
+  if (!thin || (tilted && setup.camera.distorted())) return std::nullopt;
   PosedSensor<double> const& sensor = camera.sensor;
   Vec3d const to_sensor = sensor.pose.origin - camera.pose.origin;
   double const distance = dot(to_sensor, sensor.pose.z);

@@ -17,6 +17,12 @@ bool go_on(CameraElement<double> const& element, Ray<double>& ray) {
   return status == RayStatus::alive || status == RayStatus::vignetted;
 }
 
+/// Lenslets show many small pictures of the stop; where a camera sees a point is what its lens makes of it.
+bool is_lenslet_array(CameraElement<double> const& element) {
+  return element.visit(
+      [](auto const& held) { return std::is_same_v<std::decay_t<decltype(held)>, LensletArray<double>>; });
+}
+
 }  // namespace
 
 double ParaxialCamera::chief_slope(double distance) const {
@@ -59,6 +65,7 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
   Ray<double> ray = towards(point, aim);
   Sight seen;
   for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (is_lenslet_array(elements[i])) continue;
     bool const met = static_cast<int>(i) != stop ||
                      elements[i].visit([&](auto const& held) { return held.meet(ray, seen.in_stop); });
     if (!met || !go_on(elements[i], ray)) return std::nullopt;

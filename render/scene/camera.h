@@ -63,7 +63,8 @@ class Camera {
   /// Gives the stop a smoothed rim, as a share of its area. A stop that is a surface of glass keeps its sharp one.
   void smooth_stop(double edge);
 
-  /// Where the chief ray of a point ends without medium [px]; nothing where none gets through.
+  /// Where the chief ray of a point ends without medium [px]; nothing where none gets through. Lenslets are looked
+  /// past: the middle of the small pictures that they make of the point.
   std::optional<Vec2d> project(Vec3d point) const;
   /// The point of a plane (its frame's x and y) whose chief ray ends at a pixel.
   std::optional<SeenPoint> unproject(Vec2d pixel, Pose<double> const& plane) const;

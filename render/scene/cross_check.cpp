@@ -6,6 +6,7 @@
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "render/scene/particle_scene.h"
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 #include "render/sensor/diffraction_spot.h"
@@ -69,6 +70,20 @@ void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
   }
 }
 
+/// Warns of lenslets whose pictures of the stop run into each other: their f-number is to be the lens' own, or smaller
+/// (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1).
+void cross_check_lenslets(Setup const& setup, std::vector<std::string>& warnings) {
+  ImagingGeometry const imaging = setup.imaging();
+  double const picture = setup.lenslets->to_sensor * imaging.entrance_pupil / imaging.image_distance;
+  if (picture <= setup.lenslets->pitch) return;
+  warnings.push_back(
+      fmt::format("camera.lenslets: each shows the stop {:.4g} um wide, more than the {:.4g} um between them, so that "
+                  "pictures overlap; "
+                  "stop the lens down to f/{:.3g} or take lenslets of a shorter focal length",
+                  picture / unit::micrometre, setup.lenslets->pitch / unit::micrometre,
+                  setup.lens.f_number * picture / setup.lenslets->pitch));
+}
+
 /// Whether lens and camera make an image of the dots at all.
 bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
@@ -94,6 +109,7 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
     return false;
   }
   if (!setup.on_bench() && !cross_check_camera(setup, root)) return false;
+  if (setup.lenslets) cross_check_lenslets(setup, warnings);
   if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty() && !setup.lens.prescription) {
     warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
   }
@@ -106,7 +122,7 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry) {
   FieldKind const kind = setup.medium.field.kind;
   if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
     double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
-    if (-setup.z_d > centre - half) {
+    if (!setup.piv && -setup.z_d > centre - half) {
       geometry.problem(
           "z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
                                 "z_d_mm beyond {:.6g} or make the medium thinner{}",
@@ -220,6 +236,11 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   cross_check_noise(setup, warnings);
   cross_check_steps(setup, medium);
   cross_check_density(setup, medium, warnings);
+  if (setup.piv) {
+    cross_check_spot(setup, setup.spot_diameter_px(), root.table("lens"), root);
+    cross_check_particles(setup, root, warnings);
+    return warnings;
+  }
   cross_check_target(setup, root, warnings);
   if (setup.target.kind == TargetKind::dots) cross_check_dot_count(setup, root.table("target"));
   return warnings;

@@ -54,20 +54,29 @@ struct DotTruth {
   TruthPath path = TruthPath::rays;
 };
 
+/// What a camera sees of particles beside GroundTruth, whose reference is the first pulse and whose flow the second.
+struct ParticleTruth {
+  std::vector<Vec3d> second_m;                 ///< where they are at the second pulse [m]
+  std::vector<double> diameter_m;              ///< [m]
+  std::vector<Vec2d> reference_ambient_px;     ///< as GroundTruth::reference_px, without the medium
+  std::vector<Vec2d> displacement_ambient_px;  ///< as GroundTruth::displacement_px, without the medium
+};
+
 /// What a camera sees of every dot (ray truth), and what theory says of it; all in px, flow minus reference.
 struct GroundTruth {
   std::vector<Vec3d> position_m;
   std::vector<Vec2d> reference_px;     ///< radiance-weighted centroid of the rays that pass the stop; NaN: none does
   std::vector<Vec2d> displacement_px;  ///< flow centroid minus reference centroid
-  std::vector<Vec2d> displacement_error_px;       ///< standard error of displacement_px; NaN: unknown (truth_error.h)
-  std::vector<Vec2d> displacement_std_px;         ///< weighted standard deviation of the flow hits
-  std::vector<Vec2d> flux;                        ///< light in the reference (x) and the flow (y) frame [fully lit px]
+  std::vector<Vec2d> displacement_error_px;  ///< standard error of displacement_px; NaN: unknown (truth_error.h)
+  std::vector<Vec2d> displacement_std_px;    ///< weighted standard deviation of the flow hits
+  std::vector<Vec2d> flux;  ///< light in the reference (x) and the flow (y) frame [fully lit px]; of particles photons
   std::vector<std::array<std::int64_t, 2>> rays;  ///< counted in each frame
   std::vector<std::int64_t> rays_planned;         ///< that it was to have
   std::vector<Vec2d> eq9_px;                      ///< Rajendran et al. eq. 9 along the chief ray, lever Z_D
   std::vector<Vec2d> chief_px;                    ///< the same with each slice's own lever
   std::vector<Vec2d> eq9_cone_px;                 ///< averaged over the disc and the stop's pupil, own levers
   std::vector<TruthPath> path;                    ///< that displacement_px came by
+  ParticleTruth particles;                        ///< empty for dots
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);

@@ -84,7 +84,7 @@ double rays_seconds(Scene const& scene) {
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
   double const ray = a_ray + a_step * scene.steps_across() + frame_count * a_pixel * width * width;
-  return static_cast<double>(scene.dots.centre.size()) * ray;
+  return static_cast<double>(scene.source_count()) * ray;
 }
 
 std::optional<RaysPlan> given_rays(Setup const& setup) {

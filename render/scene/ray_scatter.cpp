@@ -114,10 +114,10 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
 
 std::vector<std::size_t> dots_in_view(Scene const& scene) {
   std::vector<std::size_t> in_view;
-  for (std::size_t dot = 0; dot < scene.dots.centre.size(); ++dot) {
-    if (scene.in_view(scene.dots.centre[dot])) in_view.push_back(dot);
+  for (std::size_t dot = 0; dot < scene.source_count(); ++dot) {
+    if (scene.source_in_view(dot)) in_view.push_back(dot);
   }
-  if (in_view.empty() && !scene.dots.centre.empty()) in_view.push_back(0);
+  if (in_view.empty() && scene.source_count() > 0) in_view.push_back(0);
   return in_view;
 }
 

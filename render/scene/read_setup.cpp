@@ -8,6 +8,7 @@
 #include "render/light/calibration_target.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
+#include "render/scene/best_focus.h"
 #include "render/scene/setup.h"
 #include "render/scene/setup_checks.h"
 
@@ -52,7 +53,7 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
   if (!slab.automatic_thickness) return;
   double thickness_mm = automatic_thickness_mm(slab.field);
   if (has_size_along_z(slab.field.kind)) {
-    double const way_mm = std::min(setup.z_a, setup.z_d) / unit::millimetre;
+    double const way_mm = (setup.z_d == 0 ? setup.z_a : std::min(setup.z_a, setup.z_d)) / unit::millimetre;
     thickness_mm = std::min(thickness_mm, 2 * automatic_reach * way_mm);
   }
   slab.thickness = thickness_mm * unit::millimetre;
@@ -100,11 +101,11 @@ std::optional<Pose<double>> read_pose(SetupTable table) {
   return pose;
 }
 
-/// The camera's place: z_a_mm, z_front_mm or a pose.
+/// The camera's place: z_a_mm, z_front_mm, z_sensor_mm or a pose.
 void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   SetupTable pose = camera.table("pose");
   setup.pose = read_pose(pose);
-  for (char const* key : {"z_a_mm", "z_front_mm"}) {
+  for (char const* key : {"z_a_mm", "z_front_mm", "z_sensor_mm"}) {
     if (pose.present()) geometry.refuse(key, "stands beside camera.pose (which places the camera); remove one");
   }
   if (pose.present()) {
@@ -112,6 +113,13 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
     return;
   }
   bool const thin = setup.lens.file.empty();
+  if (geometry.has("z_sensor_mm")) {  // the lens is placed once it is known
+    for (char const* key : {"z_a_mm", "z_front_mm"}) {
+      geometry.refuse(key, "stands beside z_sensor_mm (one of them places the lens); remove one");
+    }
+    setup.z_sensor = geometry.number("z_sensor_mm", 900.0, Range::positive(1e9)) * unit::millimetre;
+    return;
+  }
   if (thin) geometry.refuse("z_front_mm", "is of prescriptions (a thin lens has no first vertex); use z_a_mm");
   if (thin || !geometry.has("z_front_mm")) {
     setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
@@ -125,14 +133,18 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
 /// its first vertex.
 void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
-  if (!setup.lens.file.empty()) build_prescription(setup.lens, lens, setup.medium.wavelength, warnings);
+  if (!setup.lens.file.empty()) {
+    std::optional<double> object_distance;
+    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is the first vertex' so far
+    build_prescription(setup.lens, lens, setup.medium.wavelength, object_distance, warnings);
+  }
   if (setup.lens.prescription) {
     ParaxialLens const paraxial = paraxial_lens(*setup.lens.prescription);
     double const principal = paraxial.front_principal_plane;
-    bool const afocal = !std::isfinite(principal), telecentric = !std::isfinite(paraxial.entrance.position);
+    bool const afocal = !std::isfinite(principal), telecentric = paraxial.telecentric;
     if (geometry.has("z_front_mm")) {
       if (!afocal) setup.z_a += principal;
-    } else if ((afocal || telecentric) && !setup.pose) {
+    } else if (!setup.z_sensor && (afocal || telecentric) && !setup.pose) {
       geometry.problem("z_a_mm",
                        fmt::format("cannot place {} lens (it is no distance of its {}); give z_front_mm, of "
                                    "its first vertex",
@@ -141,11 +153,27 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
   }
   for (WindowSetup& window : setup.windows) {
     try {
-      window.index = GlassCatalogue::shipped()
-                         .find(window.glass, setup.medium.wavelength, window.where)
-                         .index(setup.medium.wavelength);
+      double const wavelength = setup.medium.wavelength;
+      Glass const& glass = GlassCatalogue::shipped().find(window.glass, wavelength, window.where);
+      window.index = glass.index(wavelength);
+      if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
       root.problem("window", error.what());
+    }
+  }
+}
+
+/// Moves the lens to where it focuses on a sensor that stands where the setup says.
+void focus_on_sensor(Setup& setup, SetupTable geometry) {
+  if (!setup.z_sensor) return;
+  bool const known = setup.lens.file.empty() || setup.lens.prescription;
+  if (known && !std::isfinite(setup.lens.focal_length)) {
+    geometry.problem("z_sensor_mm", "cannot place an afocal lens (it has no focus); give z_front_mm");
+  } else if (known) {
+    try {
+      place_lens_by_sensor(setup);
+    } catch (DataError const& error) {
+      geometry.problem("z_sensor_mm", error.what());
     }
   }
 }
@@ -162,6 +190,16 @@ void read_calibration(Setup& setup, SetupTable root) {
   root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
 }
 
+void read_piv(Setup& setup, SetupTable root) {
+  PivSetup piv;
+  piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
+  piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
+  piv.flow = read_flow_setup(root.table("flow"));
+  setup.piv = piv;
+  root.refuse("target", "is of BOS (PIV's sources are [particles]); remove it");
+  root.refuse("calibration", "stands in a setup of PIV (it is of experiment = \"calibration\"); remove it");
+}
+
 }  // namespace
 
 Setup read_setup(SetupTable root) {
@@ -169,23 +207,22 @@ Setup read_setup(SetupTable root) {
     root.problem("schema", "is not 1 (this version reads schema 1 only); use a matching version of gladstone");
   }
   std::string const experiment = root.word("experiment", "bos", {"bos", "piv", "calibration"});
-  if (experiment == "piv") {
-    root.problem("experiment",
-                 "\"piv\" is not available yet (this version simulates BOS and calibrations); use \"bos\"");
-  }
+  bool const piv = experiment == "piv", calibration = experiment == "calibration";
   Setup setup;
   SetupTable camera = camera_table(root);
   setup.camera = read_camera_setup(camera);
-  setup.lens = read_lens_setup(root.table("lens"));
+  setup.lens = read_lens_setup(root.table("lens"), piv ? "sheet" : "target");
   setup.windows = read_windows(root);
+  setup.lenslets = read_lenslets(camera.table("lenslets"));
   if (!setup.lens.file.empty() && setup.camera.distorted()) {
     camera.table("sensor").problem("distortion", "is of thin lenses (a prescription has its own); remove it");
   }
   SetupTable geometry = root.table("geometry");
   read_place(setup, camera, geometry);
-  bool const calibration = experiment == "calibration";
-  if (calibration) {
-    geometry.refuse("z_d_mm", "is of BOS (calibration.planes_mm places the dots); remove it");
+  if (piv || calibration) {
+    geometry.refuse("z_d_mm", piv ? "is of BOS (PIV's z_a_mm reaches to the origin, and laser.center_mm places the "
+                                    "sheet); remove it"
+                                  : "is of BOS (calibration.planes_mm places the dots); remove it");
     setup.z_d = 0;
   } else {
     setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
@@ -195,12 +232,23 @@ Setup read_setup(SetupTable root) {
     root.table("medium").problem("field", "is of BOS (a camera is calibrated without flow); remove it");
   }
   build_optics(setup, root, setup.warnings);
+  focus_on_sensor(setup, geometry);
   resolve_thickness(setup, root.table("medium"));
-  calibration ? read_calibration(setup, root) : read_target(setup, root);
-  setup.render = read_render_setup(root.table("render"));
-  for (char const* later : {"particles", "laser_sheet", "velocity", "requirements"}) {
-    root.refuse(later, "is not available yet (this version simulates BOS and calibrations); remove it");
+  if (setup.camera.absolute_exposure && !piv) {
+    camera.problem("exposure",
+                   "\"absolute\" is of PIV (whose [laser] says how much light there is); use \"auto\" or a "
+                   "number of electrons");
   }
+  if (piv) {
+    read_piv(setup, root);
+  } else {
+    calibration ? read_calibration(setup, root) : read_target(setup, root);
+    for (char const* other : {"particles", "laser", "flow"}) {
+      root.refuse(other, "is of experiment = \"piv\"; remove it, or change experiment");
+    }
+  }
+  setup.render = read_render_setup(root.table("render"));
+  root.refuse("requirements", "is not available yet (this version simulates experiments); remove it");
   return setup;
 }
 }  // namespace gladstone

@@ -1,5 +1,7 @@
 #include "render/scene/renderer.h"
 
+#include "render/base/error.h"
+
 namespace gladstone {
 
 char const* to_string(TableState state) {
@@ -26,6 +28,10 @@ char const* to_string(TableState state) {
       return "the dots are wide beside what the field changes on";
   }
   return "";
+}
+
+Rendering Renderer::render_particles(Scene&, Particles const&, ParticleLight, RenderImages) {
+  throw DeviceError("particles are rendered on the CPU alone in this version; use --device cpu or auto");
 }
 
 TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {

@@ -41,6 +41,8 @@ struct Rendering {
 /// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.
 enum class RenderImages { yes, no, kept };
 enum class RenderTheory { yes, no };
+/// Light of particles: as they scatter the laser's, or alike into all directions, for virtual ones.
+enum class ParticleLight { scattered, equal };
 
 /// Traces scenes, on whichever device.
 class Renderer {
@@ -51,6 +53,11 @@ class Renderer {
   /// Traces `sources` (the scene's dots, or virtual ones) through a planned scene. Grows scene.pupil_margin and starts
   /// again should a ray turn out to be bent further than planned.
   virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
+
+  /// Traces particles (the scene's own, or virtual ones) through a planned scene of PIV, the medium before both frames.
+  /// @throws DeviceError where this device renders none
+  virtual Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                                     RenderImages images);
 };
 
 /// One try at tracing a scene.

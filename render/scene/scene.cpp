@@ -14,6 +14,7 @@
 #include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/particle_scene.h"
 #include "render/sensor/sensor.h"
 
 namespace gladstone {
@@ -54,6 +55,36 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
                   fmt::format("dataset \"{}\": {} of {} points are negative densities (the first at node x, y, z = {}; "
                               "the lowest is {:.6g} kg/m^3); mend the field, or check medium.field.quantity and scale",
                               source->name(), count, grid.size(), first, lowest));
+}
+
+/// Puts a target's dots into a scene.
+void add_dots(Scene& scene) {
+  Setup const& setup = scene.setup;
+  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
+  switch (setup.target.kind) {
+    case TargetKind::dots:
+      if (setup.target.arrangement == DotArrangement::random) {
+        scene.dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
+                                        setup.target.seed);
+      } else {
+        Vec2d const extent = setup.target_extent();
+        scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
+      }
+      break;
+    case TargetKind::lattice:
+      scene.dots.centre = Lattice(setup.target).dots();
+      break;
+    case TargetKind::points:
+      scene.dots.centre = dots_from_csv(setup.target.file, setup.farthest_off_axis());
+      break;
+    case TargetKind::image:
+      scene.dots = picture_target(setup.target.file, setup.target_extent());
+      break;
+  }
+  if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
+  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
+    for (Vec2d& centre : scene.dots.centre) centre = centre + middle;
+  }
 }
 
 }  // namespace
@@ -107,6 +138,21 @@ bool Scene::in_view(Vec2d on_target) const {
   return setup.on_bench() ? square_to_axis.covers(pixel) : camera.sensor.covers(pixel);
 }
 
+bool Scene::source_in_view(std::size_t source) const {
+  if (!setup.piv) return in_view(dots.centre[source]);
+  auto const pixel = camera.project(particles.place[0][source]);
+  return pixel && camera.sensor.covers(*pixel);
+}
+
+Pose<double> Scene::sheet_plane() const {
+  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  Pose<double> plane = sheet.pose[0];
+  plane.origin = 0.5 * (sheet.pose[0].origin + sheet.pose[1].origin);
+  plane.z = normalized(sheet.pose[0].z + sheet.pose[1].z);
+  plane.y = cross(plane.z, plane.x);
+  return plane;
+}
+
 Vec2d Scene::to_pixel(Vec2d on_target) const {
   if (!setup.on_bench()) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -132,7 +178,9 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
       {"camera.pixels", "images", pixels * 2 * (sizeof(std::int64_t) + sizeof(double) + sizeof(std::uint16_t))},
       {"medium.field.file", "field",
        field_memory == FieldMemory::needed ? static_cast<double>(medium_bytes_needed(setup.medium)) : 0},
-      {"target.dots_per_32px_window", "dots", setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
+      setup.piv ? particle_memory(setup)
+                : MemoryNeed{"target.dots_per_32px_window", "dots",
+                             setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
   needs.insert(needs.end(), more.begin(), more.end());
   double needed = 0;
   std::string sizes;
@@ -167,36 +215,17 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
       scene.imaging.magnification = setup.camera.pixel_pitch * std::sqrt(area);
     }
   }
-  double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
-  switch (setup.target.kind) {
-    case TargetKind::dots:
-      if (setup.target.arrangement == DotArrangement::random) {
-        scene.dots.centre = random_dots(setup.target_extent(), static_cast<std::size_t>(setup.dot_count()), diameter,
-                                        setup.target.seed);
-      } else {
-        Vec2d const extent = setup.target_extent();
-        scene.dots.centre = regular_dots(extent, setup.dot_count() / (extent.x * extent.y), diameter);
-      }
-      break;
-    case TargetKind::lattice:
-      scene.dots.centre = Lattice(setup.target).dots();
-      break;
-    case TargetKind::points:
-      scene.dots.centre = dots_from_csv(setup.target.file, setup.farthest_off_axis());
-      break;
-    case TargetKind::image:
-      scene.dots = picture_target(setup.target.file, setup.target_extent());
-      break;
-  }
-  if (setup.target.kind != TargetKind::image) scene.dots.half_size = diameter / 2;
-  if (Vec2d const middle = setup.target_centre(); setup.target.kind != TargetKind::points && !(middle == Vec2d{})) {
-    for (Vec2d& centre : scene.dots.centre) centre = centre + middle;
+  if (setup.piv) {
+    add_particles(scene);
+  } else {
+    add_dots(scene);
   }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
-    if (-setup.z_d > box.low.z || setup.camera_pose().origin.z < box.high.z) {
+    bool const dots_inside = !setup.piv && -setup.z_d > box.low.z;
+    if (dots_inside || setup.camera_pose().origin.z < box.high.z) {
       throw DataError(
           setup.medium.field.where,
           fmt::format("medium.field.file: the dots or the lens lie inside the volume, which reaches from z = {:.6g} to "

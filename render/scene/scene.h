@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "render/light/dot_pattern.h"
+#include "render/light/particles.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/camera.h"
 #include "render/scene/setup.h"
@@ -16,13 +18,27 @@ struct Scene {
   Setup setup;
   ImagingGeometry imaging{};
   Camera camera;
-  DotPattern dots;
+  DotPattern dots;                           ///< none for PIV
+  Particles particles;                       ///< of PIV alone
+  std::shared_ptr<MieScattering const> mie;  ///< of the particles; null: they are matt white spheres
+  double photon_unit = 1;  ///< photons that light of 1 stands for: those of the brightest particle that pass the lens
   BuiltMedium medium;
   double step = 0;          ///< [m]
   double pupil_margin = 0;  ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
 
+  /// Dots, or particles.
+  std::size_t source_count() const { return setup.piv ? particles.size() : dots.centre.size(); }
+  /// Where a source is in the first frame [m].
+  Vec3d source_place(std::size_t source) const {
+    if (setup.piv) return particles.place[0][source];
+    return {dots.centre[source].x, dots.centre[source].y, -setup.z_d};
+  }
+  /// Whether the sensor sees a source in the first frame.
+  bool source_in_view(std::size_t source) const;
+  /// The middle of the laser sheet between the pulses: x along the light, z its normal. @pre setup.piv
+  Pose<double> sheet_plane() const;
   bool chief_rays_only() const { return imaging.entrance_pupil == 0; }
   /// Steps that a ray along the axis takes across the medium; 0 without one.
   double steps_across() const;
@@ -65,7 +81,7 @@ struct MemoryNeed {
 void check_memory(Setup const& setup, FieldMemory field = FieldMemory::needed,
                   std::vector<MemoryNeed> const& more = {});
 
-/// Builds dots and medium. Step, margin and rays are 0 until planned (ray_plan.h).
+/// Builds dots or particles, and the medium. Step, margin and rays are 0 until planned (ray_plan.h).
 /// @param medium of this very setup, if it is built already
 Scene build_scene(Setup const& setup, BuiltMedium const* medium = nullptr);
 

@@ -57,6 +57,7 @@ double Setup::dot_diameter() const {
 double Setup::spot_scale_px() const {
   ImagingGeometry const geometry = imaging();
   if (geometry.entrance_pupil == 0) return 0;
+  if (lenslets) return lenslets->to_sensor / lenslets->pitch * medium.wavelength / camera.pixel_pitch;
   return geometry.image_distance / geometry.entrance_pupil * medium.wavelength / camera.pixel_pitch;
 }
 

@@ -4,10 +4,14 @@
 #include <optional>
 
 #include "render/base/setup_table.h"
+#include "render/light/flow.h"
+#include "render/light/laser_sheet.h"
+#include "render/light/particle_setup.h"
 #include "render/light/sources.h"
 #include "render/light/target_setup.h"
 #include "render/medium/medium_setup.h"
 #include "render/optics/lens_setup.h"
+#include "render/optics/lenslet_array.h"
 #include "render/optics/window.h"
 #include "render/sensor/camera_setup.h"
 
@@ -35,19 +39,30 @@ struct RenderSetup {
   RenderMethod method = RenderMethod::automatic;
 };
 
-/// Everything that rendering a BOS pair or a calibration needs, in SI.
+/// Particles in a laser sheet, and what moves them.
+struct PivSetup {
+  ParticleSetup particles;
+  LaserSetup laser;
+  FlowSetup flow;
+};
+
+/// Everything that rendering a BOS pair, a PIV pair or a calibration needs, in SI.
 struct Setup {
   CameraSetup camera;
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;  ///< Z of each that a calibration shows its target on [m]; empty: no calibration
+  std::vector<double> planes;   ///< Z of each that a calibration shows its target on [m]; empty: no calibration
+  std::optional<PivSetup> piv;  ///< there is no target then: "the dots' plane" is Z = 0
   RenderSetup render;
-  double z_a = 0.75;  ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
-  double z_d = 0.25;  ///< the medium's mid-plane to the dots, along Z [m]; 0 for a calibration: see plane_setup
-  std::optional<Pose<double>> pose;   ///< of the camera: see camera_pose(); empty: on the Z axis, looking along -Z
-  std::vector<WindowSetup> windows;   ///< in the order light meets them
-  std::vector<std::string> warnings;  ///< of what was read
+  double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
+  std::optional<double> z_sensor;  ///< of the sensor on the Z axis, where it places the lens [m]
+  double z_d =
+      0.25;  ///< the medium's mid-plane to the dots, along Z [m]; 0 for PIV, and for a calibration: see plane_setup
+  std::optional<Pose<double>> pose;      ///< of the camera: see camera_pose(); empty: on the Z axis, looking along -Z
+  std::optional<LensletSetup> lenslets;  ///< a plenoptic camera's, which its lens is focused on
+  std::vector<WindowSetup> windows;      ///< in the order light meets them
+  std::vector<std::string> warnings;     ///< of what was read
   int view_margin_px = 64;  ///< by which a target of default extent reaches beyond the view: the first pass's window
 
   /// Of the front principal plane (of the first vertex, where a lens has no such plane): z along the light, x right and
@@ -64,7 +79,7 @@ struct Setup {
   /// Whether the camera is an ideal thin lens on the Z axis with nothing before it, and its sensor square to it: what
   /// closed forms describe.
   bool on_bench() const {
-    return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted();
+    return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted() && !lenslets;
   }
   bool calibration() const { return !planes.empty(); }
   double focus_distance() const;
@@ -79,7 +94,8 @@ struct Setup {
   Vec2d target_extent() const;
   /// Diameter of a dot on the target [m].
   double dot_diameter() const;
-  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays.
+  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays. Of a plenoptic
+  /// camera that of a lenslet: its distance from the sensor over its pitch, times wavelength.
   double spot_scale_px() const;
   /// Diameter d_d of the diffraction spot that is drawn [px]: between the first zeros of the Airy pattern for "airy"
   /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
@@ -89,7 +105,8 @@ struct Setup {
   double dot_count() const;
 };
 
-/// Reads the tables of a setup of BOS or calibration through the rooms' readers; what is due later is refused by name.
+/// Reads the tables of a setup of BOS, PIV or calibration through the rooms' readers; what is due later is refused by
+/// name.
 Setup read_setup(SetupTable root);
 
 /// Cross-checks by physics: focus, planes, steps across the medium, field of view, dot size, dot coverage. Of files

@@ -19,7 +19,10 @@ CameraSetup read_camera_setup(SetupTable table) {
   }
   setup.pixel_pitch = table.number("pixel_pitch_um", 10.0, Range::positive(1e4)) * unit::micrometre;
   setup.bit_depth = static_cast<int>(table.integer("bit_depth", 16, 1, 16));
-  setup.exposure_e = table.number_or_auto("exposure", Range::positive());
+  auto const exposure =
+      table.number_or_word("exposure", {std::nullopt, "auto"}, {"auto", "absolute"}, Range::positive());
+  setup.exposure_e = exposure.number;
+  setup.absolute_exposure = exposure.word == "absolute";
   double const full_scale = std::pow(2.0, setup.bit_depth) - 1;
   setup.offset_dn = table.number("offset_dn", 0.0, Range::at_least(0.0, 0.8 * full_scale));
 

@@ -29,6 +29,7 @@ struct CameraSetup {
   /// whatever its f-number. Empty: auto, which makes up for what a small stop costs the images of dots (wider spots,
   /// dimmer peaks); a number does not.
   std::optional<double> exposure_e;
+  bool absolute_exposure = false;  ///< electrons follow from the light's photons, instead
   double offset_dn = 0;  ///< black level
   NoiseSetup noise;
   Vec2d tilt{};              ///< of the sensor about its x, then its turned y, through the axis point [rad]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/base/host_device.h"
+#include "render/base/in_scalar.h"
 #include "render/base/pose.h"
 
 namespace gladstone {
@@ -52,6 +53,13 @@ struct PosedSensor {
   /// True where a pixel position lies on the sensor's area.
   GLADSTONE_HD bool covers(Vec2<T> p) const {
     return p.x >= T(-0.5) && p.x < T(columns) - T(0.5) && p.y >= T(-0.5) && p.y < T(rows) - T(0.5);
+  }
+
+  /// The same sensor in another scalar.
+  template <class U>
+  PosedSensor<U> in_scalar() const {
+    BrownDistortion<U> const same{U(distortion.k1), U(distortion.k2), U(distortion.p1), U(distortion.p2)};
+    return {gladstone::in_scalar<U>(pose), U(pitch), columns, rows, same, U(distance)};
   }
 };
 

@@ -12,6 +12,8 @@
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/info_lens.h"
+#include "studies/commands/info_mie.h"
+#include "studies/commands/info_particles.h"
 #include "studies/field_place.h"
 #include "studies/field_statistics.h"
 #include "studies/image_statistics.h"
@@ -95,34 +97,39 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
 
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string kind, file, dataset, setup, x, m;
+    std::string kind, file, dataset, setup, figure;
     LensQuestion lens;
+    MieQuestion mie;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("kind", arguments->kind, "field, image or lens")
+  app.add_option("kind", arguments->kind, "field, image, lens, mie or particles")
       ->required()
-      ->check(one_of({"field", "image", "lens", "mie"}));
-  app.add_option("file", arguments->file, "The file");
+      ->check(one_of({"field", "image", "lens", "mie", "particles"}));
+  app.add_option("file", arguments->file, "The file; a setup for particles, none for mie");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
   app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");
   app.add_option("--glass", arguments->lens.glasses, "Glass catalogue (AGF) of info lens beside the shipped ones");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength of info lens")
       ->check(CLI::Range(100.0, 20000.0));
-  app.add_option("--figure", arguments->lens.figure, "Picture that info lens draws (.png or .svg)");
-  app.add_option("--x", arguments->x)->group("");  // of info mie
-  app.add_option("--m", arguments->m)->group("");
+  app.add_option("--figure", arguments->figure, "Picture that info lens or info mie draws (.png or .svg)");
+  app.add_option("--x", arguments->mie.x, "Size parameter pi d n / lambda of info mie's sphere");
+  app.add_option("--m", arguments->mie.m, "Its index over that of its surroundings: RE or RE,IM");
   return [arguments, &options] {
     if (arguments->kind == "mie") {
-      throw DataError("info mie", "is not available yet (this version simulates BOS); use info field, image or lens");
+      if (!arguments->file.empty()) throw DataError("info mie", "reads no file; give --x and --m alone");
+      arguments->mie.figure = arguments->figure;
+      return describe_mie(arguments->mie, options);
     }
-    if (!arguments->x.empty() || !arguments->m.empty()) {
+    if (!arguments->mie.x.empty() || !arguments->mie.m.empty()) {
       throw DataError("info " + arguments->kind, "has no --x and --m (they belong to info mie); leave them out");
     }
     if (arguments->file.empty()) throw DataError("info " + arguments->kind, "needs a file; name one behind it");
     if (arguments->kind == "lens") {
       arguments->lens.file = arguments->file;
+      arguments->lens.figure = arguments->figure;
       return describe_lens(arguments->lens, options);
     }
+    if (arguments->kind == "particles") return describe_particles(arguments->file, options);
     return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, arguments->setup, options)
                                       : describe_image(arguments->file, options);
   };

@@ -52,6 +52,10 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
       row["sagittal_focus_mm"] = finite_or_null(point.sagittal_focus * 1e3);
       row["vignetting"] = point.vignetting;
     }
+    row["lost"] = nlohmann::json::array();
+    for (LostRays const& lost : point.lost) {
+      row["lost"].push_back({{"surface", lost.surface + 1}, {"cause", to_string(lost.cause)}, {"share", lost.share}});
+    }
     points.push_back(row);
   }
   return {{"title", lens.prescription.title},

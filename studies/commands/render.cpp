@@ -29,7 +29,8 @@ constexpr char const* example_setup =
 std::string in_words(std::string const& folder, nlohmann::ordered_json const& summary) {
   std::string text = fmt::format("{}: ", folder);
   if (summary.contains("planes")) text += fmt::format("{} planes, ", summary["planes"].size());
-  text += fmt::format("{} dots, {} rays each, ", summary["dots"].get<long long>(),
+  bool const piv = summary.value("experiment", "") == "piv";
+  text += fmt::format("{} {}, {} rays each, ", summary["dots"].get<long long>(), piv ? "particles" : "dots",
                       summary["rays_per_dot"].get<long long>());
   if (summary.contains("step_mm")) {
     text += fmt::format("step {:.4g} mm, magnification {:.6g}, ", summary["step_mm"].get<double>(),

@@ -12,6 +12,7 @@
 #include "studies/figures/study_figures.h"
 #include "studies/json_text.h"
 #include "studies/sweep/collect.h"
+#include "studies/sweep/dataset.h"
 #include "studies/sweep/plan.h"
 #include "studies/sweep/state_report.h"
 
@@ -103,12 +104,14 @@ std::vector<std::string> draw_figures(std::string const& run, StudyTable const& 
 
 CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string run;
+    std::string run, dataset;
     bool no_figures = false;
   };
   auto arguments = std::make_shared<Arguments>();
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_flag("--no-figures", arguments->no_figures, "Tables only");
+  app.add_option("--dataset", arguments->dataset,
+                 "Pack images and truth of the cases that were run with --keep-images into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
     StudyTable const table = collect_study(run);
@@ -127,10 +130,17 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     if (table.repeats() > 1) files.push_back(run + '/' + run_file::points_text);
     json["files"] = files;
     json["figures"] = figures;
+    std::string packed;
+    if (!arguments->dataset.empty()) {
+      PackedDataset const set = pack_dataset(run, arguments->dataset);
+      json["dataset"] = {{"file", arguments->dataset}, {"cases", set.cases}, {"without", set.without}};
+      packed = fmt::format("packed {} cases into {}{}\n", set.cases, arguments->dataset,
+                           set.without ? fmt::format("; {} have no images or are not done", set.without) : "");
+    }
     std::string const drawn =
         figures.empty() ? "" : fmt::format("drew {} figures in {}/figures\n", figures.size(), run);
     print_result(options, json_text(json),
-                 state_text(run, cases, state) + fmt::format("wrote {}\n{}", fmt::join(files, ", "), drawn));
+                 state_text(run, cases, state) + fmt::format("wrote {}\n{}{}", fmt::join(files, ", "), drawn, packed));
     return table.unfinished().empty() ? ok : incomplete;
   };
 }

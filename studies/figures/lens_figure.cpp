@@ -58,13 +58,20 @@ std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3
   return heights;
 }
 
-std::vector<Vec3d> outline(Lens const& lens, std::size_t i, double height) {
+/// One half of a surface from its axis, or the rim of what is obscured, to a height: its shape as far as its own edge,
+/// flat beyond, as lenses are ground. @param side 1: above the axis, -1: below it
+std::vector<Vec3d> half_outline(Lens const& lens, std::size_t i, double own_height, double height, double side) {
   std::vector<Vec3d> points;
-  for (int k = -40; k <= 40; ++k) {
-    double const y = height * k / 40;
+  double const inner = lens.prescription.surfaces[i].obscured;
+  double last = 0;
+  for (int k = 0; k <= 40; ++k) {
+    double const y = side * (inner + (own_height - inner) * k / 40);
     double const sag = lens.surfaces[i].visit([y](auto const& surface) { return surface.shape.sag(0.0, y); });
-    if (std::isfinite(sag)) points.push_back(lens.poses[i].point_outwards({0, y, sag}));
+    if (!std::isfinite(sag)) break;
+    last = sag;
+    points.push_back(lens.poses[i].point_outwards({0, y, sag}));
   }
+  if (height > own_height) points.push_back(lens.poses[i].point_outwards({0, side * height, last}));
   return points;
 }
 
@@ -73,54 +80,87 @@ bool is_glass_behind(Lens const& lens, std::size_t i) {
   return !after.is_air() && !after.is_mirror();
 }
 
-void draw_layout(GnuplotFigure& plot, Lens const& lens, FieldAnalysis const& field, Panel const& panel) {
+/// What is drawn of a lens besides its rays.
+struct LensDrawing {
+  Lines glass, mirrors, planes, stop;
+};
+
+LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
+  LensDrawing drawing;
+  std::size_t const count = lens.surfaces.size();
+  // pieces cemented together have one width
+  std::vector<double> widths = heights;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t end = i;
+    while (end + 1 < count && is_glass_behind(lens, end)) ++end;
+    double widest = 0;
+    for (std::size_t k = i; k <= end; ++k) widest = std::max(widest, heights[k]);
+    for (std::size_t k = i; k <= end; ++k) widths[k] = widest;
+    i = end;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    bool const mirror = lens.prescription.surfaces[i].after.is_mirror();
+    bool const refracts = is_glass_behind(lens, i) || (i > 0 && is_glass_behind(lens, i - 1));
+    if (static_cast<int>(i) == lens.stop) {
+      for (double const side : {-1.0, 1.0}) {
+        double const sag = lens.surfaces[i].visit([&](auto const& s) { return s.shape.sag(0.0, lens.stop_radius); });
+        double const z = std::isfinite(sag) ? sag : 0;
+        drawing.stop.add(lens.poses[i].point_outwards({0, side * lens.stop_radius, z}));
+        drawing.stop.add(lens.poses[i].point_outwards({0, side * std::max(1.3 * lens.stop_radius, widths[i]), z}));
+        drawing.stop.end();
+      }
+      if (!refracts && !mirror) continue;
+    }
+    Lines& lines = mirror ? drawing.mirrors : refracts ? drawing.glass : drawing.planes;
+    for (double const side : {-1.0, 1.0}) {
+      std::vector<Vec3d> const half = half_outline(lens, i, heights[i], widths[i], side);
+      for (Vec3d const p : half) lines.add(p);
+      if (is_glass_behind(lens, i) && i + 1 < count && !half.empty()) {  // along the edge to the other face
+        auto const other = half_outline(lens, i + 1, heights[i + 1], widths[i + 1], side);
+        if (!other.empty()) lines.add(other.back());
+      }
+      lines.end();
+    }
+  }
+  return drawing;
+}
+
+/// Rays of a field point that fill the stop's height, from the object or a little in front of the lens.
+std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
+                                           double angle, double total) {
+  std::vector<std::vector<Vec3d>> rays;
+  RayOrigin const origin = field_origin(lens, paraxial, angle);
+  auto const disc = find_aim_disc(lens, origin);
+  if (!disc) return rays;
+  double foremost = 0;  // behind mirrors surfaces stand in front of the first
+  for (Pose<double> const& pose : lens.poses) foremost = std::min(foremost, pose.origin.z);
+  double const begin = std::max(foremost - 0.25 * total, origin.at_infinity ? -HUGE_VAL : origin.place.z);
+  for (double const y : {-0.99, -0.5, 0.0, 0.5, 0.99}) {
+    double const across = std::hypot(disc->a.y, disc->b.y);
+    Ray<double> ray = origin.ray_through(disc->at(across > 0 ? y * Vec2d{disc->a.y, disc->b.y} / across : Vec2d{0, y}));
+    ray.position = ray.position + (begin - ray.position.z) / ray.direction.z * ray.direction;
+    std::vector<Vec3d> const way = follow_ray(lens, ray, field.image_plane);
+    if (way.size() > 2 || lens.surfaces.size() == 1) rays.push_back(way);  // not what passes beside the first surface
+  }
+  return rays;
+}
+
+void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
+                 Panel const& panel) {
   std::vector<std::vector<Vec3d>> rays;
   std::vector<Lines> by_field;
-  double const total = std::abs(lens.poses.back().origin.z + field.image_plane) + 1e-3;
+  double total = std::abs(lens.poses.back().origin.z + field.image_plane) + 1e-3;
+  for (Pose<double> const& pose : lens.poses) total = std::max(total, std::abs(pose.origin.z));
   for (FieldPoint const& point : field.points) {
     Lines lines;
-    RayOrigin const origin = RayOrigin::direction({0, std::sin(point.angle), std::cos(point.angle)});
-    if (auto const disc = find_aim_disc(lens, origin)) {
-      for (double const y : {-0.99, -0.5, 0.0, 0.5, 0.99}) {
-        double const across = std::hypot(disc->a.y, disc->b.y);
-        Ray<double> ray =
-            origin.ray_through(disc->at(across > 0 ? y * Vec2d{disc->a.y, disc->b.y} / across : Vec2d{0, y}));
-        double const back = (-0.25 * total - ray.position.z) / ray.direction.z;
-        ray.position = ray.position + back * ray.direction;
-        rays.push_back(follow_ray(lens, ray, field.image_plane));
-        for (Vec3d const p : rays.back()) lines.add(p);
-        lines.end();
-      }
+    for (auto const& ray : drawn_rays(lens, paraxial, field, point.angle, total)) {
+      rays.push_back(ray);
+      for (Vec3d const p : ray) lines.add(p);
+      lines.end();
     }
     by_field.push_back(lines);
   }
-  std::vector<double> const heights = drawn_heights(lens, rays);
-  Lines glass, stop;
-  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-    if (static_cast<int>(i) == lens.stop && !is_glass_behind(lens, i)) {
-      for (double const side : {-1.0, 1.0}) {
-        stop.add(lens.poses[i].point_outwards({0, side * lens.stop_radius, 0}));
-        stop.add(lens.poses[i].point_outwards({0, side * 1.3 * lens.stop_radius, 0}));
-        stop.end();
-      }
-      continue;
-    }
-    double height = heights[i];
-    if (is_glass_behind(lens, i) && i + 1 < heights.size()) height = std::max(height, heights[i + 1]);
-    if (i > 0 && is_glass_behind(lens, i - 1)) height = std::max(height, heights[i - 1]);
-    std::vector<Vec3d> const front = outline(lens, i, height);
-    for (Vec3d const p : front) glass.add(p);
-    glass.end();
-    if (!is_glass_behind(lens, i) || i + 1 >= lens.surfaces.size() || front.empty()) continue;
-    std::vector<Vec3d> const back = outline(lens, i + 1, std::max(height, heights[i + 1]));
-    if (back.empty()) continue;
-    glass.add(front.front());
-    glass.add(back.front());
-    glass.end();
-    glass.add(front.back());
-    glass.add(back.back());
-    glass.end();
-  }
+  LensDrawing const drawing = drawing_of(lens, drawn_heights(lens, rays));
   Lines image;
   double tallest = 1e-4;
   for (FieldPoint const& point : field.points) tallest = std::max(tallest, 1.1 * std::abs(point.chief.y));
@@ -136,13 +176,16 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, FieldAnalysis const& fie
     command += fmt::format("{} using 1:2 with lines linewidth 1 linecolor '{}', ",
                            plot.add_table({by_field[i].x, by_field[i].y}), house_colour(i));
   }
-  command += fmt::format("{} using 1:2 with lines linewidth 2 linecolor '#202020'", plot.add_table({glass.x, glass.y}));
-  if (!stop.x.empty()) {
-    command +=
-        fmt::format(", {} using 1:2 with lines linewidth 4 linecolor '#202020'", plot.add_table({stop.x, stop.y}));
-  }
-  command +=
-      fmt::format(", {} using 1:2 with lines linewidth 2 linecolor '#808080'", plot.add_table({image.x, image.y}));
+  auto const add = [&](Lines const& lines, char const* style) {
+    if (lines.x.empty()) return;
+    command += fmt::format("{} using 1:2 with lines {}, ", plot.add_table({lines.x, lines.y}), style);
+  };
+  add(drawing.glass, "linewidth 2 linecolor '#202020'");
+  add(drawing.mirrors, "linewidth 4 linecolor '#607890'");
+  add(drawing.planes, "linewidth 1 dashtype 2 linecolor '#909090'");
+  add(drawing.stop, "linewidth 4 linecolor '#202020'");
+  add(image, "linewidth 2 linecolor '#808080'");
+  command.resize(command.size() - 2);  // the last comma
   plot.command(command);
   plot.command("set size noratio");
 }
@@ -220,14 +263,15 @@ void write_lens_figure(std::string const& path, Lens const& lens, ParaxialLens c
   plot.command("set multiplot");
   std::string const focal =
       std::isfinite(paraxial.effective_focal_length)
-          ? fmt::format("f = {:.5g} mm, f/{:.3g}", paraxial.effective_focal_length * 1e3, paraxial.f_number)
-          : std::string("afocal");
+          ? fmt::format("f = {:.5g} mm, {}", paraxial.effective_focal_length * 1e3,
+                        paraxial.telecentric ? "telecentric" : fmt::format("f/{:.3g}", paraxial.f_number))
+          : std::string(paraxial.telecentric ? "afocal, telecentric" : "afocal");
   plot.command(fmt::format(
       "set label 1 {} at screen 0.5, screen {:.6f} center font 'DejaVu Sans,14' textcolor '#101010'",
       GnuplotFigure::quoted(fmt::format("{}{}{}, {:.5g} nm", lens.prescription.title,
                                         lens.prescription.title.empty() ? "" : ": ", focal, lens.wavelength * 1e9)),
       1.0 - 24.0 / plot.height_px()));
-  draw_layout(plot, lens, field, {70, width - 20.0, title_height + 10, title_height + layout_height - 55.0});
+  draw_layout(plot, lens, paraxial, field, {70, width - 20.0, title_height + 10, title_height + layout_height - 55.0});
   plot.command("unset label 1");
   double const top = title_height + layout_height + 10, bottom = title_height + layout_height + plots_height - 55;
   if (!off_axis) {

@@ -22,6 +22,13 @@ constexpr char const* viridis =
     "set palette defined (0 '#440154', 0.125 '#482878', 0.25 '#3e4a89', 0.375 '#31688e', 0.5 '#26828e', "
     "0.625 '#1f9e89', 0.75 '#6cce59', 0.875 '#b5de2b', 1 '#fde725')";
 
+constexpr char const* grey_palette = "set palette defined (0 '#000000', 1 '#ffffff')";
+
+char const* palette_of(ColourScale scale) {
+  if (scale == ColourScale::diverging) return diverging_palette;
+  return scale == ColourScale::grey ? grey_palette : viridis;
+}
+
 ColourRange range_of(std::vector<double> const& values, ColourScale scale) {
   if (values.empty()) return {scale == ColourScale::diverging ? -1.0 : 0.0, 1.0};
   ColourRange range;
@@ -36,7 +43,7 @@ ColourRange range_of(std::vector<double> const& values, ColourScale scale) {
   if (range.upper > range.lower) return range;
   // A constant map still needs a range.
   double const half = range.upper == 0.0 ? 1.0 : 1e-3 * std::abs(range.upper);
-  return scale == ColourScale::magnitude ? ColourRange{0.0, half} : ColourRange{range.lower - half, range.upper + half};
+  return scale == ColourScale::magnitude || scale == ColourScale::grey ? ColourRange{0.0, half} : ColourRange{range.lower - half, range.upper + half};
 }
 
 std::vector<double> finite_values(Image<double> const& map) {
@@ -207,7 +214,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
                              screen_x(Layout::bar), layout.map_height / static_cast<double>(height)));
     plot.command(fmt::format("set title {} font 'DejaVu Sans,12' offset 0,-0.5 textcolor '#101010'",
                              GnuplotFigure::quoted(panel.title)));
-    plot.command(panel.scale == ColourScale::diverging ? diverging_palette : viridis);
+    plot.command(palette_of(panel.scale));
     ColourRange const range = ranges[static_cast<std::size_t>(i)];
     plot.command(
         fmt::format("set cbrange [{:.10g}:{:.10g}]; set cbtics ({}) font 'DejaVu Sans,9' scale 0.3 offset -0.8,0",

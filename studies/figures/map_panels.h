@@ -22,6 +22,7 @@ enum class ColourScale {
   diverging,   ///< blue - white - red, symmetric about zero: signed quantities
   sequential,  ///< viridis from the smallest to the largest value
   magnitude,   ///< viridis from zero: magnitudes and errors
+  grey,        ///< black to white from zero: pictures
 };
 
 /// One map with its title and colour bar. NaN is grey; values beyond the range take the colour at its end.

@@ -43,7 +43,7 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   std::optional<std::uint64_t> const rays = loaded.setup.render.rays_per_dot;
   remove(table_of(setup, "render"), "rays_per_dot");
   remove(setup, "correlate");
-  Vec2d const extent = loaded.setup.target_extent();
+  Vec2d const extent = loaded.setup.piv ? Vec2d{} : loaded.setup.target_extent();
   keys.scene = fmt::format("{}\nextent {} {}{}", toml_text(setup), extent.x, extent.y, files);
   keys.rays = keys.scene + (rays ? fmt::format("\n{} rays", *rays) : "\nrays for " + electronics);
   return keys;

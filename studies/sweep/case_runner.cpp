@@ -201,7 +201,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   if (!medium) {
     std::size_t const bytes = medium_bytes_needed(loaded.setup.medium);
     shared.media.make_room(bytes, kept_media_bytes);
-    check_memory(loaded.setup, FieldMemory::needed, focused_dots_memory(loaded.setup));
+    check_memory(loaded.setup, FieldMemory::needed,
+                 loaded.setup.piv ? std::vector<MemoryNeed>{} : focused_dots_memory(loaded.setup));
     medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;
@@ -221,7 +222,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);
-  rendered.exposure_e = exposure_of(loaded.setup.camera, *rendered.rendering->kept);
+  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->kept);
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 
@@ -259,7 +260,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.measures.emplace_back("step_mm", prepared.step.step_mm);
   result.measures.emplace_back("rays_per_dot", static_cast<double>(prepared.rays.rays));
   result.measures.emplace_back("exposure", rendered.exposure_e);
-  result.measures.emplace_back("dots", static_cast<double>(prepared.scene.dots.centre.size()));
+  result.measures.emplace_back("dots", static_cast<double>(prepared.scene.source_count()));
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
   result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
   result.warnings = prepared.warnings;

@@ -18,10 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string images_folder(std::string const& run, std::size_t index) {
-  return (fs::path(run) / run_file::cases / std::to_string(index)).string();
-}
-
 /// Holds a claim while it lives.
 class Claim {
  public:
@@ -40,6 +36,10 @@ class Claim {
 };
 
 }  // namespace
+
+std::string images_folder(std::string const& run, std::size_t index) {
+  return (fs::path(run) / run_file::cases / std::to_string(index)).string();
+}
 
 std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& selection) {
   std::vector<std::size_t> all(selection.only ? 0 : count);

@@ -36,6 +36,9 @@ RunState state_of(std::string const& run, Manifest const& cases, std::vector<std
 /// Whether the next run computes a case with this result anew.
 bool is_due(CaseResult const& result, RunSelection const& selection);
 
+/// The CASE that a run with keep_images leaves of a case: RUN/cases/INDEX.
+std::string images_folder(std::string const& run, std::size_t index);
+
 /// Whether images are wanted of a finished case and not there: it is computed again for them.
 bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
 

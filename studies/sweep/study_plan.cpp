@@ -50,8 +50,10 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
   number.kind = SetupNode::Kind::integer;
   number.integer = static_cast<long long>(seed);
   number.place = study.place;
+  SetupNode const* const experiment = document.find({"experiment"});
+  bool const piv = experiment && experiment->kind == SetupNode::Kind::text && experiment->text == "piv";
   std::vector<std::vector<std::string>> const seeds{
-      {"target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
+      {piv ? "particles" : "target", "seed"}, {"render", "seed"}, {"camera", "noise", "seed"}};
   for (std::vector<std::string> const& path : seeds) {
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});

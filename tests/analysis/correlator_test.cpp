@@ -52,6 +52,8 @@ Score score(DisplacementField const& field, std::function<Vec2d(Vec2d)> const& t
 CorrelationSettings with_windows(std::vector<int> windows) {
   CorrelationSettings settings;
   settings.window_px = std::move(windows);
+  settings.overlap = 0.5;
+  settings.median_epsilon_px = 0.1;
   return settings;
 }
 
@@ -137,15 +139,15 @@ TEST(SinglePass, KeepsTheCrestsOfAWaveOfTwoWindows) {
   }
 }
 
-// A chance peak within the 4 px that the last of three passes looks far has hardly room for a rival: with 5 % noise
+// A chance peak within the 4 px that the later passes look far has hardly room for a rival: with 5 % noise
 // trusting such windows would keep vectors 0.5 px off and more among those of 0.05 px.
 TEST(MultiPass, TrustsTheFirstPassAlone) {
   CorrelationSettings const settings;
   CorrelationSchedule const schedule(settings);
   EXPECT_EQ(schedule.rule(0).trusted_ratio, 2.0);
   EXPECT_EQ(schedule.rule(1).trusted_ratio, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(schedule.rule(2).trusted_ratio, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(schedule.rule(2).epsilon_px, settings.median_epsilon_px);
+  EXPECT_EQ(schedule.rule(4).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(4).epsilon_px, settings.median_epsilon_px);
 }
 
 // What is measured is kept beside what replaces it.
@@ -443,7 +445,8 @@ TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {
   SetupDocument document = SetupDocument::from_text("", "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
   EXPECT_FALSE(document.has_problems());
-  EXPECT_EQ(read.window_px, (std::vector<int>{64, 32, 16}));
+  EXPECT_EQ(read.window_px, (std::vector<int>{64, 48, 32, 24, 20}));
+  EXPECT_EQ(read.overlap, 0.6);
   EXPECT_EQ(read.method, "scc");
   EXPECT_FALSE(read.max_displacement_px);
   EXPECT_EQ(read.trusted_peak_ratio, 2.0);
@@ -455,7 +458,8 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   SetupDocument document = SetupDocument::from_text(
       "[correlate]\nwindow_px = [48, 24]\noverlap = 0.75\nmethod = \"scc\"\nsubpixel = \"gauss3\"\n"
       "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nmedian_threshold = 3\n"
-      "median_epsilon_px = 0.2\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n",
+      "median_epsilon_px = 0.3\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n"
+      "least_peak_ratio = 1.2\nleast_correlation = 0.4\nuncertainty = \"image_matching\"\n",
       "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
   document.finish();
@@ -465,7 +469,10 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   EXPECT_EQ(read.deformation, "cubic");
   EXPECT_EQ(read.final_passes, 2);
   EXPECT_EQ(read.median_threshold, 3.0);
-  EXPECT_EQ(read.median_epsilon_px, 0.2);
+  EXPECT_EQ(read.median_epsilon_px, 0.3);
+  EXPECT_EQ(read.least_peak_ratio, 1.2);
+  EXPECT_EQ(read.least_correlation, 0.4);
+  EXPECT_EQ(read.uncertainty, "image_matching");
   EXPECT_EQ(read.max_displacement_px, 7.5);
   EXPECT_EQ(read.trusted_peak_ratio, 3.0);
 }
@@ -479,11 +486,13 @@ TEST(CorrelationSettings, HaveWordsForNoLimit) {
   EXPECT_FALSE(read.trusted_peak_ratio);
 }
 
-TEST(CorrelationSettings, RefusesWhatIsPlannedByNameAndWhatCannotBe) {
+TEST(CorrelationSettings, RefusesUnknownNamesAndWhatCannotBe) {
   for (auto const& [text, why] :
-       std::vector<std::pair<std::string, std::string>>{{"method = \"rpc\"", "not available yet"},
-                                                        {"subpixel = \"gauss2d\"", "not available yet"},
-                                                        {"method = \"sc\"", "scc"},
+       std::vector<std::pair<std::string, std::string>>{{"method = \"rcp\"", "rpc"},
+                                                        {"method = \"rcp\"", "\"zncc\""},
+                                                        {"subpixel = \"gauss\"", "\"gauss2d\""},
+                                                        {"least_peak_ratio = 0.5", "1"},
+                                                        {"least_correlation = 2", "1"},
                                                         {"window_px = [33]", "odd"},
                                                         {"window_px = [16, 32]", "large to small"},
                                                         {"overlap = 0.99", "overlap"},

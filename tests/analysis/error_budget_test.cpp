@@ -75,6 +75,25 @@ TEST(ErrorBudget, NamesTheTermsOfTheContract) {
   EXPECT_EQ(budget_term_names(), names);
 }
 
+// The chain of PIV: flow 1, without the medium 3, with it 2, window 2.5, noise-free 2.4, measured 2.6 px. Steps of it
+// are the biases of its terms; eq9 is no stage of it.
+TEST(ErrorBudget, BeginsWithTheFlowOfPiv) {
+  auto const all = [](double value) { return std::vector<Vec2d>(4, Vec2d{value, -value}); };
+  std::vector<BudgetStage> const stages{{"measured", all(2.6)}, {"flow", all(1)}, {"ambient", all(3)},
+                                        {"window", all(2.5)},   {"seen", all(2)}, {"noise_free", all(2.4)}};
+  ErrorBudget const budget = error_budget(stages, VectorMask(4, 1), BudgetChain::piv);
+  std::vector<std::string_view> const names{"projection", "refraction", "window", "estimator", "pattern", "noise"};
+  EXPECT_EQ(budget_term_names(BudgetChain::piv), names);
+  ASSERT_EQ(budget.terms.size(), names.size());
+  for (auto const& [name, bias] :
+       {std::pair{"projection", 2.0}, {"refraction", -1.0}, {"window", 0.5}, {"estimator", -0.1}, {"noise", 0.2}}) {
+    EXPECT_NEAR(term(budget, name).bias_u_px, bias, 1e-15) << name;
+    EXPECT_NEAR(term(budget, name).bias_v_px, -bias, 1e-15) << name;
+  }
+  EXPECT_NEAR(budget.total.bias_u_px, 1.6, 1e-15);
+  EXPECT_LT(budget.closure_px, 1e-15);
+}
+
 // Vectors of another code: no noise-free images, no repeats. What is left goes to the estimator; noise is unknown.
 TEST(ErrorBudget, BooksAGapUnderItsFirstTerm) {
   std::vector<BudgetStage> stages = chain(50);

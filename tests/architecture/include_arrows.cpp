@@ -20,7 +20,8 @@ struct Room {
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots"};
-Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration"};
+Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration",
+                        "analysis/uncertainty"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names operator+(Names a, Names const& b) {
@@ -33,15 +34,17 @@ Names operator+(Names a, Names const& b) {
 std::vector<Room> const& table() {
   static std::vector<Room> const rooms = {
       {"render/base", {}, {"Eigen", "x86 intrinsics"}, {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "fmt"}},
+      {"render/image_codecs", {"render/base"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/medium", {"render/base"}, {"Eigen"}, {"fmt", "zlib"}},
       {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"render/scene", render, {"Eigen"}, {"fmt"}},
+      {"render/scene", render, {"Eigen"}, {"Ceres", "fmt"}},
       {"render/rays", render, {"Eigen"}, {"fmt"}},
       {"render/focused_dots", render, {"Eigen"}, {"fmt"}},
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"analysis/correlation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
+      {"analysis/correlation", {"render/base"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
+      {"analysis/uncertainty", {"render/base", "analysis/correlation"}, {"Eigen"}, {"fmt"}},
       {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
       {"analysis/calibration", {"render/base"}, {"Eigen"}, {"OpenCV", "Ceres", "fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
@@ -85,7 +88,7 @@ std::vector<LibraryPattern> const& known_libraries() {
        "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"
        "nv(ml|rtc|Toolsext)\\w*\\.h|device_(launch_parameters|functions|types)\\.h|driver_types\\.h|"
        "(vector|sm_[0-9]+)_[a-z_]+\\.h(pp)?"},
-      {"POSIX", "sys/.*|(stdio|stdlib|unistd|fcntl|signal|dirent|poll|termios|pthread|spawn|malloc)\\.h"},
+      {"POSIX", "sys/.*|(stdio|stdlib|unistd|fcntl|signal|dirent|dlfcn|poll|termios|pthread|spawn|malloc)\\.h"},
       {"std", "[a-z_0-9]+"},
   };
   return libraries;

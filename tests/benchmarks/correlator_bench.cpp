@@ -26,27 +26,24 @@ void correlate(benchmark::State& state, CorrelationSettings const& settings) {
       benchmark::Counter(static_cast<double>(vectors), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void correlate_single_pass(benchmark::State& state) {
+void correlate_single_pass(benchmark::State& state, char const* method, char const* weighting) {
   CorrelationSettings settings;
   settings.window_px = {32};
+  settings.overlap = 0.5;
+  settings.method = method;
+  settings.weighting = weighting;
   correlate(state, settings);
 }
-BENCHMARK(correlate_single_pass)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Iterations(5)
-    ->Unit(benchmark::kMillisecond);
+void on_one_and_two_threads(benchmark::internal::Benchmark* bench) {
+  bench->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->MinTime(1.0)->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(correlate_single_pass, scc_uniform, "scc", "uniform")->Apply(on_one_and_two_threads);
+BENCHMARK_CAPTURE(correlate_single_pass, scc, "scc", "gaussian")->Apply(on_one_and_two_threads);
+BENCHMARK_CAPTURE(correlate_single_pass, rpc, "rpc", "gaussian")->Apply(on_one_and_two_threads);
+BENCHMARK_CAPTURE(correlate_single_pass, opencv, "opencv", "gaussian")->Apply(on_one_and_two_threads);
 
 void correlate_multi_pass(benchmark::State& state) { correlate(state, CorrelationSettings{}); }
-BENCHMARK(correlate_multi_pass)
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(2)
-    ->UseRealTime()
-    ->Iterations(3)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(correlate_multi_pass)->Apply(on_one_and_two_threads);
 
 }  // namespace
 }  // namespace gladstone::bench

@@ -67,6 +67,14 @@ TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
   }));
 }
 
+TEST_F(CudaRaysTest, LensletsBeforeTheSensor) {
+  for (LensletLayout const layout : {LensletLayout::square, LensletLayout::hexagonal}) {
+    expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
+      setup.lenslets = LensletSetup{83e-6, 900e-6, 900e-6, layout};
+    }));
+  }
+}
+
 // A source that is blurred over more than the widest window, and one of more rays than a block traces: what no window
 // takes is laid down ray by ray.
 TEST_F(CudaRaysTest, WideBlursAndManyRays) {

@@ -48,6 +48,7 @@ rays_per_dot = 32
 
 [correlate]
 window_px = [32, 16]
+overlap = 0.5
 )";
 
 class Cameras : public Workplace {

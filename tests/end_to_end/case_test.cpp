@@ -112,14 +112,16 @@ TEST_F(Case, VectorsAsTextHaveTheColumnsOfTheContract) {
   render("case");
   succeed({"correlate", "case", "-o", "v.csv"});
   std::string const text = read("v.csv");
-  EXPECT_EQ(text.substr(0, text.find('\n')),
-            "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,ambiguous");
+  EXPECT_EQ(
+      text.substr(0, text.find('\n')),
+      "x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,ambiguous");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 49);  // 16 px windows every 8 px: 7 x 7
   EXPECT_THAT(text, HasSubstr("\n7.5,7.5,"));                     // (ws - 1)/2 from the first pixel
   // two images with the same settings give the same vectors
-  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "w.csv", "--set", "correlate.window_px=[32,16]"});
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "w.csv", "--set", "correlate.window_px=[32,16]",
+           "--set", "correlate.overlap=0.5"});
   EXPECT_EQ(read("w.csv"), text);
-  write("c.toml", "[correlate]\nwindow_px = [32, 16]\n");
+  write("c.toml", "[correlate]\nwindow_px = [32, 16]\noverlap = 0.5\n");
   succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "x.csv", "--config", "c.toml"});
   EXPECT_EQ(read("x.csv"), text);
   // a whole setup will do, resolved or not; what else it says is not looked at
@@ -174,6 +176,23 @@ TEST_F(Case, SetOfACorrelationChangesTheCasesOwnSettings) {
   EXPECT_EQ(json_of({"correlate", "case", "--set", "correlate.overlap=0"})["vectors"], 16);  // every 16 px
   expect_refused({"correlate", "case", "--set", "lens.f_number=8"}, 2,
                  {"--set lens.f_number=8", "no key of [correlate]"});
+}
+
+// Each valid vector has its sigma, and the comparison says what it is worth; both components of the vectors count.
+TEST_F(Case, UncertaintiesAreWrittenAndJudged) {
+  render("case");
+  succeed({"correlate", "case", "--set", "correlate.uncertainty=correlation_statistics"});
+  succeed({"compare", "case", "--no-figures"});
+  auto const quality = nlohmann::json::parse(read("case/errors.json"))["uncertainty"];
+  for (char const* truth : {"window_truth", "ray_truth"}) {
+    EXPECT_GT(quality[truth]["count"], 2 * 40);
+    EXPECT_LE(quality[truth]["count"], 2 * 49);
+    EXPECT_GE(quality[truth]["coverage_2"], quality[truth]["coverage_1"]);
+    EXPECT_GT(quality[truth]["rms_ratio"], 0.0);
+  }
+  succeed({"correlate", "case"});
+  succeed({"compare", "case", "--no-figures"});
+  EXPECT_FALSE(nlohmann::json::parse(read("case/errors.json")).contains("uncertainty"));
 }
 
 TEST_F(Case, SetOnTheCommandLineEqualsTheSameInTheFile) {

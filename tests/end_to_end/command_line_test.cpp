@@ -55,9 +55,7 @@ TEST_F(CommandLine, VersionTellsTheSameAsJson) {
   }
 }
 
-TEST_F(CommandLine, InfoThatIsDueLaterIsRefusedByName) {
-  expect_refused({"info", "mie"}, 2, {"info mie: is not available yet"});
-  expect_refused({"info", "mie", "--x", "1", "--m", "1.33,0"}, 2, {"info mie: is not available yet"});
+TEST_F(CommandLine, InfoSaysWhatItsKindsTake) {
   expect_refused({"info", "image", "a.tif", "--x", "1"}, 2, {"info image: has no --x and --m"});
   expect_refused({"info", "image"}, 2, {"info image: needs a file"});
 }

@@ -49,6 +49,21 @@ TEST_F(InfoLens, SpotFallsAsTheCubeOfTheAperture) {
   }
 }
 
+// Rays that are lost are counted by surface and cause: an edge of 3 mm behind a stop of f/20 leaves of the light, which
+// it meets within r (1 - t / (n f')) of the axis, f' the first face's own n R / (n - 1), the square of 3 mm over that.
+TEST_F(InfoLens, CountsLostRaysBySurfaceAndCause) {
+  write("lens.toml", with(singlet, "semi_diameter_mm = 12.7", "semi_diameter_mm = 3.0"));
+  auto const field = json_of({"info", "lens", "lens.toml"})["field"][0];
+  double const f = 51.5 / 0.5168, rim = f / 20 * (1 - 3.6 * 0.5168 / (1.5168 * 51.5));
+  // 2000 even points tell areas to about one in their number's root over the rim; spherical aberration moves the rim by
+  // a thousandth
+  EXPECT_NEAR(field["vignetting"], 1 - 9 / (rim * rim), 0.01);
+  ASSERT_EQ(field["lost"].size(), 1u);
+  EXPECT_EQ(field["lost"][0]["surface"], 2);
+  EXPECT_EQ(field["lost"][0]["cause"], "vignetted");
+  EXPECT_NEAR(field["lost"][0]["share"], field["vignetting"].get<double>(), 0.02);
+}
+
 TEST_F(InfoLens, DrawsTheLens) {
   write("lens.toml", singlet);
   succeed({"info", "lens", "lens.toml", "--figure", "lens.png"});

@@ -182,13 +182,13 @@ TEST_F(SetupErrors, SeveralProblemsComeTogetherInTheOrderOfTheFile) {
   EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
 }
 
-TEST_F(SetupErrors, WhatIsDueLaterIsRefusedByName) {
-  refused("\"bos\"", "\"piv\"", "experiment", {"\"piv\" is not available yet"});
-  refused("[correlate]", "[correlate]\nmethod = \"rpc\"", "method", {"\"rpc\" is not available yet", "use \"scc\""});
+TEST_F(SetupErrors, WhatIsOfOthersOrDueLaterIsRefusedByName) {
+  refused("\"bos\"", "\"piv\"", "target]", {"is of BOS", "[particles]", "geometry.z_d_mm"});
+  refused("[correlate]", "[correlate]\nmethod = \"rcp\"", "method", {"\"scc\"", "did you mean \"rpc\"?"});
   std::string const two = with(with(small_setup, "[camera]", "[[camera]]"), "[lens]", "[[camera]]\n[lens]");
   expect_setup_refused(two, {"camera.name", "is missing"});
-  expect_setup_refused(std::string(small_setup) + "[velocity]\nkind = \"uniform\"\n",
-                       {"velocity", "not available yet"});
+  expect_setup_refused(std::string(small_setup) + "[flow]\nkind = \"uniform\"\n",
+                       {"flow", "is of experiment = \"piv\""});
 }
 
 TEST_F(SetupErrors, SetWithoutSenseIsRefusedAsSuch) {

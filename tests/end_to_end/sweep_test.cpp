@@ -2,11 +2,13 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
 
 #include "render/base/content_hash.h"
+#include "render/base/image_file.h"
 #include "studies/sweep/claims.h"
 #include "tests/end_to_end/support/workplace.h"
 
@@ -495,6 +497,49 @@ TEST_F(Sweeps, AnotherKindOfDeviceIsRefused) {
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("device error"));
   }
+}
+
+// The file holds what the kept cases hold, bit by bit, one case after the other.
+TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
+  plan("run");
+  succeed({"sweep", "run", "run", "--quiet", "--case", "0"});
+  Outcome const without = gladstone({"sweep", "collect", "run", "--no-figures", "--dataset", "none.h5"});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.err, HasSubstr("--keep-images"));
+  EXPECT_FALSE(std::filesystem::exists(in("none.h5")));
+  succeed({"sweep", "run", "run", "--quiet", "--case", "0,7", "--keep-images"});
+  EXPECT_EQ(gladstone({"sweep", "collect", "run", "--no-figures", "--dataset", "set.h5"}).exit_code,
+            3);  // ten are missing
+  Hdf5Reader const set(in("set.h5").string());
+  auto const begin = set.read_integers("/truth/begin");
+  ASSERT_EQ(begin.size(), 3u);
+  EXPECT_EQ(set.read_integers("/parameters/case"), (std::vector<std::int64_t>{0, 7}));
+  auto const images = set.read("/images"), place = set.read("/truth/reference_px"),
+             displacement = set.read("/truth/displacement_px"), map = set.read("/displacement_px");
+  std::size_t next = 0;
+  for (int i = 0; i < 2; ++i) {
+    std::string const folder = i == 0 ? "run/cases/0" : "run/cases/7";
+    for (char const* name : {"/reference.tif", "/flow.tif"}) {
+      for (double const level : read_image(in(folder + name).string())) ASSERT_EQ(images.at(next++), level);
+    }
+    Hdf5Reader const truth(in(folder + "/truth.h5").string());
+    auto const from = 2 * begin[static_cast<std::size_t>(i)], to = 2 * begin[static_cast<std::size_t>(i) + 1];
+    EXPECT_TRUE(std::equal(place.begin() + from, place.begin() + to, truth.read("/dots/reference_px").begin()));
+    EXPECT_TRUE(std::equal(displacement.begin() + from, displacement.begin() + to,
+                           truth.read("/dots/displacement_px").begin()));
+  }
+  EXPECT_EQ(next, images.size());
+  EXPECT_EQ(set.shape("/displacement_px"),
+            (std::vector<std::size_t>{2, set.shape("/images")[2] / 4, set.shape("/images")[3] / 4, 2}));
+  // both sample the same field, evenly and at some hundred random places, whose rms scatters by some percent
+  auto const rms = [](std::vector<double> const& values) {
+    double sum = 0, count = 0;
+    for (double const value : values) {
+      if (std::isfinite(value)) sum += value * value, ++count;
+    }
+    return std::sqrt(sum / count);
+  };
+  EXPECT_NEAR(rms(map) / rms(displacement), 1, 0.2);
 }
 
 TEST_F(Sweeps, BadCommandLinesAreRefused) {

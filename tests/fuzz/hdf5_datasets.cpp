@@ -62,7 +62,17 @@ constexpr std::array names{"xcoor",
                            "field/density_gradient_kg_m4",
                            "field/eq9_px",
                            "dots/displacement_error_px",
-                           "dots/by_table"};
+                           "dots/by_table",
+                           "particles/position_m",
+                           "particles/reference_px",
+                           "particles/displacement_px",
+                           "particles/displacement_error_px",
+                           "particles/displacement_std_px",
+                           "particles/reference_ambient_px",
+                           "particles/displacement_ambient_px",
+                           "particles/flux",
+                           "particles/diameter_m",
+                           "particles/rays"};
 
 /// A type on disk: numbers for the most part. The caller closes it.
 hid_t stored_type(std::size_t choice) {

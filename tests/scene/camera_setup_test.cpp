@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "render/base/units.h"
+#include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
+#include "render/scene/build_camera.h"
 #include "render/scene/setup.h"
 #include "tests/scene/read_setup_text.h"
 
@@ -67,6 +69,26 @@ TEST(Windows, AreReadWithTheirGlass) {
   EXPECT_THAT([] { setup_of("[[window]]\nglass = \"N-BK77\"\nposition_mm = [0, 0, 1]\n"); },
               ThrowsMessage<SetupError>(HasSubstr("N-BK77")));
   EXPECT_THAT([] { setup_of("[[window]]\n"); }, ThrowsMessage<SetupError>(HasSubstr("position_mm")));
+}
+
+// What a plate of glass passes of the light along the axis: each face 4 n / (n + 1)^2, and the glass what its catalogue
+// says of so much thickness (10 mm of N-BK7 pass 0.998 at 546 nm).
+TEST(Windows, TakeOffTheLightThatIsAskedFor) {
+  auto const passed = [](std::string const& transmittance) {
+    Camera const camera = build_camera(setup_of("[lens]\ntransmittance = \"" + transmittance +
+                                                "\"\n[[window]]\nthickness_mm = 25\nposition_mm = [0, 0, 100]\n"));
+    Ray<double> ray{{0, 0, 0}, {0, 0, 1}};
+    RayAccount<double> account;
+    EXPECT_EQ(carry(camera.view(), 0, camera.view().count, ray, account), RayStatus::alive);
+    return account.weight;
+  };
+  double const n = 1.519472583, faces = std::pow(4 * n / ((n + 1) * (n + 1)), 2);
+  EXPECT_EQ(passed("ideal"), 1);
+  EXPECT_NEAR(passed("surfaces"), faces, 1e-9);
+  Glass const& glass = GlassCatalogue::shipped().find("N-BK7", 532e-9, "");
+  EXPECT_GT(glass.absorption(532e-9), 0);
+  EXPECT_NEAR(passed("glass"), faces * std::exp(-0.025 * glass.absorption(532e-9)), 1e-9);
+  EXPECT_NEAR(std::exp(-0.01 * glass.absorption(532e-9)), 0.998, 0.001);
 }
 
 TEST(PrescribedLens, SetsFocalLengthAndStop) {

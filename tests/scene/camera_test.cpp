@@ -4,24 +4,12 @@
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
-#include "tests/scene/small_scenes.h"
+#include "tests/scene/real_lens_setups.h"
 
 namespace gladstone {
 namespace {
 
 Pose<double> dots_plane(Setup const& setup) { return {{0, 0, -setup.z_d}}; }
-
-Setup double_gauss_setup(int pixels, double f_number = 11) {
-  Setup setup = table1_setup(pixels);
-  LensOptions options;
-  options.f_number = f_number;
-  setup.lens.prescription = std::make_shared<Lens const>(
-      build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/double_gauss.toml"),
-                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
-  setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
-  setup.lens.f_number = f_number;
-  return setup;
-}
 
 // A thin lens in focus maps (X, Y) to M (X, Y) / p from the axis pixel, columns right and rows down, M = f / (Z_B - f).
 TEST(ThinCamera, ProjectsByTheMagnification) {

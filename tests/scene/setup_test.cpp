@@ -166,10 +166,9 @@ TEST(Setup, DotsThatCannotFindRoomAreRefused) {
               refused("2:1", "cannot be seen"));
 }
 
-TEST(Setup, WhatIsDueLaterIsRefusedByName) {
-  EXPECT_THAT([] { read_setup_text("experiment = \"piv\"\n"); }, refused("1:1", "\"piv\" is not available yet"));
+TEST(Setup, WhatIsOfOthersOrDueLaterIsRefusedByName) {
   EXPECT_THAT([] { read_setup_text("[[camera]]\n[[camera]]\n"); }, refused("1", "several cameras"));
-  for (std::string const table : {"particles", "laser_sheet", "velocity", "calibration", "requirements"}) {
+  for (std::string const table : {"particles", "laser", "flow", "calibration", "requirements"}) {
     EXPECT_THAT([&] { read_setup_text(std::string("[").append(table).append("]\n")); }, refused("1", table)) << table;
   }
   EXPECT_THAT([] { read_setup_text("schema = 2\n"); }, refused("1:1", "schema"));

@@ -18,7 +18,7 @@ TEST(Table1, HasTheMonteCarloErrorThatItSays) {
   plan_step_of(scene);
   ASSERT_EQ(plan_rays_of(scene).rays, 1024u);
   RaysPlan const error = measure_rays(focused_dots(scene).value());
-  EXPECT_LT(error.truth_error_px, 2e-4);
+  EXPECT_LT(error.truth_error_px, 1e-4);
   EXPECT_LT(error.image_error_levels, 0.5);
 }
 

@@ -22,10 +22,9 @@ namespace {
 /// Commands that say nothing about where rays go: weights, variables, solves whose values are written out, names.
 bool is_harmless(std::string const& command) {
   static std::set<std::string> const harmless{
-      "LEN", "INI", "WTW", "WTF", "XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI", "VUX", "VLX",
-      "VUY", "VLY", "CCY", "CCX", "THC", "GLC", "PIM", "DER", "GO",  "SLB", "KC",  "AC",  "BC",
-      "CC",  "DC",  "HC",  "POL", "WID", "RES", "WAV", "REM", "TEM", "PRE", "CA",  "CLS", "PIK",
-      "THM", "CUM", "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "RET", "CUC"};
+      "LEN", "INI", "WTW", "WTF", "XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI", "CCY", "CCX", "THC", "GLC", "PIM",
+      "DER", "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",  "HC",  "POL", "WID", "RES", "WAV", "REM", "TEM", "PRE",
+      "CA",  "CLS", "PIK", "THM", "CUM", "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "CUC"};
   return harmless.contains(command);
 }
 
@@ -65,6 +64,13 @@ class SeqReader {
       reference_ = line.integer(1);
     } else if (command == "YAN") {
       for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
+    } else if (command == "VUX" || command == "VLX" || command == "VUY" || command == "VLY") {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        if (line.number(i) == 0) continue;
+        result_.warnings.push_back(line.where + ": " + command +
+                                   ": vignetting factors are not used; the edges of the surfaces vignette");
+        break;
+      }
     } else if (!read_surface_command(command, line) && !is_harmless(command)) {
       throw DataError(line.where,
                       fmt::format("command {} is not read; leave it out if it does not change the lens", line[0]));
@@ -153,11 +159,14 @@ class SeqReader {
     if (command == "CIR") {
       std::string const kind = line.size() > 1 ? in_capitals(line[1]) : "";
       if (kind == "EDG") return true;  // for drawings
-      if (kind == "OBS" || kind == "HOL") {
-        throw DataError(line.where,
-                        "obscurations (CIR OBS, CIR HOL) are not read; remove the line to trace without it");
+      if (kind == "HOL") {
+        throw DataError(line.where, "holes (CIR HOL) are not read; remove the line to trace without it");
       }
-      surface.semi_diameter = line.number(1) * unit_;
+      if (kind == "OBS") {
+        surface.obscured = line.number(2) * unit_;
+      } else {
+        surface.semi_diameter = line.number(1) * unit_;
+      }
     }
     if (command.size() == 1 && command[0] >= 'A' && command[0] <= 'G') {  // of r^4, r^6, ...
       int const term = command[0] - 'A' + 1;

@@ -60,6 +60,7 @@ PrescribedSurface read_surface(SetupTable& table) {
   if (auto const edge = table.optional_number("semi_diameter_mm", Range::positive())) {
     surface.semi_diameter = *edge * millimetre;
   }
+  surface.obscured = table.number("obscured_mm", 0.0, Range::at_least(0)) * millimetre;
   surface.stop = table.boolean("stop", false);
   if (table.has("decentre_mm") || table.has("tilt_deg")) {
     std::vector<double> const shift = table.numbers("decentre_mm", {0, 0}, 2);

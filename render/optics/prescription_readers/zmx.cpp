@@ -11,6 +11,7 @@
 #include "render/optics/even_asphere.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
+#include "render/optics/prescription_readers/zmx_apertures.h"
 
 namespace gladstone {
 namespace {
@@ -39,8 +40,10 @@ class ZmxReader {
       surfaces_.back().surface.where = line.where;
     } else if (surfaces_.empty()) {
       read_system(line);
-    } else {
+      note_zmx_operand(line, result_.warnings);
+    } else if (!read_zmx_aperture(line, unit_, surfaces_.back().surface)) {
       read_surface(line, surfaces_.back());
+      note_zmx_operand(line, result_.warnings);
     }
   }
 
@@ -98,8 +101,13 @@ class ZmxReader {
     }
     using Kind = PrescribedAperture::Kind;
     if (key == "ENPD") result_.aperture = {Kind::entrance_pupil, line.number(1) * unit_};
-    if (key == "FNUM") result_.aperture = {Kind::f_number, line.number(1)};
-    if (key == "OBNA") result_.aperture = {Kind::object_na, line.number(1)};
+    // the second value says which of two meanings the first has
+    bool const other_meaning = line.size() > 2 && line[2] == "1";
+    if (key == "FNUM") result_.aperture = {other_meaning ? Kind::working_f_number : Kind::f_number, line.number(1)};
+    if (key == "OBNA") {
+      double const value = line.number(1);
+      result_.aperture = {Kind::object_na, other_meaning ? std::sin(value * unit::degree) : value};
+    }
     if (key == "FLOA") result_.aperture = {};
     if (key == "FTYP") angles_are_fields_ = line.integer(1) == 0;
     if (key == "YFLN" || key == "YFLD") {
@@ -137,7 +145,7 @@ class ZmxReader {
       bool const infinite = line.size() > 1 && line[1] == "INFINITY";
       surface.thickness = infinite ? std::numeric_limits<double>::infinity() : line.number(1) * unit_;
     }
-    if (key == "DIAM" && line.number(1) > 0) {
+    if (key == "DIAM" && line.number(1) > 0 && !surface.has_aperture) {
       surface.semi_diameter = line.number(1) * unit_;
       surface.semi_diameter_is_an_edge = line.size() > 2 && line.integer(2) != 0;
     }
@@ -148,7 +156,21 @@ class ZmxReader {
       if (line[1] == "MIRROR") {
         surface.after.is = PrescribedMedium::Mirror{};
       } else if (described && line.size() > 5) {
-        surface.after.is = PrescribedMedium::Described{line.number(4), line.number(5)};
+        double const nd = line.number(4), vd = line.number(5);
+        if (!(nd >= 1 && nd < 5 && vd >= 0)) {
+          throw DataError(line.where, fmt::format("GLAS: a model glass of nd = {:.6g}, Vd = {:.6g} is none (nd lies "
+                                                  "between 1 and 5, Vd above 0); correct it or name a glass",
+                                                  nd, vd));
+        }
+        if (line.size() > 6 && line.number(6) != 0) {
+          result_.warnings.push_back(line.where +
+                                     ": GLAS: the deviation of a model glass' partial dispersion is not used");
+        }
+        if (vd == 0) {  // as Zemax has it: without dispersion
+          surface.after.is = PrescribedMedium::Index{nd};
+        } else {
+          surface.after.is = PrescribedMedium::Described{nd, vd};
+        }
       } else {
         surface.after.is = PrescribedMedium::Named{line[1]};
       }

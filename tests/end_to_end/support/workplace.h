@@ -42,6 +42,7 @@ rays_per_dot = 32
 
 [correlate]
 window_px = [32, 16]
+overlap = 0.5
 )";
 
 /// A setup with one part of its text exchanged.

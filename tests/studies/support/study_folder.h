@@ -27,6 +27,7 @@ dots_per_32px_window = 10.0
 rays_per_dot = 32
 [correlate]
 window_px = [32, 16]
+overlap = 0.5
 )";
 
 inline std::vector<ManifestCase> all_cases(StudyPlan const& plan) {

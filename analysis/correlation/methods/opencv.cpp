@@ -1,11 +1,12 @@
-#include "analysis/correlation/fft_correlation.h"
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "analysis/correlation/axis_weights.h"
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/fourier_plan.h"
+#include "analysis/correlation/known_tiles.h"
+#include "analysis/correlation/window_peak.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -15,39 +16,14 @@ namespace {
 
 constexpr std::size_t windows_per_chunk = 32;  // even: windows are transformed in pairs
 
-/// Tells quickly whether a rectangle of the image is known throughout.
-class KnownTiles {
- public:
-  explicit KnownTiles(ImagePair const& pair) : columns_((pair.columns + tile - 1) / tile) {
-    if (pair.available.empty()) return;
-    known_.assign(static_cast<std::size_t>(columns_) * ((pair.rows + tile - 1) / tile), true);
-    for (int j = 0; j < pair.rows; ++j)
-      for (int i = 0; i < pair.columns; ++i)
-        if (pair.available[static_cast<std::size_t>(j) * pair.columns + i] == 0.0f)
-          known_[static_cast<std::size_t>(j / tile) * columns_ + i / tile] = false;
-  }
-
-  bool all_known(int first_x, int first_y, int end_x, int end_y) const {
-    if (known_.empty()) return true;
-    for (int j = first_y / tile; j * tile < end_y; ++j)
-      for (int i = first_x / tile; i * tile < end_x; ++i)
-        if (!known_[static_cast<std::size_t>(j) * columns_ + i]) return false;
-    return true;
-  }
-
- private:
-  static constexpr int tile = 16;
-  int columns_;
-  std::vector<char> known_;
-};
-
 /// Correlates windows one pair after the other with its own scratch memory.
 class PairwiseCorrelation {
  public:
-  PairwiseCorrelation(ImagePair const& pair, InterrogationGrid const& grid, AxisWeightsView const& x,
-                      AxisWeightsView const& y, KnownTiles const& tiles, int radius)
-      : pair_(pair), grid_(grid), x_(x), y_(y), tiles_(tiles), radius_(radius), plan_(make_fourier_plan(x.size)) {
+  PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
+                      KnownTiles const& tiles)
+      : job_(job), pair_(job.pair), grid_(job.grid), x_(x), y_(y), tiles_(tiles), plan_(make_fourier_plan(x.size)) {
     std::size_t const values = static_cast<std::size_t>(x.size) * x.size;
+    pixels_.resize(values);
     window_.resize(values);
     spectrum_[0].resize(values);
     spectrum_[1].resize(values);
@@ -65,7 +41,7 @@ class PairwiseCorrelation {
       join(scale);
       plan_->inverse(window_.data(), spectrum_[0].data());
       for (int k = 0; k < count; ++k)
-        if (scale[k] > 0.0) pick(i + k, reinterpret_cast<float const*>(spectrum_[0].data()) + k, results[i + k]);
+        if (scale[k] > 0.0) pick(i + k, reinterpret_cast<double const*>(spectrum_[0].data()) + k, results[i + k]);
     }
   }
 
@@ -102,12 +78,13 @@ class PairwiseCorrelation {
       return 0.0;
     }
     float const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
-    float* out = reinterpret_cast<float*>(window_.data());
+    float* out = reinterpret_cast<float*>(pixels_.data());
     std::fill(out, out + 2 * static_cast<std::size_t>(view.begin_y) * size, 0.0f);
-    std::fill(out + 2 * static_cast<std::size_t>(view.end_y) * size, out + 2 * window_.size(), 0.0f);
+    std::fill(out + 2 * static_cast<std::size_t>(view.end_y) * size, out + 2 * pixels_.size(), 0.0f);
     WindowEnergy<float> energy;
     for (int j = view.begin_y; j < view.end_y; ++j)
       energy += load_row(view, j, mean_reference, mean_flow, out + 2 * static_cast<std::size_t>(j) * size);
+    std::copy(pixels_.begin(), pixels_.end(), window_.begin());
     double const scale = plane_scale(energy, pair_.contrast, grid_.window_px, size);
     if (scale == 0.0) result.outcome = WindowCorrelation::Outcome::no_signal;
     return scale;
@@ -117,20 +94,20 @@ class PairwiseCorrelation {
   /// spectrum left over from before.
   void join(double const* scale) {
     int const size = x_.size;
-    float const scale0 = static_cast<float>(scale[0]), scale1 = static_cast<float>(scale[1]);
+    double const scale0 = scale[0], scale1 = scale[1];
     for (int j = 0; j <= size / 2; ++j) {
       // the rows j = 0 and size/2 are their own mirrors: each column is then written twice, with equal values
       std::size_t const row = 2 * static_cast<std::size_t>(j) * size;
       std::size_t const mirror_row = 2 * static_cast<std::size_t>((size - j) % size) * size;
-      float const* const z0 = reinterpret_cast<float const*>(spectrum_[0].data()) + row;
-      float const* const m0 = reinterpret_cast<float const*>(spectrum_[0].data()) + mirror_row;
-      float const* const z1 = reinterpret_cast<float const*>(spectrum_[1].data()) + row;
-      float const* const m1 = reinterpret_cast<float const*>(spectrum_[1].data()) + mirror_row;
-      float* const out = reinterpret_cast<float*>(window_.data()) + row;
-      float* const mirror_out = reinterpret_cast<float*>(window_.data()) + mirror_row;
+      double const* const z0 = reinterpret_cast<double const*>(spectrum_[0].data()) + row;
+      double const* const m0 = reinterpret_cast<double const*>(spectrum_[0].data()) + mirror_row;
+      double const* const z1 = reinterpret_cast<double const*>(spectrum_[1].data()) + row;
+      double const* const m1 = reinterpret_cast<double const*>(spectrum_[1].data()) + mirror_row;
+      double* const out = reinterpret_cast<double*>(window_.data()) + row;
+      double* const mirror_out = reinterpret_cast<double*>(window_.data()) + mirror_row;
       auto const join_column = [&](int i, int m) {
-        Vec2<float> const c0 = scale0 * cross_spectrum(z0[i], z0[i + 1], m0[m], m0[m + 1]);
-        Vec2<float> const c1 = scale1 * cross_spectrum(z1[i], z1[i + 1], m1[m], m1[m + 1]);
+        Vec2<double> const c0 = scale0 * cross_spectrum(z0[i], z0[i + 1], m0[m], m0[m + 1]);
+        Vec2<double> const c1 = scale1 * cross_spectrum(z1[i], z1[i + 1], m1[m], m1[m + 1]);
         out[i] = c0.x - c1.y;
         out[i + 1] = c0.y + c1.x;
         mirror_out[m] = c0.x + c1.y;
@@ -141,11 +118,11 @@ class PairwiseCorrelation {
     }
   }
 
-  void pick(std::size_t index, float const* values, WindowCorrelation& result) const {
+  void pick(std::size_t index, double const* values, WindowCorrelation& result) const {
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
-    PlaneView<float> const plane{values, x_.size, 2};
-    PeakList<float> const found = find_peaks(plane, radius_);
+    PlaneView<double> const plane{values, x_.size, 2};
+    PeakList<double> const found = find_peaks(plane, job_.search_radius_px);
     if (found.count == 0) {
       result.outcome = WindowCorrelation::Outcome::no_peak;
       return;
@@ -154,37 +131,40 @@ class PairwiseCorrelation {
     result.peaks = found.count;
     for (int p = 0; p < found.count; ++p) {
       // join() has put the scale into the plane
-      MeasuredPeak const peak = measured_peak(plane, found.peak[p].x, found.peak[p].y, 1.0, x_, column, y_, row);
+      MeasuredPeak const peak = fitted_peak(job_.fit, plane, found.peak[p].x, found.peak[p].y, x_, column, y_, row);
       result.shift[p] = peak.shift;
       result.coefficient[p] = peak.coefficient;
     }
     result.peak_ratio = peak_ratio(found.peak[0].height, found.peak[1].height, found.peak[2].height);
   }
 
+  InterrogationJob const& job_;
   ImagePair const& pair_;
   InterrogationGrid const& grid_;
   AxisWeightsView x_;
   AxisWeightsView y_;
   KnownTiles const& tiles_;
-  int radius_;
   std::unique_ptr<FourierPlan> plan_;
-  std::vector<std::complex<float>> window_;
-  std::vector<std::complex<float>> spectrum_[2];
+  std::vector<std::complex<float>> pixels_;
+  std::vector<std::complex<double>> window_;
+  std::vector<std::complex<double>> spectrum_[2];
 };
 
 }  // namespace
 
-std::vector<WindowCorrelation> correlate_windows(ImagePair const& pair, InterrogationGrid const& grid,
-                                                 WindowWeighting weighting, int search_radius_px,
-                                                 std::string const& label) {
-  GLADSTONE_EXPECTS(search_radius_px > 0 && 2 * search_radius_px <= grid.window_px && grid.window_px % 2 == 0);
-  AxisWeights const x(grid, grid.columns, pair.columns, weighting);
-  AxisWeights const y(grid, grid.rows, pair.rows, weighting);
-  KnownTiles const tiles(pair);
+/// The same planes as scc by OpenCV's transforms in double precision over squares of twice the window, one pair of
+/// windows after the other: slow, and what the fast methods are compared with.
+std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) {
+  InterrogationGrid const& grid = job.grid;
+  int const radius = job.search_radius_px;
+  GLADSTONE_EXPECTS(radius > 0 && 2 * radius <= grid.window_px && grid.window_px % 2 == 0);
+  AxisWeights const x(grid, grid.columns, job.pair.columns, job.weighting);
+  AxisWeights const y(grid, grid.rows, job.pair.rows, job.weighting);
+  KnownTiles const tiles(job.pair);
   std::vector<WindowCorrelation> results(grid.size());
-  Progress progress(label, grid.size());
+  Progress progress(job.label, grid.size());
   parallel_chunks(grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    PairwiseCorrelation correlation(pair, grid, x.view(), y.view(), tiles, search_radius_px);
+    PairwiseCorrelation correlation(job, x.view(), y.view(), tiles);
     correlation(begin, end, results);
     progress.advance(end - begin);
   });

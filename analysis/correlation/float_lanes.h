@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+
+// vectors are passed between inlined functions only: no ABI to keep
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+/// Eight numbers side by side, one of each of eight windows that are worked on together (GCC's and clang's vector
+/// types; one AVX register).
+namespace gladstone {
+
+constexpr int lane_count = 8;
+using FloatLanes = float __attribute__((vector_size(4 * lane_count)));
+using IntLanes = std::int32_t __attribute__((vector_size(4 * lane_count)));
+
+inline FloatLanes all_lanes(float s) { return FloatLanes{s, s, s, s, s, s, s, s}; }
+
+/// Eight complex numbers; one cache line.
+struct ComplexLanes {
+  FloatLanes re, im;
+};
+
+/// Eight values from memory of any alignment.
+inline FloatLanes load_lanes(float const* from) {
+  FloatLanes v;
+  __builtin_memcpy(&v, from, sizeof v);
+  return v;
+}
+
+/// Value k of row l becomes lane l of column k.
+inline void transpose_lanes(FloatLanes (&v)[lane_count]) {
+  FloatLanes t[8], u[8];
+  for (int k = 0; k < 8; k += 2) {
+    t[k] = __builtin_shufflevector(v[k], v[k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+    t[k + 1] = __builtin_shufflevector(v[k], v[k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+  }
+  for (int k = 0; k < 8; k += 4)
+    for (int i = 0; i < 2; ++i) {
+      u[k + 2 * i] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 0, 1, 8, 9, 4, 5, 12, 13);
+      u[k + 2 * i + 1] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int k = 0; k < 4; ++k) {
+    v[k] = __builtin_shufflevector(u[k], u[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    v[k + 4] = __builtin_shufflevector(u[k], u[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
+/// a where the mask is set, else b.
+inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) {
+  return reinterpret_cast<FloatLanes>((mask & reinterpret_cast<IntLanes>(a)) | (~mask & reinterpret_cast<IntLanes>(b)));
+}
+
+inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) { return select_lanes(a > b, a, b); }
+
+inline FloatLanes root_lanes(FloatLanes a) {
+  FloatLanes r;
+  for (int l = 0; l < lane_count; ++l) r[l] = __builtin_sqrtf(a[l]);
+  return r;
+}
+
+/// Natural logarithm of positive normal numbers, good to 2e-7 of 1 or of itself: with x = m 2^e, m in [sqrt(1/2),
+/// sqrt(2)), log m = 2 artanh((m - 1)/(m + 1)) by its series.
+inline FloatLanes log_lanes(FloatLanes x) {
+  IntLanes const bits = reinterpret_cast<IntLanes>(x);
+  IntLanes const exponent = (bits - 0x3f3504f3) >> 23;
+  FloatLanes const m = reinterpret_cast<FloatLanes>(bits - (exponent << 23));
+  FloatLanes const s = (m - 1.0f) / (m + 1.0f), s2 = s * s;
+  FloatLanes const series = 2.0f + s2 * (0.66666667f + s2 * (0.4f + s2 * (0.28571429f + s2 * 0.22222222f)));
+  return __builtin_convertvector(exponent, FloatLanes) * 0.69314718f + s * series;
+}
+
+/// exp(x) for |x| < 80, good to 3e-7 of itself.
+inline FloatLanes exp_lanes(FloatLanes x) {
+  FloatLanes const scaled = x * 1.44269504f;
+  IntLanes const whole =
+      __builtin_convertvector(scaled + select_lanes(scaled < 0.0f, all_lanes(-0.5f), all_lanes(0.5f)), IntLanes);
+  FloatLanes const r = (scaled - __builtin_convertvector(whole, FloatLanes)) * 0.69314718f;
+  FloatLanes const series =
+      1.0f + r * (1.0f + r * (0.5f + r * (0.16666667f + r * (0.04166667f + r * (0.00833333f + r * 0.00138889f)))));
+  return series * reinterpret_cast<FloatLanes>((whole + 127) << 23);
+}
+
+}  // namespace gladstone

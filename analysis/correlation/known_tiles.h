@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/correlation/window_deformation.h"
+
+namespace gladstone {
+
+/// Tells quickly whether a rectangle of the image is known throughout.
+class KnownTiles {
+ public:
+  explicit KnownTiles(ImagePair const& pair) : columns_((pair.columns + tile - 1) / tile) {
+    if (pair.available.empty()) return;
+    known_.assign(static_cast<std::size_t>(columns_) * ((pair.rows + tile - 1) / tile), true);
+    for (int j = 0; j < pair.rows; ++j)
+      for (int i = 0; i < pair.columns; ++i)
+        if (pair.available[static_cast<std::size_t>(j) * pair.columns + i] == 0.0f)
+          known_[static_cast<std::size_t>(j / tile) * columns_ + i / tile] = false;
+  }
+
+  /// @pre the rectangle lies inside the image; it may be empty
+  bool all_known(int first_x, int first_y, int end_x, int end_y) const {
+    if (known_.empty()) return true;
+    for (int j = first_y / tile; j * tile < end_y; ++j)
+      for (int i = first_x / tile; i * tile < end_x; ++i)
+        if (!known_[static_cast<std::size_t>(j) * columns_ + i]) return false;
+    return true;
+  }
+
+ private:
+  static constexpr int tile = 16;
+  int columns_;
+  std::vector<char> known_;
+};
+
+}  // namespace gladstone

@@ -1,0 +1,140 @@
+#include "analysis/correlation/lane_correlation.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "analysis/correlation/lane_peaks.h"
+#include "render/base/contracts.h"
+#include "render/base/parallel.h"
+#include "render/base/progress.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t windows_per_chunk = 8 * lane_count;
+
+}  // namespace
+
+LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
+                                 KnownTiles const& tiles, LaneFourier const& fourier, bool with_margin)
+    : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, with_margin) {
+  int const size = fourier.size(), side = windows_.side();
+  pitch_ = size + 1;  // odd numbers of cache lines: columns do not fall on the same places of the cache
+  half_pitch_ = (size / 2 + 1) | 1;
+  std::size_t const lines = static_cast<std::size_t>(side);
+  spectrum_.resize(lines * pitch_);
+  half_.resize(static_cast<std::size_t>(2 * job.search_radius_px + 4) * half_pitch_);
+  line_.resize(static_cast<std::size_t>(std::max(size, side + lane_count)));
+  column_.resize(static_cast<std::size_t>(size));
+  mirror_.resize(static_cast<std::size_t>(size));
+  scratch_.resize(static_cast<std::size_t>(fourier.scratch()));
+}
+
+int LaneCorrelation::transform_size(InterrogationJob const& job, bool with_margin) {
+  int const window = job.grid.window_px, radius = job.search_radius_px;
+  int const side = job.weighting == WindowWeighting::uniform ? window : 2 * window;
+  if (with_margin) return lane_fourier_size(side + 2 * radius + 2);
+  if (job.weighting == WindowWeighting::gaussian) return lane_fourier_size(side);
+  // at one pixel beyond the search range, which only the fit of a peak at its rim reads, one line of pixels would wrap:
+  // of large windows it is too small a part to lengthen the transform for
+  return lane_fourier_size(window + radius + (window < 32 ? 1 : 0));
+}
+
+void LaneCorrelation::load(WindowTerm term) {
+  int const side = windows_.side();
+  for (int j = 0; j < side; ++j) {
+    windows_.row(j, term, line_.data());
+    fourier_.forward(line_.data(), 1, side, spectrum_.data() + static_cast<std::size_t>(j) * pitch_, 1,
+                     scratch_.data());
+  }
+}
+
+void LaneCorrelation::correlate(FloatLanes scale, SpectrumFilter const& filter, LanePlane& plane) {
+  filter_columns(scale, filter, plane.reach());
+  make_rows(plane);
+}
+
+/// Transforms columns, multiplies, filters and transforms back: half_ then holds, for each shift down, the spectrum
+/// along x, of which one half says all since planes are real.
+void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& filter, int reach) {
+  int const size = fourier_.size(), side = windows_.side();
+  FloatLanes const half = 0.5f * scale, quarter = 0.25f * scale;
+  for (int kx = 0; kx <= size / 2; ++kx) {
+    int const mx = (size - kx) % size;
+    fourier_.forward(spectrum_.data() + kx, pitch_, side, column_.data(), 1, scratch_.data());
+    ComplexLanes const* z = column_.data();
+    ComplexLanes const* m = z;
+    if (mx != kx) {
+      fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), 1, scratch_.data());
+      m = mirror_.data();
+    }
+    // as cross_spectrum() has it
+    for (int ky = 0; ky < size; ++ky) {
+      ComplexLanes const& a = z[ky];
+      ComplexLanes const& b = m[ky == 0 ? 0 : size - ky];
+      line_[static_cast<std::size_t>(ky)] = {half * (a.re * b.im + a.im * b.re),
+                                             quarter * ((b.re * b.re + b.im * b.im) - (a.re * a.re + a.im * a.im))};
+    }
+    if (filter) filter(line_.data(), kx, size);
+    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    for (int dy = -reach; dy <= reach; ++dy)
+      half_[static_cast<std::size_t>(dy + reach) * half_pitch_ + kx] =
+          column_[static_cast<std::size_t>(dy < 0 ? dy + size : dy)];
+  }
+}
+
+/// Two rows of the real planes come out of one complex transform.
+void LaneCorrelation::make_rows(LanePlane& plane) {
+  int const size = fourier_.size(), reach = plane.reach();
+  for (int dy = -reach; dy <= reach; dy += 2) {
+    bool const both = dy < reach;
+    ComplexLanes const* a = half_.data() + static_cast<std::size_t>(dy + reach) * half_pitch_;
+    ComplexLanes const* b = both ? a + half_pitch_ : a;
+    for (int k = 0; k <= size / 2; ++k) {
+      line_[static_cast<std::size_t>(k)] = {a[k].re - b[k].im, a[k].im + b[k].re};
+      if (k > 0 && k < size / 2) line_[static_cast<std::size_t>(size - k)] = {a[k].re + b[k].im, b[k].re - a[k].im};
+    }
+    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    for (int dx = -reach; dx <= reach; ++dx) {
+      ComplexLanes const& value = column_[static_cast<std::size_t>(dx < 0 ? dx + size : dx)];
+      plane(dx, dy) = value.re;
+      if (both) plane(dx, dy + 1) = value.im;
+    }
+  }
+}
+
+void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
+                  std::function<VisitPlanes()> const& make_visitor) {
+  int const radius = job.search_radius_px, window = job.grid.window_px;
+  GLADSTONE_EXPECTS(radius > 0 && 2 * radius <= window && window % 2 == 0);
+  AxisWeights const x(job.grid, job.grid.columns, job.pair.columns, job.weighting);
+  AxisWeights const y(job.grid, job.grid.rows, job.pair.rows, job.weighting);
+  KnownTiles const tiles(job.pair);
+  LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));
+  Progress progress(job.label, job.grid.size());
+  parallel_chunks(job.grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
+    LaneCorrelation work(job, x.view(), y.view(), tiles, fourier, method.with_margin);
+    LanePlane plane(radius);
+    VisitPlanes const visit = make_visitor();
+    for (std::size_t first = begin; first < end; first += lane_count) {
+      int const count = static_cast<int>(std::min<std::size_t>(lane_count, end - first));
+      work.windows().place(first, count);
+      method.make(work, plane);
+      visit(first, count, work, plane);
+    }
+    progress.advance(end - begin);
+  });
+}
+
+std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, PlaneMethod const& method) {
+  std::vector<WindowCorrelation> results(job.grid.size());
+  visit_planes(job, method, [&] {
+    auto const peaks = std::make_shared<LanePeaks>(job, method.falls_off);
+    return [peaks, &results](std::size_t first, int count, LaneCorrelation& work, LanePlane const& plane) {
+      peaks->pick(work, plane, count, results.data() + first);
+    };
+  });
+  return results;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/correlation/lane_correlation.h"
+#include "analysis/correlation/peak_search.h"
+
+namespace gladstone {
+
+/// Finds and measures the peaks of eight planes at a time: what find_peaks() finds, with the maxima looked for and
+/// refined side by side.
+class LanePeaks {
+ public:
+  /// @param falls_off whether the planes fall off with the shift as the windows' common weight does
+  LanePeaks(InterrogationJob const& job, bool falls_off);
+
+  /// @param results receives `count` windows
+  void pick(LaneCorrelation& work, LanePlane const& plane, int count, WindowCorrelation* results);
+
+ private:
+  void find_maxima(LanePlane const& plane);
+  PeakList<float> rank(LanePlane const& plane, int lane);
+  MeasuredPeak measure(LaneCorrelation const& work, LanePlaneView const& plane, int lane, int x, int y) const;
+
+  InterrogationJob const& job_;
+  bool falls_off_;
+  std::vector<FloatLanes> highest_[3];  // of three values beside each other, of the rows above, here and below
+  std::vector<unsigned char> found_;    // of a row, one bit a lane
+  int counts_[lane_count] = {};
+  std::vector<PlanePeak<float>> maxima_[lane_count];  // in reading order
+};
+
+}  // namespace gladstone

@@ -1,0 +1,28 @@
+#include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/lane_correlation.h"
+
+namespace gladstone {
+namespace {
+
+void make_difference_plane(LaneCorrelation& work, LanePlane& plane) {
+  LanePlane flow = plane;
+  work.load(WindowTerm::search);
+  float const values = static_cast<float>(work.size()) * static_cast<float>(work.size());
+  FloatLanes const known = work.windows().scale(work.size());
+  FloatLanes const energy = larger_lanes(work.windows().energy_reference(), all_lanes(1e-30f));
+  FloatLanes const scale = select_lanes(known > 0.0f, 1.0f / (energy * values), FloatLanes{});
+  work.correlate(scale, {}, plane);
+  work.load(WindowTerm::search_energy);
+  work.correlate(scale, {}, flow);
+  for (int dy = -plane.reach(); dy <= plane.reach(); ++dy)
+    for (int dx = -plane.reach(); dx <= plane.reach(); ++dx)
+      plane(dx, dy) *= 2.0f / (1.0f + larger_lanes(flow(dx, dy), FloatLanes{}));
+}
+
+}  // namespace
+
+std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job) {
+  return correlate_in_lanes(job, {.make = make_difference_plane, .with_margin = true, .falls_off = false});
+}
+
+}  // namespace gladstone

@@ -1,0 +1,34 @@
+#include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/lane_correlation.h"
+
+namespace gladstone {
+namespace {
+
+void make_filtered_plane(LaneCorrelation& work, LanePlane& plane) {
+  work.load(WindowTerm::frames);
+  FloatLanes const scale = work.windows().scale(work.size());
+  FloatLanes whole{};  // what a plane would reach if all phases agreed
+  work.correlate(
+      scale,
+      [&](ComplexLanes* spectrum, int kx, int size) {
+        float const times = kx == 0 || kx == size / 2 ? 1.0f : 2.0f;  // the other half of the spectrum is its mirror
+        for (int ky = 0; ky < size; ++ky) {
+          ComplexLanes& c = spectrum[ky];
+          FloatLanes const root = root_lanes(root_lanes(c.re * c.re + c.im * c.im)) + 1e-30f;
+          whole += times * root;
+          c = {c.re / root, c.im / root};
+        }
+      },
+      plane);
+  FloatLanes const to = 1.0f / larger_lanes(whole, all_lanes(1e-20f));
+  for (int dy = -plane.reach(); dy <= plane.reach(); ++dy)
+    for (int dx = -plane.reach(); dx <= plane.reach(); ++dx) plane(dx, dy) *= to;
+}
+
+}  // namespace
+
+std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job) {
+  return correlate_in_lanes(job, {make_filtered_plane});
+}
+
+}  // namespace gladstone

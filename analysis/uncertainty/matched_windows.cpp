@@ -1,0 +1,84 @@
+#include "analysis/uncertainty/matched_windows.h"
+
+#include <algorithm>
+
+#include "analysis/correlation/standard_correlator.h"
+#include "render/base/parallel.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t windows_per_piece = 64;
+
+void take_window(ImagePair const& pair, int first_x, int first_y, std::vector<float> const& axis,
+                 MatchedWindow& window) {
+  std::fill(window.weight.begin(), window.weight.end(), 0.0f);
+  std::fill(window.reference.begin(), window.reference.end(), 0.0f);
+  std::fill(window.flow.begin(), window.flow.end(), 0.0f);
+  int const begin_x = std::max(0, -first_x), end_x = std::min(window.side, pair.columns - first_x);
+  int const begin_y = std::max(0, -first_y), end_y = std::min(window.side, pair.rows - first_y);
+  double weights = 0.0, reference = 0.0, flow = 0.0;
+  for (int j = begin_y; j < end_y; ++j)
+    for (int i = begin_x; i < end_x; ++i) {
+      std::size_t const from = static_cast<std::size_t>(first_y + j) * pair.columns + (first_x + i);
+      std::size_t const to = window.at(i, j);
+      float const known = pair.available.empty() ? 1.0f : pair.available[from];
+      float const w = axis[static_cast<std::size_t>(i)] * axis[static_cast<std::size_t>(j)] * known;
+      window.weight[to] = w;
+      window.reference[to] = pair.reference[from];
+      window.flow[to] = pair.flow[from];
+      weights += w;
+      reference += static_cast<double>(w) * pair.reference[from];
+      flow += static_cast<double>(w) * pair.flow[from];
+    }
+  float const mean_reference = weights > 0.0 ? static_cast<float>(reference / weights) : 0.0f;
+  float const mean_flow = weights > 0.0 ? static_cast<float>(flow / weights) : 0.0f;
+  for (std::size_t k = 0; k < window.weight.size(); ++k) {
+    window.reference[k] = window.weight[k] > 0.0f ? window.reference[k] - mean_reference : 0.0f;
+    window.flow[k] = window.weight[k] > 0.0f ? window.flow[k] - mean_flow : 0.0f;
+  }
+}
+
+}  // namespace
+
+void visit_matched_windows(UncertaintyInput const& input,
+                           std::function<void(std::size_t, MatchedWindow const&)> const& visit) {
+  WindowWeighting const weighting = window_weighting(input.settings);
+  int const nominal = input.grid.window_px, side = weighting == WindowWeighting::uniform ? nominal : 2 * nominal;
+  std::vector<float> axis(static_cast<std::size_t>(side));
+  for (int i = 0; i < side; ++i)
+    axis[static_cast<std::size_t>(i)] =
+        static_cast<float>(axis_weight(weighting, i - 0.5 * (side - 1), static_cast<double>(nominal)));
+  parallel_chunks(input.field.size(), windows_per_piece, [&](std::size_t begin, std::size_t end) {
+    std::size_t const pixels = static_cast<std::size_t>(side) * side;
+    MatchedWindow window{side, std::vector<float>(pixels), std::vector<float>(pixels), std::vector<float>(pixels)};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (input.field.status[i] != VectorStatus::valid) continue;
+      Vec2d const centre = input.grid.centre(i);
+      int const first_x = static_cast<int>(std::lround(centre.x - 0.5 * (side - 1)));
+      int const first_y = static_cast<int>(std::lround(centre.y - 0.5 * (side - 1)));
+      take_window(input.matched, first_x, first_y, axis, window);
+      visit(i, window);
+    }
+  });
+}
+
+std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid) {
+  std::vector<double> result(values.size());
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      double sum = 0.0, count = 0.0;
+      for (int y = std::max(0, row - 1); y <= std::min(grid.rows - 1, row + 1); ++y)
+        for (int x = std::max(0, column - 1); x <= std::min(grid.columns - 1, column + 1); ++x) {
+          double const value = values[static_cast<std::size_t>(y) * grid.columns + x];
+          if (std::isnan(value)) continue;
+          sum += value;
+          count += 1.0;
+        }
+      std::size_t const i = static_cast<std::size_t>(row) * grid.columns + column;
+      result[i] = std::isnan(values[i]) ? values[i] : sum / count;
+    }
+  return result;
+}
+
+}  // namespace gladstone

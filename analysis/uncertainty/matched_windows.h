@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "analysis/uncertainty/uncertainty.h"
+
+namespace gladstone {
+
+/// The pixels of one window of matched frames, row by row.
+struct MatchedWindow {
+  int side;                      ///< pixels along an axis
+  std::vector<float> reference;  ///< less the weighted mean; 0 outside the image
+  std::vector<float> flow;
+  std::vector<float> weight;  ///< that the correlator puts on either frame; 0 outside the image and where unknown
+
+  std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * side + i; }
+};
+
+/// Calls visit(vector, window) for every valid vector, on all threads.
+void visit_matched_windows(UncertaintyInput const& input,
+                           std::function<void(std::size_t vector, MatchedWindow const& window)> const& visit);
+
+/// Mean of values and their valid neighbours on the grid, 3 x 3: variances that a few particles gave scatter.
+std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid);
+
+}  // namespace gladstone

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/uncertainty/matched_windows.h"
+
+namespace gladstone {
+
+/// One dot seen in both matched frames.
+struct ParticleImagePair {
+  Vec2d disparity;  ///< its place in the flow frame minus that in the reference [px]
+  double weight;    ///< product of both images there, times the square of the window's weight
+};
+
+/// Dots of a window: maxima of the product of both frames, each with a maximum of either frame at most a pixel away,
+/// placed by three points (Sciacchitano et al. 2013, section 2).
+void find_particle_pairs(MatchedWindow const& window, std::vector<ParticleImagePair>& pairs);
+
+/// Leaves out pairs whose disparity along either axis is further from the median than 2.5 deviations, which 1.4826 times
+/// the median distance from it stands for: where dots overlap, the maxima of the frames may belong to different ones.
+void leave_out_mismatches(std::vector<ParticleImagePair>& pairs);
+
+/// How many dots of equal weight scatter as much as these: (sum c)^2 / sum c^2.
+double effective_number(std::vector<ParticleImagePair> const& pairs);
+
+}  // namespace gladstone

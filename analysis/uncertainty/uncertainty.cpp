@@ -1,0 +1,63 @@
+#include "analysis/uncertainty/uncertainty.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "analysis/correlation/correlator.h"
+#include "analysis/correlation/standard_correlator.h"
+#include "analysis/correlation/vector_validation.h"
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+struct NamedUncertainty {
+  char const* name;
+  UncertaintyMethod estimate;
+};
+
+/// Every uncertainty method, one row each.
+constexpr std::array uncertainties{
+    NamedUncertainty{"correlation_statistics", correlation_statistics},
+    NamedUncertainty{"image_matching", image_matching},
+    NamedUncertainty{"peak_ratio", peak_ratio_uncertainty},
+    NamedUncertainty{"moment_of_correlation", moment_of_correlation},
+};
+
+/// Both frames deformed by the whole field, its gaps filled.
+ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, FramePair const& frames,
+                         int spline_degree) {
+  std::vector<GridVector> vectors(field.size());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    vectors[i].displacement = field.displacement_px[i];
+    vectors[i].status = field.counts(i) ? VectorStatus::valid : VectorStatus::invalid;
+  }
+  std::vector<Vec2d> const nodes = smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns);
+  Image<double> const& reference = frames.reference();
+  DensePredictor const predictor(grid, nodes, reference.columns(), reference.rows());
+  return PairDeformer(reference, frames.flow(), spline_degree).deform(predictor);
+}
+
+}  // namespace
+
+std::vector<std::string> uncertainty_methods() {
+  std::vector<std::string> names;
+  for (NamedUncertainty const& row : uncertainties) names.emplace_back(row.name);
+  return names;
+}
+
+void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (settings.uncertainty == "none") return;
+  InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
+  GLADSTONE_EXPECTS(grid.size() == field.size());
+  ImagePair const matched = matched_frames(field, grid, frames, CorrelationSchedule(settings).spline_degree());
+  for (NamedUncertainty const& row : uncertainties)
+    if (settings.uncertainty == row.name) field.sigma_px = row.estimate({field, matched, grid, settings});
+  GLADSTONE_EXPECTS(field.sigma_px.size() == field.size());
+  for (std::size_t i = 0; i < field.size(); ++i)
+    if (field.status[i] != VectorStatus::valid) field.sigma_px[i] = {nan, nan};
+}
+
+}  // namespace gladstone

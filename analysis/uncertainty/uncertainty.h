@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/correlation/correlation_settings.h"
+#include "analysis/correlation/interrogation_grid.h"
+#include "analysis/correlation/window_deformation.h"
+#include "analysis/correlation/window_ops.h"
+#include "render/base/displacement_field.h"
+#include "render/base/frame_pair.h"
+
+namespace gladstone {
+
+/// A measurement whose uncertainty is asked for.
+struct UncertaintyInput {
+  DisplacementField const& field;
+  ImagePair const& matched;  ///< both frames deformed by the field, so that they coincide but for errors
+  InterrogationGrid const& grid;
+  CorrelationSettings const& settings;
+};
+
+/// Standard uncertainty of each vector of the field [px]; NaN where it cannot be told.
+using UncertaintyMethod = std::vector<Vec2d> (*)(UncertaintyInput const& input);
+
+/// From the sums whose difference shows that a correlation peak is not symmetric: they vanish but for noise, whose
+/// variance is that of their terms and of the terms' covariance with their neighbours. Wieneke, Meas. Sci. Technol. 26
+/// (2015) 074002, eqs. 6 to 12.
+std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input);
+/// From the distances of paired particle images in the matched frames: mean and scatter over the root of their number.
+/// Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302, eqs. 5 to 8.
+std::vector<Vec2d> image_matching(UncertaintyInput const& input);
+/// From the ratio Q of the highest correlation peak to the next: sigma^2 = (a Q^-b)^2 + c^2, the form of Charonko &
+/// Vlachos, Meas. Sci. Technol. 24 (2013) 065301, eq. 10, without its term for gross errors.
+std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input);
+/// From the width of the displacements' probability, which the phase correlation's peak is once the filter's width is
+/// taken off, over the root of the number of particle images. Bhattacharya, Charonko & Vlachos, Meas. Sci. Technol. 29
+/// (2018) 115301, eqs. 6 to 11.
+std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input);
+
+/// Names of the methods, in the order of their table, without "none".
+std::vector<std::string> uncertainty_methods();
+
+/// Estimates field.sigma_px by settings.uncertainty; leaves the field as it is for "none". Vectors that are neither
+/// valid nor replaced get NaN, and so do replaced ones: what stands there was not measured in their window.
+/// @param field what a correlator gave for the frames with these settings
+void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+
+}  // namespace gladstone

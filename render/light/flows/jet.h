@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+
+#include "render/base/units.h"
+#include "render/light/flows/read_vector.h"
+
+namespace gladstone {
+
+/// Plane jet along a direction in the XY plane: u = peak / cosh^2(s / half width), s the distance from its middle
+/// plane. The profile of Bickley, Phil. Mag. 23 (1937) 727, at one station: it does not widen.
+struct JetFlow {
+  static constexpr char const* kind = "jet";
+
+  double peak = 0;        ///< [m/s]
+  double half_width = 1;  ///< [m]
+  Vec2d along{1, 0};      ///< unit length
+  Vec3d center{};         ///< [m]
+
+  static JetFlow read(SetupTable& table) {
+    JetFlow flow;
+    flow.peak = table.number("peak_m_s", 10.0, {-1e9, 1e9});
+    flow.half_width = table.number("half_width_mm", 5.0, Range::positive(1e9)) * unit::millimetre;
+    flow.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e9, 1e9});
+    auto const along = table.numbers("direction", {1, 0}, 2, {-1e9, 1e9});
+    Vec2d const given = along.size() == 2 ? Vec2d{along[0], along[1]} : Vec2d{1, 0};
+    if (length(given) > 0) {
+      flow.along = given / length(given);
+    } else {
+      table.problem("direction", "has no length (the jet points nowhere); use [1, 0] for one along X");
+    }
+    return flow;
+  }
+
+  template <class T>
+  GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
+    using std::cosh;
+    T const s = T(along.x) * (p.y - T(center.y)) - T(along.y) * (p.x - T(center.x));
+    T const c = cosh(s / T(half_width)), u = T(peak) / (c * c);
+    return {T(along.x) * u, T(along.y) * u, T(0)};
+  }
+};
+
+}  // namespace gladstone

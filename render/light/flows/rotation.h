@@ -1,0 +1,28 @@
+#pragma once
+
+#include "render/base/units.h"
+#include "render/light/flows/read_vector.h"
+
+namespace gladstone {
+
+/// Solid rotation about an axis along Z, counterclockwise as the camera sees it: u = -rate (y - y0), v = rate (x - x0).
+struct RotationFlow {
+  static constexpr char const* kind = "rotation";
+
+  double rate = 0;  ///< [rad/s]
+  Vec3d center{};   ///< [m]
+
+  static RotationFlow read(SetupTable& table) {
+    RotationFlow flow;
+    flow.rate = table.number("rate_rad_s", 1000.0, {-1e12, 1e12});
+    flow.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e9, 1e9});
+    return flow;
+  }
+
+  template <class T>
+  GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
+    return {T(-rate) * (p.y - T(center.y)), T(rate) * (p.x - T(center.x)), T(0)};
+  }
+};
+
+}  // namespace gladstone

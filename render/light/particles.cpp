@@ -1,0 +1,222 @@
+#include "render/light/particles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/base/parallel.h"
+#include "render/base/random_variates.h"
+#include "render/base/text_file.h"
+#include "render/base/units.h"
+#include "render/light/number_table.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t planned_paths = 1024;
+constexpr int most_steps_of_path = 1 << 12;
+constexpr double share_for_derivatives = 0.01;  // of dt
+
+ParticleVelocity velocity_of(ParticleSetup const& setup, FlowSetup const& flow, double diameter) {
+  return {flow.flow, setup.response_time(diameter), share_for_derivatives * flow.dt};
+}
+
+/// Chooses the steps of all paths by those of some, spread evenly over the list.
+PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vector<Vec3d> const& start,
+                    std::vector<double> const& diameter, double time, double tolerance) {
+  std::size_t const count = std::min(start.size(), planned_paths);
+  PathPlan plan;
+  auto const particle = [&](std::size_t k) { return k * start.size() / count; };
+  auto const ends = [&](int steps) {
+    std::vector<Vec3d> found(count);
+    parallel_for(count, [&](std::size_t k) {
+      std::size_t const i = particle(k);
+      found[k] = moved(velocity_of(setup, flow, diameter[i]), start[i], time, steps);
+    });
+    return found;
+  };
+  std::vector<Vec3d> coarse = ends(1);
+  for (plan.steps = 2;; plan.steps *= 2) {
+    std::vector<Vec3d> fine = ends(plan.steps);
+    plan.error = 0;
+    for (std::size_t k = 0; k < count; ++k) plan.error = std::max(plan.error, length(fine[k] - coarse[k]));
+    if (plan.error <= tolerance || plan.steps >= most_steps_of_path) break;
+    coarse = std::move(fine);
+  }
+  for (std::size_t k = 0; setup.density && k < count; ++k) {
+    std::size_t const i = particle(k);
+    plan.lag_error =
+        std::max(plan.lag_error, flow.dt * length(velocity_of(setup, flow, diameter[i]).neglected(start[i])));
+  }
+  return plan;
+}
+
+/// Light at both pulses.
+void light_particles(ParticleSetup const& setup, LaserSheet<double> const& sheet, Particles& particles) {
+  auto const inside = [&setup](Vec3d p) {
+    if (!setup.volume) return true;
+    Vec3d const from = p - setup.center, size = *setup.volume;
+    return 2 * std::abs(from.x) <= size.x && 2 * std::abs(from.y) <= size.y && 2 * std::abs(from.z) <= size.z;
+  };
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    particles.photons[pulse].resize(particles.size());
+    parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        Vec3d const p = particles.place[pulse][i];
+        particles.photons[pulse][i] = inside(p) ? sheet.photons(p, pulse) : 0.0;
+      }
+    });
+  }
+}
+
+/// Diameters of a table with their shares of all particles, summed up.
+struct DiameterTable {
+  std::vector<double> diameter, up_to;
+
+  explicit DiameterTable(std::string const& path) {
+    double sum = 0;
+    for (NumberTable file(path, "a table of diameters", {"diameter_um", "weight"}); auto const row = file.next();) {
+      if (!((*row)[0] > 0)) throw DataError(file.place(), "the diameter is not positive; remove the line");
+      if (!((*row)[1] >= 0)) throw DataError(file.place(), "the weight is negative; give shares of the particles");
+      diameter.push_back((*row)[0] * unit::micrometre);
+      up_to.push_back(sum += (*row)[1]);
+    }
+    if (!(sum > 0)) throw DataError(path, "holds no diameter with a weight (a line diameter_um,weight for each)");
+  }
+  double at(double share) const {
+    auto const found = std::upper_bound(up_to.begin(), up_to.end(), share * up_to.back());
+    return diameter[std::min(static_cast<std::size_t>(found - up_to.begin()), diameter.size() - 1)];
+  }
+};
+
+/// The random numbers of a particle's size; those of its place are another stream's.
+KeyedEngine size_engine(std::uint64_t seed, std::size_t particle) {
+  return {mix64(seed + 1), RandomStream::particles, particle};
+}
+
+}  // namespace
+
+void Particles::resize(std::size_t count) {
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    place[pulse].resize(count);
+    photons[pulse].resize(count);
+  }
+  diameter.resize(count);
+}
+
+void Particles::copy(std::size_t from, std::size_t to) {
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    place[pulse][to] = place[pulse][from];
+    photons[pulse][to] = photons[pulse][from];
+  }
+  diameter[to] = diameter[from];
+}
+
+Vec3d motion_margin(FlowSetup const& flow, Vec3d volume, Vec3d center) {
+  constexpr int nodes = 33;
+  Vec3d most{};
+  for (int k = 0; k < nodes * nodes * nodes; ++k) {
+    Vec3d const at{k % nodes - 16.0, k / nodes % nodes - 16.0, k / nodes / nodes - 16.0};
+    Vec3d const u = flow.flow(center + Vec3d{volume.x * at.x, volume.y * at.y, volume.z * at.z} / (nodes - 1.0));
+    most = {std::max(most.x, std::abs(u.x)), std::max(most.y, std::abs(u.y)), std::max(most.z, std::abs(u.z))};
+  }
+  return (1.25 * flow.dt / 2) * most;
+}
+
+std::vector<double> draw_diameters(DiameterSetup const& setup, std::uint64_t seed, std::size_t count) {
+  std::vector<double> diameters(count, setup.middle);
+  if (setup.spread == DiameterSpread::one) return diameters;
+  std::optional<DiameterTable> table;
+  if (setup.spread == DiameterSpread::table) table.emplace(setup.file);
+  parallel_chunks(count, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      KeyedEngine engine = size_engine(seed, i);
+      switch (setup.spread) {
+        case DiameterSpread::lognormal:
+          diameters[i] = setup.middle * std::exp(setup.width * normal_variate(engine));
+          break;
+        case DiameterSpread::normal:
+          do {
+            diameters[i] = setup.middle + setup.width * normal_variate(engine);
+          } while (!(diameters[i] > 0));
+          break;
+        case DiameterSpread::table:
+          diameters[i] = table->at(to_unit(engine()));
+          break;
+        case DiameterSpread::one:
+          break;
+      }
+    }
+  });
+  return diameters;
+}
+
+Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup const& flow,
+                         LaserSheet<double> const& sheet, double tolerance) {
+  Vec3d const volume = *setup.volume;
+  Vec3d const wider = volume + 2.0 * motion_margin(flow, volume, setup.center);
+  double const share = wider.x * wider.y * wider.z / (volume.x * volume.y * volume.z);
+  auto const seeded = static_cast<std::size_t>(std::llround(count * share));
+  Particles particles;
+  particles.resize(seeded);
+  particles.diameter = draw_diameters(setup.diameter, setup.seed, seeded);
+  std::vector<Vec3d>& middle = particles.place[0];
+  parallel_chunks(seeded, 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      KeyedEngine engine(setup.seed, RandomStream::particles, i);
+      double const x = to_unit(engine()) - 0.5, y = to_unit(engine()) - 0.5, z = to_unit(engine()) - 0.5;
+      middle[i] = setup.center + Vec3d{x * wider.x, y * wider.y, z * wider.z};
+    }
+  });
+  particles.path = plan_paths(setup, flow, middle, particles.diameter, flow.dt / 2, tolerance);
+  parallel_chunks(seeded, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ParticleVelocity const velocity = velocity_of(setup, flow, particles.diameter[i]);
+      particles.place[1][i] = moved(velocity, middle[i], flow.dt / 2, particles.path.steps);
+      middle[i] = moved(velocity, middle[i], -flow.dt / 2, particles.path.steps);
+    }
+  });
+  light_particles(setup, sheet, particles);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < seeded; ++i) {
+    if (particles.photons[0][i] > 0 || particles.photons[1][i] > 0) particles.copy(i, kept++);
+  }
+  particles.resize(kept);
+  return particles;
+}
+
+Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, LaserSheet<double> const& sheet,
+                         double tolerance) {
+  Particles particles;
+  NumberTable file(setup.file, "a table of particles", {"x_mm", "y_mm", "z_mm", "diameter_um"});
+  while (auto const row = file.next()) {
+    if (!((*row)[3] > 0)) {
+      throw DataError(
+          file.place(),
+          fmt::format("the diameter is {:.6g} um (nothing so small scatters light); give one above zero, or "
+                      "remove the particle",
+                      (*row)[3]));
+    }
+    require_room(particles.diameter, setup.file, "particles");
+    particles.place[0].push_back(Vec3d{(*row)[0], (*row)[1], (*row)[2]} * unit::millimetre);
+    particles.diameter.push_back((*row)[3] * unit::micrometre);
+  }
+  if (particles.diameter.empty()) {
+    throw DataError(setup.file, "holds no particles (a line x_mm,y_mm,z_mm,diameter_um for each is needed)");
+  }
+  std::vector<Vec3d> const& start = particles.place[0];
+  particles.path = plan_paths(setup, flow, start, particles.diameter, flow.dt, tolerance);
+  particles.place[1].resize(particles.size());
+  parallel_chunks(particles.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      particles.place[1][i] =
+          moved(velocity_of(setup, flow, particles.diameter[i]), start[i], flow.dt, particles.path.steps);
+    }
+  });
+  light_particles(setup, sheet, particles);
+  return particles;
+}
+
+}  // namespace gladstone

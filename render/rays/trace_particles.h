@@ -1,0 +1,29 @@
+#pragma once
+
+#include "render/light/lambert_sphere.h"
+#include "render/rays/particle_sources.h"
+#include "render/rays/particle_tracer.h"
+#include "render/scene/renderer.h"
+
+namespace gladstone {
+
+/// Calls visit(pulses, medium) with the particles at both pulses, ParticleSources by their scattering, and the medium.
+template <class Visit>
+auto with_particles(Scene const& scene, Particles const& particles, ParticleLight light, Visit&& visit) {
+  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  auto const with = [&]<class Scattering>(Scattering const& scattering) {
+    ParticleSources<double, Scattering> pulses[frame_count];
+    for (int frame = 0; frame < frame_count; ++frame) {
+      pulses[frame] = {particles.place[frame].data(), particles.photons[frame].data(), scattering, sheet, frame};
+    }
+    return std::visit([&](auto const& medium) { return visit(pulses, medium); }, scene.medium.view);
+  };
+  if (light == ParticleLight::equal) return with(EqualSpheres<double>{});
+  if (scene.mie) return with(scene.mie->view<double>());
+  return with(LambertSpheres<double>{particles.diameter.data()});
+}
+
+/// Images and truth of particles, ray by ray. Light is in units of scene.photon_unit, truth's flux in photons.
+Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images);
+
+}  // namespace gladstone

@@ -1,0 +1,155 @@
+#include "render/scene/best_focus.h"
+
+#include <ceres/tiny_solver.h>
+#include <ceres/tiny_solver_autodiff_function.h>
+
+#include <cmath>
+#include <vector>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/ray_bundle.h"
+#include "render/scene/build_camera.h"
+
+namespace gladstone {
+namespace {
+
+constexpr int bundle_rays = 500;
+
+/// Points of the aim disc that rays of a point pass on their way to the sensor, about the aim plane's origin [m].
+std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
+  auto const disc = camera.aim_disc(point);
+  std::vector<Vec3d> aims;
+  for (int k = 0; disc && k < bundle_rays; ++k) {
+    Vec2d const at = sunflower(k, bundle_rays);
+    Vec3d const aim = disc->centre + at.x * disc->a + at.y * disc->b;
+    Ray<double> ray{point, normalized(aim - point)};
+    RayAccount<double> account;
+    CameraView<double> const view = camera.view();
+    if (carry(view, 0, view.count, ray, account) == RayStatus::alive) aims.push_back(aim - camera.aim_plane.origin);
+  }
+  if (aims.size() < 10) {
+    throw DataError("lens",
+                    "no light of the plane in focus passes it (too few of its axial rays reach the sensor); check "
+                    "lens.focus, geometry and lens.f_number");
+  }
+  return aims;
+}
+
+/// Where the rays of a point through a camera, whose lens is moved along its axis, come closest together: from the
+/// sensor's plane, which moves with the lens [m].
+template <class T>
+T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, Vec3<T> const& point, T const& moved) {
+  Vec3<T> const by = moved * in_scalar<T>(camera.pose.z);
+  std::vector<CameraElement<T>> elements;
+  for (auto const& element : camera.elements) {
+    elements.push_back(in_scalar<T>(element));
+    if (static_cast<int>(elements.size()) <= windows) continue;
+    elements.back() = elements.back().visit([&](auto held) -> CameraElement<T> {
+      held.pose.origin = held.pose.origin + by;
+      return held;
+    });
+  }
+  PosedSensor<T> sensor = camera.sensor.in_scalar<T>();
+  sensor.pose.origin = sensor.pose.origin + by;
+  Pose<T> aim_plane = in_scalar<T>(camera.aim_plane);
+  aim_plane.origin = aim_plane.origin + by;
+  CameraView<T> const view{elements.data(), camera.before_medium, static_cast<int>(elements.size()), sensor, aim_plane};
+  std::vector<Vec2<T>> places, slopes;
+  for (Vec3d const& aim : aims) {
+    Ray<T> ray{point, normalized(aim_plane.origin + in_scalar<T>(aim) - point)};
+    RayAccount<T> account;
+    carry(view, 0, view.count, ray, account);
+    Ray<T> const local = sensor.pose.inwards(ray);
+    Vec2<T> const s{local.direction.x / local.direction.z, local.direction.y / local.direction.z};
+    places.push_back({local.position.x - s.x * local.position.z, local.position.y - s.y * local.position.z});
+    slopes.push_back(s);
+  }
+  return spot_of(places, slopes).best_focus;
+}
+
+/// By how much the best focus misses the sensor's place, for a lens that is moved along its axis.
+struct FocusMiss {
+  Camera const& camera;
+  int windows;
+  std::vector<Vec3d> const& aims;
+  Vec3d point;
+  bool point_moves;  ///< with the lens, where the setup gives its distance from there
+  double z_sensor;   ///< [m]
+
+  template <class T>
+  bool operator()(T const* moved_mm, T* miss_mm) const {
+    T const moved = moved_mm[0] * T(unit::millimetre);
+    Vec3<T> seen = in_scalar<T>(point);
+    if (point_moves) seen = seen + moved * in_scalar<T>(camera.pose.z);
+    T const focus = T(camera.sensor.pose.origin.z) + moved +
+                    T(camera.sensor.pose.z.z) * narrowest(camera, windows, aims, seen, moved);
+    miss_mm[0] = (focus - T(z_sensor)) / T(unit::millimetre);
+    return true;
+  }
+};
+
+/// Where the lens would stand if light were paraxial: the front principal plane [m].
+double paraxial_place(Setup const& setup) {
+  double const f = setup.lens.focal_length, z_sensor = *setup.z_sensor;
+  double shift = 0, apart = 0;  // of what windows bring nearer; from front to rear principal plane
+  for (WindowSetup const& window : setup.windows) shift += window.shift();
+  if (setup.lens.prescription) {
+    Lens const& lens = *setup.lens.prescription;
+    ParaxialLens const paraxial = paraxial_lens(lens);
+    apart = lens.poses.back().origin.z + paraxial.rear_principal_plane - paraxial.front_principal_plane;
+  }
+  if (setup.lens.focus == Focus::distance) {
+    double const u = setup.focus_distance() - shift;
+    return z_sensor - apart - 1 / (1 / f - 1 / u);
+  }
+  // u + v is known and 1/u + 1/v = 1/f: the smaller v
+  double const sum = z_sensor + (setup.lens.focus == Focus::target ? setup.z_d : 0.0) - apart - shift;
+  double const square = sum * sum - 4 * sum * f;
+  if (!(square > 0)) {
+    throw DataError("geometry.z_sensor_mm",
+                    "is too near the plane in focus (no place of the lens images it there: that takes four focal "
+                    "lengths); move the sensor away, or take a shorter lens");
+  }
+  return z_sensor - apart - (sum - std::sqrt(square)) / 2;
+}
+
+}  // namespace
+
+double best_focus(Camera const& camera, Vec3d point) {
+  return narrowest(camera, 0, aims_of_bundle(camera, point), point, 0.0);
+}
+
+void place_lens_by_sensor(Setup& setup) {
+  setup.z_a = paraxial_place(setup);
+  if (!(setup.z_a > 0) || !std::isfinite(setup.z_a)) {
+    throw DataError("geometry.z_sensor_mm",
+                    "leaves no place for the lens before the medium's mid-plane; move the sensor away from it");
+  }
+  bool const chief = std::isinf(setup.lens.f_number);
+  if (chief || (!setup.lens.prescription && setup.windows.empty())) return;
+  // once more from where it ends: rays are then aimed from the lens' very place
+  for (int pass = 0; pass < 2; ++pass) {
+    Camera const camera = build_camera(setup);
+    Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
+    std::vector<Vec3d> const aims = aims_of_bundle(camera, point);
+    FocusMiss const miss{camera, 2 * static_cast<int>(setup.windows.size()), aims,
+                         point,  setup.lens.focus == Focus::distance,        *setup.z_sensor};
+    using Function = ceres::TinySolverAutoDiffFunction<FocusMiss, 1, 1>;
+    ceres::TinySolver<Function> solver;
+    solver.options.max_num_iterations = 30;
+    solver.options.gradient_tolerance = solver.options.function_tolerance = 0;
+    solver.options.parameter_tolerance = 1e-14;
+    solver.options.cost_threshold = 1e-24;  // of squared millimetres
+    Eigen::Matrix<double, 1, 1> moved = Eigen::Matrix<double, 1, 1>::Zero();
+    auto const& summary = solver.Solve(Function(miss), &moved);
+    constexpr double near_enough = 1e-7;  // [mm]
+    if (!(std::sqrt(2 * summary.final_cost) < near_enough)) {
+      throw DataError("geometry.z_sensor_mm",
+                      "gets no sharp picture of the plane in focus, wherever the lens stands; check lens.focus");
+    }
+    setup.z_a += moved[0] * unit::millimetre;
+  }
+}
+
+}  // namespace gladstone

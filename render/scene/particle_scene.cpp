@@ -1,0 +1,251 @@
+#include "render/scene/particle_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/parallel.h"
+#include "render/base/units.h"
+#include "render/light/lambert_sphere.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/setup_checks.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double path_tolerance_px = 1e-5;
+constexpr double bending_margin = 0.02;  // by which media may turn light on its way to the lens [rad]
+constexpr double kept_pairs = 0.75;      // that lose little: Keane & Adrian's rule of a quarter
+
+/// Size of a pixel in the plane Z = 0 [m].
+double pixel_there(Setup const& setup) { return setup.camera.pixel_pitch / setup.imaging().magnification; }
+
+/// Share of the particles' volume that the camera sees: of places that an additive recurrence spreads evenly over X and
+/// Y (Roberts 2018: powers of the real root of x^3 = x + 1), another one over Z.
+double seen_share(Setup const& setup) {
+  constexpr int places = 1 << 14;
+  constexpr double root = 1.32471795724474602596, along_z = 0.41421356237309504880;
+  Camera const camera = build_camera(setup);
+  ParticleSetup const& particles = setup.piv->particles;
+  std::vector<char> seen(places);
+  parallel_chunks(places, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      auto const part = [i](double step) {
+        double const x = 0.5 + static_cast<double>(i + 1) * step;
+        return x - std::floor(x) - 0.5;
+      };
+      Vec3d const at{part(1 / root) * particles.volume->x, part(1 / (root * root)) * particles.volume->y,
+                     part(along_z) * particles.volume->z};
+      auto const pixel = camera.project(particles.center + at);
+      seen[i] = pixel && camera.sensor.covers(*pixel) ? 1 : 0;
+    }
+  });
+  return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) / places;
+}
+
+/// Angles that the camera sees the particles' light under.
+AngleInterval seen_angles(Scene const& scene) {
+  LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
+  AngleInterval angles{pi, 0};
+  Vec3d const lens = scene.camera.aim_plane.origin;
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    for (Vec3d const& place : scene.particles.place[pulse]) {
+      Vec3d const way = lens - place;
+      double const far = length(way), cosine = dot(way, sheet.wave(place, pulse).propagation) / far;
+      double const angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+      double const around = bending_margin + 1.5 * scene.imaging.entrance_pupil / far;
+      angles = {std::min(angles.least, angle - around), std::max(angles.most, angle + around)};
+    }
+  }
+  return {std::max(0.0, angles.least), std::min(pi, angles.most)};
+}
+
+/// Distance of the volume from a sheet's middle plane at a pulse, 0 where it cuts through it [m].
+double sheet_beside(ParticleSetup const& particles, Pose<double> const& sheet) {
+  Vec3d const half = 0.5 * *particles.volume, n = sheet.z;
+  double const reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
+  return std::max(0.0, std::abs(dot(particles.center - sheet.origin, n)) - reach);
+}
+
+}  // namespace
+
+double particle_count(Setup const& setup) {
+  ParticleSetup const& particles = setup.piv->particles;
+  Vec3d const v = *particles.volume;
+  switch (particles.count) {
+    case ParticleCount::per_mm3:
+      return particles.amount * v.x * v.y * v.z / std::pow(unit::millimetre, 3);
+    case ParticleCount::per_pixel: {
+      double const pixels = static_cast<double>(setup.camera.columns) * setup.camera.rows, share = seen_share(setup);
+      if (!(share > 0)) throw DataError("particles.volume_mm", "lies wholly out of the camera's view; check center_mm");
+      return particles.amount * pixels / share;
+    }
+    case ParticleCount::number:
+    case ParticleCount::file:
+      break;
+  }
+  return particles.amount;
+}
+
+MemoryNeed particle_memory(Setup const& setup) {
+  ParticleSetup const& particles = setup.piv->particles;
+  if (particles.count == ParticleCount::file) return {"particles.file", "particles", 0};
+  char const* const key = particles.count == ParticleCount::per_mm3     ? "particles.per_mm3"
+                          : particles.count == ParticleCount::per_pixel ? "particles.per_pixel"
+                                                                        : "particles.number";
+  Vec3d const v = *particles.volume, wider = v + 2.0 * motion_margin(setup.piv->flow, v, particles.center);
+  double const share = wider.x * wider.y * wider.z / (v.x * v.y * v.z);
+  return {key, "particles", particle_count(setup) * share * bytes_per_particle};
+}
+
+void add_particles(Scene& scene) {
+  PivSetup const& piv = *scene.setup.piv;
+  LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+  double const tolerance = path_tolerance_px * pixel_there(scene.setup);
+  scene.particles = piv.particles.count == ParticleCount::file
+                        ? read_particles(piv.particles, piv.flow, sheet, tolerance)
+                        : seed_particles(piv.particles, particle_count(scene.setup), piv.flow, sheet, tolerance);
+  Particles const& particles = scene.particles;
+  auto const lit = [&particles](int pulse) {
+    return std::any_of(particles.photons[pulse].begin(), particles.photons[pulse].end(),
+                       [](double p) { return p > 0; });
+  };
+  if (!lit(0) && !lit(1)) {
+    throw DataError("laser",
+                    "lights no particle (none lies in the sheet at either pulse); check laser.offset_mm, "
+                    "particles.volume_mm and center_mm, or seed more particles");
+  }
+  if (piv.particles.scattering == ParticleScattering::mie) {
+    MieSetting const setting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(),
+                             sheet.wave(piv.laser.centre, 0)};
+    scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
+  }
+  double brightest = 0;
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      if (particles.photons[pulse][i] > 0) brightest = std::max(brightest, photons_through_lens(scene, i, pulse));
+    }
+  }
+  scene.photon_unit = brightest > 0 ? brightest : 1;
+}
+
+double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {
+  Vec3d const place = scene.particles.place[pulse][particle], way = scene.camera.aim_plane.origin - place;
+  double const far = length(way), pupil = scene.imaging.entrance_pupil;
+  LightWave<double> const wave = laser_sheet<double>(scene.setup.piv->laser).wave(place, pulse);
+  double const section =
+      scene.mie ? scene.mie->view<double>().cross_section(particle, way / far, wave)
+                : LambertSpheres<double>{scene.particles.diameter.data()}.cross_section(particle, way / far, wave);
+  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // chief rays are worth a square metre
+  double const facing = std::abs(dot(scene.camera.aim_plane.z, way)) / far;
+  return scene.particles.photons[pulse][particle] * section * area * facing / (far * far);
+}
+
+ParticleCensus count_particles(Scene const& scene) {
+  constexpr double much = 0.1;
+  ParticleCensus census;
+  Particles const& particles = scene.particles;
+  std::vector<char> in_view(particles.size());
+  parallel_chunks(particles.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) in_view[i] = scene.source_in_view(i) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    double const first = particles.photons[0][i], second = particles.photons[1][i];
+    census.lit[0] += first > 0 ? 1 : 0;
+    census.lit[1] += second > 0 ? 1 : 0;
+    if (!(first > 0) || in_view[i] == 0) continue;
+    ++census.in_view;
+    census.paired += second >= much * first ? 1 : 0;
+  }
+  return census;
+}
+
+std::vector<std::string> warnings_of_particles(Scene const& scene) {
+  std::vector<std::string> warnings;
+  ParticleCensus const census = count_particles(scene);
+  if (census.in_view == 0) {
+    warnings.push_back(
+        fmt::format("particles: none of {} lit at the first pulse lies in the camera's view: the images "
+                    "will be empty; check particles.center_mm and volume_mm, laser.offset_mm and the "
+                    "camera's place",
+                    census.lit[0]));
+  } else if (static_cast<double>(census.paired) < kept_pairs * static_cast<double>(census.in_view)) {
+    warnings.push_back(fmt::format(
+        "flow: {:.0f} % of the particles in view have left the volume or most of the sheet's light by the second pulse "
+        "(beyond a quarter, correlation suffers; Keane & Adrian 1990); shorten flow.dt_us, or take a thicker sheet in "
+        "a "
+        "thicker volume",
+        100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
+  }
+  PathPlan const& path = scene.particles.path;
+  double const px = pixel_there(scene.setup);
+  if (path.error > path_tolerance_px * px) {
+    warnings.push_back(
+        fmt::format("flow: halving the {} steps of a particle's path changes where it ends by {:.2g} px "
+                    "still; shorten flow.dt_us",
+                    path.steps, path.error / px));
+  }
+  if (path.lag_error > 0.01 * px) {
+    warnings.push_back(
+        fmt::format("particles.density_kg_m3: the lag is known to first order of the response time only; "
+                    "the next term would move particles by {:.2g} px more; use smaller or lighter ones",
+                    path.lag_error / px));
+  }
+  return warnings;
+}
+
+void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
+  PivSetup const& piv = *setup.piv;
+  SetupTable particles = root.table("particles"), laser = root.table("laser");
+  double const mm = unit::millimetre;
+  if (piv.particles.scattering == ParticleScattering::mie &&
+      std::abs(piv.particles.index - setup.ambient_index()) < 1e-6) {
+    particles.problem(particles.has("material") ? "material" : "index",
+                      fmt::format("is that of the surroundings, {:.6g} (such particles scatter no light); use another "
+                                  "substance",
+                                  setup.ambient_index()));
+  }
+  if (std::abs(piv.laser.wavelength - setup.medium.wavelength) > 1e-6 * setup.medium.wavelength) {
+    laser.problem("wavelength_nm",
+                  fmt::format("is not medium.wavelength_nm = {:.6g} (the camera sees the laser's light, "
+                              "and n and spot are of it); give both the same",
+                              setup.medium.wavelength / unit::nanometre));
+  }
+  if (piv.particles.volume) {
+    LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+    double const reach = (piv.laser.profile == SheetProfile::gaussian ? 1.5 : 0.5) * piv.laser.thickness;
+    for (int pulse = 0; pulse < 2; ++pulse) {
+      double const beside = sheet_beside(piv.particles, sheet.pose[pulse]);
+      if (beside <= reach) continue;
+      laser.problem("offset_mm", fmt::format("puts the sheet of pulse {} beside the particles' volume ({:.4g} mm lie "
+                                             "between them: nothing is lit); move laser.offset_mm, laser.center_mm, "
+                                             "particles.center_mm or thicken particles.volume_mm",
+                                             pulse + 1, beside / mm));
+      break;
+    }
+    Vec3d const far = piv.particles.center + 0.5 * *piv.particles.volume;
+    if (!(setup.camera_pose().origin.z > far.z)) {
+      particles.problem("volume_mm", "reaches to the lens or beyond it; make it thinner, or move the camera away");
+    }
+  }
+  for (WindowSetup const& window : setup.windows) {
+    double const face = window.position.z - window.thickness / 2;
+    if (window.side == WindowSide::target) {
+      root.problem("window",
+                   "has side = \"target\", behind the particles, where no light of theirs goes; use side = "
+                   "\"camera\", or remove it");
+    } else if (piv.particles.volume && face < piv.particles.center.z + piv.particles.volume->z / 2) {
+      root.problem("window", fmt::format("at Z = {:.6g} mm stands in the particles' volume, or behind it; move one",
+                                         window.position.z / mm));
+    }
+  }
+  if (setup.camera.absolute_exposure && !setup.camera.noise.enabled) {
+    warnings.push_back(
+        fmt::format("camera.exposure: \"absolute\" counts electrons by a quantum efficiency of {:.3g} and "
+                    "a full well of {:.6g}, since there is no [camera.noise] that says otherwise",
+                    setup.camera.noise.quantum_efficiency, setup.camera.noise.full_well_e));
+  }
+}
+
+}  // namespace gladstone

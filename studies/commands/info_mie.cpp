@@ -1,0 +1,126 @@
+#include "studies/commands/info_mie.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/light/mie.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/mie_figure.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* command_name = "info mie";
+
+std::optional<double> as_number(std::string_view text) {
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+double size_parameter(MieQuestion const& question) {
+  if (question.x.empty()) {
+    throw DataError(command_name, "needs --x (the size parameter pi d n / lambda); as in --x 5.9 --m 1.45");
+  }
+  auto const x = as_number(question.x);
+  if (!x || *x < least_size_parameter || *x > largest_size_parameter) {
+    throw DataError(command_name, fmt::format("--x {} is no size parameter (pi d n / lambda, from {:g} to {:g}); as in "
+                                              "--x 5.9",
+                                              question.x, least_size_parameter, largest_size_parameter));
+  }
+  return *x;
+}
+
+std::complex<double> relative_index(MieQuestion const& question) {
+  if (question.m.empty()) {
+    throw DataError(command_name,
+                    "needs --m (index of the sphere over that of its surroundings, RE or RE,IM); as in --m 1.45");
+  }
+  std::string_view const text = question.m;
+  std::size_t const comma = text.find(',');
+  auto const real = as_number(text.substr(0, comma));
+  auto const imaginary = comma == std::string_view::npos ? 0.0 : as_number(text.substr(comma + 1));
+  if (!real || !imaginary || *real <= 0 || *imaginary < 0 || *real > 100 || *imaginary > 100) {
+    throw DataError(
+        command_name,
+        fmt::format("--m {} is no refractive index (RE or RE,IM for n + i k; 0 < n <= 100, 0 <= k <= 100, k > 0 "
+                    "absorbs); as in --m 1.5,0.01",
+                    question.m));
+  }
+  return {*real, *imaginary};
+}
+
+/// From forward to backward in degrees: ripples are some 180/x degrees wide and get eight steps.
+std::vector<double> drawn_angles(double x) {
+  int const per_degree = std::clamp(static_cast<int>(std::ceil(8 * x / 180)), 1, 20);
+  std::vector<double> angles;
+  for (int i = 0; i <= 180 * per_degree; ++i) angles.push_back(static_cast<double>(i) / per_degree);
+  return angles;
+}
+
+nlohmann::json pairs(std::vector<double> const& angles, std::vector<double> const& values) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < angles.size(); ++i) rows.push_back({angles[i], values[i]});
+  return rows;
+}
+
+}  // namespace
+
+int describe_mie(MieQuestion const& question, GlobalOptions const& options) {
+  double const x = size_parameter(question);
+  std::complex<double> const m = relative_index(question);
+  MieCoefficients const sphere(x, m);
+  MieEfficiencies const q = sphere.efficiencies();
+  ScatteringDiagram diagram{x, m, q, drawn_angles(x), {}, {}};
+  std::vector<double> s11, polarization;
+  for (double const angle : diagram.angle_deg) {
+    MieAmplitudes const amplitude = sphere.amplitudes(angle * unit::degree);
+    diagram.s1_squared.push_back(std::norm(amplitude.s1));
+    diagram.s2_squared.push_back(std::norm(amplitude.s2));
+    s11.push_back(amplitude.s11());
+    polarization.push_back(s11.back() > 0 ? (std::norm(amplitude.s1) - std::norm(amplitude.s2)) / (2 * s11.back())
+                                          : 0.0);
+  }
+  nlohmann::json json{{"x", x},
+                      {"m", {m.real(), m.imag()}},
+                      {"q_ext", q.q_ext},
+                      {"q_sca", q.q_sca},
+                      {"q_back", q.q_back},
+                      {"g", q.g},
+                      {"s11", pairs(diagram.angle_deg, s11)},
+                      {"polarization", pairs(diagram.angle_deg, polarization)}};
+  std::string text = fmt::format(
+      "sphere of x = {:.10g}, m = {:.6g} + {:.6g} i, {} terms\n"
+      "  extinction             {:.10g}\n  scattering             {:.10g}\n  absorption             {:.10g}\n"
+      "  backscattering         {:.10g}\n  mean cosine g          {:.10g}\n"
+      "  angle [deg]       |S1|^2        |S2|^2           S11  polarization\n",
+      x, m.real(), m.imag(), sphere.a().size(), q.q_ext, q.q_sca, m.imag() > 0 ? q.q_ext - q.q_sca : 0.0, q.q_back,
+      q.g);
+  std::size_t const tenth = (diagram.angle_deg.size() - 1) / 18;
+  for (std::size_t i = 0; i < diagram.angle_deg.size(); i += tenth) {
+    text += fmt::format("  {:>11.4g}  {:>11.6g}   {:>11.6g}   {:>11.6g}  {:>12.5f}\n", diagram.angle_deg[i],
+                        diagram.s1_squared[i], diagram.s2_squared[i], s11[i], polarization[i]);
+  }
+  if (!question.figure.empty()) {
+    try {
+      write_mie_figure(question.figure, diagram);
+      json["figure"] = question.figure;
+    } catch (GnuplotMissing const& missing) {
+      spdlog::warn("{}", missing.what());
+    }
+  }
+  print_result(options, json_text(json), text);
+  return ok;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,163 @@
+#include "studies/expected_particles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/base/units.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/particle_scene.h"
+#include "render/scene/scene.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t drawn = 4001;       // particles that a spread is told by: its quantiles to a few per cent
+constexpr double angle_margin = 0.01;     // about the angle that the light is seen under [rad]
+constexpr double visible_snr = 5;         // Rose's criterion
+constexpr double largest_tried = 100e-6;  // [m]
+constexpr double smallest_tried = 10e-9;  // [m]
+constexpr int sizes_a_decade = 150;       // 1.5 % apart
+
+SizeSpread spread_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  auto const at = [&values](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  };
+  return {at(0.05), at(0.5), at(0.95)};
+}
+
+/// Where a camera's axis meets the sheet of the first pulse; where it runs along it, the sheet's middle.
+Vec3d place_in_sheet(Pose<double> const& camera, Pose<double> const& sheet) {
+  double const along = dot(camera.z, sheet.z);
+  if (std::abs(along) < 1e-3) return sheet.origin;
+  return camera.origin + dot(sheet.origin - camera.origin, sheet.z) / along * camera.z;
+}
+
+/// Thickness of what is lit along the sheet's normal, within the particles' volume: that of the sheet, or less [m].
+double lit_thickness(PivSetup const& piv, Pose<double> const& sheet) {
+  if (!piv.particles.volume) return piv.laser.thickness;
+  Vec3d const volume = *piv.particles.volume, n = sheet.z;
+  double half_depth = HUGE_VAL;  // of the volume along the normal, through its centre
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(n[axis]) > 1e-9) half_depth = std::min(half_depth, volume[axis] / 2 / std::abs(n[axis]));
+  }
+  double const offset = dot(sheet.origin - piv.particles.center, n), half = piv.laser.thickness / 2;
+  return std::max(0.0, std::min(half_depth, offset + half) - std::max(-half_depth, offset - half));
+}
+
+/// Photons through the lens from particles of these diameters, all at one place of the sheet.
+std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> const& diameters) {
+  PivSetup const& piv = *scene.setup.piv;
+  LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
+  scene.particles.resize(diameters.size());
+  scene.particles.diameter = diameters;
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    std::fill(scene.particles.place[pulse].begin(), scene.particles.place[pulse].end(), place);
+    std::fill(scene.particles.photons[pulse].begin(), scene.particles.photons[pulse].end(), sheet.photons(place, 0));
+  }
+  LightWave<double> const wave = sheet.wave(place, 0);
+  if (piv.particles.scattering == ParticleScattering::mie) {
+    double const cosine = dot(normalized(scene.camera.aim_plane.origin - place), wave.propagation);
+    double const angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+    scene.mie = std::make_shared<MieScattering const>(
+        diameters, MieSetting{piv.particles.index, piv.laser.wavelength, scene.setup.ambient_index(), wave},
+        AngleInterval{std::max(0.0, angle - angle_margin), std::min(pi, angle + angle_margin)});
+  }
+  std::vector<double> photons(diameters.size());
+  for (std::size_t i = 0; i < photons.size(); ++i) photons[i] = photons_through_lens(scene, i, 0);
+  return photons;
+}
+
+/// Share of a centred image's light that falls on its middle pixel. @param sigma_px of the image, as a Gaussian
+double peak_share(Setup const& setup, double sigma_px) {
+  if (setup.lens.spot == SpotModel::airy && setup.spot_scale_px() > 0) {
+    AiryTable const airy(setup.spot_scale_px());
+    AiryTable::View const view = airy.view();
+    return view.share(0, 0, view.half_width, view.half_width);
+  }
+  if (!(sigma_px > 0)) return 1;
+  double const along = std::erf(0.5 / (std::sqrt(2.0) * sigma_px));
+  return along * along;
+}
+
+/// Peak electrons that exceed five times their noise: S = 5 sqrt(S + r^2).
+double visible_electrons(NoiseSetup const& noise) {
+  double const dark = noise.enabled ? noise.read_noise_e * noise.read_noise_e + noise.dark_current_e : 0.0;
+  double const k2 = visible_snr * visible_snr;
+  return (k2 + std::sqrt(k2 * k2 + 4 * k2 * dark)) / 2;
+}
+
+double smallest_visible(Scene& scene, Vec3d place, double electrons_per_photon) {
+  std::vector<double> diameters;
+  double const decades = std::log10(largest_tried / smallest_tried);
+  for (int i = 0; i <= decades * sizes_a_decade; ++i) {
+    diameters.push_back(smallest_tried * std::pow(10.0, static_cast<double>(i) / sizes_a_decade));
+  }
+  std::vector<double> const photons = photons_of(scene, place, diameters);
+  double const needed = visible_electrons(scene.setup.camera.noise);
+  std::size_t first = diameters.size();
+  while (first > 0 && photons[first - 1] * electrons_per_photon >= needed) --first;
+  return first < diameters.size() ? diameters[first] : unknown;
+}
+
+}  // namespace
+
+ExpectedParticles expected_particles(Setup const& setup) {
+  PivSetup const& piv = *setup.piv;
+  Scene scene;
+  scene.setup = setup;
+  scene.imaging = setup.imaging();
+  scene.camera = build_camera(setup);
+  Pose<double> const camera = setup.camera_pose(), sheet = laser_sheet<double>(piv.laser).pose[0];
+  Vec3d const place = place_in_sheet(camera, sheet);
+  double const distance = std::abs(dot(place - camera.origin, camera.z));
+  double const pitch = setup.camera.pixel_pitch, facing = std::max(1e-3, std::abs(dot(camera.z, sheet.z)));
+  double const working_f_number =
+      scene.imaging.entrance_pupil > 0 ? scene.imaging.image_distance / scene.imaging.entrance_pupil : 0;
+
+  ExpectedParticles expected;
+  double const magnification = scene.imaging.magnification * setup.z_b() / distance;
+  expected.magnification = magnification;
+  expected.diameter = spread_of(draw_diameters(piv.particles.diameter, piv.particles.seed, drawn));
+  double const geometric = magnification * expected.diameter.median / pitch;
+  expected.diffraction_px = setup.lens.spot == SpotModel::airy ? 4 * SpotSize{setup.spot_scale_px()}.matched_sigma()
+                                                               : 4 * scene.spot_sigma_px();
+  double const focus = setup.focus_distance();
+  auto const blurred = [&](double beyond) {
+    // the disc of confusion of a point `beyond` the sheet, by the magnification where the lens is focused
+    double const z = distance + beyond - focus, focused = scene.imaging.magnification * setup.z_b() / focus;
+    double const blur = focused * scene.imaging.entrance_pupil * std::abs(z) / (focus + z) / pitch;
+    return std::sqrt(geometric * geometric + expected.diffraction_px * expected.diffraction_px + blur * blur);
+  };
+  double const half_sheet = piv.laser.thickness / 2 / facing;
+  expected.image_diameter_px = blurred(0);
+  expected.sheet_edge_diameter_px = std::max(blurred(half_sheet), blurred(-half_sheet));
+  expected.depth_of_field = 4.88 * setup.medium.wavelength * std::pow(working_f_number / magnification, 2);
+
+  if (piv.particles.count == ParticleCount::file) {
+    expected.per_pixel = unknown;
+  } else {
+    Vec3d const v = *piv.particles.volume;
+    double const in_sheet = particle_count(setup) / (v.x * v.y * v.z) * lit_thickness(piv, sheet);
+    expected.per_pixel = in_sheet * std::pow(pitch / magnification, 2) / facing;
+  }
+  expected.source_density = expected.per_pixel * pi / 4 * std::pow(expected.image_diameter_px, 2);
+
+  double const electrons_per_photon =
+      setup.camera.noise.quantum_efficiency * peak_share(setup, expected.image_diameter_px / 4);
+  std::vector<double> photons =
+      photons_of(scene, place, draw_diameters(piv.particles.diameter, piv.particles.seed, drawn));
+  expected.photons = spread_of(photons);
+  for (double& one : photons) one *= electrons_per_photon;
+  expected.peak_electrons = spread_of(photons);
+  auto const full =
+      std::count_if(photons.begin(), photons.end(), [&](double peak) { return peak > setup.camera.noise.full_well_e; });
+  expected.saturated = static_cast<double>(full) / static_cast<double>(photons.size());
+  expected.smallest_visible = smallest_visible(scene, place, electrons_per_photon);
+  return expected;
+}
+
+}  // namespace gladstone

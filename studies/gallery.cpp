@@ -1,0 +1,91 @@
+#include "studies/gallery.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "analysis/errors/error_summary.h"
+#include "render/base/image_file.h"
+#include "studies/case_files.h"
+#include "studies/demo.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/map_panels.h"
+#include "studies/render_setup.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Picture {
+  char const* name;  ///< of the setup
+  char const* title;
+  char const* look;  ///< what to look at
+};
+
+/// The first is what the others are held against.
+constexpr std::array pictures{
+    Picture{"normal", "normal", "particles in the sheet's middle, in focus"},
+    Picture{"out_of_focus", "out of focus", "discs of the stop's shape instead of spots, and less light in each pixel"},
+    Picture{"aberration", "lens aberration near the edges", "spots drawn out towards the corners, round in the middle"},
+    Picture{"perspective", "perspective", "the camera looks on askew: scales differ from left to right"},
+    Picture{"shock", "normal shock seen askew", "particles behind the front are shifted and drawn out along it"},
+    Picture{"oblique", "oblique view, sensor square to the axis", "sharp along one line alone"},
+    Picture{"scheimpflug", "oblique view, Scheimpflug", "the same view with the sensor tilted: sharp all over"},
+};
+
+/// Below this share of pixels the normal picture is shown without clipping; the brightest particles are white.
+constexpr double shown_share = 0.998;
+
+std::vector<double> levels_of(Image<double> const& image) { return {image.begin(), image.end()}; }
+
+MapFigure grey_figure(int columns, std::vector<Picture> const& of, std::vector<Image<double>> const& images,
+                      double white) {
+  MapFigure figure;
+  figure.columns = columns;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    MapPanel panel;
+    panel.title = of[i].title;
+    panel.map = images[i];
+    panel.scale = ColourScale::grey;
+    panel.lower = 0;
+    panel.upper = white;
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::string run_gallery(std::string const& folder, Device const& device) {
+  std::string const cases = (fs::path(shared_folder()) / "studies" / "cases" / "figure1").string();
+  std::vector<Image<double>> images;
+  std::vector<Picture> const all(pictures.begin(), pictures.end());
+  for (Picture const& picture : all) {
+    spdlog::info("{}: {}", picture.name, picture.title);
+    std::string const place = (fs::path(folder) / picture.name).string();
+    SetupRendering setup((fs::path(cases) / (std::string(picture.name) + ".toml")).string(), {});
+    setup.refuse_over_inputs(place);
+    setup.render(*device.renderer, place);
+    images.push_back(read_image(in_case(place, case_file::reference)));
+  }
+  double const white = std::max(1.0, quantile(levels_of(images.front()), shown_share));
+  std::string text = fmt::format("Pictures of {}: level 0 is black, {:.0f} and above white.\n\n", folder, white);
+  for (Picture const& picture : all) text += fmt::format("{:<13} {}: {}\n", picture.name, picture.title, picture.look);
+  try {
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      write_map_figure((fs::path(folder) / all[i].name / "beside.png").string(),
+                       grey_figure(2, {all[0], all[i]}, {images[0], images[i]}, white));
+    }
+    write_map_figure((fs::path(folder) / "gallery.png").string(), grey_figure(4, all, images, white));
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+  }
+  return text;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,165 @@
+#include "studies/particle_case.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/base/units.h"
+#include "render/scene/particle_scene.h"
+
+namespace gladstone {
+namespace {
+
+std::span<double const> pairs_as_numbers(std::vector<Vec2d> const& values) {
+  static_assert(sizeof(Vec2d) == 2 * sizeof(double));
+  return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
+}
+
+/// A dataset of /particles with two numbers a particle: a column that dots have as well, or one of particles alone.
+struct ParticlePairs {
+  char const* name;
+  std::vector<Vec2d> GroundTruth::*shared;
+  std::vector<Vec2d> ParticleTruth::*own;
+  char const* units;
+  char const* description;
+  char const* axes;
+
+  std::vector<Vec2d> const& of(GroundTruth const& truth) const { return shared ? truth.*shared : truth.particles.*own; }
+  std::vector<Vec2d>& of(GroundTruth& truth) const { return shared ? truth.*shared : truth.particles.*own; }
+};
+
+constexpr std::array<ParticlePairs, 7> particle_pairs{{
+    {"/particles/reference_px", &GroundTruth::reference_px, nullptr, "px",
+     "centroid of the light that passes the stop, at the first pulse; nan: not lit, or no ray gets through",
+     "particle, (column, row)"},
+    {"/particles/displacement_px", &GroundTruth::displacement_px, nullptr, "px",
+     "centroid at the second pulse minus that at the first, as imaged (u right, v down); nan: not seen at both",
+     "particle, (u, v)"},
+    {"/particles/displacement_error_px", &GroundTruth::displacement_error_px, nullptr, "px",
+     "standard error of displacement_px: two thirds of particles lie within it, by component; nan: unknown",
+     "particle, (u, v)"},
+    {"/particles/displacement_std_px", &GroundTruth::displacement_std_px, nullptr, "px",
+     "weighted standard deviation of the hits at the second pulse", "particle, (u, v)"},
+    {"/particles/reference_ambient_px", nullptr, &ParticleTruth::reference_ambient_px, "px",
+     "as reference_px, without the medium", "particle, (column, row)"},
+    {"/particles/displacement_ambient_px", nullptr, &ParticleTruth::displacement_ambient_px, "px",
+     "as displacement_px, without the medium", "particle, (u, v)"},
+    {"/particles/flux", &GroundTruth::flux, nullptr, "1", "photons that reach the sensor's plane at either pulse",
+     "particle, pulse"},
+}};
+
+/// @throws DataError where a dataset has not the length that goes with the others
+void require_count(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
+  if (there == needed) return;
+  throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
+                            " belong to the others; render the case again");
+}
+
+/// Least, median and most of positive numbers.
+nlohmann::json spread_of_light(std::vector<double> values) {
+  if (values.empty()) return nullptr;
+  std::sort(values.begin(), values.end());
+  return {{"least", values.front()}, {"median", values[values.size() / 2]}, {"most", values.back()}};
+}
+
+}  // namespace
+
+void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
+                          StatusCounts const& statuses, FileOrigin const& origin) {
+  Hdf5Writer file(path, origin);
+  std::size_t const count = truth.size();
+  std::vector<double> position;
+  position.reserve(6 * count);
+  for (auto const* const places : {&truth.position_m, &truth.particles.second_m}) {
+    for (Vec3d const& p : *places) position.insert(position.end(), {p.x, p.y, p.z});
+  }
+  file.write(
+      "/particles/position_m", std::span<double const>(position), {2, count, 3}, "m",
+      "particles in the world frame at either pulse: X right, Y up as the camera sees them, Z towards the camera",
+      "pulse, particle, (x, y, z)");
+  for (ParticlePairs const& pairs : particle_pairs) {
+    file.write(pairs.name, pairs_as_numbers(pairs.of(truth)), {count, 2}, pairs.units, pairs.description, pairs.axes);
+  }
+  file.write("/particles/diameter_m", std::span<double const>(truth.particles.diameter_m), {count}, "m",
+             "diameter of the particle", "particle");
+  std::vector<std::int64_t> rays;
+  for (auto const& both : truth.rays) rays.insert(rays.end(), both.begin(), both.end());
+  file.write("/particles/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted at either pulse",
+             "particle, pulse");
+  file.write("/particles/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
+             "rays that the particle was to have at either pulse", "particle");
+  std::vector<std::int64_t> counts;
+  for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
+  file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
+             "rays by status: alive, missed_sensor, vignetted, total_internal_reflection, lost_in_medium, missed_lens",
+             "pulse, status");
+  Setup const& setup = scene.setup;
+  file.attribute("/particles", "interpolation",
+                 setup.medium.interpolation == FieldInterpolation::cubic_bspline ? "cubic_bspline" : "trilinear");
+  file.attribute("/particles", "conventions",
+                 "displacement = second pulse minus first; column right and row down from 0 at the first pixel's "
+                 "centre; the medium stands before both pulses");
+  file.attribute("/", "method", "rays");
+  file.attribute("/particles", "step_mm", scene.step * 1e3);
+  file.attribute("/particles", "magnification", scene.imaging.magnification);
+  file.attribute("/particles", "path_error_m", scene.particles.path.error);
+  file.attribute("/particles", "lag_error_m", scene.particles.path.lag_error);
+  if (scene.mie) file.attribute("/particles", "scattering_table_error", scene.mie->error());
+  file.close();
+}
+
+GroundTruth read_particle_truth(std::string const& path) {
+  Hdf5Reader const file(path);
+  GroundTruth truth;
+  std::vector<double> const position = file.read("/particles/position_m");
+  std::size_t const count = position.size() / 6;
+  require_count(path, "/particles/position_m", position.size(), 6 * count);
+  truth.resize(count);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, {nan, nan});
+  truth.particles.second_m.resize(count);
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    Vec3d const p{position[3 * i], position[3 * i + 1], position[3 * i + 2]};
+    (i < count ? truth.position_m[i] : truth.particles.second_m[i - count]) = p;
+  }
+  for (ParticlePairs const& pairs : particle_pairs) {
+    std::vector<double> const values = file.read(pairs.name);
+    require_count(path, pairs.name, values.size(), 2 * count);
+    std::vector<Vec2d>& column = pairs.of(truth);
+    column.resize(count);
+    for (std::size_t i = 0; i < count; ++i) column[i] = {values[2 * i], values[2 * i + 1]};
+  }
+  truth.particles.diameter_m = file.read("/particles/diameter_m");
+  require_count(path, "/particles/diameter_m", truth.particles.diameter_m.size(), count);
+  std::vector<std::int64_t> const rays = file.read_integers("/particles/rays");
+  require_count(path, "/particles/rays", rays.size(), 2 * count);
+  for (std::size_t i = 0; i < count; ++i) truth.rays[i] = {rays[2 * i], rays[2 * i + 1]};
+  return truth;
+}
+
+nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, double exposure_e) {
+  ParticleCensus const census = count_particles(scene);
+  CameraSetup const& camera = scene.setup.camera;
+  std::vector<double> photons;
+  for (Vec2d const& flux : truth.flux) {
+    if (flux.x > 0) photons.push_back(flux.x);
+  }
+  double const pixels = static_cast<double>(camera.columns) * camera.rows;
+  double const px = camera.pixel_pitch / scene.imaging.magnification;
+  PathPlan const& path = scene.particles.path;
+  nlohmann::json particles{
+      {"seeded", truth.size()},
+      {"lit", {{"first", census.lit[0]}, {"second", census.lit[1]}}},
+      {"in_view", census.in_view},
+      {"per_pixel", static_cast<double>(census.in_view) / pixels},
+      {"paired_fraction", census.in_view > 0
+                              ? nlohmann::json(static_cast<double>(census.paired) / static_cast<double>(census.in_view))
+                              : nlohmann::json(nullptr)},
+      {"photons", spread_of_light(photons)},
+      {"electrons_per_photon", exposure_e / scene.photon_unit},
+      {"path", {{"steps", path.steps}, {"error_px", path.error / px}, {"lag_error_px", path.lag_error / px}}}};
+  if (scene.mie) particles["scattering_table_error"] = scene.mie->error();
+  return {{"particles", particles}, {"photons_fully_lit", scene.photon_unit}};
+}
+
+}  // namespace gladstone

@@ -1,0 +1,111 @@
+#include "studies/particle_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/base/parallel.h"
+#include "render/light/flow_path.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::uint64_t rough_rays = 128;
+constexpr int correction_rounds = 2;
+constexpr double out_of_sight = std::numeric_limits<double>::quiet_NaN();
+
+/// The vectors of a picture as places of the sheet.
+class SheetPoints {
+ public:
+  SheetPoints(Scene const& scene, std::vector<Vec2d> const& places_px)
+      : scene_(scene), plane_(scene.sheet_plane()), wanted_(places_px), seen_(places_px.size()) {
+    parallel_for(places_px.size(), [&](std::size_t i) { seen_[i] = scene.camera.unproject(places_px[i], plane_); });
+    for (auto const& seen : seen_) place_.push_back(seen ? seen->place : Vec2d{});
+    PivSetup const& piv = *scene.setup.piv;
+    std::vector<double> sizes = scene.particles.diameter;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
+    diameter_ = sizes[sizes.size() / 2];
+    velocity_ = {piv.flow.flow, piv.particles.response_time(diameter_), 0.01 * piv.flow.dt};
+  }
+
+  /// The particles at their present places, lit alike at both pulses.
+  Particles particles() const {
+    Particles virtual_ones;
+    virtual_ones.resize(place_.size());
+    double const half = scene_.setup.piv->flow.dt / 2;
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      Vec3d const middle = plane_.point_outwards({place_[i].x, place_[i].y, 0});
+      virtual_ones.place[0][i] = moved(velocity_, middle, -half, scene_.particles.path.steps);
+      virtual_ones.place[1][i] = moved(velocity_, middle, half, scene_.particles.path.steps);
+      virtual_ones.diameter[i] = diameter_;
+      for (auto& photons : virtual_ones.photons) photons[i] = seen_[i] ? 1.0 : 0.0;
+    }
+    return virtual_ones;
+  }
+
+  /// Moves places so that images that were seen there come to where they should be.
+  void correct(std::vector<Vec2d> const& reference, std::vector<Vec2d> const& displacement, TruthAt at) {
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      Vec2d const shift = at == TruthAt::mid_position ? 0.5 * displacement[i] : Vec2d{};
+      Vec2d const miss = wanted_[i] - (reference[i] + shift);
+      if (!seen_[i] || !std::isfinite(miss.x) || !std::isfinite(miss.y)) continue;
+      Vec2d const a = seen_[i]->by_x, b = seen_[i]->by_y;
+      double const area = a.x * b.y - a.y * b.x;
+      place_[i] += Vec2d{(miss.x * b.y - miss.y * b.x) / area, (a.x * miss.y - a.y * miss.x) / area};
+    }
+  }
+
+  std::vector<Vec2d> flow_px() const {
+    std::vector<Vec2d> moves;
+    double const dt = scene_.setup.piv->flow.dt;
+    for (auto const& seen : seen_) {
+      if (!seen) {
+        moves.push_back({out_of_sight, out_of_sight});
+        continue;
+      }
+      Vec3d const middle = plane_.point_outwards({seen->place.x, seen->place.y, 0});
+      Vec3d const way = plane_.direction_inwards(dt * velocity_.flow(middle));
+      moves.push_back(seen->moved({way.x, way.y}));
+    }
+    return moves;
+  }
+
+ private:
+  Scene const& scene_;
+  Pose<double> plane_;
+  std::vector<Vec2d> const& wanted_;
+  std::vector<std::optional<SeenPoint>> seen_;
+  std::vector<Vec2d> place_;  // at mid-time, on the plane [m]
+  double diameter_ = 0;
+  ParticleVelocity velocity_;
+};
+
+}  // namespace
+
+ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at) {
+  SheetPoints const start(scene, places_px);
+  ParticlePoints points;
+  points.flow_px = start.flow_px();
+  std::uint64_t const all_rays = scene.rays_per_dot;
+  auto const truth_of = [&](bool ambient) {
+    SheetPoints here = start;
+    auto const trace = [&] {
+      return renderer.render_particles(scene, here.particles(), ParticleLight::equal, RenderImages::no).truth;
+    };
+    scene.rays_per_dot = std::min(all_rays, rough_rays);
+    for (int round = 0; round < correction_rounds; ++round) {
+      GroundTruth const truth = trace();
+      here.correct(ambient ? truth.particles.reference_ambient_px : truth.reference_px,
+                   ambient ? truth.particles.displacement_ambient_px : truth.displacement_px, at);
+    }
+    scene.rays_per_dot = all_rays;
+    return trace();
+  };
+  points.seen = truth_of(false);
+  bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view);
+  points.ambient_px = empty ? points.seen.displacement_px : truth_of(true).particles.displacement_ambient_px;
+  return points;
+}
+
+}  // namespace gladstone

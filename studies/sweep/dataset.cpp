@@ -1,0 +1,170 @@
+#include "studies/sweep/dataset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "analysis/errors/scattered_grid.h"
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/image_file.h"
+#include "render/base/output_place.h"
+#include "render/base/progress.h"
+#include "render/base/text_file.h"
+#include "studies/case_files.h"
+#include "studies/sweep/run.h"
+#include "studies/sweep/study_columns.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lattice constant of the displacement maps [px].
+constexpr int map_step_px = 4;
+/// Rows of a chunk of the lists.
+constexpr std::size_t list_chunk = 8192;
+
+/// A case whose folder is there, and how many sources it has.
+struct KeptCase {
+  std::string folder;
+  std::string sources;  ///< "/dots" or "/particles"
+  std::size_t count = 0;
+};
+
+std::optional<KeptCase> kept_case(std::string const& folder) {
+  std::error_code error;
+  if (!fs::exists(fs::path(folder) / case_file::setup, error)) return std::nullopt;
+  Hdf5Reader const truth(in_case(folder, case_file::truth));
+  for (char const* sources : {"/dots", "/particles"}) {
+    std::string const name = std::string(sources) + "/displacement_px";
+    if (truth.has(name)) return KeptCase{folder, sources, truth.shape(name)[0]};
+  }
+  throw DataError((fs::path(folder) / case_file::truth).string(), "has the truth of neither dots nor particles");
+}
+
+std::vector<Vec2d> pairs_of(std::vector<double> const& numbers) {
+  std::vector<Vec2d> pairs(numbers.size() / 2);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {numbers[2 * i], numbers[2 * i + 1]};
+  return pairs;
+}
+
+std::vector<std::uint16_t> levels_of(Image<double> const& image) {
+  std::vector<std::uint16_t> levels(image.size());
+  std::transform(image.begin(), image.end(), levels.begin(),
+                 [](double level) { return static_cast<std::uint16_t>(level); });
+  return levels;
+}
+
+/// Both frames of a case, as their files hold them. @throws DataError where they are of another size than the first's
+std::vector<std::uint16_t> read_frames(KeptCase const& one, std::vector<std::size_t> const& size) {
+  std::vector<std::uint16_t> both;
+  for (char const* name : {case_file::reference, case_file::flow}) {
+    std::string const path = in_case(one.folder, name);
+    Image<double> const image = read_image(path);
+    if (static_cast<std::size_t>(image.rows()) != size[0] || static_cast<std::size_t>(image.columns()) != size[1]) {
+      throw DataError(path,
+                      fmt::format("has {} x {} px, but the first case's images {} x {}; a data set holds images of "
+                                  "one size: pack a study whose camera.pixels are the same in all cases",
+                                  image.columns(), image.rows(), size[1], size[0]));
+    }
+    std::vector<std::uint16_t> const levels = levels_of(image);
+    both.insert(both.end(), levels.begin(), levels.end());
+  }
+  return both;
+}
+
+/// u and v on the lattice, NaN where no truth is near.
+std::vector<double> map_of(std::vector<Vec2d> const& place, std::vector<Vec2d> const& displacement,
+                           std::vector<std::size_t> const& size) {
+  MapGrid const grid{static_cast<int>(size[1]), static_cast<int>(size[0]), {0, 0}, map_step_px};
+  DisplacementMaps const maps = map_scattered(place, displacement, grid);
+  std::vector<double> both;
+  both.reserve(2 * maps.u_px.size());
+  for (std::size_t i = 0; i < maps.u_px.size(); ++i) {
+    both.push_back(maps.u_px.data()[i]);
+    both.push_back(maps.v_px.data()[i]);
+  }
+  return both;
+}
+
+}  // namespace
+
+PackedDataset pack_dataset(std::string const& run, std::string const& path) {
+  std::string const study = (fs::path(run) / run_file::study).string();
+  std::string const manifest = (fs::path(run) / run_file::manifest).string();
+  refuse_inputs_as_outputs({path}, {study, manifest, (fs::path(run) / run_file::table).string()});
+  StudyTable table = read_study_table(run);
+  std::vector<KeptCase> kept;
+  std::vector<StudyRow> rows;
+  for (StudyRow const& row : table.rows) {
+    if (row.status != CaseStatus::ok) continue;
+    if (std::optional<KeptCase> one = kept_case(images_folder(run, row.index))) {
+      kept.push_back(std::move(*one));
+      rows.push_back(row);
+    }
+  }
+  PackedDataset const packed{kept.size(), table.rows.size() - kept.size()};
+  if (kept.empty()) {
+    throw DataError(run, "holds the images of no case; compute them with gladstone sweep run --keep-images");
+  }
+  table.rows = std::move(rows);
+
+  std::vector<std::int64_t> begin{0};
+  for (KeptCase const& one : kept) begin.push_back(begin.back() + static_cast<std::int64_t>(one.count));
+  Image<double> const sample = read_image(in_case(kept.front().folder, case_file::reference));
+  std::vector<std::size_t> const size{static_cast<std::size_t>(sample.rows()),
+                                      static_cast<std::size_t>(sample.columns())};
+  std::vector<std::size_t> const nodes{(size[0] + map_step_px - 1) / map_step_px,
+                                       (size[1] + map_step_px - 1) / map_step_px};
+  std::size_t const cases = kept.size();
+  auto const all = static_cast<std::size_t>(begin.back());
+
+  std::error_code error;
+  SourceFiles sources;
+  sources.add("manifest", manifest, SourceFiles::Holds::bytes);
+  Hdf5Writer file(path,
+                  {"gladstone dataset", 1, fs::exists(study, error) ? read_text_file(study) : "",
+                   table.rows.front().seed, table.rows.front().device, sources},
+                  Hdf5Growth::on_disk);
+  write_columns(file, "/parameters/", "case", table, axis_columns(table));
+  file.make_rows<std::uint16_t>("/images", {cases, 2, size[0], size[1]}, {1, 1, size[0], size[1]}, "1",
+                                "grey levels as in reference.tif and flow.tif", "case, frame, row, column");
+  file.make_rows<double>("/displacement_px", {cases, nodes[0], nodes[1], 2}, {1, nodes[0], nodes[1], 2}, "px",
+                         "ray truth on a lattice, by local linear regression from /truth",
+                         "case, row, column, component (u, v)");
+  file.attribute("/displacement_px", "spacing_px", static_cast<double>(map_step_px));
+  std::size_t const chunk = std::clamp<std::size_t>(all, 1, list_chunk);
+  for (char const* name : {"/truth/reference_px", "/truth/displacement_px"}) {
+    file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
+                           "source, component (x right, y down)");
+  }
+  file.write("/truth/begin", begin, {begin.size()}, "1", "sources of case i are rows begin[i] to begin[i + 1] - 1",
+             "case");
+
+  Progress progress("packing", cases);
+  for (std::size_t i = 0; i < cases; ++i) {
+    KeptCase const& one = kept[i];
+    file.write_rows<std::uint16_t>("/images", i, read_frames(one, size));
+    Hdf5Reader const truth(in_case(one.folder, case_file::truth));
+    std::vector<double> const place = truth.read(one.sources + "/reference_px");
+    std::vector<double> const displacement = truth.read(one.sources + "/displacement_px");
+    if (place.size() != 2 * one.count || displacement.size() != place.size()) {
+      throw DataError(in_case(one.folder, case_file::truth), "was replaced while it was read; pack the study again");
+    }
+    auto const row = static_cast<std::size_t>(begin[i]);
+    file.write_rows<double>("/truth/reference_px", row, place);
+    file.write_rows<double>("/truth/displacement_px", row, displacement);
+    file.write_rows<double>("/displacement_px", i, map_of(pairs_of(place), pairs_of(displacement), nodes));
+    progress.advance(1);
+  }
+  file.close();
+  return packed;
+}
+
+}  // namespace gladstone

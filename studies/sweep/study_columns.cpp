@@ -1,0 +1,141 @@
+#include "studies/sweep/study_columns.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "studies/sweep/unit_ending.h"
+
+namespace gladstone {
+namespace {
+
+/// @param name of a column; a statistic of a measure has the measure's unit
+std::string unit_of(std::string name) {
+  for (char const* statistic : {".mean", ".std"}) {
+    if (name.ends_with(statistic)) name.erase(name.rfind('.'));
+  }
+  if (name.starts_with("seconds_")) return "s";
+  if (name == "exposure") return "e";
+  return std::string(unit_ending(name).value_or(UnitEnding{"", "1"}).unit);
+}
+
+std::string description_of(std::string const& measure) {
+  static std::map<std::string, std::string> const known{
+      {"signal_px", "rms of the ray truth at the vectors that count, per component"},
+      {"blur_px",
+       "rms over those vectors of the standard deviation of a virtual dot's hits in the flow, per component"},
+      {"strain_max", "largest strain of the cone-averaged Eq. 9 in the view"},
+      {"magnification", "M = z_i / Z_B"},
+      {"step_mm", "step that rays were traced with"},
+      {"rays_per_dot", "rays of a dot"},
+      {"exposure", "electrons in a fully lit pixel on the axis"},
+      {"dots", "dots on the target"},
+      {"caustic_fraction", "share of the view where the cone-averaged strain is 1 or more"},
+      {"saturated", "saturated pixels of both frames"},
+      {"warnings", "warnings that the case gave; they stand in its result"},
+      {"repeats", "finished repeats of the point"},
+      {"vectors", "vectors that count in all of them"},
+      {"ray_truth.systematic_px", "measured less ray truth: rms of what is the same in every repeat, per component"},
+      {"ray_truth.scatter_px", "measured less ray truth: standard deviation between repeats, per component"},
+      {"eq9.systematic_px", "measured less Eq. 9: rms of what is the same in every repeat, per component"},
+      {"eq9.scatter_px", "measured less Eq. 9: standard deviation between repeats, per component"},
+      {"budget.estimator_px", "rms of the estimator's mean error over the patterns of the repeats, per component"},
+      {"budget.pattern_px", "standard deviation of the estimator's error between patterns, per component"}};
+  if (auto const found = known.find(measure); found != known.end()) return found->second;
+  if (measure.ends_with(".mean")) return "mean over the repeats";
+  return measure.ends_with(".std") ? "sample standard deviation over the repeats" : "as in errors.json";
+}
+
+void add_measures(StudyTable const& table, std::vector<StudyColumn>& columns) {
+  for (std::size_t m = 0; m < table.measures.size(); ++m) {
+    columns.push_back({table.measures[m],
+                       [m](StudyRow const& row) { return row.measures[m]; },
+                       {},
+                       description_of(table.measures[m])});
+  }
+}
+
+}  // namespace
+
+std::vector<StudyColumn> axis_columns(StudyTable const& table) {
+  std::vector<StudyColumn> columns;
+  for (std::size_t k = 0; k < table.axes.size(); ++k) {
+    StudyAxis const& axis = table.axes[k];
+    columns.push_back({axis.key,
+                       [&axis, k](StudyRow const& row) {
+                         return axis.numeric ? axis.numbers[row.value[k]] : static_cast<double>(row.value[k]);
+                       },
+                       axis.numeric ? std::vector<std::string>{} : axis.labels, "axis: a key of the setup",
+                       !axis.numeric});
+    if (!axis.labelled) continue;
+    columns.push_back({axis.key + ".label", [k](StudyRow const& row) { return static_cast<double>(row.value[k]); },
+                       axis.labels, "what the study calls the value of that key", true});
+  }
+  columns.push_back({"case",
+                     [](StudyRow const& row) { return static_cast<double>(row.index); },
+                     {},
+                     "line of the manifest, from 0; of a point, the first",
+                     true});
+  return columns;
+}
+
+std::vector<StudyColumn> table_columns(StudyTable const& table) {
+  std::vector<StudyColumn> columns = axis_columns(table);
+  columns.push_back({"seed",
+                     [](StudyRow const& row) { return static_cast<double>(row.seed); },
+                     {},
+                     "of target, rays and noise",
+                     true});
+  columns.push_back({"status",
+                     [](StudyRow const& row) { return static_cast<double>(row.status); },
+                     {"ok", "failed", "missing"},
+                     "what became of the case",
+                     true});
+  columns.push_back(
+      {"repeat", [](StudyRow const& row) { return static_cast<double>(row.repeat); }, {}, "from 0", true});
+  add_measures(table, columns);
+  columns.push_back({"seconds_compare",
+                     [](StudyRow const& row) { return row.seconds_compare; },
+                     {},
+                     "time of the comparison with truth and theory"});
+  columns.push_back({"seconds_render",
+                     [](StudyRow const& row) { return row.seconds_render; },
+                     {},
+                     "time of building, planning and rendering; little where another case had done it"});
+  columns.push_back(
+      {"seconds_correlate", [](StudyRow const& row) { return row.seconds_correlate; }, {}, "time of the correlation"});
+  columns.push_back({"device",
+                     [](StudyRow const& row) { return row.device == "cuda" ? 1.0 : 0.0; },
+                     {"cpu", "cuda"},
+                     "what computes the case",
+                     true});
+  return columns;
+}
+
+std::vector<StudyColumn> point_columns(StudyTable const& points) {
+  std::vector<StudyColumn> columns = axis_columns(points);
+  add_measures(points, columns);
+  return columns;
+}
+
+void write_columns(Hdf5Writer& file, std::string const& group, std::string const& row_name, StudyTable const& table,
+                   std::vector<StudyColumn> const& columns) {
+  std::vector<std::size_t> const shape{table.rows.size()};
+  for (StudyColumn const& column : columns) {
+    std::string const name = group + column.name;
+    if (column.whole) {
+      std::vector<std::int64_t> numbers;
+      for (StudyRow const& row : table.rows) {
+        numbers.push_back(column.name == "seed" ? static_cast<std::int64_t>(row.seed)
+                                                : static_cast<std::int64_t>(column.number(row)));
+      }
+      file.write(name, numbers, shape, "1", column.description, row_name);
+    } else {
+      std::vector<double> numbers;
+      for (StudyRow const& row : table.rows) numbers.push_back(column.number(row));
+      file.write(name, numbers, shape, unit_of(column.name), column.description, row_name);
+    }
+    if (!column.labels.empty()) file.attribute(name, "labels", nlohmann::json(column.labels).dump());
+  }
+}
+
+}  // namespace gladstone

@@ -1,0 +1,126 @@
+#include "render/light/flow.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/base/units.h"
+#include "render/light/flow_path.h"
+
+namespace gladstone {
+namespace {
+
+FlowSetup read_flow(std::string const& text) {
+  SetupDocument document = SetupDocument::from_text(text, "flow.toml");
+  FlowSetup const flow = read_flow_setup(document.root().table("flow"));
+  document.finish();
+  return flow;
+}
+
+FlowSetup flow_of(std::string const& kind, std::string const& keys) {
+  return read_flow("[flow]\nkind = \"" + kind + "\"\n" + keys);
+}
+
+double distance(Vec3d a, Vec3d b) { return length(a - b); }
+
+std::vector<FlowSetup> some_of_every_kind() {
+  return {flow_of("uniform", "velocity_m_s = [3, -2, 1]"),
+          flow_of("shear", "rate_1_s = 800"),
+          flow_of("rotation", "rate_rad_s = 500"),
+          flow_of("lamb_oseen", "circulation_m2_s = 0.3"),
+          flow_of("rankine", "circulation_m2_s = -0.3\ncore_radius_mm = 4"),
+          flow_of("taylor_green", "amplitude_m_s = 7"),
+          flow_of("stagnation", "rate_1_s = 900"),
+          flow_of("jet", "peak_m_s = 20\ndirection = [3, 4]")};
+}
+
+// Every one of these flows is incompressible: differences of the velocity over 2 um give no divergence beside the
+// gradient itself. Their third derivatives, at most 7 m/s over (3 mm)^3, leave 1e-5 1/s of it.
+TEST(Flow, OfEveryKindIsWithoutDivergence) {
+  for (FlowSetup const& setup : some_of_every_kind()) {
+    for (Vec3d const p : {Vec3d{1e-3, 2e-3, 0}, {-3e-3, 0.5e-3, 1e-3}, {6e-3, -7e-3, 0}}) {
+      double const h = 1e-6;
+      Flow const& u = setup.flow;
+      double const divergence = (u(p + Vec3d{h, 0, 0}).x - u(p - Vec3d{h, 0, 0}).x + u(p + Vec3d{0, h, 0}).y -
+                                 u(p - Vec3d{0, h, 0}).y + u(p + Vec3d{0, 0, h}).z - u(p - Vec3d{0, 0, h}).z) /
+                                (2 * h);
+      EXPECT_NEAR(divergence, 0, 1e-3);
+    }
+  }
+}
+
+// u_theta(r) = Gamma / (2 pi r) (1 - exp(-r^2 / r_c^2)), and within a hundredth of the core solid rotation to 5e-5.
+TEST(LambOseen, TurnsAsItsFormula) {
+  Flow const u = flow_of("lamb_oseen", "circulation_m2_s = 0.2\ncore_radius_mm = 5").flow;
+  for (double const r : {1e-3, 5e-3, 30e-3}) {
+    double const expected = 0.2 / (2 * pi * r) * (1 - std::exp(-std::pow(r / 5e-3, 2)));
+    EXPECT_NEAR(u(Vec3d{0, r, 0}).x, -expected, 1e-12);
+    EXPECT_NEAR(u(Vec3d{r, 0, 7}).y, expected, 1e-12);
+  }
+  EXPECT_NEAR(u(Vec3d{5e-5, 0, 0}).y, 0.2 / (2 * pi) * 5e-5 / 25e-6, 1e-4 * 0.064);
+  EXPECT_EQ(length(u(Vec3d{})), 0);
+}
+
+// Solid inside, free outside: r u_theta is Gamma / (2 pi) from the core on, and a quarter of it at half of the core.
+TEST(Rankine, IsSolidInsideAndFreeOutside) {
+  Flow const u = flow_of("rankine", "circulation_m2_s = 0.2\ncore_radius_mm = 4").flow;
+  double const at_core = 0.2 / (2 * pi);
+  EXPECT_NEAR(2e-3 * u(Vec3d{2e-3, 0, 0}).y, at_core / 4, 1e-15);
+  EXPECT_NEAR(4e-3 * u(Vec3d{4e-3, 0, 0}).y, at_core, 1e-15);
+  EXPECT_NEAR(9e-3 * u(Vec3d{9e-3, 0, 0}).y, at_core, 1e-15);
+}
+
+// Pathlines of rotation by an angle of 0.8: the error of n Runge-Kutta steps falls as n^-4.
+TEST(FlowPath, IsOfFourthOrder) {
+  ParticleVelocity const u{flow_of("rotation", "rate_rad_s = 800").flow};
+  Vec3d const start{5e-3, 0, 0}, end{5e-3 * std::cos(0.8), 5e-3 * std::sin(0.8), 0};
+  double const coarse = distance(moved(u, start, 1e-3, 2), end), fine = distance(moved(u, start, 1e-3, 4), end);
+  EXPECT_NEAR(std::log2(coarse / fine), 4, 0.15);
+  EXPECT_LT(distance(moved(u, start, 1e-3, 64), end), 1e-11);
+}
+
+// Shear: x + rate y t, which is linear in time, to rounding. Stagnation: x exp(a t), y exp(-a t): sixteen steps of
+// 0.05 leave 0.05^5 / 120 of the place each.
+TEST(FlowPath, FollowsShearAndStagnation) {
+  ParticleVelocity const shear{flow_of("shear", "rate_1_s = 800").flow};
+  EXPECT_LT(distance(moved(shear, {1e-3, 2e-3, 3e-3}, 1e-3, 3), {1e-3 + 0.8 * 2e-3, 2e-3, 3e-3}), 1e-17);
+  ParticleVelocity const stagnation{flow_of("stagnation", "rate_1_s = 800").flow};
+  Vec3d const end{1e-3 * std::exp(0.8), 2e-3 * std::exp(-0.8), 0};
+  EXPECT_LT(distance(moved(stagnation, {1e-3, 2e-3, 0}, 1e-3, 16), end), 16 * std::pow(0.05, 5) / 120 * 4e-3);
+}
+
+// A vortex carries particles round at their radius, by u_theta t / r.
+TEST(FlowPath, GoesRoundAVortex) {
+  ParticleVelocity const u{flow_of("lamb_oseen", "circulation_m2_s = 0.2\ncore_radius_mm = 5").flow};
+  double const r = 4e-3, angle = u({r, 0, 0}).y / r * 2e-4;
+  Vec3d const end = moved(u, {r, 0, 0}, 2e-4, 16);
+  EXPECT_LT(distance(end, {r * std::cos(angle), r * std::sin(angle), 0}), 1e-12);
+}
+
+// In solid rotation at W a heavy particle moves as exp(L t) with tau L^2 + L = i W, of which first order of tau keeps
+// L = i W + tau W^2: it spirals out. The next term, -2 i tau^2 W^3, is what is stated as neglected.
+TEST(LaggingParticle, SpiralsOutOfARotation) {
+  double const w = 500, tau = 2e-5, time = 1e-3, r = 5e-3;
+  ParticleVelocity const v{flow_of("rotation", "rate_rad_s = 500").flow, tau, 1e-6};
+  Vec3d const end = moved(v, {r, 0, 0}, time, 64);
+  double const grown = r * std::exp(tau * w * w * time);
+  EXPECT_LT(distance(end, {grown * std::cos(w * time), grown * std::sin(w * time), 0}), 1e-6 * r);
+  // differences over a turn of 5e-4 are good to a square of it
+  EXPECT_NEAR(length(v.neglected({r, 0, 0})), 2 * tau * tau * w * w * w * r, 1e-5 * 2 * tau * tau * w * w * w * r);
+  // the exact root beside it: a departure of that size and no more
+  EXPECT_NEAR(length(v({r, 0, 0}) - Vec3d{tau * w * w * r, w * r, 0}), 0, 1e-6 * w * r);
+}
+
+TEST(FlowSetup, RefusesWhatMovesNothing) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT([] { read_flow("[flow]\ndt_us = 0\n"); }, ThrowsMessage<SetupError>(HasSubstr("dt_us = 0")));
+  EXPECT_THAT([] { flow_of("jet", "direction = [0, 0]"); }, ThrowsMessage<SetupError>(HasSubstr("points nowhere")));
+  EXPECT_THAT([] { flow_of("lamb-oseen", ""); }, ThrowsMessage<SetupError>(HasSubstr("lamb_oseen")));
+  EXPECT_THAT([] { flow_of("rankine", "rate_1_s = 3"); }, ThrowsMessage<SetupError>(HasSubstr("rate_1_s")));
+}
+
+}  // namespace
+}  // namespace gladstone

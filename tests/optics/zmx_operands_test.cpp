@@ -1,0 +1,145 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/base/units.h"
+#include "render/optics/paraxial.h"
+#include "tests/optics/lens_fixtures.h"
+#include "tests/optics/prescription_texts.h"
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The singlet with a line more in its second surface.
+std::string with_operand(std::string const& line) {
+  return changed(zmx, "  CURV -0.02", "  " + line + "\n  CURV -0.02");
+}
+
+Lens zmx_lens(std::string const& name, std::string const& text) {
+  return build_lens(read_prescription(file_of(name, text)), GlassCatalogue::shipped(), spectral_line::d);
+}
+
+std::vector<std::string> notes_of(std::string const& name, std::string const& text) {
+  return read_prescription(file_of(name, text)).warnings;
+}
+
+/// What becomes of a ray parallel to the axis at a height, past a stop that is wide open.
+RayStatus fate(Lens lens, double height_mm) {
+  lens.surfaces[0] = lens.surfaces[0].visit([](auto opened) -> LensSurface<double> {
+    opened.semi_diameter = 8 * unit::millimetre;
+    return opened;
+  });
+  Ray<double> ray = parallel_ray(height_mm);
+  return carry(lens, ray);
+}
+
+// A circular aperture is an edge, whatever the surface's own width is; a disc in its middle takes what meets it. Rays
+// of the singlet at 2, 4 and 6 mm meet its second face a tenth lower.
+TEST(ZmxOperands, CircularAperturesAndObscurationsAreTraced) {
+  Lens const bare = zmx_lens("bare.zmx", zmx);
+  for (double const height : {1.0, 4.0, 6.0}) EXPECT_EQ(fate(bare, height), RayStatus::alive);
+  Lens const closed = zmx_lens("clap.zmx", with_operand("CLAP 0 5.0 0"));
+  EXPECT_EQ(fate(closed, 4), RayStatus::alive);
+  EXPECT_EQ(fate(closed, 6), RayStatus::vignetted);
+  Lens const ring = zmx_lens("ring.zmx", with_operand("CLAP 2.0 5.0 0"));
+  EXPECT_EQ(fate(ring, 1), RayStatus::vignetted);
+  EXPECT_EQ(fate(ring, 4), RayStatus::alive);
+  Lens const obscured = zmx_lens("obsc.zmx", with_operand("OBSC 0 2.0 0"));
+  EXPECT_EQ(fate(obscured, 1), RayStatus::vignetted);
+  EXPECT_EQ(fate(obscured, 4), RayStatus::alive);
+  EXPECT_EQ(fate(zmx_lens("flap.zmx", with_operand("FLAP 0 5.0 0")), 6), RayStatus::vignetted);
+}
+
+// The same in CODE V and in TOML.
+TEST(ZmxOperands, OtherFormatsHaveTheSameObscuration) {
+  auto const of = [](char const* name, std::string const& text) {
+    return build_lens(read_prescription(file_of(name, text)), GlassCatalogue::shipped(), spectral_line::d);
+  };
+  EXPECT_EQ(fate(of("obs.seq", changed(seq, "CIR 8.0", "CIR 8.0; CIR OBS 2.0")), 1), RayStatus::vignetted);
+  EXPECT_EQ(fate(of("obs.toml", changed(toml, "stop = true", "stop = true\nobscured_mm = 2.0")), 1),
+            RayStatus::vignetted);
+}
+
+// An aperture on the stop closes what the system's aperture would open further: a radius of 2 mm, not 3.
+TEST(ZmxOperands, AnApertureOnTheStopBoundsIt) {
+  Lens const lens = zmx_lens("stopped.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 2.0 0\n"));
+  EXPECT_NEAR(lens.stop_radius, 2e-3, 1e-15);
+  EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 4e-3, 1e-15);
+}
+
+TEST(ZmxOperands, WhatBlocksLightOtherwiseIsRefusedByName) {
+  for (char const* const line : {"SQAP 3 4 0", "SQOB 1 1 0", "ELAP 3 4 0", "ELOB 1 2 0", "SPID 0.5 3 0", "UDAP 0 0"}) {
+    std::string const key = std::string(line).substr(0, 4);
+    EXPECT_THAT(refusal("block.zmx", with_operand(line)), AllOf(HasSubstr("block.zmx:24"), HasSubstr(key)));
+  }
+  EXPECT_THAT(refusal("off.zmx", with_operand("OBDC 0.5 0")), AllOf(HasSubstr("off.zmx:24"), HasSubstr("decentred")));
+  EXPECT_EQ(refusal("on.zmx", with_operand("OBDC 0 0")), "");
+  EXPECT_THAT(refusal("ring.zmx", with_operand("OBSC 1 2 0")), HasSubstr("ring"));
+  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("radii from 5 to 2"));
+  EXPECT_THAT(refusal("large.zmx", with_operand("OBSC 0 9 0")), HasSubstr("obscuration of radius 9 mm"));
+}
+
+// What changes less than where rays go is said, and what nobody knows.
+TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
+  EXPECT_THAT(notes_of("quiet.zmx", zmx), IsEmpty());
+  EXPECT_THAT(notes_of("quiet.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0 0")), IsEmpty());
+  EXPECT_THAT(notes_of("vignetting.zmx", changed(zmx, "PWAV 2", "PWAV 2\nVCYN 0 0.2 0")),
+              ElementsAre(HasSubstr("vignetting factors")));
+  EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coatings")));
+  EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is not known")));
+  EXPECT_THAT(zmx_lens("kept.zmx", with_operand("QQQQ 1 2")).warnings, Contains(HasSubstr("QQQQ")));
+  EXPECT_THAT(refusal("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), HasSubstr("ENVD"));
+  EXPECT_EQ(refusal("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), "");
+}
+
+// FNUM and OBNA have two meanings each. The working f-number of a lens whose object stands s before it is v / D for its
+// image at v: 1/(2 u') of the marginal ray; a cone's half angle is the arcsine of a numerical aperture.
+TEST(ZmxOperands, AperturesMeanWhatTheirSecondValueSays) {
+  std::string const near = changed(zmx, "DISZ INFINITY", "DISZ 150.0");
+  Lens const lens = zmx_lens("working.zmx", changed(near, "ENPD 6.0", "FNUM 20 1"));
+  RayTransfer const m = ray_transfer(lens, 0, 2);
+  double const u = lens.paraxial_stop_radius / 0.15;  // the stop is the first surface
+  EXPECT_NEAR(std::abs(m.c * 0.15 * u + m.d * u), 1 / (2 * 20.0), 1e-15);
+  Lens const infinite = zmx_lens("infinite.zmx", changed(near, "ENPD 6.0", "FNUM 20 0"));
+  EXPECT_NEAR(paraxial_lens(infinite).f_number, 20, 1e-12);
+  Lens const cone = zmx_lens("cone.zmx", changed(near, "ENPD 6.0", "OBNA 1.5 1")),
+             na = zmx_lens("na.zmx", changed(near, "ENPD 6.0", "OBNA 0.0261769483078732 0"));  // sin 1.5 degrees
+  EXPECT_NEAR(cone.stop_radius / na.stop_radius, 1, 1e-13);
+}
+
+// Model glasses: without dispersion where Vd is 0; nothing else but plausible ones. Glass that runs against the light
+// is none; behind a mirror it is.
+TEST(ZmxOperands, ModelGlassesAndNegativeThicknessesAreChecked) {
+  auto const model = [](char const* text) {
+    return changed(zmx, "GLAS N-BK7 0 0 1.5 40", std::string("GLAS ") + text);
+  };
+  Lens const plain = zmx_lens("plain.zmx", model("___BLANK 1 0 1.6 0"));
+  double const f = 50 / (2 * 0.6 - 0.36 * 6 / (1.6 * 50));
+  EXPECT_NEAR(paraxial_lens(plain).effective_focal_length * 1e3, f, 1e-11);
+  EXPECT_THAT(refusal("thin.zmx", model("___BLANK 1 0 0.9 40")), AllOf(HasSubstr("thin.zmx:20"), HasSubstr("0.9")));
+  EXPECT_THAT(refusal("minus.zmx", model("___BLANK 1 0 -1.5 40")), HasSubstr("minus.zmx:20"));
+  EXPECT_THAT(refusal("abbe.zmx", model("___BLANK 1 0 1.5 -40")), HasSubstr("abbe.zmx:20"));
+  EXPECT_THAT(notes_of("deviation.zmx", model("___BLANK 1 0 1.5 40 0.01")), Contains(HasSubstr("partial dispersion")));
+  EXPECT_THAT(refusal("back.zmx", changed(zmx, "DISZ 6.0", "DISZ -6.0")),
+              AllOf(HasSubstr("back.zmx:15"), HasSubstr("against the light")));
+}
+
+// The ray along the axis is to get through; where it ends, its surface and cause are named.
+TEST(ZmxOperands, AnAxialRayThatIsLostNamesItsSurface) {
+  std::string const turned = changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\ntilt_deg = [89, 0, 0]");
+  EXPECT_THAT(refusal("tilted.toml", turned), AllOf(HasSubstr("tilted.toml:9"), HasSubstr("surface 2")));
+  std::string const steep = changed(toml, "thickness_mm = 0.0", "thickness_mm = 0.0\ntilt_deg = [50, 0, 0]");
+  EXPECT_THAT(refusal("steep.toml", steep), AllOf(HasSubstr("steep.toml:9"), HasSubstr("totally reflected")));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,122 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "render/base/units.h"
+#include "render/focused_dots/focused_dots.h"
+#include "render/scene/particle_scene.h"
+#include "tests/scene/read_setup_text.h"
+
+namespace gladstone {
+namespace {
+
+/// A PIV setup with more in its tables.
+std::string piv_text(std::string const& particles = "", std::string const& laser = "", std::string const& flow = "",
+                     std::string const& more = "") {
+  return "experiment = \"piv\"\n[camera]\npixels = [64, 64]\n" + more + "[particles]\n" + particles + "[laser]\n" +
+         laser + "[flow]\n" + flow;
+}
+
+auto refused_piv(std::string const& text) {
+  return [text] { read_setup_text(text); };
+}
+
+auto told(std::string const& why) { return testing::ThrowsMessage<SetupError>(testing::HasSubstr(why)); }
+
+TEST(PivSetup, HasDefaults) {
+  gladstone::Setup const setup = read_setup_text(piv_text()).setup;
+  ASSERT_TRUE(setup.piv);
+  EXPECT_EQ(setup.z_d, 0);
+  EXPECT_EQ(setup.z_b(), setup.z_a);
+  EXPECT_EQ(setup.focus_distance(), setup.z_a);
+  EXPECT_EQ(setup.piv->particles.amount, 20000);
+  EXPECT_EQ(*setup.piv->particles.volume, (Vec3d{40e-3, 40e-3, 3e-3}));
+  EXPECT_EQ(setup.piv->particles.scattering, ParticleScattering::mie);
+  EXPECT_DOUBLE_EQ(setup.piv->flow.dt, 10e-6);
+  EXPECT_EQ(setup.piv->flow.flow(Vec3d{1, 2, 3}), (Vec3d{10, 0, 0}));
+  EXPECT_EQ(setup.piv->laser.wavelength, 532e-9);
+}
+
+TEST(PivSetup, SaysWhatIsOfOtherExperiments) {
+  EXPECT_THAT(refused_piv(piv_text("", "", "", "[target]\n")), told("[particles]"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "", "[geometry]\nz_d_mm = 250\n")), told("laser.center_mm"));
+  EXPECT_THAT(refused_piv("[particles]\nnumber = 3\n"), told("experiment = \"piv\""));
+  EXPECT_THAT(refused_piv("[laser]\n"), told("experiment = \"piv\""));
+  EXPECT_THAT(refused_piv("[camera]\nexposure = \"absolute\"\n"), told("is of PIV"));
+}
+
+TEST(PivSetup, RefusesWhatGivesNoPicture) {
+  EXPECT_THAT(refused_piv(piv_text("diameter_um = 0\n")), told("diameter_um = 0"));
+  EXPECT_THAT(refused_piv(piv_text("diameter_um = -1.0\n")), told("greater than 0"));
+  EXPECT_THAT(refused_piv(piv_text("diameter_um = { kind = \"normal\", mean_um = 1, std_um = 0.5 }\n")),
+              told("a third"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "dt_us = 0\n")), told("dt_us = 0"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter no light"));
+  EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 beside"));
+  EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("stands beside number"));
+  EXPECT_THAT(refused_piv(piv_text("viscosity_pa_s = 1e-5\n")), told("density_kg_m3"));
+  EXPECT_THAT(refused_piv(piv_text("file = \"nowhere.csv\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("", "wavelength_nm = 633\n")), told("medium.wavelength_nm"));
+  EXPECT_THAT(refused_piv(piv_text("volume_mm = [10, 10, 2000]\n")), told("reaches to the lens"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "", "[[window]]\nglass = \"N-BK7\"\nposition_mm = [0, 0, 0.5]\n")),
+              told("in the particles' volume"));
+}
+
+// An absurd number of particles is told with the memory that it would take, before any is.
+TEST(PivSetup, CountsTheMemoryOfParticles) {
+  gladstone::Setup const setup =
+      read_setup_text(piv_text("number = 3e9\nvolume_mm = [10, 10, 10]\n", "", "velocity_m_s = [0, 0, 0]\n")).setup;
+  MemoryNeed const need = particle_memory(setup);
+  EXPECT_STREQ(need.key, "particles.number");
+  EXPECT_DOUBLE_EQ(need.bytes, 3e9 * bytes_per_particle);
+  EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("GB of memory (")));
+}
+
+// 64 x 64 px of 10 um at M = 105 / 645 see a square of 3.93 mm of the plane Z = 0, all of it within the volume: 0.1 a
+// pixel are 409.6 particles in view, and 8 x 8 / 3.93^2 times as many in the volume. Depths of +-1 mm in 750 change the
+// square evenly. Of the 16384 places some 3950 are in view; their share is good to what lies near the square's corners,
+// some ten places.
+TEST(PivSetup, SeedsByThePixel) {
+  gladstone::Setup const setup = read_setup_text(piv_text("per_pixel = 0.1\nvolume_mm = [8, 8, 2]\n")).setup;
+  double const side = 64 * 10e-3 / (105.0 / 645);
+  EXPECT_NEAR(particle_count(setup) / (409.6 * 64 / (side * side)), 1, 3e-3);
+  gladstone::Setup const by_volume = read_setup_text(piv_text("per_mm3 = 12.5\nvolume_mm = [8, 8, 2]\n")).setup;
+  EXPECT_NEAR(particle_count(by_volume), 1600, 1e-9);
+}
+
+// Particles never enter the fast renderer of flat dots, whatever else its bench asks for is there.
+TEST(PivScene, IsNotOfFocusedDots) {
+  gladstone::Setup const setup = read_setup_text(piv_text("number = 20\nscattering = \"lambert\"\n")).setup;
+  EXPECT_TRUE(setup.on_bench());
+  EXPECT_THAT(reason_against_focused_dots(setup), testing::HasSubstr("particles"));
+  EXPECT_FALSE(focused_dots(build_scene(setup)));
+}
+
+TEST(PivScene, RefusesALightThatMeetsNoParticle) {
+  std::string const path = testing::TempDir() + "/beside.csv";
+  std::ofstream(path) << "x_mm,y_mm,z_mm,diameter_um\n0,0,20,1\n1,1,-15,1\n";
+  std::string const text = piv_text("file = \"" + path + "\"\n", "profile = \"top_hat\"\n");
+  gladstone::Setup const setup = read_setup_text(text).setup;
+  EXPECT_THAT([&] { build_scene(setup); }, testing::ThrowsMessage<DataError>(testing::HasSubstr("lights no particle")));
+}
+
+// A sheet of 1 mm in a flow of 60 m/s along its normal: in 10 us six tenths of the
+// particles leave it.
+TEST(PivScene, WarnsOfPairsThatAreLost) {
+  gladstone::Setup const lost =
+      read_setup_text(piv_text("number = 500\nvolume_mm = [2, 2, 3]\nscattering = \"lambert\"\n",
+                               "profile = \"top_hat\"\n", "velocity_m_s = [0, 0, 60]\n"))
+          .setup;
+  auto const warnings = warnings_of_particles(build_scene(lost));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], testing::HasSubstr("shorten flow.dt_us"));
+  gladstone::Setup const aside =
+      read_setup_text(piv_text("number = 50\nvolume_mm = [2, 2, 3]\ncenter_mm = [15, 0, 0]\n")).setup;
+  auto const unseen = warnings_of_particles(build_scene(aside));
+  ASSERT_EQ(unseen.size(), 1u);
+  EXPECT_THAT(unseen[0], testing::HasSubstr("images will be empty"));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,148 @@
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/base/units.h"
+#include "render/optics/camera_element.h"
+#include "render/scene/build_camera.h"
+#include "tests/scene/real_lens_setups.h"
+
+namespace gladstone {
+namespace {
+
+/// What a ray's place on the sensor may depend on.
+enum Parameter {
+  source_x,  // [m]
+  source_y,
+  source_z,
+  aim_x,  // on the aim plane: the ray's direction [m]
+  aim_y,
+  sensor_distance,     // by which the sensor is moved along its axis [m]
+  window_tilt,         // by which the first face is turned about its x [rad]
+  curvature_added,     // to a surface's, or to the power of a thin lens [1/m]
+  element_decentring,  // of that surface along its x [m]
+  parameters
+};
+using Jet = ceres::Jet<double, parameters>;
+template <class T>
+using Values = std::array<T, parameters>;
+
+/// Where a ray lands, by everything it depends on. @param changed element that curvature and decentring are of
+template <class T>
+Vec2<T> landing(Camera const& camera, int changed, Values<T> const& v) {
+  std::vector<CameraElement<T>> elements;
+  for (std::size_t i = 0; i < camera.elements.size(); ++i) {
+    elements.push_back(in_scalar<T>(camera.elements[i]));
+    elements.back() = elements.back().visit([&](auto held) -> CameraElement<T> {
+      if (i == 0) held.pose = held.pose.turned({v[window_tilt], T(0), T(0)});
+      if (static_cast<int>(i) != changed) return held;
+      held.pose = held.pose.moved({v[element_decentring], T(0), T(0)});
+      if constexpr (std::is_same_v<decltype(held), ShapedSurface<T, Quadric<T>>>) {
+        held.shape.curvature = held.shape.curvature + v[curvature_added];
+      }
+      if constexpr (std::is_same_v<decltype(held), ShapedSurface<T, EvenAsphere<T>>>) {
+        held.shape.conic.curvature = held.shape.conic.curvature + v[curvature_added];
+      }
+      if constexpr (std::is_same_v<decltype(held), PosedThinLens<T>>) {
+        held.focal_length = T(1) / (T(1) / held.focal_length + v[curvature_added]);
+      }
+      return held;
+    });
+  }
+  PosedSensor<T> sensor = camera.sensor.in_scalar<T>();
+  sensor.pose = sensor.pose.moved({T(0), T(0), v[sensor_distance]});
+  auto const aim_plane = in_scalar<T>(camera.aim_plane);
+  CameraView<T> const view{elements.data(), camera.before_medium, static_cast<int>(elements.size()), sensor, aim_plane};
+  Vec3<T> const source{v[source_x], v[source_y], v[source_z]};
+  Vec3<T> const aim = aim_plane.point_outwards({v[aim_x], v[aim_y], T(0)});
+  Ray<T> const ray{source, normalized(aim - source)};
+  RayHit<T> const hit = trace_ray(view, NoMedium<T>{}, TracingOptions<T>{}, ray, T(1));
+  EXPECT_TRUE(reaches_sensor_plane(hit.status));
+  return hit.pixel;
+}
+
+/// Holds Jets against differences of eighth order: with steps h of 1e-2 of the way f changes over, they err by
+/// (h/way)^8 = 1e-16, and by the rounding of f over h: 1e-12 px of some px. 1e-8 of each parameter's derivative is left
+/// to both.
+void expect_exact_derivatives(Camera const& camera, int changed, Values<double> const& at) {
+  Values<Jet> jets;
+  for (int k = 0; k < parameters; ++k) jets[static_cast<std::size_t>(k)] = Jet(at[static_cast<std::size_t>(k)], k);
+  Vec2<Jet> const traced = landing(camera, changed, jets);
+  Vec2d const plain = landing(camera, changed, at);
+  // a Jet computes what a double does, but for where the compiler fuses products with sums
+  EXPECT_NEAR(traced.x.a, plain.x, 1e-9);
+  EXPECT_NEAR(traced.y.a, plain.y, 1e-9);
+  Values<double> const steps{1e-4, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4, 2e-4, 1e-2, 1e-5};
+  double const weights[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+  for (std::size_t k = 0; k < parameters; ++k) {
+    Vec2d slope{};
+    for (int i = 1; i <= 4; ++i) {
+      Values<double> more = at, less = at;
+      more[k] += i * steps[k];
+      less[k] -= i * steps[k];
+      slope = slope + weights[i - 1] / steps[k] * (landing(camera, changed, more) - landing(camera, changed, less));
+    }
+    auto const index = static_cast<Eigen::Index>(k);
+    Vec2d const exact{traced.x.v[index], traced.y.v[index]};
+    EXPECT_LT(length(exact - slope), 1e-8 * length(slope)) << "parameter " << k;
+    EXPECT_GT(length(slope), 0) << "parameter " << k;
+  }
+}
+
+WindowSetup tilted_window() {
+  WindowSetup window;
+  window.index = 1.5168;
+  window.thickness = 10e-3;
+  window.position = {0, 0, 0.1};
+  window.tilt = {3 * unit::degree, -12 * unit::degree};
+  return window;
+}
+
+constexpr Values<double> off_axis{0.012, -0.015, -0.25, 0.004, 0.007, 0, 0, 0, 0};
+
+// The chain rule through a window, eleven surfaces and a tilted sensor, as Jets run it, is what differences approach.
+TEST(TrainDerivatives, ThroughADoubleGaussAreExact) {
+  gladstone::Setup setup = double_gauss_setup(512, 4);
+  setup.windows = {tilted_window()};
+  setup.camera.tilt = {2 * unit::degree, -3 * unit::degree};
+  Camera const camera = build_camera(setup);
+  expect_exact_derivatives(camera, 6, off_axis);
+}
+
+// The same through an ideal lens, whose place on the sensor is distorted.
+TEST(TrainDerivatives, ThroughAThinLensAreExact) {
+  gladstone::Setup setup = table1_setup(512);
+  setup.windows = {tilted_window()};
+  setup.camera.distortion = {-2.0, 10.0, 0.03, -0.05};
+  Camera const camera = build_camera(setup);
+  Values<double> at = off_axis;
+  at[aim_x] = 0.001;
+  at[aim_y] = 0.002;
+  expect_exact_derivatives(camera, static_cast<int>(camera.elements.size()) - 1, at);
+}
+
+// The even asphere is met by iteration: the derivative is that of the place it ends at.
+TEST(TrainDerivatives, ThroughAnAsphereAreExact) {
+  gladstone::Setup setup = double_gauss_setup(512, 4);
+  Camera camera = build_camera(setup);
+  std::size_t const last = camera.elements.size() - 1;
+  camera.elements[last] = camera.elements[last].visit([](auto const& held) -> CameraElement<double> {
+    ShapedSurface<double, EvenAsphere<double>> asphere;
+    if constexpr (std::is_same_v<std::decay_t<decltype(held)>, ShapedSurface<double, Quadric<double>>>) {
+      asphere.pose = held.pose;
+      asphere.shape = {{held.shape.curvature, -0.4}, {0, 30.0, -4e4, 2e7}};
+      asphere.semi_diameter = held.semi_diameter;
+      asphere.n_before = held.n_before;
+      asphere.n_after = held.n_after;
+    }
+    return asphere;
+  });
+  expect_exact_derivatives(camera, static_cast<int>(last), off_axis);
+}
+
+}  // namespace
+}  // namespace gladstone
