@@ -52,9 +52,9 @@ std::optional<int> version_of(Json const& json) {
 
 ManifestCase case_of(Json const& json, std::string_view line) {
   ManifestCase one;
-  one.index = json.at("index").get<std::size_t>();
-  one.repeat = json.at("repeat").get<std::size_t>();
-  one.seed = json.at("seed").get<std::uint64_t>();
+  one.index = json.at("index").get_ref<std::uint64_t const&>();
+  one.repeat = json.at("repeat").get_ref<std::uint64_t const&>();
+  one.seed = json.at("seed").get_ref<std::uint64_t const&>();
   one.device = json.at("device").get<std::string>();
   for (auto const& [key, value] : json.at("parameters").items()) one.parameters.emplace_back(key, value_of(value));
   one.setup = json.at("setup").get<std::string>();

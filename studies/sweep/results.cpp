@@ -27,7 +27,7 @@ namespace gladstone {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int result_version = 2;
+constexpr std::uint64_t result_version = 2;
 constexpr std::size_t hash_digits = 16;
 constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
 
@@ -91,7 +91,7 @@ constexpr std::string_view numbers = ",\"measures\":";  // where a result's numb
 /// @param json a result, or its head
 CaseResult result_of(Json const& json, ResultPart part) {
   CaseResult result;
-  result.index = json.at("index").get<std::size_t>();
+  result.index = json.at("index").get_ref<std::uint64_t const&>();
   result.line_hash = json.at("line").get<std::string>();
   result.status = json.at("status").get<std::string>() == "ok" ? CaseStatus::ok : CaseStatus::failed;
   result.error = json.at("error").get<std::string>();
@@ -176,7 +176,7 @@ std::optional<CaseResult> parse_result(std::string const& text, std::string cons
   Json const json =
       Json::parse(head_size == std::string::npos ? text : text.substr(0, head_size) + '}', nullptr, false);
   try {
-    if (int const version = json.at("result").get<int>(); version != result_version) {
+    if (auto const version = json.at("result").get_ref<std::uint64_t const&>(); version != result_version) {
       throw DataError(path,
                       fmt::format("is a result of version {} (this gladstone reads version {}); use the gladstone "
                                   "that made it, plan the study into another folder, or remove {}/*.json to "
