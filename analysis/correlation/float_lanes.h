@@ -52,7 +52,30 @@ inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) {
   return reinterpret_cast<FloatLanes>((mask & reinterpret_cast<IntLanes>(a)) | (~mask & reinterpret_cast<IntLanes>(b)));
 }
 
-inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) { return select_lanes(a > b, a, b); }
+inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) {
+#if defined(__AVX__)
+  return __builtin_ia32_maxps256(a, b);
+#else
+  return select_lanes(a > b, a, b);
+#endif
+}
+
+/// Bit l: whether lane l of a mask is set.
+inline unsigned bits_of_lanes(IntLanes mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<FloatLanes>(mask)));
+#else
+  unsigned bits = 0;
+  for (int l = 0; l < lane_count; ++l) bits |= mask[l] != 0 ? 1u << l : 0u;
+  return bits;
+#endif
+}
+
+/// The largest whole numbers not above numbers below 2^31.
+inline IntLanes floor_lanes(FloatLanes a) {
+  IntLanes const cut = __builtin_convertvector(a, IntLanes);
+  return cut + (a < __builtin_convertvector(cut, FloatLanes));  // a mask is -1
+}
 
 inline FloatLanes root_lanes(FloatLanes a) {
   FloatLanes r;

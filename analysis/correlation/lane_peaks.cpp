@@ -6,32 +6,8 @@
 
 #include "analysis/correlation/window_peak.h"
 
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
-
 namespace gladstone {
 namespace {
-
-/// Bit l: whether lane l of a mask is set.
-unsigned bits_of(IntLanes mask) {
-#if defined(__AVX2__)
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
-#else
-  unsigned bits = 0;
-  for (int l = 0; l < lane_count; ++l) bits |= mask[l] != 0 ? 1u << l : 0u;
-  return bits;
-#endif
-}
-
-/// The higher of two values in all lanes.
-FloatLanes highest(FloatLanes a, FloatLanes b) {
-#if defined(__AVX2__)
-  return _mm256_max_ps(a, b);
-#else
-  return larger_lanes(a, b);
-#endif
-}
 
 /// Puts the heights between the samples, as refined_peak() has them, into up to eight maxima of one window.
 void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
@@ -60,7 +36,7 @@ void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
   FloatLanes const most = all_lanes(static_cast<float>(largest_rise));
   FloatLanes const factor = exp_lanes(select_lanes(rise < 2.0f, rise, all_lanes(2.0f)));
   FloatLanes const height = centre * select_lanes(factor < most, factor, most);
-  unsigned const bits = bits_of(positive);
+  unsigned const bits = bits_of_lanes(positive);
   for (int k = 0; k < count; ++k)
     peaks[k].height =
         (bits >> k & 1u) != 0u ? height[k] : refined_peak(view, peaks[k].x, peaks[k].y, peaks[k].height).height;
@@ -83,7 +59,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
   int const radius = job_.search_radius_px, count = 2 * radius + 1;
   auto const highest_of_three = [&](int y, FloatLanes* to) {
     FloatLanes const* const row = plane.row(y) - radius;
-    for (int x = 0; x < count; ++x) to[x] = highest(highest(row[x - 1], row[x]), row[x + 1]);
+    for (int x = 0; x < count; ++x) to[x] = larger_lanes(larger_lanes(row[x - 1], row[x]), row[x + 1]);
   };
   std::vector<FloatLanes>*above = &highest_[0], *here = &highest_[1], *below = &highest_[2];
   highest_of_three(-radius - 1, above->data());
@@ -96,7 +72,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
       std::size_t const at = static_cast<std::size_t>(x);
       IntLanes const mask =
           (v > 0.0f) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > (*above)[at]) & (v >= (*below)[at]);
-      found_[at] = static_cast<unsigned char>(bits_of(mask));
+      found_[at] = static_cast<unsigned char>(bits_of_lanes(mask));
     }
     // eight places at a time: bit 8 x + lane
     for (int first = 0; first < count; first += 8) {

@@ -28,13 +28,18 @@ class StandardCorrelator final : public Correlator {
     check_image_sizes(settings_, columns, rows, flow.columns(), flow.rows());
 
     std::optional<PairDeformer> deformer;
-    if (schedule_.passes() > 1) deformer.emplace(reference, flow, schedule_.spline_degree());
+    ImagePair single, deformed;
+    if (schedule_.passes() > 1)
+      deformer.emplace(reference, flow, schedule_.spline_degree());
+    else
+      single = make_image_pair(reference, flow);
     std::optional<DensePredictor> predictor;
     std::vector<char> ambiguous;
     InterrogationGrid grid_before;
     for (int pass = 0;; ++pass) {
       InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
-      ImagePair const pair = predictor ? deformer->deform(*predictor) : make_image_pair(reference, flow);
+      if (predictor) deformer->deform(*predictor, deformed);
+      ImagePair const& pair = predictor ? deformed : (deformer ? deformer->original() : single);
       std::vector<WindowCorrelation> const windows =
           correlate_({pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass), fit_,
                       fmt::format("correlate {}/{}", pass + 1, schedule_.passes())});
