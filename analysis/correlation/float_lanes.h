@@ -29,22 +29,35 @@ inline FloatLanes load_lanes(float const* from) {
   return v;
 }
 
-/// Value k of row l becomes lane l of column k.
-inline void transpose_lanes(FloatLanes (&v)[lane_count]) {
-  FloatLanes t[8], u[8];
-  for (int k = 0; k < 8; k += 2) {
-    t[k] = __builtin_shufflevector(v[k], v[k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    t[k + 1] = __builtin_shufflevector(v[k], v[k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  for (int k = 0; k < 8; k += 4)
-    for (int i = 0; i < 2; ++i) {
-      u[k + 2 * i] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 0, 1, 8, 9, 4, 5, 12, 13);
-      u[k + 2 * i + 1] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 2, 3, 10, 11, 6, 7, 14, 15);
+inline void store_lanes(float* to, FloatLanes v) { __builtin_memcpy(to, &v, sizeof v); }
+
+/// Four values of one row and, behind them, four of another.
+inline FloatLanes join_halves(float const* low, float const* high) {
+  using Half = float __attribute__((vector_size(16)));
+  Half a, b;
+  __builtin_memcpy(&a, low, sizeof a);
+  __builtin_memcpy(&b, high, sizeof b);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// Reads eight columns of eight rows: value k of row l becomes lane l of column k.
+/// @param row first of the eight values of a row by its number
+template <class Row>
+[[gnu::always_inline]] inline void read_columns(Row const& row, FloatLanes (&column)[lane_count]) {
+  FloatLanes u[8];
+  for (int half = 0; half < 2; ++half) {
+    FloatLanes v[4], t[4];
+    for (int l = 0; l < 4; ++l) v[l] = join_halves(row(l) + 4 * half, row(l + 4) + 4 * half);
+    for (int l = 0; l < 4; l += 2) {
+      t[l] = __builtin_shufflevector(v[l], v[l + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+      t[l + 1] = __builtin_shufflevector(v[l], v[l + 1], 2, 10, 3, 11, 6, 14, 7, 15);
     }
-  for (int k = 0; k < 4; ++k) {
-    v[k] = __builtin_shufflevector(u[k], u[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    v[k + 4] = __builtin_shufflevector(u[k], u[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    for (int l = 0; l < 2; ++l) {
+      u[4 * half + 2 * l] = __builtin_shufflevector(t[l], t[l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      u[4 * half + 2 * l + 1] = __builtin_shufflevector(t[l], t[l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
   }
+  for (int k = 0; k < 8; ++k) column[k] = u[k];
 }
 
 /// a where the mask is set, else b.

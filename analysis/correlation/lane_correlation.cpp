@@ -19,7 +19,7 @@ LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView co
                                  KnownTiles const& tiles, LaneFourier const& fourier, bool with_margin)
     : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, with_margin) {
   int const size = fourier.size(), side = windows_.side();
-  pitch_ = size + 1;  // odd numbers of cache lines: columns do not fall on the same places of the cache
+  pitch_ = LaneFourier::pitch(size);
   half_pitch_ = (size / 2 + 1) | 1;
   std::size_t const lines = static_cast<std::size_t>(side);
   spectrum_.resize(lines * pitch_);
@@ -44,8 +44,7 @@ void LaneCorrelation::load(WindowTerm term) {
   int const side = windows_.side();
   for (int j = 0; j < side; ++j) {
     windows_.row(j, term, line_.data());
-    fourier_.forward(line_.data(), 1, side, spectrum_.data() + static_cast<std::size_t>(j) * pitch_, 1,
-                     scratch_.data());
+    fourier_.forward(line_.data(), 1, side, spectrum_.data() + static_cast<std::size_t>(j) * pitch_, scratch_.data());
   }
 }
 
@@ -61,11 +60,11 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
   FloatLanes const half = 0.5f * scale, quarter = 0.25f * scale;
   for (int kx = 0; kx <= size / 2; ++kx) {
     int const mx = (size - kx) % size;
-    fourier_.forward(spectrum_.data() + kx, pitch_, side, column_.data(), 1, scratch_.data());
+    fourier_.forward(spectrum_.data() + kx, pitch_, side, column_.data(), scratch_.data());
     ComplexLanes const* z = column_.data();
     ComplexLanes const* m = z;
     if (mx != kx) {
-      fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), 1, scratch_.data());
+      fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), scratch_.data());
       m = mirror_.data();
     }
     // as cross_spectrum() has it
@@ -76,7 +75,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
                                              quarter * ((b.re * b.re + b.im * b.im) - (a.re * a.re + a.im * a.im))};
     }
     if (filter) filter(line_.data(), kx, size);
-    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    fourier_.inverse(line_.data(), column_.data(), scratch_.data());
     for (int dy = -reach; dy <= reach; ++dy)
       half_[static_cast<std::size_t>(dy + reach) * half_pitch_ + kx] =
           column_[static_cast<std::size_t>(dy < 0 ? dy + size : dy)];
@@ -94,7 +93,7 @@ void LaneCorrelation::make_rows(LanePlane& plane) {
       line_[static_cast<std::size_t>(k)] = {a[k].re - b[k].im, a[k].im + b[k].re};
       if (k > 0 && k < size / 2) line_[static_cast<std::size_t>(size - k)] = {a[k].re + b[k].im, b[k].re - a[k].im};
     }
-    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    fourier_.inverse(line_.data(), column_.data(), scratch_.data());
     for (int dx = -reach; dx <= reach; ++dx) {
       ComplexLanes const& value = column_[static_cast<std::size_t>(dx < 0 ? dx + size : dx)];
       plane(dx, dy) = value.re;

@@ -24,8 +24,7 @@ struct LanePositions {
   FloatLanes sum(BsplineView<float> const& image, int base_x, int base_y) const {
     using View = BsplineView<float>;
     constexpr int before = (degree - 1) / 2;
-    float const* c = image.coefficients +
-                     static_cast<long long>(base_y - before + View::margin_before) * image.stride +
+    float const* c = image.coefficients + static_cast<long long>(base_y - before + View::margin_before) * image.stride +
                      (base_x - before + View::margin_before);
     FloatLanes all{};
     for (int j = 0; j <= degree; ++j, c += image.stride) {
@@ -61,8 +60,6 @@ FloatLanes inside_lanes(BsplineView<float> const& image, FloatLanes x, FloatLane
   return select_lanes((x >= -0.5f) & (x <= right) & (y >= -0.5f) & (y <= bottom), all_lanes(1.0f), FloatLanes{});
 }
 
-void store_lanes(float* to, FloatLanes v) { __builtin_memcpy(to, &v, sizeof v); }
-
 template <int degree>
 void deform_row(LaneDeformation const& pair, int j, std::span<float const> u, std::span<float const> v,
                 DeformedRow const& out) {
@@ -77,8 +74,8 @@ void deform_row(LaneDeformation const& pair, int j, std::span<float const> u, st
     store_lanes(out.reference + i, LanePositions<degree>(i, j, -half_u, -half_v).sample(pair.reference));
     store_lanes(out.flow + i, LanePositions<degree>(i, j, half_u, half_v).sample(pair.flow));
     FloatLanes const x = count_up + static_cast<float>(i), y = all_lanes(static_cast<float>(j));
-    FloatLanes here = inside_lanes(pair.reference, x - half_u, y - half_v) *
-                      inside_lanes(pair.flow, x + half_u, y + half_v);
+    FloatLanes here =
+        inside_lanes(pair.reference, x - half_u, y - half_v) * inside_lanes(pair.flow, x + half_u, y + half_v);
     for (int l = 0; l < lane_count && !pair.available.empty(); ++l)
       here[l] = known_at(x[l] - half_u[l], y[l] - half_v[l], columns, rows, known) *
                 known_at(x[l] + half_u[l], y[l] + half_v[l], columns, rows, known);
