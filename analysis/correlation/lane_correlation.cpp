@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "analysis/correlation/lane_peaks.h"
 #include "render/base/contracts.h"
@@ -12,6 +14,40 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
+
+/// What one piece of the work needs; the next takes it over.
+struct Workplace {
+  LaneCorrelation correlation;
+  LanePlane plane;
+  VisitPlanes visit;
+};
+
+/// Workplaces that nobody works at.
+class FreeWorkplaces {
+ public:
+  explicit FreeWorkplaces(std::function<std::unique_ptr<Workplace>()> make) : make_(std::move(make)) {}
+
+  std::unique_ptr<Workplace> take() {
+    {
+      std::lock_guard<std::mutex> const lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<Workplace> place = std::move(free_.back());
+        free_.pop_back();
+        return place;
+      }
+    }
+    return make_();
+  }
+  void give_back(std::unique_ptr<Workplace> place) {
+    std::lock_guard<std::mutex> const lock(mutex_);
+    free_.push_back(std::move(place));
+  }
+
+ private:
+  std::function<std::unique_ptr<Workplace>()> make_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workplace>> free_;
+};
 
 }  // namespace
 
@@ -111,16 +147,19 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
   KnownTiles const tiles(job.pair);
   LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));
   Progress progress(job.label, job.grid.size());
+  FreeWorkplaces workplaces([&] {
+    return std::unique_ptr<Workplace>(new Workplace{
+        {job, x.view(), y.view(), tiles, fourier, method.with_margin}, LanePlane(radius), make_visitor()});
+  });
   parallel_chunks(job.grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    LaneCorrelation work(job, x.view(), y.view(), tiles, fourier, method.with_margin);
-    LanePlane plane(radius);
-    VisitPlanes const visit = make_visitor();
+    std::unique_ptr<Workplace> here = workplaces.take();
     for (std::size_t first = begin; first < end; first += lane_count) {
       int const count = static_cast<int>(std::min<std::size_t>(lane_count, end - first));
-      work.windows().place(first, count);
-      method.make(work, plane);
-      visit(first, count, work, plane);
+      here->correlation.windows().place(first, count);
+      method.make(here->correlation, here->plane);
+      here->visit(first, count, here->correlation, here->plane);
     }
+    workplaces.give_back(std::move(here));
     progress.advance(end - begin);
   });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "analysis/correlation/window_peak.h"
 
@@ -63,6 +64,14 @@ void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
 
 /// The third highest sample of maxima that are not close to each other; 0 where there are fewer.
 float third_highest(PlanePeak<float> const* maxima, std::size_t count) {
+  PlanePeak<float> const none{};
+  PlanePeak<float> const *first = &none, *second = &none, *third = &none;
+  for (PlanePeak<float> const* peak = maxima; peak != maxima + count; ++peak) {
+    if (!(peak->height > third->height)) continue;
+    third = peak->height > second->height ? std::exchange(second, peak) : peak;
+    if (second->height > first->height) std::swap(first, second);
+  }
+  if (!are_close(*first, *second) && !are_close(*first, *third) && !are_close(*second, *third)) return third->height;
   PeakList<float> highest;
   for (std::size_t k = 0; k < count; ++k)
     if (can_enter(highest, maxima[k].height)) insert_peak(highest, maxima[k]);
@@ -126,21 +135,15 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   LanePlaneView const view{plane, lane};
   PeakList<float> found;
   for (float least = third_highest(maxima, all);; least = 0.0f) {
+    float const enough = static_cast<float>(nearly_as_high / largest_rise) * least;  // for prefer_nearest(), too
     found = {};
     refined_.clear();
-    for (std::size_t next = 0; next < all;) {
-      PlanePeak<float> group[lane_count];
-      int count = 0;
-      for (; next < all && count < lane_count; ++next) {
-        float const most = static_cast<float>(largest_rise) * maxima[next].height;
-        if (most >= least && can_enter(found, most)) group[count++] = maxima[next];
-      }
-      refine(view, group, count);
-      for (int k = 0; k < count; ++k) {
-        refined_.push_back(group[k]);
-        if (can_enter(found, group[k].height)) insert_peak(found, group[k]);
-      }
-    }
+    for (std::size_t k = 0; k < all; ++k)
+      if (maxima[k].height >= enough) refined_.push_back(maxima[k]);
+    for (std::size_t k = 0; k < refined_.size(); k += lane_count)
+      refine(view, refined_.data() + k, static_cast<int>(std::min<std::size_t>(lane_count, refined_.size() - k)));
+    for (PlanePeak<float> const& peak : refined_)
+      if (peak.height >= least && can_enter(found, peak.height)) insert_peak(found, peak);
     bool const sure = found.count == PeakList<float>::capacity && found.peak[found.count - 1].height >= least;
     if (least == 0.0f || sure) break;
   }

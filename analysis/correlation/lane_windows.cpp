@@ -178,26 +178,24 @@ void LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   }
 }
 
-/// Adds up the squares of a row of w A and w B.
+/// Adds up the squares of a row of w A and w B. What a border cuts off has no weight.
 void LaneWindows::gather_energies(int j, ComplexLanes const* row) {
-  int const count = side(), core_first = margin_ + job_.grid.window_px / 2 - offset_;
-  int const core_end = core_first + job_.grid.window_px;
-  FloatLanes reference{}, flow{};
-  auto const add = [&](int first, int end) {
+  int const core_first = margin_ + job_.grid.window_px / 2 - offset_, core_end = core_first + job_.grid.window_px;
+  ComplexLanes outer{}, core{};
+  auto const add = [&](int first, int end, ComplexLanes& sum) {
     for (int i = first; i < end; ++i) {
-      reference += row[i].re * row[i].re;
-      flow += row[i].im * row[i].im;
+      sum.re += row[i].re * row[i].re;
+      sum.im += row[i].im * row[i].im;
     }
   };
-  add(core_first, core_end);
-  if (j >= core_first && j < core_end) {
-    core_reference_ += reference;
-    core_flow_ += flow;
-  }
-  add(0, core_first);
-  add(core_end, count);
-  reference_ += reference;
-  flow_ += flow;
+  add(margin_, core_first, outer);
+  add(core_first, core_end, core);
+  add(core_end, margin_ + side_, outer);
+  reference_ += outer.re + core.re;
+  flow_ += outer.im + core.im;
+  if (j < core_first || j >= core_end) return;
+  core_reference_ += core.re;
+  core_flow_ += core.im;
 }
 
 void LaneWindows::row(int j, WindowTerm term, ComplexLanes* out) {
