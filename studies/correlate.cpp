@@ -55,6 +55,19 @@ void warn_of_colour(std::string const& path, ImageMetadata const& metadata) {
                path);
 }
 
+/// Correlates what the masks and steps of the settings leave of the frames.
+Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Device const& device) {
+  auto const start = std::chrono::steady_clock::now();
+  HostFrames const prepared = prepare_frames(frames, settings.preparation);
+  settings.preparation = {};
+  Measurement measurement = correlate_frames(prepared, settings, device);
+  if (known_part(prepared) == 0.0)
+    measurement.field.warnings.emplace_back(
+        "the masks leave no pixel of the frames (so that every vector is masked); make correlate.mask smaller");
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
+}
+
 /// Pixels that are nan or infinite are left out of every window, as the correlator does: they are told, and refused
 /// where nothing else is there.
 void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
@@ -92,6 +105,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device) {
+  if (!settings.preparation.empty()) return correlate_prepared(frames, settings, device);
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
   Measurement measurement{correlator->correlate_pair(frames), 0};
@@ -117,6 +131,12 @@ Image<double> read_frame(std::string const& path, std::string const& name, Sourc
   return frame;
 }
 
+void add_preparation(CorrelationSettings const& settings, SourceFiles& sources) {
+  std::size_t number = 0;
+  for (std::string const& file : settings.preparation.files)
+    sources.add(fmt::format("preparation_{}", ++number), file, SourceFiles::Holds::pixels);
+}
+
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources) {
   ImageMetadata metadata;
   sources.add("", pair, SourceFiles::Holds::bytes);
@@ -138,6 +158,7 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
   Image<double> const reference_frame = read_frame(reference, "reference", sources);
   Image<double> const flow_frame = read_frame(flow, "flow", sources);
+  add_preparation(settings, sources);
   Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
   FileOrigin origin{
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,

@@ -40,6 +40,9 @@ Image<double> read_frame(std::string const& path, std::string const& name, Sourc
 /// The same for a file of two pages, reference and flow.
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
 
+/// Enters the pictures that masks and steps read among the sources, as preparation_1, preparation_2, ...
+void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
+
 /// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
 /// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,

@@ -62,6 +62,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       if (output.empty()) throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
+    std::vector<std::string> const& prepared_by = other.settings.preparation.files;
+    inputs.insert(inputs.end(), prepared_by.begin(), prepared_by.end());
     refuse_inputs_as_outputs({written}, inputs);
     OutputFile const tried(written);
     if (is_case) {
@@ -74,6 +76,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       auto const [reference, flow] =
           one_file ? read_frames(inputs[0], sources)
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
+      add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, device.name(), std::move(sources)});
