@@ -108,7 +108,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   if (!settings.preparation.empty()) return correlate_prepared(frames, settings, device);
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
-  Measurement measurement{correlator->correlate_pair(frames), 0};
+  Measurement measurement{correlator->correlate_pair(frames), 0, device.correlates_on(settings)};
   judge_pair(measurement.field, frames, *correlator, settings);
   estimate_uncertainty(measurement.field, frames, settings);
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -162,7 +162,7 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
   FileOrigin origin{
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
-      device.name(),       sources};
+      measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

@@ -15,6 +15,7 @@ namespace gladstone {
 struct Measurement {
   DisplacementField field;  ///< as judge_pair() leaves it
   double seconds = 0;
+  std::string device;  ///< that correlated: "cpu" or "cuda"
 };
 
 /// Correlates two frames. @throws DataError where they differ in size or are smaller than a window

@@ -79,7 +79,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
       write_vectors(written, measurement.field,
-                    {"gladstone vectors", 1, other.resolved, 0, device.name(), std::move(sources)});
+                    {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
@@ -92,11 +92,11 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
                    written, field.size());
     }
-    nlohmann::json const json{{"vectors", field.size()}, {"file", written},
-                              {"valid", counts[0]},      {"replaced", counts[1]},
-                              {"masked", counts[2]},     {"invalid", counts[3]},
-                              {"ambiguous", ambiguous},  {"warnings", field.warnings},
-                              {"device", device.name()}, {"seconds_correlate", measurement.seconds}};
+    nlohmann::json const json{{"vectors", field.size()},      {"file", written},
+                              {"valid", counts[0]},           {"replaced", counts[1]},
+                              {"masked", counts[2]},          {"invalid", counts[3]},
+                              {"ambiguous", ambiguous},       {"warnings", field.warnings},
+                              {"device", measurement.device}, {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),
                  fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, field.size(), counts[1],
                              counts[3], measurement.seconds));
