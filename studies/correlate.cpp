@@ -7,9 +7,11 @@
 #include <chrono>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/pair_verdict.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
+#include "render/base/contracts.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
 #include "studies/case.h"
@@ -145,6 +147,33 @@ std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& s
   sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
   sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
   return frames;
+}
+
+Measurement correlate_ensemble_files(std::vector<std::string> const& files, CorrelationSettings const& settings,
+                                     SourceFiles& sources) {
+  GLADSTONE_EXPECTS(!files.empty() && files.size() % 2 == 0);
+  auto const start = std::chrono::steady_clock::now();
+  int columns = 0, rows = 0;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    Image<double> const frame =
+        read_frame(files[k], fmt::format("{}_{}", k % 2 == 0 ? "reference" : "flow", k / 2 + 1), sources);
+    if (k == 0) {
+      columns = frame.columns();
+      rows = frame.rows();
+    }
+    if (frame.columns() != columns || frame.rows() != rows)
+      throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames need one size)",
+                                            frame.columns(), frame.rows(), files[0], columns, rows));
+  }
+  if (std::string const problem = window_problem(settings, columns, rows); !problem.empty())
+    throw DataError(files[0], problem);
+  PairSequence const pairs{files.size() / 2, [&](std::size_t k) {
+                             HostFrames const frames(read_image(files[2 * k]), read_image(files[2 * k + 1]));
+                             return prepare_frames(frames, settings.preparation);
+                           }};
+  Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,

@@ -41,6 +41,12 @@ Image<double> read_frame(std::string const& path, std::string const& name, Sourc
 /// The same for a file of two pages, reference and flow.
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
 
+/// The one displacement of many pairs, `files` being reference and flow of each in turn: correlate_ensemble(). Frames
+/// are read in every pass, one pair at a time, and entered among the sources as reference_1, flow_1, reference_2, ...
+/// @throws DataError
+Measurement correlate_ensemble_files(std::vector<std::string> const& files, CorrelationSettings const& settings,
+                                     SourceFiles& sources);
+
 /// Enters the pictures that masks and steps read among the sources, as preparation_1, preparation_2, ...
 void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
 

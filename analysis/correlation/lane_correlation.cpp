@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/correlation/lane_peaks.h"
+#include "analysis/correlation/plane_sums.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -168,8 +169,11 @@ std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, P
   std::vector<WindowCorrelation> results(job.grid.size());
   visit_planes(job, method, [&] {
     auto const peaks = std::make_shared<LanePeaks>(job, method.falls_off);
-    return [peaks, &results](std::size_t first, int count, LaneCorrelation& work, LanePlane const& plane) {
-      peaks->pick(work, plane, count, results.data() + first);
+    return [peaks, &results, &job](std::size_t first, int count, LaneCorrelation& work, LanePlane& plane) {
+      WindowCorrelation::Outcome outcome[lane_count];
+      for (int lane = 0; lane < count; ++lane) outcome[lane] = work.windows().outcome(lane);
+      if (job.ensemble != nullptr) job.ensemble->add(first, count, plane, outcome);
+      peaks->pick(work, plane, outcome, count, results.data() + first);
     };
   });
   return results;

@@ -198,13 +198,14 @@ void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane,
   }
 }
 
-void LanePeaks::pick(LaneCorrelation& work, LanePlane const& plane, int count, WindowCorrelation* results) {
+void LanePeaks::pick(LaneCorrelation const& work, LanePlane const& plane, WindowCorrelation::Outcome const* outcome,
+                     int count, WindowCorrelation* results) {
   find_maxima(plane);
   PeakList<float> found[lane_count];
   int most = 0;
   for (int lane = 0; lane < count; ++lane) {
     WindowCorrelation& result = results[lane];
-    result.outcome = work.windows().outcome(lane);
+    result.outcome = outcome[lane];
     if (result.outcome != WindowCorrelation::Outcome::measured) continue;
     PeakList<float> const& peaks = found[lane] = rank(plane, lane);
     most = std::max(most, peaks.count);

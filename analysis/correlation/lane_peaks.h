@@ -14,8 +14,10 @@ class LanePeaks {
   /// @param falls_off whether the planes fall off with the shift as the windows' common weight does
   LanePeaks(InterrogationJob const& job, bool falls_off);
 
+  /// @param outcome of each window so far: only those that are measured have a plane
   /// @param results receives `count` windows
-  void pick(LaneCorrelation& work, LanePlane const& plane, int count, WindowCorrelation* results);
+  void pick(LaneCorrelation const& work, LanePlane const& plane, WindowCorrelation::Outcome const* outcome, int count,
+            WindowCorrelation* results);
 
  private:
   void find_maxima(LanePlane const& plane);

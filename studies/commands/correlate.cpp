@@ -22,12 +22,18 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::vector<std::string> inputs, overrides;
     std::string output, config;
+    bool ensemble = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("input", arguments->inputs,
-                 "A case folder, two images (reference and flow), or one image file of these two pages")
+  app.add_option(
+         "input", arguments->inputs,
+         "A case folder, two images (reference and flow), or one image file of these two pages; with --ensemble "
+         "any number of pairs")
       ->required()
-      ->expected(1, 2);
+      ->expected(-1);
+  app.add_flag("--ensemble", arguments->ensemble,
+               "The images are pairs of one displacement, reference and flow in turn: their correlation planes are "
+               "averaged (on the CPU)");
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
   app.add_option("--config", arguments->config,
                  "TOML file with a table [correlate], which may be a whole setup; default: the case's own");
@@ -35,6 +41,17 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->take_all();
   return [arguments, &options] {
+    if (arguments->ensemble && options.device == "cuda")
+      throw DeviceError("--device cuda: ensembles are correlated on the CPU alone; use --device auto");
+    std::size_t const given = arguments->inputs.size();
+    if (arguments->ensemble && given % 2 != 0)
+      throw DataError("correlate", fmt::format("--ensemble got {} images (reference and flow in turn make an even "
+                                               "number); give pairs",
+                                               given));
+    if (!arguments->ensemble && given > 2)
+      throw DataError("correlate", fmt::format("got {} images (a measurement takes a reference and a flow frame); give "
+                                               "two, or --ensemble for pairs of one displacement",
+                                               given));
     Device const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {
@@ -68,6 +85,12 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
     OutputFile const tried(written);
     if (is_case) {
       measurement = correlate_case(arguments->inputs[0], written, configured ? &other : nullptr, device);
+    } else if (arguments->ensemble) {
+      SourceFiles sources;
+      add_preparation(other.settings, sources);
+      measurement = correlate_ensemble_files(arguments->inputs, other.settings, sources);
+      write_vectors(written, measurement.field,
+                    {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     } else {
       SourceFiles sources;
       bool const one_file = arguments->inputs.size() == 1;

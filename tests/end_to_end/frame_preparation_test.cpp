@@ -54,5 +54,33 @@ TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));
 }
 
+/// Pairs of one displacement.
+class Ensembles : public MaskedFrames {};
+
+// The same pair three times says what it says once; each of its frames is named by what it holds.
+TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
+  write("config.toml", "[correlate]\nwindow_px = [16]\n");
+  std::string const a = "case/reference.tif", b = "case/flow.tif";
+  ASSERT_EQ(gladstone({"correlate", a, b, "--config", "config.toml", "-o", "one.h5"}).exit_code, 0);
+  Outcome const outcome =
+      gladstone({"correlate", "--ensemble", a, b, a, b, a, b, "--config", "config.toml", "-o", "three.h5"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  Hdf5Reader const one(in("one.h5").string()), three(in("three.h5").string());
+  EXPECT_EQ(three.attribute("flow_3_sha256"), one.attribute("flow_sha256"));
+  auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
+  ASSERT_EQ(u.size(), mean.size());
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // sums and thirds in float
+}
+
+TEST_F(Ensembles, AreOfPairs) {
+  std::string const a = "case/reference.tif", b = "case/flow.tif";
+  Outcome const odd = gladstone({"correlate", "--ensemble", a, b, a, "-o", "v.h5"});
+  EXPECT_EQ(odd.exit_code, 2);
+  EXPECT_THAT(odd.err, HasSubstr("give pairs"));
+  Outcome const many = gladstone({"correlate", a, b, a, "-o", "v.h5"});
+  EXPECT_EQ(many.exit_code, 2);
+  EXPECT_THAT(many.err, HasSubstr("--ensemble"));
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end
