@@ -38,7 +38,8 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
     auto const column = table.read(data["measures"][m]["name"].get<std::string>());
     for (std::size_t i = 0; i < 6; ++i) {
       nlohmann::json const& value = data["rows"][i]["m"][m];
-      if (!value.is_null()) EXPECT_EQ(value.get<double>(), column[i]) << data["measures"][m]["name"];
+      if (value.is_null()) continue;
+      EXPECT_EQ(value.get<double>(), column[i]) << data["measures"][m]["name"];
     }
   }
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "studies/report/base64.h"
+#include "render/base/base64.h"
 
 namespace gladstone {
 namespace {

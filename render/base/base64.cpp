@@ -1,4 +1,4 @@
-#include "studies/report/base64.h"
+#include "render/base/base64.h"
 
 #include <openssl/evp.h>
 
