@@ -311,11 +311,15 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
       {"Causes of error", {Chart{"budget", "rms of every cause", largest_term(all.budget)}, budget_table(all.budget)}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
-    page.data["reliability"] = std::move(bins);
     uncertainty.blocks.push_back(Chart{
         "reliability", "Does the estimated uncertainty tell the error?",
-        "Points on the dashed line: the estimated uncertainty is right. Bins of equal count, errors against truth on "
-        "the window."});
+        fmt::format(
+            "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
+            "against truth on the window is {:.3g} px in the first and {:.3g} px in the last. On the dashed line "
+            "they are equal.",
+            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(),
+            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
+    page.data["reliability"] = std::move(bins);
   }
   page.sections.push_back(std::move(uncertainty));
   auto const draw = [&](std::string const& folder, std::string const& format) {
@@ -333,9 +337,10 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   for (SourceFiles::Source const& source : all.sources.all()) {
     if (!source.name.empty()) sources.emplace_back(source.name, source.sha256);
   }
-  page.sections.push_back(how_it_was_made(
-      sources, {"gladstone render setup.toml -o " + options.source, "gladstone correlate " + options.source,
-                "gladstone compare " + options.source, "gladstone report " + options.source}));
+  std::string const place = shell_word(options.source);
+  page.sections.push_back(
+      how_it_was_made(sources, {"gladstone render setup.toml -o " + place, "gladstone correlate " + place,
+                                "gladstone compare " + place, "gladstone report " + place}));
   return page;
 }
 

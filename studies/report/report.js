@@ -36,10 +36,10 @@
     keys.append("i").style("background", (e) => e.colour);
     keys.append("span").text((e) => e.text);
   }
-  function axes(svg, x, y, xTitle, yTitle, xTicks, yTicks) {
+  function axes(svg, x, y, xTitle, yTitle, xTicks, yTicks, xValues) {
     svg.selectAll(".axis, .grid, .title").remove();
     const bottom = d3.axisBottom(x), left = d3.axisLeft(y);
-    if (x.ticks) bottom.ticks(8, xTicks || "~g"); else bottom.tickFormat(xTicks || null);
+    if (xValues) bottom.tickValues(xValues).tickFormat(xTicks); else if (x.ticks) bottom.ticks(8, xTicks || "~g"); else bottom.tickFormat(xTicks || null);
     if (y.ticks) left.ticks(6, yTicks || "~g"); else left.tickFormat(yTicks || null);
     if (y.ticks) svg.append("g").attr("class", "grid").attr("transform", "translate(" + margin.left + ",0)").call(d3.axisLeft(y).ticks(6).tickSize(-(width - margin.left - margin.right)).tickFormat(""));
     svg.append("g").attr("class", "axis").attr("transform", "translate(0," + (height - margin.bottom) + ")").call(bottom).selectAll("text").attr("font-size", 12)
@@ -107,7 +107,8 @@
         const span = range([].concat(...all.map((p) => [p.low, p.high])), chosen.log);
         y.domain(chosen.log || span[0] < 0 ? span : [0, span[1]]).nice();
         if (zoomed && x.invert) { x.domain(zoomed.x); y.domain(zoomed.y); }
-        axes(svg, x, y, axis.title, chosen.y + unit(chosen.y));
+        const few = !zoomed && axis.numeric && axis.labels.length <= 12;  // then the study's own values are the tics
+        axes(svg, x, y, axis.title, chosen.y + unit(chosen.y), few ? (v) => axis.labels[axis.numbers.indexOf(v)] : null, null, few ? axis.numbers.filter(known) : null);
         const clip = "clip" + Math.random().toString(36).slice(2);
         svg.append("clipPath").attr("id", clip).append("rect").attr("x", margin.left).attr("y", margin.top - 6).attr("width", width - margin.left - margin.right).attr("height", height - margin.top - margin.bottom + 12);
         if (x.invert) {

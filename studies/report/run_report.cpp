@@ -50,7 +50,7 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
     if (row.status == CaseStatus::ok) finished.push_back(&row);
   }
   if (finished.empty()) {
-    throw DataError(run, "holds no finished case; run gladstone sweep run " + run + " first");
+    throw DataError(run, "holds no finished case; run gladstone sweep run " + shell_word(run) + " first");
   }
   for (auto const& [measure, name] :
        {std::pair{"eq9.rms_px", "Eq. 9, the displacement that the density gradient gives"},
@@ -243,7 +243,7 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
       fmt::format("{}: case {}, {}, rms {:.3g} px", which, row.index, study.title(row), study.of(row, study.main));
   if (!fs::exists(fs::path(folder) / case_file::reference)) {
     return Paragraph{fmt::format("{}. Its images were not kept: gladstone sweep run {} --keep-images --case {}", title,
-                                 run, row.index)};
+                                 shell_word(run), row.index)};
   }
   return frame_pictures(folder, title);
 }
@@ -310,9 +310,11 @@ ReportPage run_report(ReportOptions const& options) {
   settings.blocks.push_back(
       Paragraph{fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device)});
   page.sections.push_back(std::move(settings));
-  page.sections.push_back(how_it_was_made({{"manifest.jsonl", byte_sha256(manifest)}},
-                                          {"gladstone sweep plan study.toml -o " + run, "gladstone sweep run " + run,
-                                           "gladstone sweep collect " + run, "gladstone report " + run}));
+  std::string const place = shell_word(run);
+  page.sections.push_back(
+      how_it_was_made({{"manifest.jsonl", byte_sha256(manifest)}},
+                      {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
+                       "gladstone sweep collect " + place, "gladstone report " + place}));
   return page;
 }
 

@@ -51,4 +51,7 @@ if command -v tidy >/dev/null; then
     tidy -q -e --gnu-emacs yes "$page" 2>tidy.log || { cat tidy.log; exit 1; }
   done
 fi
-exec python3 -B "$source/report_browser.py" "$run/a report.html" "$run/study.csv" case/report.html
+# Selenium is where Debian puts it
+python=/usr/bin/python3
+[ -x "$python" ] || python=python3
+exec "$python" -B "$source/report_browser.py" "$run/a report.html" "$run/study.csv" case/report.html
