@@ -156,7 +156,7 @@ std::string strongest_axis(StudyView const& study) {
 }
 
 std::string uncertainty_finding(StudyView const& study) {
-  std::vector<double> const coverage = study.values("uncertainty.coverage_1");
+  std::vector<double> const coverage = study.values("uncertainty.window_truth.coverage_1");
   if (coverage.empty()) return "";
   return fmt::format(
       "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; "
@@ -212,7 +212,7 @@ TextTable cases_table(StudyView const& study) {
   for (char const* name :
        {"ray_truth.rms_px", "eq9.rms_px", "flow.rms_px", "ray_truth.bias_u_px", "ray_truth.bias_v_px",
         "ray_truth.random_u_px", "ray_truth.random_v_px", "ray_truth.gross_fraction", "ray_truth.valid_fraction",
-        "uncertainty.coverage_1", "signal_px"}) {
+        "uncertainty.window_truth.coverage_1", "signal_px"}) {
     if (study.knows(name)) measures.emplace_back(name);
   }
   for (StudyAxis const& axis : study.table.axes) table.header.push_back(axis_title(axis.key));
