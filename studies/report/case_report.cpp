@@ -11,6 +11,7 @@
 #include "studies/case_files.h"
 #include "studies/compare.h"
 #include "studies/report/report.h"
+#include "studies/sweep/job_array.h"
 
 namespace gladstone {
 namespace {

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <string_view>
 
 #include "render/base/error.h"
 #include "render/base/output_file.h"
@@ -34,16 +31,6 @@ ReportSection drawn_figures(
     spdlog::warn("{}", missing.what());
   }
   return section;
-}
-
-std::string shell_word(std::string const& text) {
-  auto const harmless = [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("_-./=+:,@%").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), harmless)) return text;
-  std::string quoted = "'";
-  for (char const c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + '\'';
 }
 
 ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,

@@ -41,9 +41,6 @@ ReportSection drawn_figures(
 ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,
                               std::vector<std::string> const& commands);
 
-/// A word of a shell's command line, in quotes where it must be.
-std::string shell_word(std::string const& text);
-
 /// Two frames as 8-bit pictures of equal grey scale; of large ones the middle.
 FramePictures frame_pictures(std::string const& folder, std::string const& title);
 

@@ -12,6 +12,7 @@
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
 #include "studies/report/report.h"
+#include "studies/sweep/job_array.h"
 #include "studies/sweep/study_columns.h"
 #include "studies/sweep/study_table.h"
 
