@@ -247,5 +247,24 @@ TEST(FramePreparation, SaysWhereItsSettingsAreWrong) {
               ElementsAre(HasSubstr("case.toml:3:1: ")));
 }
 
+// What vectors.h5 keeps of its settings is the text with all defaults: it is to mean the same again.
+TEST(FramePreparation, ReadsBackWhatItUnderstood) {
+  auto const resolved = [](std::string const& text) {
+    SetupDocument document = SetupDocument::from_text(text, "case.toml", "/frames");
+    SetupTable correlate = document.root().table("correlate");
+    EXPECT_EQ(read_frame_preparation(correlate).files.size(), 5u);
+    document.finish();
+    return document.resolved();
+  };
+  std::string const once = resolved(
+      "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2, 3]\ny_px = [1, 5, 1]\n"
+      "[[correlate.mask]]\nkind = \"image\"\nfile = \"mask.tif\"\n"
+      "[[correlate.preprocess]]\nkind = \"background\"\n"
+      "frame = [{ reference = \"a.tif\", flow = \"b.tif\" }, { reference = \"c.tif\", flow = \"d.tif\" }]\n"
+      "[[correlate.preprocess]]\nkind = \"min_max\"\n");
+  EXPECT_THAT(once, HasSubstr("/frames/d.tif"));
+  EXPECT_EQ(resolved(once), once);
+}
+
 }  // namespace
 }  // namespace gladstone
