@@ -20,8 +20,8 @@ struct Room {
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots"};
-Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration",
-                        "analysis/uncertainty", "analysis/preparation"};
+Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
+                        "analysis/calibration", "analysis/uncertainty", "analysis/preparation"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names operator+(Names a, Names const& b) {
