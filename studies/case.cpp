@@ -48,6 +48,7 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     place("medium.field.file", root.table("medium").tables("field"));
     place("target.dots_per_32px_window", {});
     place("render.rays_per_dot", {});
+    place("flow.file", {});
     for (char const* const key : {"number", "per_mm3", "per_pixel", "volume_mm"}) {
       place(std::string("particles.") + key, {});
     }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <filesystem>
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/light/existing_file.h"
 #include "render/light/flows/read_vector.h"
 #include "render/light/particle_material.h"
 
@@ -15,14 +15,6 @@ namespace {
 
 constexpr double most_particles = 4e9;
 constexpr double widest_um = 1e4;  // of a diameter
-
-std::string existing_file(SetupTable& table) {
-  std::string const file = table.required_path("file");
-  if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {
-    table.problem("file", "there is no file " + file + "; relative names start at the setup file's folder");
-  }
-  return file;
-}
 
 void read_count(SetupTable& table, ParticleSetup& setup) {
   std::array<char const*, 4> const keys{"number", "per_mm3", "per_pixel", "file"};

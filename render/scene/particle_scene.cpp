@@ -68,6 +68,29 @@ double sheet_beside(ParticleSetup const& particles, Pose<double> const& sheet) {
   return std::max(0.0, std::abs(dot(particles.center - sheet.origin, n)) - reach);
 }
 
+/// Refuses a file's velocity that ends inside the particles' volume. What cannot be read is left to those who read it.
+void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
+  ParticleSetup const& particles = setup.piv->particles;
+  if (!particles.volume) return;
+  try {
+    RegularGrid const grid = velocity_grid(*setup.piv->flow.file);
+    double const mm = unit::millimetre;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto const a = static_cast<std::size_t>(axis);
+      if (grid.periodic[a] || (axis == 2 && grid.nodes[2] == 1)) continue;
+      double const low = grid.origin[axis], high = low + grid.spacing[axis] * (grid.nodes[a] - 1);
+      double const half = (*particles.volume)[axis] / 2, middle = particles.center[axis];
+      double const rounding = 1e-9 * (high - low);
+      if (middle - half >= low - rounding && middle + half <= high + rounding) continue;
+      flow.problem("file", fmt::format("holds a velocity that reaches from {} = {:.6g} to {:.6g} mm, and ends inside "
+                                       "the particles' volume, {:.6g} to {:.6g} mm; make particles.volume_mm smaller, "
+                                       "or check flow.spacing_mm, center_mm and periodic",
+                                       "XYZ"[axis], low / mm, high / mm, (middle - half) / mm, (middle + half) / mm));
+    }
+  } catch (DataError const&) {
+  }
+}
+
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -100,6 +123,7 @@ MemoryNeed particle_memory(Setup const& setup) {
 }
 
 void add_particles(Scene& scene) {
+  scene.flow_warning = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
   double const tolerance = path_tolerance_px * pixel_there(scene.setup);
@@ -178,6 +202,13 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
+  if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
+  if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
+    warnings.push_back(
+        fmt::format("flow.file: {} of {} particles are beyond the velocity field at either pulse (they move as at its "
+                    "edge); take a larger field, or a smaller particles.volume_mm",
+                    outside, scene.particles.size()));
+  }
   PathPlan const& path = scene.particles.path;
   double const px = pixel_there(scene.setup);
   if (path.error > path_tolerance_px * px) {
@@ -229,6 +260,7 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
       particles.problem("volume_mm", "reaches to the lens or beyond it; make it thinner, or move the camera away");
     }
   }
+  if (piv.flow.file) cross_check_velocity_file(setup, root.table("flow"));
   for (WindowSetup const& window : setup.windows) {
     double const face = window.position.z - window.thickness / 2;
     if (window.side == WindowSide::target) {

@@ -6,6 +6,7 @@
 
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
+#include "render/medium/analytic_fields.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
@@ -190,11 +191,17 @@ void read_calibration(Setup& setup, SetupTable root) {
   root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
 }
 
+/// The front of a medium of kind normal_shock, for the flow.
+std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
+  if (field.kind != FieldKind::normal_shock) return std::nullopt;
+  return ShockPlane{field.mach, shock_density_ratio(field.mach, constant::gamma_air), field.position, field.tilt};
+}
+
 void read_piv(Setup& setup, SetupTable root) {
   PivSetup piv;
   piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
   piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
-  piv.flow = read_flow_setup(root.table("flow"));
+  piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field));
   setup.piv = piv;
   root.refuse("target", "is of BOS (PIV's sources are [particles]); remove it");
   root.refuse("calibration", "stands in a setup of PIV (it is of experiment = \"calibration\"); remove it");

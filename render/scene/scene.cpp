@@ -8,10 +8,10 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/fields/field_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
-#include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"
@@ -181,6 +181,9 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
       setup.piv ? particle_memory(setup)
                 : MemoryNeed{"target.dots_per_32px_window", "dots",
                              setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
+  if (setup.piv && setup.piv->flow.file) {
+    needs.push_back({"flow.file", "velocity", velocity_bytes(*setup.piv->flow.file)});
+  }
   needs.insert(needs.end(), more.begin(), more.end());
   double needed = 0;
   std::string sizes;

@@ -20,6 +20,7 @@ struct Scene {
   Camera camera;
   DotPattern dots;                           ///< none for PIV
   Particles particles;                       ///< of PIV alone
+  std::string flow_warning;                  ///< what had to be assumed of the file that moves them
   std::shared_ptr<MieScattering const> mie;  ///< of the particles; null: they are matt white spheres
   double photon_unit = 1;  ///< photons that light of 1 stands for: those of the brightest particle that pass the lens
   BuiltMedium medium;

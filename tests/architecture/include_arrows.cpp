@@ -33,10 +33,13 @@ Names operator+(Names a, Names const& b) {
 /// files, POSIX.
 std::vector<Room> const& table() {
   static std::vector<Room> const rooms = {
-      {"render/base", {}, {"Eigen", "x86 intrinsics"}, {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "fmt"}},
+      {"render/base",
+       {},
+       {"Eigen", "x86 intrinsics"},
+       {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "zlib", "fmt"}},
       {"render/image_codecs", {"render/base"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"render/medium", {"render/base"}, {"Eigen"}, {"fmt", "zlib"}},
+      {"render/medium", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/scene", render, {"Eigen"}, {"Ceres", "fmt"}},
