@@ -46,6 +46,7 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     };
     place("camera.pixels", root.tables("camera"));
     place("medium.field.file", root.table("medium").tables("field"));
+    place("medium.second_field.file", root.table("medium").tables("second_field"));
     place("target.dots_per_32px_window", {});
     place("render.rays_per_dot", {});
     place("flow.file", {});
@@ -132,6 +133,9 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   prepared.scene = build_scene(loaded.setup, known.medium);
   Scene& scene = prepared.scene;
   for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
+  if (scene.second_medium) {
+    for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
+  }
   if (known.step) {
     prepared.step = *known.step;
     use_step(scene, prepared.step);

@@ -13,6 +13,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/side_faces.h"
+#include "render/scene/two_media.h"
 
 namespace gladstone {
 namespace {
@@ -91,6 +92,7 @@ SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique
 
 Rendering SceneRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
                                           RenderImages images) {
+  if (scene.second_medium) return render_in_two_media(*this, scene, particles, light, images);
   Renderer& renderer = particles_ ? *particles_ : *rays_;
   if (particles_ && images != RenderImages::no) spdlog::info("particles are rendered on the CPU");
   Rendering rendering = renderer.render_particles(scene, particles, light, images);
@@ -137,6 +139,13 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
 }
 
 StepPlan plan_step_of(Scene& scene) {
+  if (scene.second_medium) {  // the shorter step of both
+    Scene first = scene, second = at_second_pulse(scene);
+    first.second_medium.reset();
+    StepPlan const a = plan_step_of(first), b = plan_step_of(second), plan = b.step_mm < a.step_mm ? b : a;
+    use_step(scene, plan);
+    return plan;
+  }
   if (method_of(scene) == RenderMethod::rays) return plan_step_by_rays(scene);
   StepPlan const plan = plan_step(enter(scene));
   use_step(scene, plan);
@@ -144,6 +153,13 @@ StepPlan plan_step_of(Scene& scene) {
 }
 
 RaysPlan plan_rays_of(Scene& scene) {
+  if (scene.second_medium) {  // the more rays of both
+    Scene first = scene, second = at_second_pulse(scene);
+    first.second_medium.reset();
+    RaysPlan const a = plan_rays_of(first), b = plan_rays_of(second), plan = b.rays > a.rays ? b : a;
+    scene.rays_per_dot = plan.rays;
+    return plan;
+  }
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
   std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
   if (at_faces.empty() || scene.setup.render.rays_per_dot) {

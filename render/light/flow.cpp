@@ -35,7 +35,7 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
   read_kind(AllFlows{}, word, table, setup);
   Vec3d const fallback = word == UniformFlow::kind ? Vec3d{10, 0, 0} : Vec3d{};
   setup.flow.uniform = read_vector(table, "velocity_m_s", fallback, 1.0, {-1e9, 1e9});
-  if (word == NormalShockFlow::kind && shock) {
+  if (shock && word == NormalShockFlow::kind) {
     Vec3d const normal{std::cos(shock->tilt), 0, std::sin(shock->tilt)};
     if (std::abs(dot(setup.flow.uniform, normal)) > 1e-9 * length(setup.flow.uniform)) {
       table.problem(

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/base/one_of.h"
@@ -41,6 +42,9 @@ struct Flow {
   AnyFlowOf<AllFlows>::Type kind = UniformFlow{};
   Vec3d uniform{};  ///< [m/s]
 
+  std::string_view kind_word() const {
+    return kind.visit([]<class Held>(Held const&) { return std::string_view(Held::kind); });
+  }
   /// u at p [m/s, m].
   template <class T>
   GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {

@@ -52,8 +52,8 @@ constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a
 void resolve_thickness(Setup& setup, SetupTable medium) {
   MediumSetup& slab = setup.medium;
   if (!slab.automatic_thickness) return;
-  double thickness_mm = automatic_thickness_mm(slab.field);
-  if (has_size_along_z(slab.field.kind)) {
+  double thickness_mm = automatic_thickness_mm(slab);
+  if (thickness_mm > automatic_thickness_mm(FieldSetup{})) {
     double const way_mm = (setup.z_d == 0 ? setup.z_a : std::min(setup.z_a, setup.z_d)) / unit::millimetre;
     thickness_mm = std::min(thickness_mm, 2 * automatic_reach * way_mm);
   }
@@ -202,6 +202,10 @@ void read_piv(Setup& setup, SetupTable root) {
   piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
   piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
   piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field));
+  if (setup.medium.second_field && piv.flow.flow.kind_word() == NormalShockFlow::kind) {
+    root.table("medium").problem("second_field",
+                                 "stands beside a flow of kind \"normal_shock\", which is steady; remove one");
+  }
   setup.piv = piv;
   root.refuse("target", "is of BOS (PIV's sources are [particles]); remove it");
   root.refuse("calibration", "stands in a setup of PIV (it is of experiment = \"calibration\"); remove it");
@@ -235,6 +239,9 @@ Setup read_setup(SetupTable root) {
     setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
   }
   setup.medium = read_medium_setup(root.table("medium"));
+  if (!piv && setup.medium.second_field) {
+    root.table("medium").problem("second_field", "is what PIV's second pulse sees; remove it, or change experiment");
+  }
   if (calibration && setup.medium.field.kind != FieldKind::none) {
     root.table("medium").problem("field", "is of BOS (a camera is calibrated without flow); remove it");
   }
