@@ -195,7 +195,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   if (scene.setup.piv) {
-    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, origin);
+    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
   } else {
     write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
                 rendering.method, origin);

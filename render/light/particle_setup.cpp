@@ -85,8 +85,9 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
   } else {
     setup.diameter = read_diameter(table);
   }
-  bool const mie = table.word("scattering", "mie", {"mie", "lambert"}) == "mie";
-  setup.scattering = mie ? ParticleScattering::mie : ParticleScattering::lambert;
+  std::string const scattering = table.word("scattering", "mie", {"mie", "lambert", "gaussian"});
+  if (scattering == "lambert") setup.scattering = ParticleScattering::lambert;
+  if (scattering == "gaussian") setup.scattering = ParticleScattering::gaussian;
   setup.index = read_particle_index(table, wavelength);
   if (table.has("density_kg_m3")) {
     setup.density = table.number("density_kg_m3", 1000.0, Range::positive(1e6));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
@@ -91,6 +92,26 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
   }
 }
 
+/// Photons through the lens from the particle that sends most.
+double brightest_photons(Scene const& scene) {
+  Particles const& particles = scene.particles;
+  LightThroughLens const through_lens(scene);
+  std::mutex merge;
+  double brightest = 0;
+  parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int pulse = 0; pulse < 2; ++pulse) {
+        double const photons = particles.photons[pulse][i];
+        if (photons > 0) most = std::max(most, photons * through_lens(particles.place[pulse][i], i, pulse));
+      }
+    }
+    std::lock_guard const lock(merge);
+    brightest = std::max(brightest, most);
+  });
+  return brightest;
+}
+
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -145,25 +166,38 @@ void add_particles(Scene& scene) {
                              sheet.wave(piv.laser.centre, 0)};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
-  double brightest = 0;
-  for (int pulse = 0; pulse < 2; ++pulse) {
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-      if (particles.photons[pulse][i] > 0) brightest = std::max(brightest, photons_through_lens(scene, i, pulse));
-    }
-  }
+  double const brightest = brightest_photons(scene);
   scene.photon_unit = brightest > 0 ? brightest : 1;
 }
 
-double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {
-  Vec3d const place = scene.particles.place[pulse][particle], way = scene.camera.aim_plane.origin - place;
-  double const far = length(way), pupil = scene.imaging.entrance_pupil;
-  LightWave<double> const wave = laser_sheet<double>(scene.setup.piv->laser).wave(place, pulse);
-  double const section =
-      scene.mie ? scene.mie->view<double>().cross_section(particle, way / far, wave)
-                : LambertSpheres<double>{scene.particles.diameter.data()}.cross_section(particle, way / far, wave);
+LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
+    : scene_(scene), light_(light), sheet_(laser_sheet<double>(scene.setup.piv->laser)) {
+  if (scene.mie) mie_ = scene.mie->view<double>();
+}
+
+double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const {
+  if (light_ == ParticleLight::equal) return 1;
+  if (scene_.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+    double const d = scene_.particles.diameter[particle];
+    return d * d / 16;  // of its disc, over all directions
+  }
+  LightWave<double> const wave = sheet_.wave(place, pulse);
+  if (scene_.mie) return mie_.cross_section(particle, direction, wave);
+  return LambertSpheres<double>{scene_.particles.diameter.data()}.cross_section(particle, direction, wave);
+}
+
+double LightThroughLens::operator()(Vec3d place, std::size_t particle, int pulse) const {
+  Vec3d const way = scene_.camera.aim_plane.origin - place;
+  double const far = length(way), pupil = scene_.imaging.entrance_pupil;
   double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // chief rays are worth a square metre
-  double const facing = std::abs(dot(scene.camera.aim_plane.z, way)) / far;
-  return scene.particles.photons[pulse][particle] * section * area * facing / (far * far);
+  double const facing = std::abs(dot(scene_.camera.aim_plane.z, way)) / far;
+  return cross_section(place, way / far, particle, pulse) * area * facing / (far * far);
+}
+
+double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {
+  LightThroughLens const through_lens(scene);
+  Particles const& particles = scene.particles;
+  return particles.photons[pulse][particle] * through_lens(particles.place[pulse][particle], particle, pulse);
 }
 
 ParticleCensus count_particles(Scene const& scene) {

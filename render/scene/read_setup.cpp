@@ -40,9 +40,10 @@ RenderSetup read_render_setup(SetupTable table) {
   if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
   if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
-  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots"});
+  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots", "formula"});
   if (method == "rays") setup.method = RenderMethod::rays;
   if (method == "focused_dots") setup.method = RenderMethod::focused_dots;
+  if (method == "formula") setup.method = RenderMethod::formula;
   return setup;
 }
 

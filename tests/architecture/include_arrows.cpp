@@ -19,7 +19,7 @@ struct Room {
 };
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
-Names const renderers = {"render/rays", "render/focused_dots"};
+Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_images"};
 Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration",
                         "analysis/uncertainty"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
@@ -45,6 +45,7 @@ std::vector<Room> const& table() {
       {"render/scene", render, {"Eigen"}, {"Ceres", "fmt"}},
       {"render/rays", render, {"Eigen"}, {"fmt"}},
       {"render/focused_dots", render, {"Eigen"}, {"fmt"}},
+      {"render/ideal_images", render, {"Eigen"}, {"fmt"}},
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"analysis/correlation", {"render/base"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
       {"analysis/uncertainty", {"render/base", "analysis/correlation"}, {"Eigen"}, {"fmt"}},
