@@ -143,19 +143,22 @@ TEST(IdealImages, HaveOneDoor) {
   using testing::HasSubstr;
   EXPECT_EQ(reason_against_ideal_images(piv_setup()), "");
   auto const reason = [](auto const& change) {
-    Setup setup = piv_setup();
+    gladstone::Setup setup = piv_setup();
     change(setup);
     return reason_against_ideal_images(setup);
   };
-  EXPECT_THAT(reason([](Setup& s) { s.piv.reset(); }), HasSubstr("only particles"));
-  EXPECT_THAT(reason([](Setup& s) { s.medium.field.kind = FieldKind::sinusoid; }), HasSubstr("medium bends rays"));
-  EXPECT_THAT(reason([](Setup& s) { s.medium.second_field = FieldSetup{}; }), HasSubstr("medium bends rays"));
-  EXPECT_THAT(reason([](Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("no ideal thin lens"));
-  EXPECT_THAT(reason([](Setup& s) { s.windows.emplace_back(); }), HasSubstr("no ideal thin lens"));
-  EXPECT_THAT(reason([](Setup& s) { s.lens.focus = Focus::distance; }), HasSubstr("not focused on the sheet"));
-  EXPECT_THAT(reason([](Setup& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }),
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.piv.reset(); }), HasSubstr("only particles"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.field.kind = FieldKind::sinusoid; }),
+              HasSubstr("medium bends rays"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.second_field = FieldSetup{}; }),
+              HasSubstr("medium bends rays"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.camera.tilt = {0.1, 0}; }), HasSubstr("no ideal thin lens"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.windows.emplace_back(); }), HasSubstr("no ideal thin lens"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.focus = Focus::distance; }),
+              HasSubstr("not focused on the sheet"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }),
               HasSubstr("no stop"));
-  EXPECT_THAT(reason([](Setup& s) { s.lens.spot = SpotModel::airy; }), HasSubstr("not Gaussian"));
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.lens.spot = SpotModel::airy; }), HasSubstr("not Gaussian"));
 }
 
 }  // namespace
