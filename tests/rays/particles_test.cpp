@@ -218,6 +218,47 @@ TEST(Particles, OutOfFocusLeaveADisc) {
   EXPECT_LT(truth.displacement_std_px[1].x, 1e-6);
 }
 
+/// Variance of an image's light along a row, about its own middle [px^2].
+double variance_along_row(Image<double> const& image) {
+  double sum = 0, first = 0, second = 0;
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int column = 0; column < image.columns(); ++column) {
+      sum += image(column, row);
+      first += image(column, row) * column;
+      second += image(column, row) * column * column;
+    }
+  }
+  return second / sum - first / sum * (first / sum);
+}
+
+// d^2 = d_diff^2 + d_blur^2 in diameters of four standard deviations (Olsen & Adrian 2000), exact for variances: an
+// image is the disc of confusion, of diameter M D |z| / (Z - z), smeared by the spot and by the pixel, whose variance
+// is a twelfth. 4096 rays know the disc's to a part in a thousand; the spot is cut off where 4e-8 of it are left.
+TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
+  for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
+    Scene scene = scene_with_particles(piv_setup(), {{0, 0, z}}, {{0, 0, z}}, 4096);
+    Rendering const rendering = render(scene, ParticleLight::equal, RenderImages::yes);
+    double const px = 10e-6, pupil = 105 * mm / 8, image_distance = scene.imaging.image_distance;
+    double const diffraction = 4 * 0.4206042622 * image_distance / pupil * 532e-9 / px;
+    double const blur = image_distance / 0.75 * pupil * std::abs(z) / (0.75 - z) / px;
+    double const expected = (diffraction * diffraction + blur * blur) / 16 + 1.0 / 12;
+    EXPECT_NEAR(variance_along_row(rendering.light.reference), expected, 2e-3 * blur * blur / 16 + 1e-5) << z;
+  }
+}
+
+// Depth of field 4.88 ((M + 1) / M)^2 N^2 lambda (Adrian 1991): at its ends the disc of confusion is as wide as the
+// diffraction spot between its first zeros. Paraxial: z / Z = 0.0014 of it is left, and 4.88 is 2 * 2.43934 rounded.
+TEST(Particles, BlurAsMuchAsDiffractionAtTheEndsOfTheDepthOfField) {
+  gladstone::Setup setup = piv_setup();
+  setup.lens.f_number = 4;
+  double const M = setup.imaging().magnification;
+  double const z = 0.5 * 4.88 * std::pow((M + 1) / M, 2) * 16 * 532e-9;
+  Scene scene = scene_with_particles(setup, {{0, 0, z}, {0, 0, -z}}, {{0, 0, z}, {0, 0, -z}}, 4096);
+  GroundTruth const truth = render(scene, ParticleLight::equal).truth;
+  double const spot = 2.43934 * 4 * (1 + M) * 532e-9 / 10e-6;
+  for (Vec2d const deviation : truth.displacement_std_px) EXPECT_NEAR(4 * deviation.x, spot, 4e-3 * spot);
+}
+
 TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   gladstone::Setup setup = piv_setup();
   setup.piv->particles.amount = 300;
