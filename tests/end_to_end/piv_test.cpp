@@ -244,22 +244,22 @@ TEST_F(Piv, MovesParticlesThroughAShock) {
   EXPECT_NEAR(downstream / upstream, 1.86, 4 * 1.86 * std::sqrt(1 / upstream + 1 / downstream));
 }
 
-// The second pulse sees another medium: what is at rest seems to move by what a gradient of 10 kg/m^4 in 40 mm does, g
+// The second pulse sees another medium: what is at rest seems to move by what a gradient of 100 kg/m^4 in 40 mm does, g
 // l^2 / 2 for a particle a way l = 20 mm before the face.
 TEST_F(Piv, SeesAMediumThatChanges) {
   std::string const changing =
       with(with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]", "velocity_m_s = [0, 0, 0]"), "[particles]",
            "[render]\nrays_per_dot = 64\n[medium]\nthickness_mm = 40.0\n[medium.second_field]\nkind = "
-           "\"uniform_gradient\"\ngradient_kg_m4 = [40.0, 0.0, 0.0]\n[particles]");
+           "\"uniform_gradient\"\ngradient_kg_m4 = [100.0, 0.0, 0.0]\n[particles]");
   auto const errors = errors_of(changing);
   auto const moved = dataset("case/truth.h5", "/particles/displacement_px");
   auto const place = dataset("case/truth.h5", "/particles/position_m");
   for (std::size_t i = 0; i < moved.size() / 2; ++i) {
     if (std::isnan(moved[2 * i])) continue;
     double const way = 20e-3 - place[3 * i + 2], px_per_m = 105.0 / 645 / 10e-6 * 0.75 / (0.75 - place[3 * i + 2]);
-    EXPECT_NEAR(moved[2 * i], -2.26e-4 * 40 * way * way / 2 * px_per_m, 2e-3);
+    EXPECT_NEAR(moved[2 * i], -2.26e-4 * 100 * way * way / 2 * px_per_m, 2e-3);
   }
-  EXPECT_NEAR(errors["budget"]["terms"]["refraction"]["bias_u_px"].get<double>(), -2.26e-4 * 40 * 4e-4 / 2 * 16279,
+  EXPECT_NEAR(errors["budget"]["terms"]["refraction"]["bias_u_px"].get<double>(), -2.26e-4 * 100 * 4e-4 / 2 * 16279,
               2e-3);
   EXPECT_EQ(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 0);
 }
