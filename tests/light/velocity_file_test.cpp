@@ -13,9 +13,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double mm = unit::millimetre;
+constexpr double node_step = unit::millimetre;
 
-/// A cut-out of nodes 1 mm apart about the origin, with the velocity of their places [m/s, m].
+/// A cut-out of nodes a millimetre apart about the origin, with the velocity of their places [m/s, m].
 std::string cutout(std::string const& name, std::array<int, 3> nodes, std::function<Vec3d(Vec3d)> const& velocity) {
   std::string const path = testing::TempDir() + "/velocity_" + name + ".h5";
   std::vector<double> values;
@@ -23,7 +23,7 @@ std::string cutout(std::string const& name, std::array<int, 3> nodes, std::funct
     for (int j = 0; j < nodes[1]; ++j) {
       for (int i = 0; i < nodes[0]; ++i) {
         Vec3d const u =
-            velocity(Vec3d{i - (nodes[0] - 1) / 2.0, j - (nodes[1] - 1) / 2.0, k - (nodes[2] - 1) / 2.0} * mm);
+            velocity(Vec3d{i - (nodes[0] - 1) / 2.0, j - (nodes[1] - 1) / 2.0, k - (nodes[2] - 1) / 2.0} * node_step);
         values.insert(values.end(), {u.x, u.y, u.z});
       }
     }
@@ -39,13 +39,13 @@ std::string cutout(std::string const& name, std::array<int, 3> nodes, std::funct
 VelocityFile a_millimetre_apart(std::string const& path) {
   VelocityFile setup;
   setup.file = path;
-  setup.spacing = Vec3d{mm, mm, mm};
+  setup.spacing = Vec3d{node_step, node_step, node_step};
   return setup;
 }
 
 /// A cubic of X, Y, Z and their products [m/s], 10 at most on 6 mm.
 Vec3d cubic(Vec3d p) {
-  double const x = p.x / mm, y = p.y / mm, z = p.z / mm;
+  double const x = p.x / node_step, y = p.y / node_step, z = p.z / node_step;
   return {1 + 0.02 * x * x * x - y, 0.05 * x * y * z + 2, z * z - 0.3 * x + 0.01 * y * y * y};
 }
 
@@ -55,23 +55,23 @@ TEST(VelocityFile, ReproducesACubicBetweenItsNodes) {
   for (double const x : {-3.0, -2.7, 0.1, 2.4, 3.0}) {
     for (double const y : {-2.5, -0.3, 2.5}) {
       for (double const z : {-2.0, -1.5, 0.6, 2.0}) {
-        Vec3d const p = Vec3d{x, y, z} * mm;
+        Vec3d const p = Vec3d{x, y, z} * node_step;
         EXPECT_LT(length(loaded.flow(p) - cubic(p)), 1e-5) << x << ' ' << y << ' ' << z;
         EXPECT_TRUE(loaded.flow.covers(p));
       }
     }
   }
-  EXPECT_FALSE(loaded.flow.covers(Vec3d{3.01, 0, 0} * mm));
-  EXPECT_FALSE(loaded.flow.covers(Vec3d{0, 0, -2.01} * mm));
+  EXPECT_FALSE(loaded.flow.covers(Vec3d{3.01, 0, 0} * node_step));
+  EXPECT_FALSE(loaded.flow.covers(Vec3d{0, 0, -2.01} * node_step));
   // beyond its end the velocity is that of the end
-  EXPECT_LT(length(loaded.flow(Vec3d{9, 0.4, 0} * mm) - cubic(Vec3d{3, 0.4, 0} * mm)), 1e-5);
+  EXPECT_LT(length(loaded.flow(Vec3d{9, 0.4, 0} * node_step) - cubic(Vec3d{3, 0.4, 0} * node_step)), 1e-5);
 }
 
 // A wave over the period of 16 nodes, sampled at 16: a cubic spline's error is (2 pi / 16)^4 / 384 of it at most, and
 // it goes on beyond the nodes.
 TEST(VelocityFile, RepeatsWhatIsPeriodic) {
   auto const wave = [](Vec3d p) {
-    return Vec3d{std::sin(2 * pi * p.x / (16 * mm)), std::cos(2 * pi * p.y / (16 * mm)), 0};
+    return Vec3d{std::sin(2 * pi * p.x / (16 * node_step)), std::cos(2 * pi * p.y / (16 * node_step)), 0};
   };
   VelocityFile setup = a_millimetre_apart(cutout("wave", {16, 16, 1}, wave));
   setup.extrude = true;
@@ -80,7 +80,7 @@ TEST(VelocityFile, RepeatsWhatIsPeriodic) {
   LoadedVelocity const loaded = load_velocity(setup);
   double const error = 3 * std::pow(2 * pi / 16, 4) / 384;
   for (double const x : {-40.3, -7.9, 0.0, 0.5, 7.8, 31.6}) {
-    Vec3d const p = Vec3d{x, 0.7 * x, 5} * mm;
+    Vec3d const p = Vec3d{x, 0.7 * x, 5} * node_step;
     EXPECT_LT(length(loaded.flow(p) - 3.0 * wave(p)), 2 * error + 1e-6) << x;
     EXPECT_TRUE(loaded.flow.covers(p));
   }
@@ -111,9 +111,9 @@ TEST(VelocityFile, IsReadWhenItIsNeeded) {
   document.finish();
   EXPECT_EQ(setup.flow(Vec3d{}), Vec3d{});
   EXPECT_EQ(load_flow(setup), "");
-  EXPECT_LT(length(setup.flow(Vec3d{1 * mm, 0, 4 * mm}) - Vec3d{14, -4, 2}), 1e-5);
-  EXPECT_TRUE(velocity_known(setup, Vec3d{3 * mm, 3 * mm, 7 * mm}));
-  EXPECT_FALSE(velocity_known(setup, Vec3d{0, 0, 2.9 * mm}));
+  EXPECT_LT(length(setup.flow(Vec3d{1 * node_step, 0, 4 * node_step}) - Vec3d{14, -4, 2}), 1e-5);
+  EXPECT_TRUE(velocity_known(setup, Vec3d{3 * node_step, 3 * node_step, 7 * node_step}));
+  EXPECT_FALSE(velocity_known(setup, Vec3d{0, 0, 2.9 * node_step}));
 }
 
 }  // namespace
