@@ -79,8 +79,8 @@ std::vector<Vec3d> spread_at(double z, int across, int apart) {
 class Views : public testing::TestWithParam<LensletLayout> {};
 
 // The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, v where the lens images it: a pixel's
-// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 49 points, whose images fall
-// on lenslets alike, knows it to 0.05 pixels.
+// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images fall
+// on lenslets alike, knows it to half of an eleventh of a pixel.
 TEST_P(Views, ShowTheParallaxThatGeometrySays) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
