@@ -237,7 +237,7 @@ double variance_along_row(Image<double> const& image) {
 TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
   for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
     Scene scene = scene_with_particles(piv_setup(), {{0, 0, z}}, {{0, 0, z}}, 4096);
-    Rendering const rendering = render(scene, ParticleLight::equal, RenderImages::yes);
+    Rendering const rendering = render(scene, ParticleLight::scattered, RenderImages::yes);
     double const px = 10e-6, pupil = 105 * mm / 8, image_distance = scene.imaging.image_distance;
     double const diffraction = 4 * 0.4206042622 * image_distance / pupil * 532e-9 / px;
     double const blur = image_distance / 0.75 * pupil * std::abs(z) / (0.75 - z) / px;
