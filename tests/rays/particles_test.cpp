@@ -235,10 +235,12 @@ double variance_along_row(Image<double> const& image) {
 // image is the disc of confusion, of diameter M D |z| / (Z - z), smeared by the spot and by the pixel, whose variance
 // is a twelfth. 4096 rays know the disc's to a part in a thousand; the spot is cut off where 4e-8 of it are left.
 TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
+  gladstone::Setup setup = piv_setup();
+  setup.camera.pixel_pitch = 2e-6;  // a sigma is a pixel: its place within it does not matter
   for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
-    Scene scene = scene_with_particles(piv_setup(), {{0, 0, z}}, {{0, 0, z}}, 4096);
+    Scene scene = scene_with_particles(setup, {{0, 0, z}}, {{0, 0, z}}, 4096);
     Rendering const rendering = render(scene, ParticleLight::scattered, RenderImages::yes);
-    double const px = 10e-6, pupil = 105 * mm / 8, image_distance = scene.imaging.image_distance;
+    double const px = 2e-6, pupil = 105 * mm / 8, image_distance = scene.imaging.image_distance;
     double const diffraction = 4 * 0.4206042622 * image_distance / pupil * 532e-9 / px;
     double const blur = image_distance / 0.75 * pupil * std::abs(z) / (0.75 - z) / px;
     double const expected = (diffraction * diffraction + blur * blur) / 16 + 1.0 / 12;
