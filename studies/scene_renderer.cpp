@@ -164,7 +164,9 @@ StepPlan plan_step_of(Scene& scene) {
   if (scene.second_medium) {  // the shorter step of both
     Scene first = scene, second = at_second_pulse(scene);
     first.second_medium.reset();
-    StepPlan const a = plan_step_of(first), b = plan_step_of(second), plan = b.step_mm < a.step_mm ? b : a;
+    StepPlan const a = plan_step_of(first), b = plan_step_of(second);
+    StepPlan plan = b.step_mm < a.step_mm ? b : a;
+    plan.largest_bend = std::max(a.largest_bend, b.largest_bend);
     use_step(scene, plan);
     return plan;
   }
