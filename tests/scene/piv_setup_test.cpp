@@ -83,7 +83,7 @@ TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {
 TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
   std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/appended_raw.vti";
   gladstone::Setup const setup =
-      read_setup_text(piv_text("volume_mm = [12, 12, 2]\nscattering = \"lambert\"\nnumber = 4000\n", "",
+      read_setup_text(piv_text("volume_mm = [12, 12, 2]\nscattering = \"lambert\"\nnumber = 300\n", "",
                                "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [4, 6, 2]\nscale = 0.5\n"))
           .setup;
   auto const warnings = warnings_of_particles(build_scene(setup));

@@ -46,7 +46,7 @@ Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
   scene.particles.diameter.assign(places.size(), 1e-6);
   scene.photon_unit = 1;
   plan_step_by_rays(scene);
-  scene.rays_per_dot = 4096;
+  scene.rays_per_dot = 2048;
   return RaysRenderer()
       .render_particles(scene, scene.particles, ParticleLight::equal, RenderImages::yes)
       .light.reference;
@@ -66,12 +66,13 @@ Vec2d centroid(Image<double> const& image) {
 
 /// `across` places in either direction about the axis at this depth, whose images are so many lenslets and a share of
 /// one apart: they fall on lenslets alike.
-std::vector<Vec3d> spread_at(double z, int across, int apart) {
+std::vector<Vec3d> spread_at(double z, int across, int apart, LensletLayout layout) {
   std::vector<Vec3d> places;
   double const lenslet = pitch / (105.0 / 645) * (750 * mm - z) / (750 * mm);  // seen there
   double const step = (apart + 1.0 / across) * lenslet;
+  double const row = layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // of lenslets, over their pitch
   for (int i = 0; i < across; ++i) {
-    for (int j = 0; j < across; ++j) places.push_back({(i - across / 2) * step, (j - across / 2) * step, z});
+    for (int j = 0; j < across; ++j) places.push_back({(i - across / 2) * step, (j - across / 2) * row * step, z});
   }
   return places;
 }
@@ -79,15 +80,15 @@ std::vector<Vec3d> spread_at(double z, int across, int apart) {
 class Views : public testing::TestWithParam<LensletLayout> {};
 
 // The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, v where the lens images it: a pixel's
-// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images fall
-// on lenslets alike, knows it to half of an eleventh of a pixel.
+// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images
+// fall on lenslets alike, knows it to half of an eleventh of a pixel.
 TEST_P(Views, ShowTheParallaxThatGeometrySays) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
   EXPECT_NEAR(camera.picture_px(), 12.04, 0.01);
   double const z_i = 1 / (1 / 0.105 - 1 / 0.75);
   for (double const z : {25 * mm, 0.0, -30 * mm}) {
-    Image<double> const raw = picture(setup, spread_at(z, 11, 2));
+    Image<double> const raw = picture(setup, spread_at(z, 11, 2, GetParam()));
     PlenopticViews const views(camera, raw);
     Vec2d const middle = centroid(views.view({}));
     for (Vec2d const s : {Vec2d{8 * mm, 0}, Vec2d{-5 * mm, 6 * mm}, Vec2d{0, -9 * mm}}) {
@@ -105,7 +106,7 @@ TEST_P(Views, ShowTheParallaxThatGeometrySays) {
 TEST_P(Views, AreFocusedOnAnotherPlane) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
-  Image<double> const raw = picture(setup, spread_at(60 * mm, 5, 5));
+  Image<double> const raw = picture(setup, spread_at(60 * mm, 5, 5, GetParam()));
   PlenopticViews const views(camera, raw);
   std::vector<Vec2d> const stops = places_of_stop(camera.stop_diameter, 9);
   auto const sharpness = [&](double z) {
