@@ -220,6 +220,13 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   cross_check_noise(setup, warnings);
   cross_check_steps(setup, medium);
   cross_check_density(setup, medium, warnings);
+  if (setup.medium.second_field) {
+    Setup second = setup;
+    second.medium = at_second_pulse(setup.medium);
+    cross_check_geometry(second, root.table("geometry"));
+    cross_check_steps(second, medium, "second_field");
+    cross_check_density(second, medium, warnings, "second_field");
+  }
   if (setup.piv) {
     cross_check_spot(setup, setup.spot_diameter_px(), root.table("lens"), root);
     cross_check_particles(setup, root, warnings);

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "render/medium/density_field.h"
+#include "render/base/fields/field_file.h"
 
 namespace gladstone {
 
@@ -17,8 +17,9 @@ namespace gladstone {
 /// Spacing and origin are those of the coordinates, in the unit that their attribute "units" names; without them 1 and
 /// 0. An axis of one node takes the spacing of x. Axes must ascend and be uniform to 1e-4 of a step, beyond what float
 /// coordinates can tell.
-/// @param dataset empty: the only one that holds a scalar field
-/// @throws DataError for a wrong rank, several values a point, axes that are not uniform or do not fit
-std::unique_ptr<FieldSource> open_jhtdb(std::string const& path, std::string const& dataset);
+/// @param dataset empty: the only one that holds a field of so many values a point
+/// @param values 1 of a scalar field, 3 of a velocity
+/// @throws DataError for a wrong rank, another number of values a point, axes that are not uniform or do not fit
+std::unique_ptr<FieldSource> open_jhtdb(std::string const& path, std::string const& dataset, int values);
 
 }  // namespace gladstone

@@ -1,4 +1,4 @@
-#include "render/medium/spline_prefilter.h"
+#include "render/base/fields/spline_prefilter.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "render/base/fields/interpolation.h"
 #include "render/base/units.h"
-#include "render/medium/interpolation.h"
 
 namespace gladstone {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "render/medium/density_field.h"
+#include "render/base/fields/field_file.h"
 
 namespace gladstone {
 
@@ -10,7 +10,8 @@ namespace gladstone {
 /// raw values; where one is bad the whole field is read once more, to say how many there are.
 class CheckedSource : public FieldSource {
  public:
-  CheckedSource(std::string path, std::string name) : path_(std::move(path)), name_(std::move(name)) {}
+  CheckedSource(std::string path, std::string name, int values)
+      : FieldSource(values), path_(std::move(path)), name_(std::move(name)) {}
 
   RegularGrid const& grid() const override { return grid_; }
   FieldUnits const& units() const override { return units_; }
@@ -21,6 +22,11 @@ class CheckedSource : public FieldSource {
  protected:
   virtual void read_raw_planes(int first_plane, int count, std::span<double> out) = 0;
   virtual void read_raw_rows(int plane, int first_row, int count, std::span<double> out) = 0;
+
+  /// Numbers in a row of nodes.
+  std::size_t row_values() const {
+    return static_cast<std::size_t>(grid_.nodes[0]) * static_cast<std::size_t>(values());
+  }
 
   std::string path_;
   std::string name_;

@@ -1,4 +1,4 @@
-#include "render/medium/field_units.h"
+#include "render/base/fields/field_units.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "render/medium/field_units.h"
+#include "render/base/fields/field_units.h"
 
 namespace gladstone {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "render/medium/density_field.h"
+#include "render/base/fields/field_file.h"
 
 namespace gladstone {
 
@@ -12,8 +12,9 @@ namespace gladstone {
 /// come from "spacings" or "space directions" (along the axes) and "space origin", in the unit of "units" or "space
 /// units"; without them 1 and 0. Compressed data are streamed: planes read in ascending order are decompressed once.
 /// @param dataset must be empty: a NRRD file holds one field
+/// @param values must be 1: a velocity is not read here
 /// @throws DataError for what is not read here (other encodings, several data files, oblique axes) and for data that
 ///         are cut short, with the bytes there and the bytes needed
-std::unique_ptr<FieldSource> open_nrrd(std::string const& path, std::string const& dataset);
+std::unique_ptr<FieldSource> open_nrrd(std::string const& path, std::string const& dataset, int values);
 
 }  // namespace gladstone

@@ -1,4 +1,4 @@
-#include "render/medium/density_readers/nrrd.h"
+#include "render/base/fields/readers/nrrd.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,10 +10,10 @@
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/fields/readers/checked_source.h"
+#include "render/base/fields/readers/nrrd_header.h"
 #include "render/base/input_file.h"
 #include "render/base/interrupt.h"
-#include "render/medium/density_readers/checked_source.h"
-#include "render/medium/density_readers/nrrd_header.h"
 
 namespace gladstone {
 namespace {
@@ -192,7 +192,8 @@ void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, s
 class NrrdSource final : public CheckedSource {
  public:
   NrrdSource(std::string const& path, NrrdHeader header)
-      : CheckedSource(path, header.content.empty() ? std::filesystem::path(path).filename().string() : header.content),
+      : CheckedSource(path, header.content.empty() ? std::filesystem::path(path).filename().string() : header.content,
+                      1),
         header_(std::move(header)),
         bytes_(header_) {
     grid_.nodes = header_.sizes;
@@ -228,7 +229,10 @@ class NrrdSource final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<FieldSource> open_nrrd(std::string const& path, std::string const& dataset) {
+std::unique_ptr<FieldSource> open_nrrd(std::string const& path, std::string const& dataset, int values) {
+  if (values != 1) {
+    throw DataError(path, "NRRD files are read as scalar fields alone; write a velocity as .h5 or .vti");
+  }
   if (!dataset.empty()) {
     throw DataError(path, "holds one field without a name; leave dataset = \"" + dataset + "\" out");
   }

@@ -14,8 +14,8 @@
 #include <numeric>
 
 #include "render/base/error.h"
+#include "render/base/fields/field_file.h"
 #include "render/base/hdf5_file.h"
-#include "render/medium/density_field.h"
 
 namespace gladstone {
 namespace {
@@ -273,7 +273,7 @@ TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
   EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
   std::ofstream(in_folder("field.vtk")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); },
-              refused("field.vtk", "known are .h5, .hdf5, .nrrd, .nhdr"));
+              refused("field.vtk", "known are .h5, .hdf5, .vti, .nrrd, .nhdr"));
   std::ofstream(in_folder("text.H5")) << "x";
   EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
   EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
@@ -500,6 +500,94 @@ TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
   std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
   EXPECT_THAT([&] { open_field(absent, ""); }, refused("absent.raw", "does not exist"));
   EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, refused("c.nhdr", "leave dataset = \"Density_0001\" out"));
+}
+
+// Cut-outs of the older client have the three components of a velocity side by side.
+TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
+  std::vector<double> values;
+  for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
+  std::string const path = write({{"Velocity_0001", {2, 3, 4, 3}, values}, density()});
+  auto const source = open_field(path, "", 3);
+  EXPECT_EQ(source->name(), "Velocity_0001");
+  EXPECT_EQ(source->values(), 3);
+  std::vector<double> plane(36);
+  source->read_planes(1, 1, plane);
+  EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
+  EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
+              refused("cutout.h5", "holds 1 values a point; a velocity has shape [nz, ny, nx, 3]"));
+  EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
+}
+
+/// Files that VTK 9.7 has written, in each of its ways: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y +
+/// x, on 4 x 3 x 2 nodes whose first is number 1 along x.
+std::string vtk_file(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/" + name;
+}
+
+TEST(VtiField, IsReadInEachOfVtksWays) {
+  auto const expected = numbered(4, 3, 2);
+  for (char const* const name : {"ascii.vti", "binary.vti", "binary_blocks.vti", "appended_base64.vti",
+                                 "appended_raw.vti", "appended_raw_big_endian.vti"}) {
+    auto const velocity = open_field(vtk_file(name), "", 3);
+    EXPECT_EQ(velocity->name(), "velocity");
+    EXPECT_THAT(velocity->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_EQ(velocity->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(velocity->grid().origin, (Vec3d{1, -1, 3}));
+    EXPECT_EQ(velocity->significant_bits(), 24);
+    std::vector<double> values(3 * expected.size());
+    velocity->read_planes(0, 2, values);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(values[3 * i], expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 1], -expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 2], expected[i] + 0.5) << name;
+    }
+    auto const density = open_field(vtk_file(name), "density");
+    EXPECT_EQ(read_all(*density), expected) << name;
+  }
+}
+
+class VtiFiles : public FieldFiles {
+ protected:
+  /// A file of this text, opened and read.
+  void read(std::string const& text, std::string const& dataset = "", int values = 1) {
+    std::ofstream(in_folder("field.vti")) << text;
+    auto const source = open_field(in_folder("field.vti"), dataset, values);
+    std::vector<double> all(source->grid().size() * static_cast<std::size_t>(values));
+    source->read_planes(0, source->grid().nodes[2], all);
+  }
+  static std::string image(std::string const& arrays, std::string const& grid = "WholeExtent=\"0 1 0 1 0 0\"") {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"><ImageData " + grid +
+           "><Piece Extent=\"0 1 0 1 0 0\"><PointData>" + arrays + "</PointData></Piece></ImageData></VTKFile>";
+  }
+  static std::string array(std::string const& keys, std::string const& data) {
+    return "<DataArray type=\"Float32\" " + keys + ">" + data + "</DataArray>";
+  }
+};
+
+TEST_F(VtiFiles, RefusesWhatItCannotRead) {
+  auto const refuses = [this](std::string const& text, std::string const& why, std::string const& dataset = "") {
+    EXPECT_THAT(([&] { read(text, dataset); }), refused("field.vti", why)) << text;
+  };
+  std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
+  EXPECT_NO_THROW(read(image(good)));
+  refuses("", "is no VTK image");
+  refuses("<VTKFile type=\"RectilinearGrid\">", "holds VTK's \"RectilinearGrid\"");
+  refuses(image(""), "has no scalar field among its PointData");
+  refuses(image(good), "has no scalar field \"b\" among its PointData, which are \"a\"", "b");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "say which with dataset = \"a\" or \"b\"");
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "holds 2 values a point where 1 are", "a");
+  refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "is in several pieces");
+  refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0 1 0 1 0 0 0 0 1\""), "has turned axes");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are there");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
+          "its length is 12 where its grid needs 16");
+  refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
+  refuses("<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\">", "compressed by \"vtkLZ4DataCompressor\"");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "render/medium/spline_prefilter.h"
+#include "render/base/fields/spline_prefilter.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "render/medium/density_readers/checked_source.h"
+#include "render/base/fields/readers/checked_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,7 @@ std::string share(std::size_t count, std::size_t all) {
 }  // namespace
 
 void CheckedSource::read_planes(int first_plane, int count, std::span<double> out) {
-  std::size_t const plane = static_cast<std::size_t>(grid_.nodes[0]) * static_cast<std::size_t>(grid_.nodes[1]);
+  std::size_t const plane = row_values() * static_cast<std::size_t>(grid_.nodes[1]);
   GLADSTONE_EXPECTS(first_plane >= 0 && count >= 0 && count <= grid_.nodes[2] - first_plane);
   GLADSTONE_EXPECTS(out.size() == plane * static_cast<std::size_t>(count));
   throw_if_interrupted();
@@ -42,7 +42,7 @@ void CheckedSource::read_planes(int first_plane, int count, std::span<double> ou
 void CheckedSource::read_rows(int plane, int first_row, int count, std::span<double> out) {
   GLADSTONE_EXPECTS(plane >= 0 && plane < grid_.nodes[2]);
   GLADSTONE_EXPECTS(first_row >= 0 && count >= 0 && count <= grid_.nodes[1] - first_row);
-  GLADSTONE_EXPECTS(out.size() == static_cast<std::size_t>(grid_.nodes[0]) * static_cast<std::size_t>(count));
+  GLADSTONE_EXPECTS(out.size() == row_values() * static_cast<std::size_t>(count));
   throw_if_interrupted();
   read_raw_rows(plane, first_row, count, out);
   refuse_bad_values(out);
@@ -50,7 +50,7 @@ void CheckedSource::read_rows(int plane, int first_row, int count, std::span<dou
 
 void CheckedSource::refuse_bad_values(std::span<double const> read) {
   if (std::none_of(read.begin(), read.end(), is_bad)) return;
-  auto const width = static_cast<std::size_t>(grid_.nodes[0]);
+  std::size_t const width = row_values(), all = grid_.size() * static_cast<std::size_t>(values());
   int const rows = std::clamp(static_cast<int>(values_at_once / width), 1, grid_.nodes[1]);
   std::vector<double> values;
   std::size_t holes = 0, not_finite = 0;
@@ -66,8 +66,8 @@ void CheckedSource::refuse_bad_values(std::span<double const> read) {
     }
   }
   std::string message = "dataset \"" + name_ + "\": ";
-  if (holes > 0) message += share(holes, grid_.size()) + "holes (-999.9, the database's mark for missing data)";
-  if (not_finite > 0) message += (holes > 0 ? ", " : "") + share(not_finite, grid_.size()) + "nan or infinite";
+  if (holes > 0) message += share(holes, all) + "holes (-999.9, the database's mark for missing data)";
+  if (not_finite > 0) message += (holes > 0 ? ", " : "") + share(not_finite, all) + "nan or infinite";
   throw DataError(path_, message + "; fetch the field again or cut the region out");
 }
 

@@ -1,4 +1,4 @@
-#include "render/medium/density_readers/nrrd_header.h"
+#include "render/base/fields/readers/nrrd_header.h"
 
 #include <fmt/format.h>
 

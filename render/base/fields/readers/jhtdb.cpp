@@ -1,4 +1,4 @@
-#include "render/medium/density_readers/jhtdb.h"
+#include "render/base/fields/readers/jhtdb.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "render/base/error.h"
+#include "render/base/fields/readers/checked_source.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/nearest_name.h"
-#include "render/medium/density_readers/checked_source.h"
 
 namespace gladstone {
 namespace {
@@ -20,7 +20,16 @@ using Shape = std::vector<std::size_t>;
 
 std::string shape_text(Shape const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
-bool is_scalar_field(Shape const& shape) { return shape.size() == 3 || (shape.size() == 4 && shape[3] == 1); }
+/// Whether a dataset has so many values at every node of a volume.
+bool is_field(Shape const& shape, int values) {
+  return (values == 1 && shape.size() == 3) || (shape.size() == 4 && shape[3] == static_cast<std::size_t>(values));
+}
+
+/// Shapes of such datasets, for messages.
+std::string wanted_shape(int values) {
+  return values == 1 ? "a scalar field has shape [nz, ny, nx] or [nz, ny, nx, 1]"
+                     : fmt::format("a velocity has shape [nz, ny, nx, {}]", values);
+}
 
 /// The datasets of numbers in the file's root, with their shapes.
 std::vector<std::pair<std::string, Shape>> numeric_datasets(Hdf5Reader const& file) {
@@ -34,18 +43,20 @@ std::vector<std::pair<std::string, Shape>> numeric_datasets(Hdf5Reader const& fi
   return found;
 }
 
-std::string only_field(Hdf5Reader const& file, std::string const& path) {
+std::string only_field(Hdf5Reader const& file, std::string const& path, int values) {
   auto const datasets = numeric_datasets(file);
   std::vector<std::string> fields;
   std::string others;
   for (auto const& [name, shape] : datasets) {
-    if (is_scalar_field(shape)) fields.push_back(name);
+    if (is_field(shape, values)) fields.push_back(name);
     others += fmt::format("{}\"{}\" {}", others.empty() ? "" : ", ", name, shape_text(shape));
   }
   if (fields.size() == 1) return fields.front();
   if (fields.empty()) {
-    throw DataError(path, "has no scalar field, [nz, ny, nx] or [nz, ny, nx, 1]; it has " +
-                              (others.empty() ? "no numbers at all" : others));
+    throw DataError(path, fmt::format("has no {}; it has {}",
+                                      values == 1 ? "scalar field, [nz, ny, nx] or [nz, ny, nx, 1]"
+                                                  : fmt::format("velocity, [nz, ny, nx, {}]", values),
+                                      others.empty() ? "no numbers at all" : others));
   }
   throw DataError(path, "has several fields; say which with dataset = " + quoted_list(fields));
 }
@@ -78,15 +89,14 @@ Axis uniform_axis(std::vector<double> const& x, std::string const& path, std::st
 
 class JhtdbSource final : public CheckedSource {
  public:
-  JhtdbSource(Hdf5Reader file, std::string const& path, std::string const& dataset)
-      : CheckedSource(path, dataset), file_(std::move(file)) {
+  JhtdbSource(Hdf5Reader file, std::string const& path, std::string const& dataset, int values)
+      : CheckedSource(path, dataset, values), file_(std::move(file)) {
     Shape const shape = file_.shape(name_);
-    if (!is_scalar_field(shape)) {
+    if (!is_field(shape, values)) {
       std::string const why = shape.size() == 4 ? fmt::format("holds {} values a point", shape[3])
                                                 : fmt::format("has rank {}", shape.size());
-      throw DataError(path_, fmt::format("dataset \"{}\" of shape {} {}; a scalar field has shape [nz, ny, nx] or "
-                                         "[nz, ny, nx, 1]",
-                                         name_, shape_text(shape), why));
+      throw DataError(
+          path_, fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape), why, wanted_shape(values)));
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::size_t const nodes = shape[2 - axis];
@@ -149,10 +159,10 @@ class JhtdbSource final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<FieldSource> open_jhtdb(std::string const& path, std::string const& dataset) {
+std::unique_ptr<FieldSource> open_jhtdb(std::string const& path, std::string const& dataset, int values) {
   Hdf5Reader file(path);
-  std::string const name = dataset.empty() ? only_field(file, path) : dataset;
-  return std::make_unique<JhtdbSource>(std::move(file), path, name);
+  std::string const name = dataset.empty() ? only_field(file, path, values) : dataset;
+  return std::make_unique<JhtdbSource>(std::move(file), path, name, values);
 }
 
 }  // namespace gladstone
