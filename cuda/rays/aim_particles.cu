@@ -16,18 +16,17 @@ __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, M
   if (stop.radius == 0) return;
   Vec3d const place = particles.middle(i);
   FilledStop straight;
-  straight.ellipse = paraxial_ellipse(stop, place);
+  straight.map = paraxial_aim(stop, place);
   if (!fill_stop(stop, NoMedium<double>{}, launch.tracing, place, straight)) return;
   FilledStop bent = straight;
   if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
     if (!fill_stop(stop, medium, launch.tracing, place, bent)) return;
   }
   aim.state = AimState::filled;
-  AimedBundle<double> const seen = bundle_of(bent.disc, launch.choice);
-  aim.seen = SentTo(seen);
-  aim.ambient = SentTo(bundle_of(straight.disc, launch.choice));
+  aim.seen = bent.map;
+  aim.ambient = straight.map;
   if (!placed) origin = origin_of(straight);
-  if (launch.most_window_px > 0) aim.most_weight = weight_expected(particles, seen, i);
+  if (launch.most_window_px > 0) aim.most_weight = weight_expected(launch, particles, aim.seen, i);
   place_window(launch, bent.low, bent.high, aim);
 }
 

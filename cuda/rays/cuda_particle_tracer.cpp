@@ -39,26 +39,37 @@ class ParticlePasses {
     ends_.zero();
   }
 
-  /// @param launch of the batch's particles
-  void trace(ParticleBatch& batch, ParticlesLaunch const& launch, double photons_per_weight, GroundTruth& truth) {
+  /// Sets the device to work on a batch. @param launch of the batch's particles
+  void start(ParticleBatch& batch, ParticlesLaunch const& launch) {
     unknown_.zero();
     aim_particles(launches_.stop(), launch, mirrored_, batch.count(), batch.aims().data(), batch.origins().data(),
                   unknown_.data());
     trace(batch, launch, AimState::filled, nullptr, frame_count * batch.count());
+  }
+
+  /// Waits for it, traces what the host has to aim, and enters the truth.
+  void finish(ParticleBatch& batch, ParticlesLaunch const& launch, double photons_per_weight, GroundTruth& truth) {
     unsigned long long unknown = 0;
     unknown_.download(&unknown, 1);
     if (unknown > 0) trace_wide(batch, launch);
-    see_particles(launch, batch.aims().data(), batch.origins().data(), batch.sums().data(), batch.count(),
-                  batch.seen().data());
-    auto* const seen = static_cast<ParticleSeen*>(staging_.reserve(batch.count() * sizeof(ParticleSeen)));
-    batch.seen().download(seen, batch.count());
-    parallel_chunks(batch.count(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) set_particle(truth, launch.first + i, seen[i], photons_per_weight);
+    constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
+    std::size_t const count = batch.count();
+    DotTruth* const ambient_there = bends ? batch.ambient().data() : nullptr;
+    see_particles(launch, batch.aims().data(), batch.origins().data(), batch.sums().data(), count, batch.truth().data(),
+                  ambient_there);
+    auto* const seen = static_cast<DotTruth*>(staging_.reserve(2 * count * sizeof(DotTruth)));
+    batch.truth().download(seen, count);
+    DotTruth* const ambient = bends ? seen + count : seen;
+    if (bends) batch.ambient().download(ambient, count);
+    parallel_chunks(count, 1024, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        set_particle(truth, launch.first + i, {seen[i], ambient[i]}, photons_per_weight);
+      }
     });
   }
 
   /// Adds what became of all rays.
-  void finish(StatusCounts& statuses) const {
+  void count(StatusCounts& statuses) const {
     unsigned long long ends[frame_count * ray_status_count] = {};
     ends_.download(ends, frame_count * ray_status_count);
     for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
@@ -141,9 +152,19 @@ class ParticlePasses {
     std::size_t const pulse = at % frame_count;
     AimedBundle<double> const bundle = host_.smooth.bundle(*found.disc, 0, found.margin);
     aim.state = AimState::wide;
-    aim.seen = aim.ambient = SentTo(bundle);
+    Pose<double> const& plane = launch.camera.aim_plane;
+    auto const along = [&plane](Vec3d v) {
+      Vec3d const there = plane.direction_inwards(v);
+      return Vec2d{there.x, there.y};
+    };
+    Vec3d const centre = plane.point_inwards(bundle.centre);
+    aim.seen = {};
+    aim.seen.centre = {centre.x, centre.y};
+    aim.seen.a[0] = along(bundle.a);
+    aim.seen.b[0] = along(bundle.b);
+    aim.ambient = aim.seen;
     if (launch.most_window_px > 0) {
-      aim.most_weight = weight_expected(pulses_[pulse], bundle, launch.first + at / frame_count);
+      aim.most_weight = weight_expected(launch, pulses_[pulse], aim.seen, launch.first + at / frame_count);
     }
     place_window(launch, found.low[1], found.high[1], aim);
   }
@@ -189,7 +210,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   for (int pulse = 0; pulse < frame_count; ++pulse) {
     pulses[pulse] = {particles.place[pulse].data(), particles.photons[pulse].data(), scattering, sheet, pulse};
   }
-  Rendering rendering = empty_rendering(particles, host.smooth.rays);
+  Rendering rendering;
   double const photons_per_weight = 1 / static_cast<double>(host.smooth.rays);
   std::size_t const most = batch_size(scene, launches);
   Progress progress(lit ? "tracing particles" : "tracing truth", particles.size());
@@ -200,14 +221,20 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
       std::size_t const count = std::min(most, particles.size() - first);
       ParticleBatch batch(particles, first, count, launches.sums_a_pulse());
       if (scattering.kind == AnyScattering::Kind::mie) scattering.mie = kept.view(first);
-      passes.trace(batch, batch.launch(launches.filled(), first, scattering, sheet), photons_per_weight,
-                   rendering.truth);
+      ParticlesLaunch const launch = batch.launch(launches.filled(), first, scattering, sheet);
+      passes.start(batch, launch);
+      if (first == 0) rendering = empty_rendering(particles, host.smooth.rays);  // meanwhile
+      passes.finish(batch, launch, photons_per_weight, rendering.truth);
       progress.advance(count);
     }
-    passes.finish(rendering.statuses);
+    passes.count(rendering.statuses);
     scene.pupil_margin = passes.largest_margin();
   };
-  std::visit(trace_all, scene.medium.view);
+  if (particles.size() > 0) {
+    std::visit(trace_all, scene.medium.view);
+  } else {
+    rendering = empty_rendering(particles, host.smooth.rays);
+  }
   if (!lit) return rendering;
   auto made = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*made);

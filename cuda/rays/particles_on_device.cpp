@@ -43,6 +43,7 @@ LaunchesOnDevice::LaunchesOnDevice(Scene const& scene, ParticleLaunch const& hos
   launch_.tracing = shared.tracing;
   launch_.choice = shared.choice;
   launch_.rays = shared.rays;
+  launch_.chief_rays = shared.camera.chief_rays_only();
   if (!images) return;
   launch_.images = images->view(1 / (static_cast<double>(shared.rays) * scene.photon_unit));
   launch_.spot = shared.spot;

@@ -57,7 +57,8 @@ class ParticleBatch {
         origins_(count, "the particles"),
         sums_(frame_count * count * sums_a_pulse, "the sums over a batch's rays"),
         bend2_(frame_count * count, "the sums over a batch's rays"),
-        seen_(count, "the particles") {
+        truth_(count, "the particles"),
+        ambient_(count, "the particles") {
     for (int pulse = 0; pulse < frame_count; ++pulse) {
       places_[pulse] = DeviceArray<Vec3d>(particles.place[pulse].data() + first, count, "the particles");
       photons_[pulse] = DeviceArray<double>(particles.photons[pulse].data() + first, count, "the particles");
@@ -67,7 +68,7 @@ class ParticleBatch {
   /// What a particle takes.
   static std::size_t bytes_a_particle(std::size_t sums_a_pulse) {
     std::size_t const a_pulse = sizeof(PulseAim) + sizeof(Vec3d) + 2 * sizeof(double) + sums_a_pulse * sizeof(RaySums);
-    return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + sizeof(ParticleSeen);
+    return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + 2 * sizeof(DotTruth);
   }
 
   /// A launch of its particles. @param scattering of them
@@ -87,7 +88,8 @@ class ParticleBatch {
   DeviceArray<Vec2d>& origins() { return origins_; }
   DeviceArray<double>& bend2() { return bend2_; }
   DeviceArray<RaySums>& sums() { return sums_; }
-  DeviceArray<ParticleSeen>& seen() { return seen_; }
+  DeviceArray<DotTruth>& truth() { return truth_; }
+  DeviceArray<DotTruth>& ambient() { return ambient_; }
 
  private:
   std::size_t count_;
@@ -98,7 +100,7 @@ class ParticleBatch {
   DeviceArray<Vec2d> origins_;
   DeviceArray<RaySums> sums_;
   DeviceArray<double> bend2_;
-  DeviceArray<ParticleSeen> seen_;
+  DeviceArray<DotTruth> truth_, ambient_;
 };
 
 }  // namespace gladstone::cuda

@@ -23,7 +23,6 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
                             SpotPatch const& patch, unsigned int* counts, RaySums& sums, double& bend2) {
   bool const lit = launch.images.light[0] != nullptr;
   auto const& particles = launch.pulses[share.pulse];
-  AimedBundle<double> const to_seen = aim.seen.bundle(launch.choice);
   auto const enter = [&share](RayHit<double> const& hit, CentroidSum<double>& sum) {
     if (hit.weight != 0) sum.add(hit.pixel - share.origin, hit.weight, reaches_sensor_plane(hit.status));
   };
@@ -34,11 +33,11 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
     bool alone = false;  // whether neither window nor patch takes its light
     if (j < share.last) {
       Vec2d const at = place_of_ray(launch.choice, launch.first + share.particle, j);
-      AimedRay<double> const aimed = ray_to(particles, to_seen, share.particle, {}, at);
+      AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, share.particle, at);
       seen = trace_ray(camera, medium, launch.tracing, aimed.ray, aimed.weight);
       RayHit<double> ambient = seen;
       if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
-        AimedRay<double> const straight = ray_to(particles, aim.ambient.bundle(launch.choice), share.particle, {}, at);
+        AimedRay<double> const straight = aimed_ray(launch, particles, aim.ambient, share.particle, at);
         ambient = trace_ray(camera, NoMedium<double>{}, launch.tracing, straight.ray, straight.weight);
         if (seen.status <= RayStatus::vignetted && ambient.status <= RayStatus::vignetted) {
           Vec2d const bend = seen.at_lens - ambient.at_lens;
@@ -127,10 +126,10 @@ constexpr int seeing_threads = 64;
 __global__ void __launch_bounds__(seeing_threads)
     see_particles_kernel(ParticlesLaunch const __grid_constant__ launch, PulseAim const* const aims,
                          Vec2d const* const origins, RaySums const* const sums, std::uint64_t const count,
-                         ParticleSeen* const seen) {
+                         DotTruth* const truth, DotTruth* const ambient) {
   std::uint64_t const i = std::uint64_t{blockIdx.x} * seeing_threads + threadIdx.x;
   if (i >= count) return;
-  RaySums through_medium[most_scramblings], ambient[most_scramblings];
+  RaySums through_medium[most_scramblings], without[most_scramblings];
   int const scramblings = launch.scramblings();
   for (int pulse = 0; pulse < frame_count; ++pulse) {
     std::uint64_t const at = frame_count * i + pulse;
@@ -140,11 +139,12 @@ __global__ void __launch_bounds__(seeing_threads)
       for (int k = 0; k < scramblings; ++k) {
         RaySums const& here = sums[(at * launch.shares() + share) * scramblings + k];
         through_medium[k].hits[pulse] += here.hits[0];
-        ambient[k].hits[pulse] += here.hits[1];
+        if (ambient) without[k].hits[pulse] += here.hits[1];
       }
     }
   }
-  seen[i] = {source_truth(through_medium, scramblings, origins[i]), source_truth(ambient, scramblings, origins[i])};
+  truth[i] = source_truth(through_medium, scramblings, origins[i]);
+  if (ambient) ambient[i] = source_truth(without, scramblings, origins[i]);
 }
 
 }  // namespace
@@ -180,9 +180,9 @@ void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& 
 }
 
 void see_particles(ParticlesLaunch const& launch, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
-                   std::uint64_t count, ParticleSeen* seen) {
+                   std::uint64_t count, DotTruth* truth, DotTruth* ambient) {
   auto const blocks = static_cast<unsigned int>((count + seeing_threads - 1) / seeing_threads);
-  see_particles_kernel<<<blocks, seeing_threads>>>(launch, aims, origins, sums, count, seen);
+  see_particles_kernel<<<blocks, seeing_threads>>>(launch, aims, origins, sums, count, truth, ambient);
   check_launch("see_particles");
 }
 

@@ -29,18 +29,6 @@ struct AnyScattering {
   }
 };
 
-/// Where rays are sent.
-struct SentTo {
-  Vec3d centre, a, b, across;  ///< as AimedBundle's
-
-  SentTo() = default;
-  GLADSTONE_HD explicit SentTo(AimedBundle<double> const& of)
-      : centre(of.centre), a(of.a), b(of.b), across(of.across) {}
-  GLADSTONE_HD AimedBundle<double> bundle(BundleView<double> const& choice) const {
-    return {centre, a, b, across, choice};
-  }
-};
-
 /// What is known of the rays of one particle at one pulse.
 enum class AimState : int {
   none,     ///< not lit, or no ray of it gets through
@@ -52,7 +40,7 @@ enum class AimState : int {
 /// How the rays of one particle are sent at one pulse, and where their light is expected.
 struct PulseAim {
   AimState state = AimState::none;
-  SentTo seen, ambient;    ///< through the medium, and without
+  AimMap seen, ambient;    ///< where they go, through the medium, and without
   int window_px = 0;       ///< side of the square of pixels that its light is gathered in; 0: none
   int left = 0, top = 0;   ///< its first pixel
   double most_weight = 0;  ///< of a ray that a window takes; others are laid down one by one
@@ -73,7 +61,8 @@ struct ParticlesLaunch {
   int patch_px = 0;        ///< widest patch of pixels that a warp gathers spots in; 0: none
   DeviceImages images;     ///< may be none
   std::uint64_t rays = 1;
-  double sign = 1;  ///< of the light that is laid down and of the ends that are counted
+  bool chief_rays = false;  ///< of a camera without a stop
+  double sign = 1;          ///< of the light that is laid down and of the ends that are counted
 
   GLADSTONE_HD int scramblings() const { return 1 << choice.scrambling_bits; }
   GLADSTONE_HD std::uint64_t shares() const { return (rays + most_rays_of_block - 1) / most_rays_of_block; }
@@ -115,14 +104,24 @@ GLADSTONE_HD inline void place_window(ParticlesLaunch const& launch, Vec2d low, 
   }
 }
 
-/// The most that a ray of a source is expected to weigh: four times what those to the middle and to the rim of the aim
-/// disc do. What is heavier is laid down by itself.
+/// A ray of a particle of either memory to a place of the unit disc.
 template <class Sources>
-GLADSTONE_HD double weight_expected(Sources const& sources, AimedBundle<double> const& bundle, std::uint64_t i) {
-  constexpr int rim = 8;
-  double most = ray_to(sources, bundle, i, {}, {}).weight;
-  for (int k = 0; k < rim; ++k) {
-    double const weight = ray_to(sources, bundle, i, {}, point_of_circle(1.0, static_cast<double>(k) / rim)).weight;
+GLADSTONE_HD AimedRay<double> aimed_ray(ParticlesLaunch const& launch, Sources const& sources, AimMap const& map,
+                                        std::uint64_t i, Vec2d at) {
+  // chief rays are worth a square metre
+  if (launch.chief_rays) return ray_to_plane(sources, launch.camera.aim_plane, map.centre, 1.0, i);
+  return ray_to(sources, launch.camera.aim_plane, map, i, at);
+}
+
+/// The most that a ray of a particle is expected to weigh: four times what those to the middle and to the rim do. What
+/// is heavier is laid down by itself.
+template <class Sources>
+GLADSTONE_HD double weight_expected(ParticlesLaunch const& launch, Sources const& sources, AimMap const& map,
+                                    std::uint64_t i) {
+  double most = aimed_ray(launch, sources, map, i, {}).weight;
+  for (int k = 0; k < rim_rays; ++k) {
+    Vec2d const at = point_of_circle(1.0, static_cast<double>(k) / rim_rays);
+    double const weight = aimed_ray(launch, sources, map, i, at).weight;
     if (weight > most) most = weight;
   }
   return 4 * most;
@@ -143,8 +142,8 @@ void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& 
                      PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced);
 
-/// What the camera sees of particles, from the sums over their rays.
+/// What the camera sees of particles, from the sums over their rays. @param ambient null: nothing bends rays
 void see_particles(ParticlesLaunch const& launch, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
-                   std::uint64_t count, ParticleSeen* seen);
+                   std::uint64_t count, DotTruth* truth, DotTruth* ambient);
 
 }  // namespace gladstone::cuda

@@ -34,17 +34,39 @@ struct StopView {
         to_stop(of.paraxial.to_stop) {}
 };
 
-/// An ellipse on the aim plane, in its frame: centre + a cos + b sin, a towards the stop's x and b towards its y [m].
-struct AimEllipse {
-  Vec2d centre{}, a{}, b{};
+/// Sends the unit disc to the aim plane: centre + sum of a_m Re z^m + b_m Im z^m over m = 1, 2, 3, z = x + i y [m]. The
+/// first order makes an ellipse of it; the others bend that as a lens' aberrations bend its pupil. Harmonic polynomials
+/// follow the rim into the disc.
+struct AimMap {
+  static constexpr int orders = 3;
 
-  GLADSTONE_HD Vec2d at(Vec2d unit_disc) const { return centre + unit_disc.x * a + unit_disc.y * b; }
+  Vec2d centre{};
+  Vec2d a[orders]{}, b[orders]{};
+
+  GLADSTONE_HD Vec2d at(Vec2d u) const {
+    Vec2d place = centre, power = u;
+    for (int m = 0; m < orders; ++m) {
+      place += power.x * a[m] + power.y * b[m];
+      power = {power.x * u.x - power.y * u.y, power.x * u.y + power.y * u.x};
+    }
+    return place;
+  }
+  /// Area on the plane over that of the disc, about a place of it; negative where the map mirrors [m^2].
+  GLADSTONE_HD double stretch(Vec2d u) const {
+    Vec2d by_x{}, by_y{}, power{1, 0};
+    for (int m = 0; m < orders; ++m) {
+      double const times = m + 1;
+      by_x += times * (power.x * a[m] + power.y * b[m]);
+      by_y += times * (power.x * b[m] - power.y * a[m]);
+      power = {power.x * u.x - power.y * u.y, power.x * u.y + power.y * u.x};
+    }
+    return by_x.x * by_y.y - by_x.y * by_y.x;
+  }
 };
 
 /// Where rays of a point go to fill the stop.
 struct FilledStop {
-  AimEllipse ellipse;
-  WorldAimDisc disc;    ///< the same in the world, a hair's breadth inside
+  AimMap map;
   Vec2d low{}, high{};  ///< between which the rays of the rim end on the sensor [px]
 };
 
@@ -85,88 +107,121 @@ GLADSTONE_HD inline Ray<double> ray_to_aim(CameraView<double> const& camera, Vec
   return {point, normalized(camera.aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
 }
 
-/// The ellipse that a point sees the stop as in paraxial light, without a medium.
-GLADSTONE_HD inline AimEllipse paraxial_ellipse(StopView const& view, Vec3d point) {
+/// What a point sees of the stop in paraxial light, without a medium.
+GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
   Vec3d const q = view.pose.point_inwards(point);
   double const distance = view.front - q.z - view.window_shift;
   double const per_slope = view.to_stop.a * distance + view.to_stop.b;  // in the stop, over a ray's slope [m]
   double const height = view.to_stop.b / per_slope, radius = view.radius * distance / per_slope;
-  return {{height * q.x, height * q.y}, {radius, 0}, {0, radius}};
+  AimMap map;
+  map.centre = {height * q.x, height * q.y};
+  map.a[0] = {radius, 0};
+  map.b[0] = {0, radius};
+  return map;
 }
 
-/// Moves and stretches an ellipse until four rays of its rim, at the ends of a and b, meet the stop's rim at the ends
-/// of its x and y: secants over the ellipse stand for derivatives, so that a turn leaves of what is wrong the share
-/// that the pupil's aberration is of the pupil. @return false: there are no such rays
+inline constexpr int rim_rays = 8;
+
+/// Moves the aims of eight rays until they meet the stop's rim at equal angles, the first on its x axis, and gives the
+/// map through them. The ellipse nearest to them stands for derivatives, so that a turn leaves of what is wrong the
+/// share that the pupil's aberration is of the pupil.
+/// @param map begins with the one to start from @return false: there are no such rays
 template <class Medium>
 GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
-                              Vec3d point, AimEllipse& ellipse) {
+                              Vec3d point, AimMap& map) {
   constexpr int most_turns = 16;
-  constexpr double settled = 1e-9;  // of the radius; what the last turn leaves is less by far
-  for (int turn = 0; turn < most_turns; ++turn) {
-    Vec2d met[4];
-    for (int k = 0; k < 4; ++k) {
-      double const sign = k % 2 == 0 ? 1 : -1;
-      Vec2d const aim = ellipse.at(k < 2 ? Vec2d{sign, 0} : Vec2d{0, sign});
-      if (!detail::meets_stop(view, medium, options, ray_to_aim(view.camera, point, aim), met[k])) return false;
+  constexpr double settled = 1e-7;  // of the radius; what the last turn leaves is less by far
+  Vec2d aim[rim_rays], miss[rim_rays];
+  for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_of_circle(1.0, static_cast<double>(k) / rim_rays));
+  double change = 1;
+  for (int turn = 0; !(change <= settled); ++turn) {
+    if (turn == most_turns) return false;
+    Vec2d a{}, b{}, by_a{}, by_b{};  // the ellipse, and where its axes come to in the stop
+    for (int k = 0; k < rim_rays; ++k) {
+      Vec2d met;
+      if (!detail::meets_stop(view, medium, options, ray_to_aim(view.camera, point, aim[k]), met)) return false;
+      Vec2d const here = point_of_circle(1.0, static_cast<double>(k) / rim_rays);
+      a += (2.0 / rim_rays) * here.x * aim[k];
+      b += (2.0 / rim_rays) * here.y * aim[k];
+      by_a += (2.0 / rim_rays) * here.x * met;
+      by_b += (2.0 / rim_rays) * here.y * met;
+      miss[k] = met - view.radius * here;
     }
-    Vec2d const by_a = 0.5 * (met[0] - met[1]), by_b = 0.5 * (met[2] - met[3]);
-    Vec2d const middle = 0.25 * (met[0] + met[1] + met[2] + met[3]);
     double const area = by_a.x * by_b.y - by_a.y * by_b.x;
-    if (!(std::abs(area) > 1e-6 * view.radius * view.radius)) return false;
-    auto const aimed = [&](Vec2d in_stop) {
-      return ((in_stop.x * by_b.y - in_stop.y * by_b.x) / area) * ellipse.a +
-             ((by_a.x * in_stop.y - by_a.y * in_stop.x) / area) * ellipse.b;
-    };
-    AimEllipse const next{ellipse.centre - aimed(middle), aimed({view.radius, 0}), aimed({0, view.radius})};
-    double const change =
-        length(next.centre - ellipse.centre) + length(next.a - ellipse.a) + length(next.b - ellipse.b);
-    ellipse = next;
-    if (change <= settled * length(ellipse.a)) return true;
+    if (!(area > 1e-6 * view.radius * view.radius || area < -1e-6 * view.radius * view.radius)) return false;
+    change = 0;
+    for (int k = 0; k < rim_rays; ++k) {
+      Vec2d const by = ((miss[k].x * by_b.y - miss[k].y * by_b.x) / area) * a +
+                       ((by_a.x * miss[k].y - by_a.y * miss[k].x) / area) * b;
+      aim[k] -= by;
+      double const moved = length(by) / length(a);
+      if (!(moved <= change)) change = moved;
+    }
   }
-  return false;
+  map = {};
+  for (int k = 0; k < rim_rays; ++k) {
+    map.centre += (1.0 / rim_rays) * aim[k];
+    for (int m = 0; m < AimMap::orders; ++m) {
+      Vec2d const here = point_of_circle(2.0 / rim_rays, static_cast<double>(k * (m + 1)) / rim_rays);
+      map.a[m] += here.x * aim[k];
+      map.b[m] += here.y * aim[k];
+    }
+  }
+  return true;
 }
 
-/// Where rays of a point are to be sent so that they fill the stop and nothing else, through a medium or without: the
-/// ellipse that the stop is seen as. Eight rays just within its rim must pass the camera, and eight just beyond it must
-/// not.
-/// @param filled begins with the ellipse to start from
-/// @return false where rays do otherwise, in media that change much within the cone and behind lenses whose pupil is no
-/// ellipse
+/// Where rays of a point are to be sent so that they fill the stop and nothing else, through a medium or without. Eight
+/// rays just within the rim must pass the camera, and eight just beyond it must not.
+/// @param filled begins with the map to start from
+/// @return false where rays do otherwise: in media that change much within the cone, and where more than one rim
+/// bounds the light
 template <class Medium>
 GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                             Vec3d point, FilledStop& filled) {
-  if (!fit_to_stop(view, medium, options, point, filled.ellipse)) return false;
-  constexpr int rays = 8;
-  for (int k = 0; k < rays; ++k) {
-    Vec2d const at = point_of_circle(1.0, (k + 0.5) / rays);
+  if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
+  for (int k = 0; k < rim_rays; ++k) {
+    Vec2d const at = point_of_circle(1.0, (k + 0.5) / rim_rays);
     auto const trace = [&](double radius) {
-      return trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.ellipse.at(radius * at)),
-                       1.0);
+      return trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(radius * at)), 1.0);
     };
     RayHit<double> const within = trace(1 - filled_to);
     if (!reaches_sensor_plane(within.status) || trace(1 + filled_to).status != RayStatus::vignetted) return false;
     Vec2d const p = within.pixel;
-    filled.low = k == 0 ? p : Vec2d{p.x < filled.low.x ? p.x : filled.low.x, p.y < filled.low.y ? p.y : filled.low.y};
-    filled.high =
-        k == 0 ? p : Vec2d{p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
+    if (k == 0) filled.low = filled.high = p;
+    filled.low = {p.x < filled.low.x ? p.x : filled.low.x, p.y < filled.low.y ? p.y : filled.low.y};
+    filled.high = {p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
   }
-  // so that rounding clips no ray
-  constexpr double inside = 1 - 1e-7;
-  Pose<double> const& plane = view.camera.aim_plane;
-  auto const along = [&](Vec2d v) { return inside * plane.direction_outwards({v.x, v.y, 0}); };
-  filled.disc = {plane.point_outwards({filled.ellipse.centre.x, filled.ellipse.centre.y, 0}), along(filled.ellipse.a),
-                 along(filled.ellipse.b)};
+  // a hair's breadth inside, so that rounding clips no ray
+  double inside = 1;
+  for (int m = 0; m < AimMap::orders; ++m) {
+    inside *= 1 - 1e-7;
+    filled.map.a[m] *= inside;
+    filled.map.b[m] *= inside;
+  }
   return true;
 }
 
 /// The whole pixel that a source's sums count from [px].
 GLADSTONE_HD inline Vec2d origin_of(FilledStop const& filled) {
-  return {std::round(0.5 * (filled.low.x + filled.high.x)), std::round(0.5 * (filled.low.y + filled.high.y))};
+  using std::floor;
+  Vec2d const middle = 0.5 * (filled.low + filled.high);
+  return {floor(middle.x + 0.5), floor(middle.y + 0.5)};
 }
 
-/// Rays that fill a stop.
-GLADSTONE_HD inline AimedBundle<double> bundle_of(WorldAimDisc const& disc, BundleView<double> const& choice) {
-  return {disc.centre, disc.a, disc.b, pi * cross(disc.a, disc.b), choice};
+/// The ray of source i to a place of the aim plane. @param area of the plane that it stands for, times the number of
+/// rays [m^2]
+template <class Sources>
+GLADSTONE_HD AimedRay<double> ray_to_plane(Sources const& sources, Pose<double> const& plane, Vec2d place, double area,
+                                           std::uint64_t i) {
+  AimedBundle<double> const there{plane.point_outwards({place.x, place.y, 0}), {}, {}, area * plane.z, {}};
+  return ray_to(sources, there, i, {}, {});
+}
+
+/// The ray of source i to a place of the unit disc that a map sends to the plane.
+template <class Sources>
+GLADSTONE_HD AimedRay<double> ray_to(Sources const& sources, Pose<double> const& plane, AimMap const& map,
+                                     std::uint64_t i, Vec2d at) {
+  return ray_to_plane(sources, plane, map.at(at), pi * map.stretch(at), i);
 }
 
 }  // namespace gladstone

@@ -72,22 +72,23 @@ class ParticleTracer {
     if (launch_.camera.chief_rays_only()) return false;
     Vec3d const place = pulses_[frame].middle(particle);
     FilledStop straight;
-    straight.ellipse = paraxial_ellipse(stop_, place);
+    straight.map = paraxial_aim(stop_, place);
     if (!fill_stop(stop_, NoMedium<double>{}, launch_.tracing, place, straight)) return false;
     FilledStop bent = straight;
     if constexpr (bends) {
       if (!fill_stop(stop_, medium_, launch_.tracing, place, bent)) return false;
     }
     if (!placed_) origin_ = origin_of(straight);
-    AimedBundle<double> const of_seen = bundle_of(bent.disc, launch_.choice),
-                              of_ambient = bundle_of(straight.disc, launch_.choice);
+    auto const aimed_by = [&](AimMap const& map) {
+      return [&](Vec2d at) { return ray_to(pulses_[frame], stop_.camera.aim_plane, map, particle, at); };
+    };
     if (with_images_) light_[frame]->begin(image, light_per_weight);
     largest_bend2_ = 0;
     all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
       RayHit<double> seen[N], ambient[N];
-      trace_through(frame, of_seen, particle, at, stop_.camera, medium_, seen);
+      trace_through(aimed_by(bent.map), at, stop_.camera, medium_, seen);
       if constexpr (bends) {
-        trace_through(frame, of_ambient, particle, at, stop_.camera, NoMedium<double>{}, ambient);
+        trace_through(aimed_by(straight.map), at, stop_.camera, NoMedium<double>{}, ambient);
       } else {
         std::copy_n(seen, N, ambient);
       }
@@ -105,13 +106,14 @@ class ParticleTracer {
     if (!placed_) origin_ = aim.origin;
     auto const trace = [&](double sign) {
       AimedBundle<double> const bundle = launch_.bundle(*aim.disc, 0, aim.margin);
+      auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
       if (with_images_) light_[frame]->begin(image, sign * light_per_weight);
       largest_bend2_ = 0;
       all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
         RayHit<double> seen[N], ambient[N];
-        trace_through(frame, bundle, particle, at, view_, NoMedium<double>{}, ambient);
+        trace_through(aimed, at, view_, NoMedium<double>{}, ambient);
         if constexpr (bends) {
-          trace_through(frame, bundle, particle, at, view_, medium_, seen);
+          trace_through(aimed, at, view_, medium_, seen);
         } else {
           std::copy_n(ambient, N, seen);
         }
@@ -151,15 +153,16 @@ class ParticleTracer {
     some(ray, at);
   }
 
-  template <int N, class Through>
-  void trace_through(int frame, AimedBundle<double> const& bundle, std::uint64_t particle, Vec2d const (&at)[N],
-                     CameraView<double> const& view, Through const& medium, RayHit<double> (&hit)[N]) const {
+  /// @param aimed gives the AimedRay to a place of the unit disc
+  template <int N, class Aimed, class Through>
+  void trace_through(Aimed const& aimed, Vec2d const (&at)[N], CameraView<double> const& view, Through const& medium,
+                     RayHit<double> (&hit)[N]) const {
     Ray<double> start[N];
     double weight[N];
     for (int i = 0; i < N; ++i) {
-      AimedRay<double> const aimed = ray_to(pulses_[frame], bundle, particle, {}, at[i]);
-      start[i] = aimed.ray;
-      weight[i] = aimed.weight;
+      AimedRay<double> const one = aimed(at[i]);
+      start[i] = one.ray;
+      weight[i] = one.weight;
     }
     trace_rays(view, medium, launch_.tracing, start, weight, hit);
   }

@@ -177,6 +177,13 @@ TEST_F(CudaParticlesTest, ThroughAPinhole) {
 }
 
 TEST_F(CudaParticlesTest, EverySpot) {
+  // a pixel wide, so that patches and windows hold much of it
+  for (std::uint64_t const rays : {48u, 300u}) {
+    expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
+      setup.camera.pixel_pitch = 4e-6;
+      setup.lens.f_number = 16;
+    }));
+  }
   for (SpotModel const spot : {SpotModel::none, SpotModel::airy, SpotModel::gaussian}) {
     for (std::uint64_t const rays : {48u, 300u}) {
       expect_particles_as_on_cpu(droplets(rays, [&](BosSetup& setup) { setup.lens.spot = spot; }));
