@@ -1,15 +1,11 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "cuda/device/device_memory.h"
 #include "render/base/units.h"
-#include "render/optics/glass_catalogue.h"
-#include "render/optics/lens.h"
-#include "render/optics/paraxial.h"
-#include "render/optics/prescription.h"
 #include "render/rays/ray_planning.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/scene/real_lens_setups.h"
 
 namespace gladstone {
 namespace {
@@ -126,14 +122,7 @@ TEST_F(CudaParticlesTest, InsideEveryMedium) {
 TEST_F(CudaParticlesTest, ThroughLensesOfManySurfaces) {
   for (std::string const name : {"double_gauss", "achromat"}) {
     SCOPED_TRACE(name);
-    auto const change = [&](BosSetup& setup) {
-      LensOptions options;
-      options.f_number = setup.lens.f_number;
-      setup.lens.prescription = std::make_shared<Lens const>(
-          build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/" + name + ".toml"),
-                     GlassCatalogue::shipped(), setup.medium.wavelength, options));
-      setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
-    };
+    auto const change = [&](BosSetup& setup) { setup.lens = real_lens_setup(name, 96, setup.lens.f_number).lens; };
     expect_particles_as_on_cpu(droplets(64, change));
     expect_particles_as_on_cpu(droplets(400, change));
   }

@@ -4,30 +4,16 @@
 
 #include <cmath>
 
-#include "render/optics/glass_catalogue.h"
-#include "render/optics/lens.h"
-#include "render/optics/paraxial.h"
-#include "render/optics/prescription.h"
-#include "render/rays/source_tracer.h"
+#include "tests/scene/real_lens_setups.h"
 
 namespace gladstone {
 namespace {
 
-using PivBench = Setup;
-
 /// A camera 750 mm before Z = 0, its stop sharp. @param lens of data/lenses; empty: an ideal one
 Camera camera_with(std::string const& lens, double f_number) {
-  PivBench setup;
+  auto setup = lens.empty() ? table1_setup(96) : real_lens_setup(lens, 96, f_number);
   setup.z_d = 0;
   setup.lens.f_number = f_number;
-  if (!lens.empty()) {
-    LensOptions options;
-    options.f_number = f_number;
-    setup.lens.prescription = std::make_shared<Lens const>(
-        build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/" + lens + ".toml"),
-                   GlassCatalogue::shipped(), setup.medium.wavelength, options));
-    setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
-  }
   return build_scene(setup).camera;
 }
 
