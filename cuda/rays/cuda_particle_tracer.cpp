@@ -21,8 +21,8 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in the host's memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Takes particles through the device, batch by batch. The medium is there twice, for the host aims where no ellipse
-/// fills the stop.
+/// Takes particles through the device, batch by batch. The medium is there twice, for the host aims those that do not
+/// fill the stop.
 template <class Medium>
 class ParticlePasses {
  public:

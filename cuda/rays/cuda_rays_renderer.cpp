@@ -10,6 +10,7 @@
 #include "cuda/device/launch.h"
 #include "cuda/rays/cuda_particle_tracer.h"
 #include "cuda/rays/trace_sources.h"
+#include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -289,7 +290,10 @@ struct CudaRaysRenderer::Uploads {
   }
 };
 
-CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_device_memory(); }
+CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) {
+  keep_freed_memory();
+  keep_freed_device_memory();
+}
 CudaRaysRenderer::~CudaRaysRenderer() = default;
 
 Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
