@@ -40,6 +40,7 @@ __global__ void __launch_bounds__(threads)
   Vec2d origin{};
   bool placed = false;
   unsigned int missing = 0;
+  GLADSTONE_RAY_BY_RAY
   for (int pulse = 0; pulse < frame_count; ++pulse) {
     PulseAim aim;
     aim_pulse(stop, launch, medium, i, pulse, placed, aim, origin);

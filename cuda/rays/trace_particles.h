@@ -118,9 +118,10 @@ GLADSTONE_HD AimedRay<double> aimed_ray(ParticlesLaunch const& launch, Sources c
 template <class Sources>
 GLADSTONE_HD double weight_expected(ParticlesLaunch const& launch, Sources const& sources, AimMap const& map,
                                     std::uint64_t i) {
-  double most = aimed_ray(launch, sources, map, i, {}).weight;
-  for (int k = 0; k < rim_rays; ++k) {
-    Vec2d const at = point_of_circle(1.0, static_cast<double>(k) / rim_rays);
+  double most = 0;
+  GLADSTONE_RAY_BY_RAY
+  for (int k = 0; k <= rim_rays; ++k) {
+    Vec2d const at = k < rim_rays ? point_of_circle(1.0, static_cast<double>(k) / rim_rays) : Vec2d{};
     double const weight = aimed_ray(launch, sources, map, i, at).weight;
     if (weight > most) most = weight;
   }

@@ -7,6 +7,13 @@
 #include "render/rays/aimed_sources.h"
 #include "render/scene/camera.h"
 
+// loops over rays stay loops on a device: each of their bodies holds a whole camera and a medium
+#if defined(__CUDA_ARCH__)
+#define GLADSTONE_RAY_BY_RAY _Pragma("unroll 1")
+#else
+#define GLADSTONE_RAY_BY_RAY
+#endif
+
 namespace gladstone {
 
 /// How far the rim that rays are sent to may lie from the stop's, as a share of its radius: twice that is the most that
@@ -134,9 +141,11 @@ GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, Tracin
   Vec2d aim[rim_rays], miss[rim_rays];
   for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_of_circle(1.0, static_cast<double>(k) / rim_rays));
   double change = 1;
+  GLADSTONE_RAY_BY_RAY
   for (int turn = 0; !(change <= settled); ++turn) {
     if (turn == most_turns) return false;
     Vec2d a{}, b{}, by_a{}, by_b{};  // the ellipse, and where its axes come to in the stop
+    GLADSTONE_RAY_BY_RAY
     for (int k = 0; k < rim_rays; ++k) {
       Vec2d met;
       if (!detail::meets_stop(view, medium, options, ray_to_aim(view.camera, point, aim[k]), met)) return false;
@@ -179,14 +188,15 @@ template <class Medium>
 GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                             Vec3d point, FilledStop& filled) {
   if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
-  for (int k = 0; k < rim_rays; ++k) {
-    Vec2d const at = point_of_circle(1.0, (k + 0.5) / rim_rays);
-    auto const trace = [&](double radius) {
-      return trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(radius * at)), 1.0);
-    };
-    RayHit<double> const within = trace(1 - filled_to);
-    if (!reaches_sensor_plane(within.status) || trace(1 + filled_to).status != RayStatus::vignetted) return false;
-    Vec2d const p = within.pixel;
+  GLADSTONE_RAY_BY_RAY
+  for (int k = 0; k < 2 * rim_rays; ++k) {
+    bool const within = k % 2 == 0;
+    Vec2d const at = point_of_circle(within ? 1 - filled_to : 1 + filled_to, (k / 2 + 0.5) / rim_rays);
+    RayHit<double> const hit =
+        trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(at)), 1.0);
+    if (within ? !reaches_sensor_plane(hit.status) : hit.status != RayStatus::vignetted) return false;
+    if (!within) continue;
+    Vec2d const p = hit.pixel;
     if (k == 0) filled.low = filled.high = p;
     filled.low = {p.x < filled.low.x ? p.x : filled.low.x, p.y < filled.low.y ? p.y : filled.low.y};
     filled.high = {p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
