@@ -6,6 +6,13 @@ namespace {
 
 constexpr int threads = 64;
 
+/// Without the medium: one function for all media.
+__device__ __noinline__ bool fill_straight(StopView const& stop, TracingOptions<double> const& tracing, Vec3d place,
+                                           FilledStop& filled) {
+  filled.map = paraxial_aim(stop, place);
+  return fill_stop(stop, NoMedium<double>{}, tracing, place, filled);
+}
+
 /// Aims for one particle at one pulse. @param origin is set where it is not known yet
 template <class Medium>
 __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, Medium const& medium, std::uint64_t i,
@@ -16,8 +23,7 @@ __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, M
   if (stop.radius == 0) return;
   Vec3d const place = particles.middle(i);
   FilledStop straight;
-  straight.map = paraxial_aim(stop, place);
-  if (!fill_stop(stop, NoMedium<double>{}, launch.tracing, place, straight)) return;
+  if (!fill_straight(stop, launch.tracing, place, straight)) return;
   FilledStop bent = straight;
   if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
     if (!fill_stop(stop, medium, launch.tracing, place, bent)) return;
