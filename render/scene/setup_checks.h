@@ -15,6 +15,12 @@ SetupTable camera_table(SetupTable& root);
 /// A hint where a length in mm looks like one in metres; empty where it does not.
 std::string metres_hint(double length);
 
+/// Refuses dots or a lens inside the medium.
+void cross_check_geometry(Setup const& setup, SetupTable geometry);
+
+/// Refuses windows within another thing, or out of the order that light meets them in, along the camera's axis.
+void cross_check_windows(Setup const& setup, SetupTable root);
+
 /// Fields whose slab ends where they are still large, and volumes whose thickness was given in vain.
 void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings);
 

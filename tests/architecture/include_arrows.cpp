@@ -20,8 +20,8 @@ struct Room {
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
 Names const renderers = {"render/rays", "render/focused_dots"};
-Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration",
-                        "analysis/uncertainty"};
+Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
+                        "analysis/calibration", "analysis/uncertainty", "analysis/preparation"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names operator+(Names a, Names const& b) {
@@ -43,7 +43,8 @@ std::vector<Room> const& table() {
       {"render/rays", render, {"Eigen"}, {"fmt"}},
       {"render/focused_dots", render, {"Eigen"}, {"fmt"}},
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"analysis/correlation", {"render/base"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
+      {"analysis/preparation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
+      {"analysis/correlation", {"render/base", "analysis/preparation"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
       {"analysis/uncertainty", {"render/base", "analysis/correlation"}, {"Eigen"}, {"fmt"}},
       {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
       {"analysis/calibration", {"render/base"}, {"Eigen"}, {"OpenCV", "Ceres", "fmt"}},
