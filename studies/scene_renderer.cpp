@@ -1,7 +1,5 @@
 #include "studies/scene_renderer.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -101,9 +99,8 @@ char const* to_string(RenderMethod method) {
   return "rays";
 }
 
-SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
-                             std::unique_ptr<Renderer> particles)
-    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)), particles_(std::move(particles)) {}
+SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays)
+    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)) {}
 
 Rendering SceneRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
                                           RenderImages images) {
@@ -115,10 +112,8 @@ Rendering SceneRenderer::render_particles(Scene& scene, Particles const& particl
     rendering.device = "cpu";
     return rendering;
   }
-  Renderer& renderer = particles_ ? *particles_ : *rays_;
-  if (particles_ && images != RenderImages::no) spdlog::info("particles are rendered on the CPU");
-  Rendering rendering = renderer.render_particles(scene, particles, light, images);
-  rendering.device = renderer.device();
+  Rendering rendering = rays_->render_particles(scene, particles, light, images);
+  rendering.device = device();
   return rendering;
 }
 
