@@ -21,9 +21,10 @@ struct BenchGiven {
   double wavelength = 532e-9;       ///< [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
   double ambient_index = 1.00027685;
-  double thickness = 0.01;        ///< L_z [m]
-  double largest_gradient = 0;    ///< of density, averaged over the thickness, that is to be measured; 0: unknown [kg/m^4]
-  double dots_per_window_32 = 20; ///< dots in 32 x 32 px
+  double thickness = 0.01;  ///< L_z [m]
+  double largest_gradient =
+      0;  ///< of density, averaged over the thickness, that is to be measured; 0: unknown [kg/m^4]
+  double dots_per_window_32 = 20;  ///< dots in 32 x 32 px
   int first_window_px = 64;
   WindowTransfer window{WindowWeighting::gaussian, 20};  ///< of the last pass
 };
@@ -66,7 +67,7 @@ struct Bench {
   /// Diameter of the cone of light in the mid-plane, (f / N) Z_D / Z_B [m].
   T cone_diameter() const { return pupil() * z_d / z_b(); }
   /// N (1 + M) lambda [m].
-  T spot_scale() const { return f_number * (1 + magnification()) * given->wavelength; }
+  T spot_scale() const { return f_number * (1.0 + magnification()) * given->wavelength; }
   /// Between the first zeros of the Airy pattern [px].
   T diffraction_px() const { return 2.43934 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
@@ -77,7 +78,7 @@ struct Bench {
     return sqrt(geometric * geometric + spot * spot);
   }
   /// Width of the last pass's window in the medium's mid-plane [m].
-  T window_width() const { return given->window.window_px() * pixel_at_medium(); }
+  T window_width() const { return double(given->window.window_px()) * pixel_at_medium(); }
   /// Share of a density wave's displacement that the whole chain passes: cone, dot and window as weighted.
   T transfer(T wavelength) const {
     return cone_transfer(pupil(), z_b(), z_d, given->thickness, wavelength) *
@@ -104,7 +105,7 @@ struct Bench {
   T peak_share() const {
     using std::exp;
     T const sigma = 0.4206042622 * spot_scale() / given->camera.pixel_pitch, geometric = geometric_dot_px();
-    return 1 - exp(-geometric * geometric / (8 * (sigma * sigma + 1.0 / 12)));
+    return 1.0 - exp(-geometric * geometric / (8.0 * (sigma * sigma + 1.0 / 12)));
   }
   /// Standard deviation of the noise at the peak over the peak's own height: shot noise, dark current, read noise and
   /// rounding to grey levels.
@@ -135,7 +136,7 @@ struct Bench {
   /// Gradient whose displacement is this many px [kg/m^4].
   T gradient_of(T displacement_px) const { return displacement_px / sensitivity(); }
   /// Smallest gradient that is seen, at two standard deviations of the random error [kg/m^4].
-  T smallest_gradient() const { return gradient_of(T(2 * random_error())); }
+  T smallest_gradient() const { return gradient_of(T(2.0 * random_error())); }
 };
 
 /// The wavelength of density that the whole chain passes with 1 / sqrt(2): shorter waves pass less [m].

@@ -1,16 +1,26 @@
 #pragma once
 
+#include <cmath>
+
 namespace gladstone {
 
-/// Random error of a displacement that our correlator measures, per component [px], for images of dots of Gaussian spots
-/// that move together: what the dots' places change and what noise changes, in quadrature, sigma^2 = (pattern^2 +
-/// noise^2) (20 / N_I) with
-///
-///   pattern = 0.0014 + 0.21 exp(-2.1 d)         noise = 0.083 q d^0.6
-///
-/// Fitted to data/estimators/random_error.csv. Its range is random_error_range; strains up to 0.02 change nothing
-/// (docs/estimators.md: shear and uniform shifts have the same error after several passes).
+/// Diameters of dot images [px] and noise over peak that the random error was measured at.
+struct RandomErrorRange {
+  double least_diameter, most_diameter, least_noise, most_noise;
+  bool holds(double diameter_px, double noise) const {
+    return diameter_px >= least_diameter && diameter_px <= most_diameter && noise <= most_noise;
+  }
+};
+inline constexpr RandomErrorRange random_error_range{1.0, 4.5, 0.005, 0.12};
+
+/// Random error of a displacement that our correlator measures, per component [px].
 template <class T>
-T random_error_px(T diameter_px, T noise, double dots_in_window);
+T random_error_px(T diameter_px, T noise, double dots_in_window) {
+  using std::exp;
+  using std::pow;
+  using std::sqrt;
+  T const pattern = 0.0014 + 0.21 * exp(-2.1 * diameter_px), part = 0.4 * noise * pow(diameter_px, 0.6);
+  return sqrt((pattern * pattern + part * part) * (20 / dots_in_window));
+}
 
 }  // namespace gladstone

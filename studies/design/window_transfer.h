@@ -39,7 +39,8 @@ class WindowTransfer {
     return sum;
   }
 
-  /// Mean square distance of what counts from the middle [px^2]: share = 1 - (2 pi cycles)^2 / 2 times it for long waves.
+  /// Mean square distance of what counts from the middle [px^2]: share = 1 - (2 pi cycles)^2 / 2 times it for long
+  /// waves.
   double variance() const {
     double sum = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
