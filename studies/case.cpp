@@ -108,7 +108,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   } else {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
   }
-  loaded.light = read_light(root);
+  std::optional<PaperLight> const light = read_light(root);
   if (loaded.setup.piv) root.refuse("light", "is of BOS (PIV's light is that of [laser]); remove it");
   // a setup may carry the question that gladstone design asks about it
   for (char const* const table : {"requirements", "limits", "inventory", "free"}) root.pass_over(table);
@@ -124,8 +124,8 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     if (!loaded.setup.calibration()) cross_check_windows(loaded);
     cross_check_method(loaded);
   }
-  if (loaded.light && !loaded.document.has_problems()) {
-    loaded.setup.camera.exposure_e = exposure_under(*loaded.light, loaded.setup);
+  if (light && !loaded.document.has_problems()) {
+    loaded.setup.camera.exposure_e = exposure_under(*light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   loaded.document.finish();

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,6 @@
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
 #include "render/scene/setup.h"
-#include "render/sensor/camera_equation.h"
 #include "render/sensor/detector.h"
 #include "studies/case_files.h"
 
@@ -26,7 +24,6 @@ struct CaseSetup {
   std::vector<std::string> warnings;
   /// SHA-256 of the files that it names, as they were before the scene was built from them; empty: not hashed yet.
   std::map<std::string, std::string> input_hashes = {};
-  std::optional<PaperLight> light = std::nullopt;  ///< of [light]: the camera's exposure follows from it
 };
 
 /// Logs a warning, and keeps it for summary.json.

@@ -68,8 +68,8 @@ struct Bench {
   T cone_diameter() const { return pupil() * z_d / z_b(); }
   /// N (1 + M) lambda [m].
   T spot_scale() const { return f_number * (1.0 + magnification()) * given->wavelength; }
-  /// Between the first zeros of the Airy pattern [px].
-  T diffraction_px() const { return 2.43934 * spot_scale() / given->camera.pixel_pitch; }
+  /// d_d of F13: between the first zeros of the Airy pattern, as rounded as it is usually told (2.43934) [px].
+  T diffraction_px() const { return 2.44 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
   /// d_tau of F14 [px].
   T dot_image_px() const {

@@ -116,7 +116,7 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
                               b.given->window.share(b.pixel_at_medium() / resolved))});
   rows.push_back({"F13", "diffraction_diameter_px", "diffraction spot, first zero", b.diffraction_px(), "px",
                   "2.44 N (1 + M) lambda / p", adrian, at_most(b.diffraction_px(), good_dot_px, 5),
-                  fmt::format("{:.6g} um; FWHM {:.4g} um, e^-2 {:.4g} um", 2.43934 * b.spot_scale() / um,
+                  fmt::format("{:.6g} um; FWHM {:.4g} um, e^-2 {:.4g} um", 2.44 * b.spot_scale() / um,
                               1.0289939699621886 * b.spot_scale() / um, 1.644922989562259 * b.spot_scale() / um)});
   double const dot = b.dot_image_px();
   rows.push_back(
@@ -150,7 +150,7 @@ void add_light(DesignSheet& sheet, Bench<double> const& b) {
   rows.push_back({"F21", "signal_to_noise", "peak over its noise", 1 / b.noise(), "", "n_e / sqrt(n_e + sigma_r^2)",
                   "Rose 1948, J. Opt. Soc. Am. 38:196", at_least(1 / b.noise(), 20, 5), ""});
   double const floor = b.focal_length * b.z_d / (b.z_b() * b.window_width());
-  double const ceiling = good_dot_px * camera.pixel_pitch / (2.43934 * (1 + b.magnification()) * b.given->wavelength);
+  double const ceiling = good_dot_px * camera.pixel_pitch / (2.44 * (1 + b.magnification()) * b.given->wavelength);
   bool const open = floor <= ceiling;
   rows.push_back({"F22", "f_number_floor", "least f-number: the cone within the window", floor, "", "f Z_D / (Z_B W_o)",
                   derived, at_least(b.f_number / floor, 1, 0.5), ""});

@@ -71,6 +71,7 @@ T excess(Limit const& limit, Bench<T> const& bench) {
     case Bound::resolution:
       return transfer_at_resolution - bench.transfer(T(limit.value));
     case Bound::displacement_max:
+      if (given.largest_gradient == 0) return T(-1);  // nothing moves
       return log(bench.largest_displacement_px() / limit.value);
     case Bound::uncertainty_max:
       return log(bench.random_error() / limit.value);

@@ -6,6 +6,7 @@
 #include "render/base/contracts.h"
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
+#include "studies/light_exposure.h"
 
 namespace gladstone {
 namespace {
@@ -60,7 +61,7 @@ BenchGiven bench_given(CaseSetup const& loaded) {
   Setup const& setup = loaded.setup;
   BenchGiven given;
   given.camera = setup.camera;
-  given.light = loaded.light;
+  given.light = read_light(loaded.document.copy().root());
   given.wavelength = setup.medium.wavelength;
   given.gladstone_dale = setup.medium.gladstone_dale;
   given.ambient_index = setup.ambient_index();

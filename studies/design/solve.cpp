@@ -10,6 +10,7 @@ namespace {
 
 using Jet = ceres::Jet<double, choice_count>;
 
+constexpr int candidates = 240;  // points that the starts are the best of
 constexpr int starts = 8;
 constexpr int most_evaluations = 300;
 constexpr double tolerance = 1e-9;
@@ -84,7 +85,7 @@ BranchSolution judged(DesignProblem const& problem, DesignBranch const& branch, 
     solution.violation = std::isnan(by) ? HUGE_VAL : by;
     solution.worst = limit.bound;
   }
-  if (excess({Bound::focus, 0}, bench) <= 0) solution.objective = objective_value(problem.objective, bench, bench);
+  if (solution.feasible()) solution.objective = objective_value(problem.objective, bench, bench);
   solution.logarithms = std::move(x);
   return solution;
 }
@@ -94,17 +95,27 @@ bool better(BranchSolution const& a, BranchSolution const& b) {
   return a.feasible() ? a.objective < b.objective : a.violation < b.violation;
 }
 
-/// The middle of all intervals first, then points spread over them.
-std::vector<double> start_point(DesignBranch const& branch, int start) {
+/// A point of a sequence that is even over the intervals; the first is their middle.
+std::vector<double> spread_point(DesignBranch const& branch, int index) {
   std::vector<double> x;
   for (std::size_t i = 0; i < branch.continuous.size(); ++i) {
     FreeChoice const& free = branch.continuous[i];
-    // Kronecker's sequence by powers of a root of x^6 = x + 1: even in five dimensions
-    double const turn = 0.5 + start * std::pow(1 / 1.1347241384015194, static_cast<double>(i + 1));
+    // Kronecker's sequence by powers of the root of x^6 = x + 1: even in five dimensions
+    double const turn = 0.5 + index * std::pow(1 / 1.1347241384015194, static_cast<double>(i + 1));
     double const share = turn - std::floor(turn);
     x.push_back(std::log(free.low) + share * std::log(free.high / free.low));
   }
   return x;
+}
+
+/// The best of many points, the best first.
+std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch) {
+  std::vector<BranchSolution> points;
+  int const count = branch.continuous.empty() ? 1 : candidates;
+  for (int i = 0; i < count; ++i) points.push_back(judged(problem, branch, spread_point(branch, i)));
+  std::stable_sort(points.begin(), points.end(), better);
+  if (points.size() > starts) points.resize(starts);
+  return points;
 }
 
 std::vector<double> minimised(Task& task, std::vector<double> x) {
@@ -160,11 +171,12 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
 }
 
 BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch) {
-  BranchSolution best = judged(problem, branch, start_point(branch, 0));
-  if (branch.continuous.empty()) return best;
-  for (int start = 0; start < starts && !best.feasible(); ++start) {
+  std::vector<BranchSolution> const points = start_points(problem, branch);
+  BranchSolution best = points.front();
+  for (BranchSolution const& start : points) {
+    if (best.feasible() || branch.continuous.empty()) return best;
     Task task{&problem, &branch, true};
-    BranchSolution const found = judged(problem, branch, minimised(task, start_point(branch, start)));
+    BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
     if (better(found, best)) best = found;
   }
   return best;
@@ -173,11 +185,11 @@ BranchSolution least_violation(DesignProblem const& problem, DesignBranch const&
 BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch) {
   BranchSolution best = least_violation(problem, branch);
   if (!best.feasible() || branch.continuous.empty()) return best;
-  std::vector<double> const within = best.logarithms;
-  for (int start = -1; start < starts; ++start) {
+  std::vector<BranchSolution> points = start_points(problem, branch);
+  points.push_back(best);
+  for (BranchSolution const& start : points) {
     Task task{&problem, &branch, false};
-    BranchSolution const found =
-        judged(problem, branch, minimised(task, start < 0 ? within : start_point(branch, start)));
+    BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
     if (better(found, best)) best = found;
   }
   return best;

@@ -24,7 +24,7 @@ TEST(Bench, IsTableOneToThePrintedDigits) {
   EXPECT_NEAR(b.cone_diameter(), 2.386364e-3, 5e-10);
   EXPECT_NEAR(b.cone_diameter() / b.pixel_at_dots(), 27.9964, 5e-5);
   EXPECT_NEAR(b.cone_diameter() / b.pixel_at_medium(), 37.3286, 5e-5);
-  EXPECT_NEAR(2.43934 * b.spot_scale(), 15.954056e-6, 1e-11);  // 2.43934 is rounded to 1e-6 of itself
+  EXPECT_NEAR(b.diffraction_px() * 10, 15.954056, 5e-7);
   EXPECT_NEAR(b.diffraction_px(), 1.5954, 5e-5);
   EXPECT_NEAR(b.sensitivity(), 0.006626657, 5e-10);
   EXPECT_NEAR(b.gradient_of(0.05), 7.545, 5e-4);
