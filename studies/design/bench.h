@@ -70,6 +70,8 @@ struct Bench {
   T spot_scale() const { return f_number * (1.0 + magnification()) * given->wavelength; }
   /// d_d of F13: between the first zeros of the Airy pattern, as rounded as it is usually told (2.43934) [px].
   T diffraction_px() const { return 2.44 * spot_scale() / given->camera.pixel_pitch; }
+  /// Standard deviation of the Gaussian matched to that spot [px].
+  T spot_sigma_px() const { return 0.4206042622 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
   /// d_tau of F14 [px].
   T dot_image_px() const {
@@ -104,7 +106,7 @@ struct Bench {
   }
   T peak_share() const {
     using std::exp;
-    T const sigma = 0.4206042622 * spot_scale() / given->camera.pixel_pitch, geometric = geometric_dot_px();
+    T const sigma = spot_sigma_px(), geometric = geometric_dot_px();
     return 1.0 - exp(-geometric * geometric / (8.0 * (sigma * sigma + 1.0 / 12)));
   }
   /// Standard deviation of the noise at the peak over the peak's own height: shot noise, dark current, read noise and
@@ -132,7 +134,7 @@ struct Bench {
     T const geometric = geometric_dot_px();
     return given->dots_per_window_32 / 1024 * pi / 4 * geometric * geometric;
   }
-  T random_error() const { return random_error_px(dot_image_px(), noise(), dots_in_window()); }
+  T random_error() const { return random_error_px(geometric_dot_px(), spot_sigma_px(), noise(), dots_in_window()); }
   /// Gradient whose displacement is this many px [kg/m^4].
   T gradient_of(T displacement_px) const { return displacement_px / sensitivity(); }
   /// Smallest gradient that is seen, at two standard deviations of the random error [kg/m^4].

@@ -24,7 +24,7 @@ enum class Bound {
   focus,       ///< an image of the dots exists
   dots_clear,  ///< of the medium
   lens_clear,  ///< of the medium
-  dot_least,   ///< the dot image is as large as the smallest that the random error was measured at
+  dot_least,   ///< the dot's geometric image is as large as the smallest that the random error was measured at
   dot_most,    ///< and no larger than the largest
   coverage,    ///< dots without overlap have room
   noise_most,  ///< the noise is no more than the random error was measured at
@@ -88,9 +88,9 @@ T excess(Limit const& limit, Bench<T> const& bench) {
     case Bound::lens_clear:
       return log(limit.value / bench.z_a);
     case Bound::dot_least:
-      return log(limit.value / bench.dot_image_px());
+      return log(limit.value / bench.geometric_dot_px());
     case Bound::dot_most:
-      return log(bench.dot_image_px() / limit.value);
+      return log(bench.geometric_dot_px() / limit.value);
     case Bound::coverage:
       return log(bench.coverage() / limit.value);
     case Bound::noise_most:
