@@ -7,6 +7,7 @@
 #include "render/scene/field_map.h"
 #include "render/scene/scene.h"
 #include "studies/light_exposure.h"
+#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -30,7 +31,9 @@ double largest_gradient(Setup const& setup) {
   }
   double largest = 0;
   constexpr int spacing_px = 4;
-  for (Vec2d const gradient : map_field(build_scene(setup), spacing_px).density_gradient) {
+  Scene scene = build_scene(setup);
+  plan_step_of(scene);
+  for (Vec2d const gradient : map_field(scene, spacing_px).density_gradient) {
     largest = std::max(largest, length(gradient));
   }
   return largest;

@@ -13,7 +13,7 @@ namespace gladstone {
 namespace {
 
 constexpr double mm = unit::millimetre;
-constexpr int width = 900, height = 640;
+constexpr int width = 960, height = 700;
 constexpr std::array<double, 8> stops{2.8, 4, 5.6, 8, 11, 16, 22, 32};
 constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // of Z_A
 
@@ -36,6 +36,18 @@ struct Range2 {
     high = std::max(high, value);
   }
 };
+
+/// Tics of a logarithmic axis at 1, 2 and 5 of every decade.
+std::string tics(double low, double high) {
+  std::string list;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10) {
+    for (double const digit : {1.0, 2.0, 5.0}) {
+      double const at = digit * decade;
+      if (at >= low && at <= high) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", at);
+    }
+  }
+  return list;
+}
 
 std::string colour_of_stop(std::size_t index) {
   // from light to dark blue: an order, not names
@@ -122,7 +134,8 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
   plot.command(fmt::format("set title {} font 'DejaVu Sans,14'",
                            GnuplotFigure::quoted(fmt::format("Design map: f = {:.5g} mm, Z_A = {:.5g} mm",
                                                              bench.focal_length / mm, bench.z_a / mm))));
-  plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key outside right top");
+  plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
+  plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
   plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength passed with 1/√2 [mm]'");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));
   plot.command(command);

@@ -123,16 +123,16 @@ void write_layout_figure(std::string const& path, Bench<double> const& bench) {
   draw(plot, drawing);
   plot.command("unset label 1; unset label 2");
   plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.5 * tallest / mm, 1.35 * tallest / mm));
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
   place(plot, bottom + 0.03, middle - 0.02);
-  double const panel_px = (middle - bottom - 0.05) * height, stretched = mm_a_px * panel_px / (2.85 * tallest / mm);
+  double const panel_px = (middle - bottom - 0.05) * height, stretched = mm_a_px * panel_px / (2.95 * tallest / mm);
   plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
                            GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
   plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
-  distance(plot, l.dots_z, 0, 0.10, "Z_D");
-  distance(plot, 0, l.lens_z, 0.10, "Z_A");
-  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.10);
-  distance(plot, l.dots_z, l.lens_z, 0.02, "Z_B");
+  distance(plot, l.dots_z, 0, 0.14, "Z_D");
+  distance(plot, 0, l.lens_z, 0.14, "Z_A");
+  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.14);
+  distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
   name_part(plot, fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), l.dots_z + 0.03 * length, 0.95);
   name_part(plot, fmt::format("medium: sees {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm),
             0, 0.89);
