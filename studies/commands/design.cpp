@@ -21,7 +21,7 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->trigger_on_parse(false);
   app.add_option("--figures", request->figures, "Folder to draw the layout, the design map and the front in");
-  app.add_option("--figure-format", request->figure_format, "png or svg")->check(one_of({"png", "svg"}));
+  app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
   app.add_option("--apply", request->apply, "File (TOML) to write the recommended setup to, ready to render");
   return [request, &options] {
     DesignReport const report = design(*request);

@@ -73,6 +73,12 @@ struct Bench {
   /// Standard deviation of the Gaussian matched to that spot [px].
   T spot_sigma_px() const { return 0.4206042622 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
+  /// e^-2 diameter of the dot's image: the disc's and the Gaussian spot's four sigmas in quadrature [px].
+  T dot_e2_px() const {
+    using std::sqrt;
+    T const geometric = geometric_dot_px(), spot = spot_sigma_px();
+    return sqrt(geometric * geometric + 16.0 * spot * spot);
+  }
   /// d_tau of F14 [px].
   T dot_image_px() const {
     using std::sqrt;

@@ -177,10 +177,11 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
       {"F26", "random_error_px", "random error of a vector", sigma, "px",
        "sqrt(pattern^2 (20 / N_I)^0.61 + (0.272 q d^-0.59)^2 20 / N_I)", "data/estimators/random_error.csv",
        at_most(sigma, 0.05, 0.1),
-       fmt::format("dots of {:.3g} px under spots of {:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a "
-                   "window{}",
-                   b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
-                   random_error_range.holds(b.geometric_dot_px(), q) ? "" : "; beyond what was measured")});
+       fmt::format(
+           "dots of {:.3g} px under spots of {:.3g} px, noise {:.3g} % of the peak, {:.3g} dots in a "
+           "window{}",
+           b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
+           random_error_range.holds(b.geometric_dot_px(), b.dot_e2_px(), q) ? "" : "; beyond what was measured")});
   double const epsilon = shown_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;
   double const theta = b.given->camera.columns * pitch / 2 / b.image_distance();
   bool const matched = setup.medium.faces == Faces::matched;

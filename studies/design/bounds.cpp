@@ -69,8 +69,8 @@ std::vector<Limit> bench_limits(BenchGiven const& given) {
   std::vector<Limit> limits{{Bound::focus, 0},
                             {Bound::dots_clear, clearance * given.thickness / 2},
                             {Bound::lens_clear, clearance * given.thickness / 2},
-                            {Bound::dot_least, random_error_range.least_diameter},
-                            {Bound::dot_most, random_error_range.most_diameter},
+                            {Bound::dot_least, random_error_range.least_dot},
+                            {Bound::dot_most, random_error_range.most_image},
                             {Bound::coverage, most_coverage},
                             {Bound::noise_most, random_error_range.most_noise}};
   if (given.light || given.camera.exposure_e) limits.push_back({Bound::full_well, given.camera.noise.full_well_e});

@@ -25,7 +25,7 @@ enum class Bound {
   dots_clear,  ///< of the medium
   lens_clear,  ///< of the medium
   dot_least,   ///< the dot's geometric image is as large as the smallest that the random error was measured at
-  dot_most,    ///< and no larger than the largest
+  dot_most,    ///< and the whole image no larger than the largest
   coverage,    ///< dots without overlap have room
   noise_most,  ///< the noise is no more than the random error was measured at
   full_well,   ///< the peak stays below full scale
@@ -90,7 +90,7 @@ T excess(Limit const& limit, Bench<T> const& bench) {
     case Bound::dot_least:
       return log(limit.value / bench.geometric_dot_px());
     case Bound::dot_most:
-      return log(bench.geometric_dot_px() / limit.value);
+      return log(bench.dot_e2_px() / limit.value);
     case Bound::coverage:
       return log(bench.coverage() / limit.value);
     case Bound::noise_most:

@@ -4,14 +4,15 @@
 
 namespace gladstone {
 
-/// Geometric diameters of dots in the image [px] and noise over peak that the random error was measured at.
+/// What the random error was measured at: geometric diameters of dots, diameters of their images (e^-2, d below) and
+/// standard deviations of their spots [px], noise over peak [1].
 struct RandomErrorRange {
-  double least_diameter, most_diameter, most_noise;
-  bool holds(double diameter_px, double noise) const {
-    return diameter_px >= least_diameter && diameter_px <= most_diameter && noise <= most_noise;
+  double least_dot, most_image, widest_spot, most_noise;
+  bool holds(double geometric_px, double image_px, double noise) const {
+    return geometric_px >= least_dot && image_px <= most_image && noise <= most_noise;
   }
 };
-inline constexpr RandomErrorRange random_error_range{0.8, 4.0, 0.111};
+inline constexpr RandomErrorRange random_error_range{0.8, 4.2, 0.276, 0.111};
 
 /// Random error of a displacement that our correlator measures with its default settings, per component [px]: what the
 /// places of the dots on the pixels change, which falls as dots grow and as their spots smooth them, and what noise
@@ -24,6 +25,7 @@ inline constexpr RandomErrorRange random_error_range{0.8, 4.0, 0.111};
 /// of sigma 0.1 and 0.28 px, noise of 0.6 to 11 % of the peak, 5 to 45 dots in a window, strain of 0.005): 20 % from
 /// them in the root mean square, never by more than a factor of 1.7. Strains up to 0.02 change nothing
 /// (docs/estimators.md).
+/// Wider spots than measured count as the widest in the pattern.
 /// @param geometric_px  g, diameter of the dot's geometric image [px]
 /// @param spot_px       s, standard deviation of the Gaussian spot [px]
 /// @param noise         q, standard deviation at the peak over the peak [1]
@@ -34,7 +36,9 @@ T random_error_px(T geometric_px, T spot_px, T noise, double dots) {
   using std::pow;
   using std::sqrt;
   T const g2 = geometric_px * geometric_px, s2 = spot_px * spot_px;
-  T const even = 0.0057 * exp(-5.4 * s2), small = 0.21 * exp(-1.76 * g2 - 10.5 * s2);
+  constexpr double widest = random_error_range.widest_spot * random_error_range.widest_spot;
+  T const smooth = s2 < widest ? s2 : T(widest);
+  T const even = 0.0057 * exp(-5.4 * smooth), small = 0.21 * exp(-1.76 * g2 - 10.5 * smooth);
   T const part = 0.272 * noise * pow(g2 + 16.0 * s2, -0.295);
   return sqrt((even * even + small * small) * std::pow(20 / dots, 0.61) + part * part * (20 / dots));
 }

@@ -135,6 +135,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
                            GnuplotFigure::quoted(fmt::format("Design map: f = {:.5g} mm, Z_A = {:.5g} mm",
                                                              bench.focal_length / mm, bench.z_a / mm))));
   plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
+  plot.command("set clip two");  // lines of what is required begin and end at the border
   plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
   plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength passed with 1/√2 [mm]'");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));
