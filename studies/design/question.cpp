@@ -199,6 +199,7 @@ std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
   if (!requirements.present()) {
     for (char const* const table : {"limits", "inventory", "free"}) {
       root.refuse(table, "stands without [requirements] (nothing is asked of the design); add them or remove it");
+      root.table(table).excuse();
     }
     return std::nullopt;
   }

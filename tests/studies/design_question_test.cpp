@@ -53,7 +53,7 @@ TEST(DesignQuestion, IsReadInSi) {
 
 TEST(DesignQuestion, WithoutRequirementsIsNone) {
   EXPECT_FALSE(question_of("[lens]\nf_number = 8\n"));
-  expect_refused_question("[limits]\nz_a_mm = [1, 2]\n", "2:1", "without [requirements]");
+  expect_refused_question("[limits]\nz_a_mm = [1, 2]\n", "2:2", "without [requirements]");
 }
 
 TEST(DesignQuestion, MistakesAreToldAtTheirPlaces) {
