@@ -60,6 +60,10 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
   std::string const name = branch_name(outcome.branch, answered.variants, answered.question);
   if (outcome.skipped)
     return fmt::format("    {}: skipped, {} excludes it\n", name, bound_name(outcome.solution.worst));
+  if (outcome.solution.worst == Bound::resolution && !outcome.solution.feasible()) {
+    return fmt::format("    {}: misses {}, of which the chain passes {:.3f} at best\n", name,
+                       bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation);
+  }
   if (!outcome.solution.feasible()) {
     return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
                        100 * std::expm1(outcome.solution.violation));

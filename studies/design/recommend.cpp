@@ -106,7 +106,12 @@ void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::
     answer.conflicts.push_back(problem.limits[index].bound);
     auto const feasible_at = [&](double factor) {
       DesignProblem relaxed = problem;
-      relaxed.limits[index].value = moved(problem.limits[index], 1 / factor);
+      // width and height of the view give way together
+      for (std::size_t i = 0; i < problem.limits.size(); ++i) {
+        bool const same =
+            i == index || (from_below(problem.limits[i].bound) && from_below(problem.limits[index].bound));
+        if (same) relaxed.limits[i].value = moved(problem.limits[i], 1 / factor);
+      }
       return any_feasible(relaxed, branches);
     };
     if (!feasible_at(most)) continue;

@@ -14,9 +14,10 @@ namespace {
 
 constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 constexpr double mm = unit::millimetre;
-constexpr int width = 1200, height = 640;
-constexpr double left = 0.04, right = 0.98, bottom = 0.07, middle = 0.66,
-                 top = 0.90;  // of the two panels, of the screen
+constexpr int width = 1200;
+constexpr double left = 0.04, right = 0.98;  // of the panels, of the screen
+// heights from below [px]: the stretched panel's bottom and top, what is between the panels and above them
+constexpr int stretched_bottom = 64, stretched_top = 410, between = 50, above = 84;
 
 /// Polylines in mm, broken by NaN.
 struct Lines {
@@ -51,9 +52,11 @@ Drawing drawing_of(BenchLayout const& l) {
   return d;
 }
 
+/// Puts a panel between two heights [px].
 void place(GnuplotFigure& plot, double low, double high) {
+  double const height = plot.height_px();
   plot.command(fmt::format("set lmargin at screen {}; set rmargin at screen {}", left, right));
-  plot.command(fmt::format("set bmargin at screen {}; set tmargin at screen {}", low, high));
+  plot.command(fmt::format("set bmargin at screen {:.6f}; set tmargin at screen {:.6f}", low / height, high / height));
 }
 
 void distance(GnuplotFigure& plot, double from, double to, double at, std::string const& name) {
@@ -103,8 +106,8 @@ void write_layout_figure(std::string const& path, Bench<double> const& bench) {
   double const length = l.sensor_z - l.dots_z, z_low = l.dots_z - 0.06 * length, z_high = l.sensor_z + 0.06 * length;
   double const tallest = 1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half});
   double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
-  double const half_to_scale = mm_a_px * (top - middle - 0.03) * height / 2;
-  GnuplotFigure plot(width, height);
+  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // of the panel that is to scale
+  GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
   plot.command("set style textbox opaque noborder margins 0.4,0.2");
   plot.command("set multiplot");
   plot.command(
@@ -113,19 +116,15 @@ void write_layout_figure(std::string const& path, Bench<double> const& bench) {
                                                     bench.focal_length / mm, bench.f_number, bench.magnification()))));
   plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
-  // equal scales where that holds the whole height, as it does on all but the widest views
-  bool const fits = half_to_scale >= tallest / mm;
-  double const upper = fits ? half_to_scale : tallest / mm;
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -upper, upper));
-  place(plot, middle + 0.03, top);
-  plot.command(fmt::format("set label 2 {} at graph 0,1.02 left textcolor '#606060'",
-                           GnuplotFigure::quoted(fits ? "to scale" : "heights squeezed to fit")));
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
+  place(plot, stretched_top + between, stretched_top + between + to_scale_px);
+  plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
   draw(plot, drawing);
   plot.command("unset label 1; unset label 2");
   plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
   plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
-  place(plot, bottom + 0.03, middle - 0.02);
-  double const panel_px = (middle - bottom - 0.05) * height, stretched = mm_a_px * panel_px / (2.95 * tallest / mm);
+  place(plot, stretched_bottom, stretched_top);
+  double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
   plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
                            GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
   plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");

@@ -22,7 +22,7 @@ wavelength_mm = 20.0
 window_px = [32, 16]
 [requirements]
 objective = "gradient_min"
-resolution_mm = 9.0
+resolution_mm = 12.0
 field_of_view_mm = [40.0, 40.0]
 [limits]
 z_total_max_mm = 2000.0
@@ -64,7 +64,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml"});
   EXPECT_TRUE(json["feasible"]);
   auto const& predicted = json["predicted"];
-  EXPECT_LE(predicted["resolution_mm"], 9.0 * (1 + 1e-6));
+  EXPECT_LE(predicted["resolution_mm"], 12.0 * (1 + 1e-6));
   EXPECT_GE(predicted["field_of_view_width_mm"], 40.0 * (1 - 1e-6));
   EXPECT_LE(predicted["z_total_mm"], 2000.0 * (1 + 1e-6));
   EXPECT_FALSE(json["binding"].empty());
@@ -82,7 +82,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
 
 TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
   std::string text = tunnel;
-  text.replace(text.find("resolution_mm = 9.0"), 19, "resolution_mm = 0.5");
+  text.replace(text.find("resolution_mm = 12.0"), 20, "resolution_mm = 0.5");
   write("tunnel.toml", text);
   Outcome const outcome = gladstone({"design", "tunnel.toml", "--json", "--apply", "out.toml"});
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
