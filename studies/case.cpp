@@ -12,6 +12,7 @@
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "studies/cameras.h"
+#include "studies/light_exposure.h"
 #include "studies/scene_renderer.h"
 
 namespace gladstone {
@@ -143,6 +144,10 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   } else {
     loaded.correlate = read_correlation_settings(root.table("correlate"));
   }
+  std::optional<PaperLight> const light = read_light(root);
+  if (loaded.setup.piv) root.refuse("light", "is of BOS (PIV's light is that of [laser]); remove it");
+  // a setup may carry the question that gladstone design asks about it
+  for (char const* const table : {"requirements", "limits", "inventory", "free"}) root.pass_over(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;
@@ -154,6 +159,9 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.warnings = cross_check(loaded.setup, root);
     if (!loaded.setup.calibration()) cross_check_windows(loaded);
     cross_check_method(loaded);
+  }
+  if (light && !loaded.document.has_problems()) {
+    loaded.setup.camera.exposure_e = exposure_under(*light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   loaded.document.finish();

@@ -8,15 +8,10 @@
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
+#include "studies/disc_transfer.h"
 
 namespace gladstone {
 namespace {
-
-/// Mean of a wave over a disc, 2 J1(x) / x with x = pi times diameter over wavelength.
-double disc_transfer(double diameter, double wavelength) {
-  double const x = pi * diameter / wavelength;
-  return x < 1e-6 ? 1 : 2 * std::cyl_bessel_j(1.0, x) / x;
-}
 
 /// Mean square of a wave's average along the chief rays of the view through stacked planes.
 double chief_ray_energy(Setup const& setup, double wavenumber) {
@@ -65,14 +60,7 @@ std::complex<double> fourier_sum(Value const* values, int count, int mode,
 }  // namespace
 
 double cone_transfer(Setup const& setup, double wavelength) {
-  constexpr int slices = 16;
-  double sum = 0, levers = 0;
-  for (int i = 0; i < slices; ++i) {
-    double const s = setup.z_d + setup.medium.thickness * ((i + 0.5) / slices - 0.5);
-    sum += s * disc_transfer(setup.imaging().entrance_pupil * s / setup.z_b(), wavelength);
-    levers += s;
-  }
-  return sum / levers;
+  return cone_transfer(setup.imaging().entrance_pupil, setup.z_b(), setup.z_d, setup.medium.thickness, wavelength);
 }
 
 double cone_width(Setup const& setup) { return setup.imaging().entrance_pupil * setup.z_d / setup.z_b(); }

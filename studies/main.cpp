@@ -33,6 +33,8 @@ constexpr std::array commands{
             "gladstone trace table1.toml --rays rays.csv -o out.csv", attach_trace},
     Command{"info", "Describe a field, an image, a lens, a sphere or a setup's particles",
             "gladstone info field slice.h5", attach_info},
+    Command{"design", "Tell what a setup can measure by closed forms, or choose one that meets requirements",
+            "gladstone design table1.toml --figures out/design", attach_design},
     Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
     Command{"calibrate", "Fit cameras to the dots of a calibration case", "gladstone calibrate out/calibration",
             attach_calibrate},
@@ -96,9 +98,8 @@ int run(int argc, char** argv) {
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(whole_number(0, 4096));
   app.add_option("--device", options.device, "auto, cpu or cuda")->check(one_of({"auto", "cpu", "cuda"}));
   app.footer(
-      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 3 incomplete study, 5 "
-      "device "
-      "error, 130 interrupted.");
+      "Exit codes: 0 ok, 1 a check missed, 2 bad input or an output that cannot be written, 3 incomplete study, 4 no "
+      "feasible design, 5 device error, 130 interrupted.");
   std::array<CommandBody, commands.size()> bodies;
   std::array<CLI::App*, commands.size()> parsed{};
   for (std::size_t i = 0; i < commands.size(); ++i) {

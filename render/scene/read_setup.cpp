@@ -263,7 +263,6 @@ Setup read_setup(SetupTable root) {
     }
   }
   setup.render = read_render_setup(root.table("render"));
-  root.refuse("requirements", "is not available yet (this version simulates experiments); remove it");
   return setup;
 }
 }  // namespace gladstone

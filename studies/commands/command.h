@@ -50,6 +50,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_trace(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_design(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_views(CLI::App& app, GlobalOptions const& options);

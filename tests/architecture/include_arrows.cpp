@@ -63,7 +63,7 @@ std::vector<Room> const& table() {
       {"studies",
        render + renderers + analysis + cuda + Names{"cuda"},
        {"Eigen", "fmt", "spdlog", "nlohmann_json", "CLI11"},
-       {"Ceres"}},
+       {"Ceres", "NLopt"}},
   };
   return rooms;
 }
@@ -88,6 +88,7 @@ std::vector<LibraryPattern> const& known_libraries() {
       {"CLI11", "CLI/.*"},
       {"OpenCV", "opencv2/.*"},
       {"Ceres", "ceres/.*"},
+      {"NLopt", "nlopt\\.h(pp)?"},
       {"zlib", "zlib\\.h"},
       {"CUDA",
        "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"

@@ -1,0 +1,34 @@
+#include "studies/design/design.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "studies/commands/arguments.h"
+#include "studies/commands/command.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+
+CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
+  auto request = std::make_shared<DesignRequest>();
+  app.add_option("setup", request->setup, "Setup file (TOML), with [requirements] or without")->required();
+  app.add_option("--set", request->overrides, "Override a key: --set lens.f_number=16")
+      ->take_all()
+      ->expected(1)
+      ->trigger_on_parse(false);
+  app.add_option("--figures", request->figures, "Folder to draw the layout, the design map and the front in");
+  app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
+  app.add_option("--apply", request->apply, "File (TOML) to write the recommended setup to, ready to render");
+  return [request, &options] {
+    DesignReport const report = design(*request);
+    for (std::string const& warning : report.warnings) spdlog::warn("{}", warning);
+    print_result(options, json_text(report.json), report.text);
+    return report.feasible ? ok : infeasible;
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,173 @@
+#include "studies/design/answer_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace gladstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr double mm = unit::millimetre;
+constexpr std::size_t most_alternatives = 5;
+
+/// A quantity of a bench as it is named and written.
+struct Predicted {
+  char const* key;
+  double value;  ///< in the key's unit
+};
+
+std::vector<Predicted> predicted(Bench<double> const& b) {
+  return {{"sensitivity_px_per_kg_m4", b.sensitivity()},
+          {"gradient_min_kg_m4", b.smallest_gradient()},
+          {"random_px", b.random_error()},
+          {"resolution_mm", resolved_wavelength(b) / mm},
+          {"cone_diameter_mm", b.cone_diameter() / mm},
+          {"window_width_mm", b.window_width() / mm},
+          {"field_of_view_width_mm", b.given->camera.columns * b.pixel_at_medium() / mm},
+          {"field_of_view_height_mm", b.given->camera.rows * b.pixel_at_medium() / mm},
+          {"displacement_px", b.largest_displacement_px()},
+          {"dot_image_px", b.dot_image_px()},
+          {"peak_electrons", b.peak_electrons()},
+          {"noise_to_peak", b.noise()},
+          {"z_total_mm", b.z_b() / mm}};
+}
+
+/// The recommended value of every free key, as written in a setup.
+std::vector<std::pair<std::string, double>> recommended(DesignQuestion const& question, Bench<double> const& b) {
+  std::array<double, choice_count> const value{b.focal_length, b.f_number, b.z_a, b.z_d, b.dot_diameter};
+  std::vector<std::pair<std::string, double>> keys;
+  for (FreeChoice const& free : question.free) {
+    ChoiceKey const& key = key_of(free.choice);
+    keys.emplace_back(key.path, value[static_cast<std::size_t>(free.choice)] / key.unit);
+  }
+  return keys;
+}
+
+double required_value(AnsweredQuestion const& answered, Bound bound) {
+  for (Limit const& limit : required_limits(answered.question.requirements)) {
+    if (limit.bound == bound) return limit.value / bound_key(bound).unit;
+  }
+  return NAN;
+}
+
+char const* objective_word(AnsweredQuestion const& answered) {
+  return objective_words[static_cast<std::size_t>(answered.question.requirements.objective)];
+}
+
+std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& outcome) {
+  std::string const name = branch_name(outcome.branch, answered.variants, answered.question);
+  if (outcome.skipped)
+    return fmt::format("    {}: skipped, {} excludes it\n", name, bound_name(outcome.solution.worst));
+  if (outcome.solution.worst == Bound::resolution && !outcome.solution.feasible()) {
+    return fmt::format("    {}: misses {}, of which the chain passes {:.3f} at best\n", name,
+                       bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation);
+  }
+  if (!outcome.solution.feasible()) {
+    return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
+                       100 * std::expm1(outcome.solution.violation));
+  }
+  return fmt::format("    {}: {} {:.5g}\n", name, objective_word(answered), outcome.solution.objective);
+}
+
+std::string feasible_text(AnsweredQuestion const& answered) {
+  Bench<double> const best = answered.best();
+  std::string text = "recommended\n";
+  for (auto const& [key, value] : recommended(answered.question, best)) {
+    text += fmt::format("  {:<28}{:.6g}\n", key, value);
+  }
+  DesignVariant const& variant = answered.variants[answered.answer.outcomes.front().branch.variant];
+  if (!variant.camera.empty()) text += fmt::format("  {:<28}{}\n", "camera", variant.camera);
+  if (!variant.lens.empty()) text += fmt::format("  {:<28}{}\n", "lens", variant.lens);
+  text += "predicted by formula\n";
+  for (Predicted const& one : predicted(best)) text += fmt::format("  {:<28}{:.6g}\n", one.key, one.value);
+  text += "what binds\n";
+  for (std::string const& name : answered.answer.binding) text += "  " + name + '\n';
+  if (answered.answer.binding.empty()) text += "  nothing\n";
+  text += fmt::format("what a requirement costs: {} where it is 1 % stricter\n", objective_word(answered));
+  for (RequirementCost const& cost : answered.answer.costs) {
+    text += fmt::format("  {:<40}{}\n", bound_name(cost.bound),
+                        std::isfinite(cost.change) ? fmt::format("{:+.2f} %", 100 * cost.change)
+                                                   : std::string("nothing feasible is left"));
+  }
+  return text;
+}
+
+std::string infeasible_text(AnsweredQuestion const& answered) {
+  std::string text = "no feasible design: these cannot be kept together\n";
+  for (Bound const bound : answered.answer.conflicts) {
+    text += fmt::format("  {} = {:.6g}\n", bound_name(bound), required_value(answered, bound));
+  }
+  if (answered.answer.conflicts.empty()) text += "  the limits of the free keys and those of every bench\n";
+  if (!answered.answer.relaxations.empty()) text += "one of these would do, everything else kept\n";
+  for (Relaxation const& relaxation : answered.answer.relaxations) {
+    text +=
+        fmt::format("  {} = {:.6g} instead of {:.6g}\n", bound_name(relaxation.bound),
+                    relaxation.value / bound_key(relaxation.bound).unit, required_value(answered, relaxation.bound));
+  }
+  return text;
+}
+
+Json feasible_json(AnsweredQuestion const& answered) {
+  Json json;
+  Bench<double> const best = answered.best();
+  Recommendation const& answer = answered.answer;
+  for (auto const& [key, value] : recommended(answered.question, best)) json["recommended"][key] = value;
+  DesignVariant const& variant = answered.variants[answer.outcomes.front().branch.variant];
+  if (!variant.camera.empty()) json["camera"] = variant.camera;
+  if (!variant.lens.empty()) json["lens"] = variant.lens;
+  for (Predicted const& one : predicted(best)) json["predicted"][one.key] = one.value;
+  json["binding"] = answer.binding;
+  json["costs"] = Json::array();
+  for (RequirementCost const& cost : answer.costs) {
+    json["costs"].push_back(
+        {{"key", bound_name(cost.bound)}, {"change", std::isfinite(cost.change) ? Json(cost.change) : Json(nullptr)}});
+  }
+  json["front"] = Json::array();
+  for (FrontPoint const& point : answer.front) {
+    json["front"].push_back({{"key", bound_name(answer.front_bound)},
+                             {"limit", point.limit / bound_key(answer.front_bound).unit},
+                             {"objective", point.objective}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string answer_text(AnsweredQuestion const& answered) {
+  std::string text = answered.answer.feasible() ? feasible_text(answered) : infeasible_text(answered);
+  text += fmt::format("choices tried: {}, the best first\n", answered.answer.outcomes.size());
+  for (std::size_t i = 0; i < std::min(most_alternatives, answered.answer.outcomes.size()); ++i) {
+    text += outcome_text(answered, answered.answer.outcomes[i]);
+  }
+  std::size_t skipped = 0;
+  for (BranchOutcome const& outcome : answered.answer.outcomes) skipped += outcome.skipped;
+  if (skipped > 0) text += fmt::format("  {} were skipped, each by one bound (--json names it)\n", skipped);
+  return text;
+}
+
+Json answer_json(AnsweredQuestion const& answered) {
+  Recommendation const& answer = answered.answer;
+  Json json = answer.feasible() ? feasible_json(answered) : Json::object();
+  json["feasible"] = answer.feasible();
+  json["conflicts"] = Json::array();
+  for (Bound const bound : answer.conflicts) json["conflicts"].push_back(bound_name(bound));
+  json["relaxations"] = Json::array();
+  for (Relaxation const& relaxation : answer.relaxations) {
+    json["relaxations"].push_back(
+        {{"key", bound_name(relaxation.bound)}, {"value", relaxation.value / bound_key(relaxation.bound).unit}});
+  }
+  json["choices"] = Json::array();
+  for (BranchOutcome const& outcome : answer.outcomes) {
+    bool const feasible = outcome.solution.feasible();
+    json["choices"].push_back({{"name", branch_name(outcome.branch, answered.variants, answered.question)},
+                               {"feasible", feasible},
+                               {"skipped", outcome.skipped},
+                               {"objective", feasible ? Json(outcome.solution.objective) : Json(nullptr)},
+                               {"worst", bound_name(outcome.solution.worst)}});
+  }
+  return json;
+}
+
+}  // namespace gladstone

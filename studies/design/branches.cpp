@@ -1,0 +1,174 @@
+#include "studies/design/branches.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "studies/design/sheet.h"
+#include "studies/light_exposure.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::array<char const*, 4> question_tables{"requirements", "limits", "inventory", "free"};
+
+SetupNode text_node(std::string const& text) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::text;
+  node.text = text;
+  return node;
+}
+
+SetupNode number_node(double value) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::number;
+  node.number = value;
+  return node;
+}
+
+SetupNode prescription_node(std::string const& file) {
+  SetupNode lens;
+  lens.members.push_back({"model", text_node("prescription")});
+  lens.members.push_back({"file", text_node(file)});
+  return lens;
+}
+
+/// Why closed forms do not describe a setup, with the key; empty: they do.
+std::pair<std::string, std::string> beyond_design(Setup const& setup) {
+  if (setup.piv || setup.calibration()) return {"experiment", "is not \"bos\" (requirements are of BOS benches)"};
+  if (setup.lens.focus != Focus::target) {
+    return {"lens.focus", "is not on the target (the formulas are of dots in focus); use focus = \"target\""};
+  }
+  if (setup.pose || setup.lenslets || setup.camera.tilted() || !setup.windows.empty()) {
+    return {"camera",
+            "is posed, tilted, plenoptic or behind windows (requirements are of a camera on the axis, square to the "
+            "dots); remove that from the setup"};
+  }
+  if (!std::isfinite(setup.lens.f_number)) {
+    return {"lens.f_number", "is no stop (a design needs the cone of light); give a number"};
+  }
+  return {};
+}
+
+DesignVariant load_variant(SetupDocument document, std::string const& camera, std::string const& lens) {
+  CaseSetup const loaded = load_case_setup(document.copy());
+  if (auto const [key, reason] = beyond_design(loaded.setup); !key.empty()) {
+    auto const dot = key.find('.');
+    SetupTable table = dot == std::string::npos ? document.root() : document.root().table(key.substr(0, dot));
+    throw SetupError({{table.where(dot == std::string::npos ? key : key.substr(dot + 1)), key + ' ' + reason}});
+  }
+  auto given = std::make_unique<BenchGiven>(bench_given(loaded));
+  return {camera, lens, std::move(document), loaded.setup, std::move(given)};
+}
+
+/// Values of a choice in a variant: those to choose from, or one that is given; empty: an interval.
+std::vector<double> values_of(FreeChoice const& free, DesignVariant const& variant) {
+  if (variant.lens.empty() || free.choice == Choice::z_a || free.choice == Choice::z_d) return free.values;
+  if (free.choice == Choice::focal_length) return {variant.setup.lens.focal_length};
+  std::vector<double> values = free.values;
+  if (free.choice == Choice::f_number) {  // it opens no wider than its own stop
+    std::erase_if(values, [&](double value) { return value < variant.setup.lens.f_number * (1 - 1e-6); });
+  }
+  return values;
+}
+
+}  // namespace
+
+std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question) {
+  std::vector<DesignVariant> variants;
+  std::size_t const cameras = std::max<std::size_t>(1, question.cameras.size());
+  for (std::size_t i = 0; i < cameras; ++i) {
+    SetupDocument with_camera = document.copy();
+    std::string name;
+    if (!question.cameras.empty()) {
+      with_camera.set({"camera"}, question.cameras[i].table);
+      name = question.cameras[i].file;
+    }
+    variants.push_back(load_variant(with_camera.copy(), name, ""));
+    for (std::string const& lens : question.lenses) {
+      SetupDocument with_lens = with_camera.copy();
+      with_lens.set({"lens"}, prescription_node(lens));
+      variants.push_back(load_variant(std::move(with_lens), name, lens));
+    }
+  }
+  return variants;
+}
+
+std::vector<DesignBranch> design_branches(std::vector<DesignVariant> const& variants, DesignQuestion const& question) {
+  std::vector<DesignBranch> branches;
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    Setup const& setup = variants[i].setup;
+    DesignBranch first;
+    first.given = variants[i].given.get();
+    first.variant = i;
+    first.value = {setup.lens.focal_length, setup.lens.f_number, setup.z_a, setup.z_d, setup.dot_diameter()};
+    if (!setup.target.dot_diameter_m) first.dot_px = setup.target.dot_diameter_px;
+    std::vector<DesignBranch> combined{first};
+    for (FreeChoice const& free : question.free) {
+      if (free.choice == Choice::dot_diameter) {
+        for (DesignBranch& branch : combined) branch.dot_px.reset();
+      }
+      std::vector<double> const values = values_of(free, variants[i]);
+      if (values.empty() && free.values.empty()) {
+        for (DesignBranch& branch : combined) branch.continuous.push_back(free);
+        continue;
+      }
+      std::vector<DesignBranch> more;
+      for (DesignBranch const& branch : combined) {
+        for (double const value : values) {
+          more.push_back(branch);
+          more.back().value[static_cast<std::size_t>(free.choice)] = value;
+        }
+      }
+      combined = std::move(more);
+    }
+    branches.insert(branches.end(), combined.begin(), combined.end());
+  }
+  return branches;
+}
+
+std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> const& variants,
+                        DesignQuestion const& question) {
+  DesignVariant const& variant = variants[branch.variant];
+  std::string name;
+  auto const add = [&name](std::string const& part) { name += (name.empty() ? "" : ", ") + part; };
+  if (!variant.camera.empty()) add(std::filesystem::path(variant.camera).filename().string());
+  if (!variant.lens.empty()) add(std::filesystem::path(variant.lens).filename().string());
+  for (FreeChoice const& free : question.free) {
+    bool const continuous = std::any_of(branch.continuous.begin(), branch.continuous.end(),
+                                        [&free](FreeChoice const& other) { return other.choice == free.choice; });
+    if (continuous) continue;
+    ChoiceKey const& key = key_of(free.choice);
+    add(fmt::format("{} = {:.6g}", key.limit, branch.value[static_cast<std::size_t>(free.choice)] / key.unit));
+  }
+  return name.empty() ? "the setup" : name;
+}
+
+std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question, Bench<double> const& bench) {
+  SetupDocument document = variant.document.copy();
+  std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
+                                               bench.dot_diameter};
+  for (FreeChoice const& free : question.free) {
+    if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
+    ChoiceKey const& key = key_of(free.choice);
+    std::string const path = key.path;
+    auto const dot = path.find('.');
+    document.set({path.substr(0, dot), path.substr(dot + 1)},
+                 number_node(value[static_cast<std::size_t>(free.choice)] / key.unit));
+  }
+  bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
+                                        [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
+  // loaded once more: it is a setup that renders, and its file names are absolute then
+  SetupNode root = parse_toml(load_case_setup(std::move(document)).document.written(), "setup");
+  std::erase_if(root.members, [](SetupMember const& member) {
+    return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
+  });
+  if (SetupNode* const target = root.find("target"); target && chooses_dots) {
+    std::erase_if(target->members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
+  }
+  return toml_document(root);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,114 @@
+#include "studies/design/design.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "render/base/error.h"
+#include "render/base/output_file.h"
+#include "studies/design/answer_text.h"
+#include "studies/design/sheet.h"
+#include "studies/design/sheet_text.h"
+#include "studies/figures/design_map.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/figures/layout_figure.h"
+
+namespace gladstone {
+namespace {
+
+/// Writes a figure's file into the folder; without gnuplot says so.
+template <class Draw>
+void draw(DesignRequest const& request, DesignReport& report, std::string const& name, Draw&& write) {
+  std::filesystem::path const path = std::filesystem::path(request.figures) / (name + '.' + request.figure_format);
+  try {
+    write(path.string());
+    report.json["figures"].push_back(path.string());
+  } catch (GnuplotMissing const& missing) {
+    report.warnings.emplace_back(missing.what());
+  }
+}
+
+void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double> const& bench,
+                std::optional<Requirements> const& requirements) {
+  draw(request, report, "layout", [&](std::string const& path) { write_layout_figure(path, bench); });
+  draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
+}
+
+AnsweredQuestion answered(SetupDocument const& document, DesignQuestion question) {
+  AnsweredQuestion result{std::move(question), {}, {}};
+  result.variants = design_variants(document, result.question);
+  std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
+  Requirements const& requirements = result.question.requirements;
+  result.answer = recommend(requirements.objective, required_limits(requirements), branches);
+  return result;
+}
+
+/// The sheet of a setup; of a BOS bench with its figures.
+void add_sheet(DesignRequest const& request, CaseSetup const& loaded, bool draws, DesignReport& report) {
+  if (!std::isfinite(loaded.setup.lens.f_number)) {
+    throw DataError(request.setup, "has no stop (lens.f_number); a design needs the cone of light, so give a number");
+  }
+  report.warnings = beyond_closed_forms(loaded.setup);
+  DesignSheet sheet;
+  if (loaded.setup.piv) {
+    sheet = piv_sheet(loaded);
+  } else {
+    BenchGiven const given = bench_given(loaded);
+    Bench<double> const bench = bench_of(loaded.setup, given);
+    sheet = bos_sheet(loaded.setup, bench);
+    if (draws) draw_bench(request, report, bench, std::nullopt);
+  }
+  report.json["sheet"] = sheet_json(sheet);
+  report.text += fmt::format("{}\n{}", request.setup, sheet_text(sheet));
+}
+
+void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
+                std::optional<OutputFile>& applied, DesignReport& report) {
+  AnsweredQuestion const result = answered(document, std::move(question));
+  report.json.update(answer_json(result));
+  report.text += answer_text(result);
+  report.feasible = result.answer.feasible();
+  if (!report.feasible) return;
+  Bench<double> const best = result.best();
+  if (!request.figures.empty()) {
+    Requirements const& requirements = result.question.requirements;
+    draw_bench(request, report, best, requirements);
+    if (!result.answer.front.empty()) {
+      draw(request, report, "front",
+           [&](std::string const& path) { write_design_front(path, result.answer, requirements.objective); });
+    }
+  }
+  if (applied) {
+    DesignVariant const& variant = result.variants[result.answer.outcomes.front().branch.variant];
+    std::string const text = applied_setup(variant, result.question, best);
+    applied->write(text.data(), text.size());
+    applied->commit();
+  }
+}
+
+}  // namespace
+
+DesignReport design(DesignRequest const& request) {
+  SetupDocument document = SetupDocument::from_file(request.setup);
+  for (std::string const& assignment : request.overrides) document.override_key(assignment);
+  SetupDocument const written = document.copy();
+  std::optional<DesignQuestion> question = read_design_question(document);
+  CaseSetup const loaded = load_case_setup(std::move(document));  // problems of the question among its own
+  if (loaded.setup.calibration()) {
+    throw DataError(request.setup, "is a calibration (closed forms are of BOS and PIV); give one of those");
+  }
+  if (!question && !request.apply.empty()) {
+    throw DataError(request.setup, "has no [requirements], so that there is nothing to --apply; add them");
+  }
+  DesignReport report;
+  if (!request.figures.empty()) report.json["figures"] = nlohmann::ordered_json::array();
+  std::optional<OutputFile> applied;
+  if (!request.apply.empty()) applied.emplace(request.apply);
+  add_sheet(request, loaded, !request.figures.empty() && !question, report);
+  if (question) add_answer(request, written, std::move(*question), applied, report);
+  return report;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,215 @@
+#include "studies/design/question.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "render/base/nearest_name.h"
+#include "render/base/text_file.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t most_values = 1000;
+constexpr double mm = unit::millimetre;
+
+/// The texts of an array; what is none of texts is a problem at the key.
+std::vector<std::string> texts(SetupDocument& document, std::string const& table, std::string const& key) {
+  std::vector<std::string> found;
+  SetupTable owner = document.root().table(table);
+  owner.pass_over(key);
+  SetupNode const* const node = document.find({table, key});
+  if (!node) return found;
+  bool good = node->kind == SetupNode::Kind::array;
+  for (SetupNode const& one : node->elements) {
+    good = good && one.kind == SetupNode::Kind::text;
+    found.push_back(one.text);
+  }
+  if (!good) {
+    owner.problem(key, "must be an array of texts; write [\"...\", \"...\"]");
+    found.clear();
+  }
+  return found;
+}
+
+std::optional<double> scaled(std::optional<double> value, double unit) {
+  return value ? std::optional(*value * unit) : std::nullopt;
+}
+
+Requirements read_requirements(SetupTable table, SetupTable limits) {
+  Requirements r;
+  std::string const word = table.required_word("objective", {objective_words.begin(), objective_words.end()});
+  auto const found = std::find(objective_words.begin(), objective_words.end(), word);
+  if (found != objective_words.end()) r.objective = static_cast<Objective>(found - objective_words.begin());
+  r.gradient_min = table.optional_number("gradient_min_kg_m4", Range::positive());
+  r.resolution = scaled(table.optional_number("resolution_mm", Range::positive()), mm);
+  r.displacement_max = table.optional_number("displacement_max_px", Range::positive());
+  r.uncertainty_max = table.optional_number("uncertainty_max_px", Range::positive());
+  if (table.has("field_of_view_mm")) {
+    auto const size = table.numbers("field_of_view_mm", {100, 100}, 2, Range::positive());
+    if (size.size() == 2) r.field_of_view = Vec2d{size[0], size[1]} * mm;
+  }
+  r.z_total_max = scaled(limits.optional_number("z_total_max_mm", Range::positive()), mm);
+  return r;
+}
+
+/// Values or an interval at a key of [limits], or values at one of [inventory].
+struct Allowed {
+  std::vector<double> values;
+  std::optional<std::pair<double, double>> interval;
+};
+
+Allowed read_limit(SetupTable limits, ChoiceKey const& key) {
+  Allowed allowed;
+  if (limits.is_table(key.limit)) {
+    allowed.values = limits.table(key.limit).number_list("values", {}, 1, most_values, Range::positive());
+    if (!limits.table(key.limit).has("values")) limits.problem(key.limit, "has no values; write { values = [..] }");
+  } else if (limits.has(key.limit)) {
+    auto const ends = limits.numbers(key.limit, {1, 2}, 2, Range::positive());
+    if (ends.size() == 2 && ends[0] > ends[1]) {
+      limits.problem(key.limit, fmt::format("ends before it begins ({:.6g} is above {:.6g}); write the smaller number "
+                                            "first",
+                                            ends[0], ends[1]));
+    } else if (ends.size() == 2) {
+      allowed.interval = {ends[0], ends[1]};
+    }
+  }
+  return allowed;
+}
+
+FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable limits, SetupTable inventory) {
+  ChoiceKey const& key = key_of(choice);
+  FreeChoice found{choice, {}, 0, 0};
+  Allowed allowed = read_limit(limits, key);
+  if (key.inventory && inventory.has(key.inventory)) {
+    if (inventory.is_array(key.inventory)) {
+      allowed.values = inventory.number_list(key.inventory, {}, 1, most_values, Range::positive());
+    } else {
+      inventory.problem(key.inventory, "must be an array of numbers");
+    }
+    if (allowed.interval) {
+      std::erase_if(allowed.values, [&allowed](double value) {
+        return value < allowed.interval->first || value > allowed.interval->second;
+      });
+      if (allowed.values.empty()) {
+        inventory.problem(key.inventory, std::string("has no value within limits.") + key.limit +
+                                             " (nothing is left to choose from); widen the limit or add what fits it");
+      }
+    }
+  } else if (!limits.has(key.limit)) {
+    free.problem("keys", fmt::format("\"{}\" has no bounds; add limits.{} = [from, to]{}", key.path, key.limit,
+                                     key.inventory ? std::string(" or inventory.") + key.inventory : ""));
+  }
+  for (double const value : allowed.values) found.values.push_back(value * key.unit);
+  if (allowed.interval) {
+    found.low = allowed.interval->first * key.unit;
+    found.high = allowed.interval->second * key.unit;
+  }
+  return found;
+}
+
+std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, SetupTable inventory) {
+  SetupTable free = document.root().table("free");
+  std::vector<std::string> const keys = texts(document, "free", "keys");
+  std::vector<std::string> known;
+  for (ChoiceKey const& key : choice_keys) known.emplace_back(key.path);
+  for (std::string const& key : keys) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    auto const nearest = nearest_name(key, known);
+    free.problem("keys",
+                 fmt::format("\"{}\" cannot be free{}", key,
+                             nearest ? "; did you mean \"" + *nearest + "\"?" : "; free may be " + quoted_list(known)));
+  }
+  if (keys.empty()) {
+    free.problem("keys",
+                 "names no key that may be chosen (nothing is left to design); free may be " + quoted_list(known));
+  }
+  std::vector<FreeChoice> found;
+  for (std::size_t i = 0; i < choice_count; ++i) {
+    ChoiceKey const& key = choice_keys[i];
+    if (std::find(keys.begin(), keys.end(), key.path) != keys.end()) {
+      found.push_back(read_free_choice(static_cast<Choice>(i), free, limits, inventory));
+      continue;
+    }
+    limits.refuse(key.limit,
+                  std::string("limits what is not free; add \"") + key.path + "\" to free.keys, or remove it");
+    if (key.inventory) {
+      inventory.refuse(key.inventory, std::string("is a choice that is not free; add \"") + key.path +
+                                          "\" to free.keys, or remove it");
+    }
+  }
+  return found;
+}
+
+/// Absolute names of the files at a key of [inventory].
+std::vector<std::string> owned_files(SetupDocument& document, std::string const& key) {
+  std::vector<std::string> files;
+  for (std::string const& name : texts(document, "inventory", key)) {
+    std::string const path =
+        std::filesystem::absolute(std::filesystem::path(document.folder()) / name).lexically_normal();
+    if (!std::filesystem::exists(path)) {
+      document.root().table("inventory").problem(key, "there is no file " + path);
+    } else {
+      files.push_back(path);
+    }
+  }
+  return files;
+}
+
+std::vector<OwnedCamera> read_cameras(SetupDocument& document) {
+  std::vector<OwnedCamera> cameras;
+  for (std::string const& path : owned_files(document, "cameras")) {
+    SetupNode const file = parse_toml(read_text_file(path), path);
+    SetupNode const* const table = file.find("camera");
+    if (!table || table->kind != SetupNode::Kind::table) {
+      document.root().table("inventory").problem("cameras", path + " has no table [camera]; give it one");
+      continue;
+    }
+    SetupNode camera = *table;
+    set_source(camera, std::make_shared<SetupSource const>(
+                           SetupSource{path, std::filesystem::path(path).parent_path().string()}));
+    cameras.push_back({path, camera});
+  }
+  return cameras;
+}
+
+/// Limits that leave no room.
+void check_total(DesignQuestion const& question, SetupTable limits) {
+  if (!question.requirements.z_total_max) return;
+  double least = 0;
+  for (FreeChoice const& free : question.free) {
+    if (free.choice != Choice::z_a && free.choice != Choice::z_d) continue;
+    least += free.values.empty() ? free.low : *std::min_element(free.values.begin(), free.values.end());
+  }
+  if (least <= *question.requirements.z_total_max) return;
+  limits.problem("z_total_max_mm",
+                 fmt::format("contradicts the other limits (z_a_mm and z_d_mm are {:.6g} mm together at least); "
+                             "raise it or lower those",
+                             least / mm));
+}
+
+}  // namespace
+
+std::optional<DesignQuestion> read_design_question(SetupDocument& document) {
+  SetupTable root = document.root();
+  SetupTable requirements = root.table("requirements"), limits = root.table("limits");
+  SetupTable inventory = root.table("inventory"), free = root.table("free");
+  if (!requirements.present()) {
+    for (char const* const table : {"limits", "inventory", "free"}) {
+      root.refuse(table, "stands without [requirements] (nothing is asked of the design); add them or remove it");
+      root.table(table).excuse();
+    }
+    return std::nullopt;
+  }
+  DesignQuestion question;
+  question.requirements = read_requirements(requirements, limits);
+  question.free = read_free(document, limits, inventory);
+  question.cameras = read_cameras(document);
+  question.lenses = owned_files(document, "lenses");
+  check_total(question, limits);
+  return question;
+}
+
+}  // namespace gladstone

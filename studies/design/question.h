@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/base/setup_node.h"
+#include "render/base/setup_table.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+
+/// What a design may choose.
+enum class Choice { focal_length, f_number, z_a, z_d, dot_diameter };
+inline constexpr std::size_t choice_count = 5;
+
+/// How a choice is named and written.
+struct ChoiceKey {
+  char const* path;       ///< of the setup's key
+  char const* limit;      ///< key in [limits]: the path's last part
+  char const* inventory;  ///< key of the values in [inventory]; null: none
+  double unit;            ///< of the key as written [SI]
+};
+inline constexpr std::array<ChoiceKey, choice_count> choice_keys{{
+    {"lens.focal_length_mm", "focal_length_mm", "focal_lengths_mm", 1e-3},
+    {"lens.f_number", "f_number", "f_numbers", 1},
+    {"geometry.z_a_mm", "z_a_mm", nullptr, 1e-3},
+    {"geometry.z_d_mm", "z_d_mm", nullptr, 1e-3},
+    {"target.dot_diameter_mm", "dot_diameter_mm", nullptr, 1e-3},
+}};
+constexpr ChoiceKey const& key_of(Choice choice) { return choice_keys[static_cast<std::size_t>(choice)]; }
+
+/// What is made best: the smallest of these.
+enum class Objective { gradient_min, resolution, uncertainty, z_total };
+inline constexpr std::array<char const*, 4> objective_words{"gradient_min", "resolution", "uncertainty", "z_total"};
+
+/// What a design is to keep; empty: nothing is asked. In SI.
+struct Requirements {
+  Objective objective = Objective::gradient_min;
+  std::optional<double> gradient_min;      ///< [kg/m^4]
+  std::optional<double> resolution;        ///< [m]
+  std::optional<double> displacement_max;  ///< [px]
+  std::optional<double> uncertainty_max;   ///< [px]
+  std::optional<Vec2d> field_of_view;      ///< in the medium, width and height [m]
+  std::optional<double> z_total_max;       ///< [m]
+};
+
+/// A choice and where it may lie: one of some values, or an interval. In SI.
+struct FreeChoice {
+  Choice choice;
+  std::vector<double> values;  ///< empty: anything from low to high
+  double low = 0, high = 0;
+};
+
+/// A camera of the inventory: what stands in its file's [camera].
+struct OwnedCamera {
+  std::string file;
+  SetupNode table;
+};
+
+/// Tables [requirements], [limits], [inventory] and [free] of a setup.
+struct DesignQuestion {
+  Requirements requirements;
+  std::vector<FreeChoice> free;
+  std::vector<OwnedCamera> cameras;  ///< empty: the setup's own
+  std::vector<std::string> lenses;   ///< prescription files, absolute; beside the focal lengths
+};
+
+/// Reads them; every problem goes to the document at its key. Nothing where there is no [requirements].
+std::optional<DesignQuestion> read_design_question(SetupDocument& document);
+
+}  // namespace gladstone

@@ -1,0 +1,98 @@
+#include "studies/design/sheet.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/contracts.h"
+#include "render/scene/field_map.h"
+#include "render/scene/scene.h"
+#include "studies/light_exposure.h"
+#include "studies/scene_renderer.h"
+
+namespace gladstone {
+namespace {
+
+/// Largest gradient of density in the view, averaged over the thickness [kg/m^4].
+double largest_gradient(Setup const& setup) {
+  FieldSetup const& field = setup.medium.field;
+  switch (field.kind) {
+    case FieldKind::none:
+      return 0;
+    case FieldKind::uniform_gradient:
+      return std::hypot(field.gradient.x, field.gradient.y);
+    case FieldKind::sinusoid:
+      return std::abs(field.amplitude) * 2 * pi / field.wavelength;
+    case FieldKind::gaussian_plume:
+    case FieldKind::gaussian_blob:  // F29, at r = radius / sqrt(2)
+      return std::sqrt(2 * pi / std::exp(1.0)) * std::abs(field.amplitude) / setup.medium.thickness;
+    case FieldKind::file:
+    case FieldKind::normal_shock:
+      break;
+  }
+  double largest = 0;
+  constexpr int spacing_px = 4;
+  Scene scene = build_scene(setup);
+  plan_step_of(scene);
+  for (Vec2d const gradient : map_field(scene, spacing_px).density_gradient) {
+    largest = std::max(largest, length(gradient));
+  }
+  return largest;
+}
+
+}  // namespace
+
+char const* margin_word(Margin margin) {
+  constexpr char const* words[] = {"", "green", "marginal", "violated"};
+  return words[static_cast<int>(margin)];
+}
+
+Margin at_least(double value, double good, double least) {
+  return value >= good ? Margin::green : value >= least ? Margin::marginal : Margin::violated;
+}
+
+Margin at_most(double value, double good, double most) {
+  return value <= good ? Margin::green : value <= most ? Margin::marginal : Margin::violated;
+}
+
+SheetRow const& DesignSheet::row(std::string const& key) const {
+  auto const found = std::find_if(rows.begin(), rows.end(), [&key](SheetRow const& row) { return row.key == key; });
+  GLADSTONE_EXPECTS(found != rows.end());
+  return *found;
+}
+
+BenchGiven bench_given(CaseSetup const& loaded) {
+  Setup const& setup = loaded.setup;
+  BenchGiven given;
+  given.camera = setup.camera;
+  given.light = read_light(loaded.document.copy().root());
+  given.wavelength = setup.medium.wavelength;
+  given.gladstone_dale = setup.medium.gladstone_dale;
+  given.ambient_index = setup.ambient_index();
+  given.thickness = setup.medium.thickness;
+  given.largest_gradient = largest_gradient(setup);
+  given.dots_per_window_32 = setup.target.dots_per_32px_window;
+  given.first_window_px = loaded.correlate.window_px.front();
+  bool const uniform = loaded.correlate.weighting == "uniform";
+  given.window =
+      WindowTransfer(uniform ? WindowWeighting::uniform : WindowWeighting::gaussian, loaded.correlate.window_px.back());
+  return given;
+}
+
+Bench<double> bench_of(Setup const& setup, BenchGiven const& given) {
+  return {&given, setup.lens.focal_length, setup.lens.f_number, setup.z_a, setup.z_d, setup.dot_diameter()};
+}
+
+std::vector<std::string> beyond_closed_forms(Setup const& setup) {
+  std::vector<std::string> warnings;
+  if (setup.lens.focus != Focus::target && !setup.piv) {
+    warnings.emplace_back("lens.focus: the sheet is of dots in focus, which these are not");
+  }
+  if (!setup.on_bench()) {
+    warnings.emplace_back(
+        "the sheet takes the lens for a thin one on the axis, square to the dots: it leaves out poses, tilts, windows, "
+        "distortion and aberrations");
+  }
+  return warnings;
+}
+
+}  // namespace gladstone

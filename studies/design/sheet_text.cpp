@@ -1,0 +1,51 @@
+#include "studies/design/sheet_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace gladstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string value_text(SheetRow const& row) {
+  if (!std::isfinite(row.value)) return "unknown";
+  return fmt::format("{:.7g}{}{}", row.value, row.unit.empty() ? "" : " ", row.unit);
+}
+
+}  // namespace
+
+std::string sheet_text(DesignSheet const& sheet) {
+  std::string text;
+  for (SheetRow const& row : sheet.rows) {
+    text += fmt::format("  {:<4}{:<50}{:<28}{}\n", row.id, row.name, value_text(row), margin_word(row.margin));
+    text += fmt::format("      = {}   [{}]{}{}\n", row.formula, row.source, row.note.empty() ? "" : "; ", row.note);
+  }
+  return text;
+}
+
+Json sheet_json(DesignSheet const& sheet) {
+  Json json = Json::object(), rows = Json::array();
+  for (SheetRow const& row : sheet.rows) {
+    json[row.key] = or_null(row.value);
+    rows.push_back({{"id", row.id},
+                    {"key", row.key},
+                    {"name", row.name},
+                    {"value", or_null(row.value)},
+                    {"unit", row.unit},
+                    {"formula", row.formula},
+                    {"source", row.source},
+                    {"margin", margin_word(row.margin)},
+                    {"note", row.note}});
+  }
+  json["field_of_view_mm"] = {json["field_of_view_mm"], json["field_of_view_height_mm"]};
+  json.erase("field_of_view_height_mm");
+  json["rows"] = rows;
+  return json;
+}
+
+}  // namespace gladstone

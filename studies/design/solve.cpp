@@ -1,0 +1,198 @@
+#include "studies/design/solve.h"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <nlopt.hpp>
+
+namespace gladstone {
+namespace {
+
+using Jet = ceres::Jet<double, choice_count>;
+
+constexpr int candidates = 240;  // points that the starts are the best of
+constexpr int starts = 8;
+constexpr int most_evaluations = 300;
+constexpr double tolerance = 1e-9;
+
+/// A problem on a branch as NLopt's functions see it; with a slack variable at the end, limits may be exceeded by it.
+struct Task {
+  DesignProblem const* problem;
+  DesignBranch const* branch;
+  bool slack;
+
+  std::size_t own() const { return branch->continuous.size(); }
+
+  Bench<Jet> jets(double const* x) const {
+    std::vector<Jet> variables;
+    for (std::size_t i = 0; i < own(); ++i) variables.emplace_back(x[i], static_cast<int>(i));
+    return bench_at(*branch, variables);
+  }
+  Bench<double> numbers(double const* x) const { return bench_at(*branch, std::vector<double>(x, x + own())); }
+};
+
+void copy_derivatives(Jet const& value, std::size_t own, double* gradient) {
+  for (std::size_t i = 0; i < own; ++i) gradient[i] = value.v[static_cast<Eigen::Index>(i)];
+}
+
+double objective_of(unsigned n, double const* x, double* gradient, void* data) {
+  auto const& task = *static_cast<Task const*>(data);
+  if (task.slack) {
+    if (gradient) {
+      std::fill(gradient, gradient + n, 0.0);
+      gradient[n - 1] = 1;
+    }
+    return x[n - 1];
+  }
+  Bench<double> const here = task.numbers(x);
+  double const lacking = excess({Bound::focus, 0}, here);
+  if (lacking > 0) {  // no image: nothing to be made best
+    if (gradient) copy_derivatives(excess({Bound::focus, 0}, task.jets(x)), task.own(), gradient);
+    return 100 + lacking;
+  }
+  if (!gradient) return std::log(objective_value(task.problem->objective, here, here));
+  Jet const value = log(objective_value(task.problem->objective, task.jets(x), here));
+  copy_derivatives(value, task.own(), gradient);
+  return value.a;
+}
+
+void limits_of(unsigned m, double* result, unsigned n, double const* x, double* gradient, void* data) {
+  auto const& task = *static_cast<Task const*>(data);
+  double const slack = task.slack ? x[n - 1] : 0;
+  auto const& limits = task.problem->limits;
+  if (!gradient) {
+    Bench<double> const here = task.numbers(x);
+    for (unsigned i = 0; i < m; ++i) result[i] = excess(limits[i], here) - slack;
+    return;
+  }
+  Bench<Jet> const here = task.jets(x);
+  for (unsigned i = 0; i < m; ++i) {
+    Jet const value = excess(limits[i], here);
+    result[i] = value.a - slack;
+    copy_derivatives(value, task.own(), gradient + std::size_t{i} * n);
+    if (task.slack) gradient[std::size_t{i} * n + n - 1] = -1;
+  }
+}
+
+BranchSolution judged(DesignProblem const& problem, DesignBranch const& branch, std::vector<double> x) {
+  x.resize(branch.continuous.size());
+  Bench<double> const bench = bench_at(branch, x);
+  BranchSolution solution;
+  solution.violation = -HUGE_VAL;
+  for (Limit const& limit : problem.limits) {
+    double const by = excess(limit, bench);
+    if (!(by > solution.violation) && !std::isnan(by)) continue;
+    solution.violation = std::isnan(by) ? HUGE_VAL : by;
+    solution.worst = limit.bound;
+  }
+  if (solution.feasible()) solution.objective = objective_value(problem.objective, bench, bench);
+  solution.logarithms = std::move(x);
+  return solution;
+}
+
+bool better(BranchSolution const& a, BranchSolution const& b) {
+  if (a.feasible() != b.feasible()) return a.feasible();
+  return a.feasible() ? a.objective < b.objective : a.violation < b.violation;
+}
+
+/// A point of a sequence that is even over the intervals; the first is their middle.
+std::vector<double> spread_point(DesignBranch const& branch, int index) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < branch.continuous.size(); ++i) {
+    FreeChoice const& free = branch.continuous[i];
+    // Kronecker's sequence by powers of the root of x^6 = x + 1: even in five dimensions
+    double const turn = 0.5 + index * std::pow(1 / 1.1347241384015194, static_cast<double>(i + 1));
+    double const share = turn - std::floor(turn);
+    x.push_back(std::log(free.low) + share * std::log(free.high / free.low));
+  }
+  return x;
+}
+
+/// The best of many points, the best first.
+std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch) {
+  std::vector<BranchSolution> points;
+  int const count = branch.continuous.empty() ? 1 : candidates;
+  for (int i = 0; i < count; ++i) points.push_back(judged(problem, branch, spread_point(branch, i)));
+  std::stable_sort(points.begin(), points.end(), better);
+  if (points.size() > starts) points.resize(starts);
+  return points;
+}
+
+std::vector<double> minimised(Task& task, std::vector<double> x) {
+  std::size_t const n = task.own() + (task.slack ? 1 : 0);
+  nlopt::opt optimizer(nlopt::LD_SLSQP, static_cast<unsigned>(n));
+  std::vector<double> low, high;
+  for (FreeChoice const& free : task.branch->continuous) {
+    low.push_back(std::log(free.low));
+    high.push_back(std::log(free.high));
+  }
+  if (task.slack) {
+    low.push_back(-1e-3);
+    high.push_back(HUGE_VAL);
+    x.push_back(std::max(0.0, judged(*task.problem, *task.branch, x).violation));
+  }
+  optimizer.set_lower_bounds(low);
+  optimizer.set_upper_bounds(high);
+  optimizer.set_min_objective(objective_of, &task);
+  optimizer.add_inequality_mconstraint(limits_of, &task, std::vector<double>(task.problem->limits.size(), tolerance));
+  optimizer.set_xtol_rel(1e-12);
+  optimizer.set_ftol_rel(1e-12);
+  optimizer.set_maxeval(most_evaluations);
+  double value = 0;
+  try {
+    optimizer.optimize(x, value);
+  } catch (std::runtime_error const&) {
+    // it goes no further than rounding lets it: where it stands is judged as any other point
+  }
+  for (std::size_t i = 0; i < task.own(); ++i) x[i] = std::clamp(x[i], low[i], high[i]);
+  return x;
+}
+
+}  // namespace
+
+std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch) {
+  // the view widens, and an image comes to be, with both distances; their sum is least at the lower ends
+  std::vector<double> least, most;
+  for (FreeChoice const& free : branch.continuous) {
+    bool const distance = free.choice == Choice::z_a || free.choice == Choice::z_d;
+    bool const focal = free.choice == Choice::focal_length;
+    least.push_back(std::log(distance ? free.low : free.high));
+    most.push_back(std::log(distance ? free.high : focal ? free.low : free.high));
+  }
+  Bench<double> const near = bench_at(branch, least), far = bench_at(branch, most);
+  for (Limit const& limit : problem.limits) {
+    if (limit.bound == Bound::z_total && near.z_b() > limit.value) return limit.bound;
+    bool const farthest = limit.bound == Bound::focus || limit.bound == Bound::view_width ||
+                          limit.bound == Bound::view_height || limit.bound == Bound::dots_clear ||
+                          limit.bound == Bound::lens_clear;
+    if (farthest && excess(limit, far) > 0) return limit.bound;
+  }
+  return std::nullopt;
+}
+
+BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch) {
+  std::vector<BranchSolution> const points = start_points(problem, branch);
+  BranchSolution best = points.front();
+  for (BranchSolution const& start : points) {
+    if (best.feasible() || branch.continuous.empty()) return best;
+    Task task{&problem, &branch, true};
+    BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
+    if (better(found, best)) best = found;
+  }
+  return best;
+}
+
+BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch) {
+  BranchSolution best = least_violation(problem, branch);
+  if (!best.feasible() || branch.continuous.empty()) return best;
+  std::vector<BranchSolution> points = start_points(problem, branch);
+  points.push_back(best);
+  for (BranchSolution const& start : points) {
+    Task task{&problem, &branch, false};
+    BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
+    if (better(found, best)) best = found;
+  }
+  return best;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,169 @@
+#include "studies/figures/design_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+#include "studies/figures/gnuplot.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double mm = unit::millimetre;
+constexpr int width = 960, height = 700;
+constexpr std::array<double, 8> stops{2.8, 4, 5.6, 8, 11, 16, 22, 32};
+constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // of Z_A
+
+std::vector<double> in_mm(std::vector<double> lengths) {
+  for (double& length : lengths) length /= mm;
+  return lengths;
+}
+
+/// Adds a data source drawn with lines to a plot command.
+void add_line(GnuplotFigure& plot, std::string& command, std::vector<double> const& x, std::vector<double> const& y,
+              std::string const& look, std::string const& title) {
+  command += fmt::format("{}{} using 1:2 with {} {}", command.empty() ? "plot " : ", ", plot.add_table({x, y}), look,
+                         title.empty() ? "notitle" : "title " + GnuplotFigure::quoted(title));
+}
+
+struct Range2 {
+  double low = HUGE_VAL, high = 0;
+  void hold(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+/// Tics of a logarithmic axis at 1, 2 and 5 of every decade.
+std::string tics(double low, double high) {
+  std::string list;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10) {
+    for (double const digit : {1.0, 2.0, 5.0}) {
+      double const at = digit * decade;
+      if (at >= low && at <= high) list += fmt::format("{}{:.6g}", list.empty() ? "" : ", ", at);
+    }
+  }
+  return list;
+}
+
+std::string colour_of_stop(std::size_t index) {
+  // from light to dark blue: an order, not names
+  constexpr std::array<char const*, 8> shades{"#a6c8e4", "#86b5da", "#67a1cf", "#4a8cc2",
+                                              "#3277b3", "#1f62a0", "#114c89", "#08366d"};
+  return shades[index % shades.size()];
+}
+
+}  // namespace
+
+std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
+  constexpr int points = 81;
+  std::vector<DesignCurve> curves;
+  for (double const stop : stops) {
+    DesignCurve curve{stop, {}, {}, {}, {}};
+    for (int i = 0; i < points; ++i) {
+      Bench<double> b = bench;
+      b.f_number = stop;
+      b.z_d = bench.z_a * 0.05 * std::pow(80.0, i / (points - 1.0));
+      if (b.z_b() < 1.05 * b.focal_length) continue;
+      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();  // as large in the image as the setup's
+      curve.z_d.push_back(b.z_d);
+      curve.sensitivity.push_back(b.sensitivity());
+      curve.resolution.push_back(resolved_wavelength(b));
+      curve.cone.push_back(b.angular_sensitivity() / (stop * (1 + b.magnification())));
+    }
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+void write_design_map(std::string const& path, Bench<double> const& bench,
+                      std::optional<Requirements> const& requirements) {
+  std::vector<DesignCurve> const curves = design_curves(bench);
+  GnuplotFigure plot(width, height);
+  Range2 x, y;
+  std::string command;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    DesignCurve const& curve = curves[i];
+    for (double const value : curve.sensitivity) x.hold(value);
+    for (double const value : curve.resolution) y.hold(value / mm);
+    std::string const colour = colour_of_stop(i);
+    add_line(plot, command, curve.sensitivity, in_mm(curve.resolution),
+             fmt::format("lines linewidth 2.5 linecolor '{}'", colour), fmt::format("f/{:g}", curve.f_number));
+    // the cone alone passes 1/sqrt(2) at D_c / 0.51450
+    std::vector<double> cone = in_mm(curve.cone);
+    for (double& value : cone) value /= 0.51450;
+    add_line(plot, command, curve.sensitivity, cone, fmt::format("lines linewidth 1 dashtype 3 linecolor '{}'", colour),
+             i == curves.size() - 1 ? "the cone alone: S/(N (1 + M)), F23" : "");
+  }
+  for (double const share : marked_z_d) {
+    std::vector<double> sensitivity, resolution;
+    for (double const stop : stops) {
+      Bench<double> b = bench;
+      b.f_number = stop;
+      b.z_d = share * bench.z_a;
+      if (b.z_b() < 1.05 * b.focal_length) continue;
+      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();
+      sensitivity.push_back(b.sensitivity());
+      resolution.push_back(resolved_wavelength(b) / mm);
+    }
+    if (sensitivity.empty()) continue;
+    add_line(plot, command, sensitivity, resolution, "lines linewidth 1 linecolor '#b0b0b0'", "");
+    plot.command(
+        fmt::format("set label {} at first {:.6g},{:.6g} center offset 0,0.8 font 'DejaVu Sans,9' textcolor '#707070'",
+                    GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
+                    *std::max_element(resolution.begin(), resolution.end())));
+  }
+  double const x_low = x.low / 1.1, x_high = x.high * 1.2, y_low = y.low / 1.3, y_high = y.high * 1.3;
+  if (requirements && requirements->resolution) {
+    double const limit = *requirements->resolution / mm;
+    add_line(plot, command, {x_low, x_high}, {limit, limit},
+             fmt::format("lines linewidth 2 dashtype 2 linecolor '{}'", house_colour(1)),
+             fmt::format("resolution {:.4g} mm required", limit));
+  }
+  if (requirements && requirements->gradient_min) {
+    double const limit = 2 * bench.random_error() / *requirements->gradient_min;
+    add_line(plot, command, {limit, limit}, {y_low, y_high},
+             fmt::format("lines linewidth 2 dashtype 2 linecolor '{}'", house_colour(2)),
+             fmt::format("gradient {:.4g} kg/m⁴ at 2 x {:.3g} px", *requirements->gradient_min, bench.random_error()));
+  }
+  add_line(plot, command, {bench.sensitivity()}, {resolved_wavelength(bench) / mm},
+           fmt::format("points pointtype 7 pointsize 1.8 linecolor '{}'", house_colour(1)), "the setup");
+  plot.command(fmt::format("set title {} font 'DejaVu Sans,14'",
+                           GnuplotFigure::quoted(fmt::format("Design map: f = {:.5g} mm, Z_A = {:.5g} mm",
+                                                             bench.focal_length / mm, bench.z_a / mm))));
+  plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
+  plot.command("set clip two");  // lines of what is required begin and end at the border
+  plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
+  plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength passed with 1/√2 [mm]'");
+  plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));
+  plot.command(command);
+  plot.write(path);
+}
+
+void write_design_front(std::string const& path, Recommendation const& answer, Objective objective) {
+  constexpr std::array<char const*, 4> names{"smallest gradient [kg/m⁴]", "wavelength passed with 1/√2 [mm]",
+                                             "random error [px]", "Z_A + Z_D [mm]"};
+  constexpr std::array<double, 4> units{1, mm, 1, mm};
+  auto const index = static_cast<std::size_t>(objective);
+  BoundKey const key = bound_key(answer.front_bound);
+  std::vector<double> x, y;
+  for (FrontPoint const& point : answer.front) {
+    x.push_back(point.limit / key.unit);
+    y.push_back(point.objective / units[index]);
+  }
+  GnuplotFigure plot(720, 520);
+  plot.command(fmt::format("set title {} font 'DejaVu Sans,14'", GnuplotFigure::quoted("What the requirements trade")));
+  plot.command("set grid linecolor '#e4e4e4'");
+  plot.command(fmt::format("set xlabel {}; set ylabel {}", GnuplotFigure::quoted(key.path),
+                           GnuplotFigure::quoted(names[index])));
+  std::string command;
+  add_line(plot, command, x, y, fmt::format("linespoints pointtype 7 linewidth 2 linecolor '{}'", house_colour(0)),
+           "the best of all choices");
+  plot.command(command);
+  plot.write(path);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,145 @@
+#include "studies/figures/layout_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/base/units.h"
+#include "studies/figures/gnuplot.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+constexpr double mm = unit::millimetre;
+constexpr int width = 1200;
+constexpr double left = 0.04, right = 0.98;  // of the panels, of the screen
+// heights from below [px]: the stretched panel's bottom and top, what is between the panels and above them
+constexpr int stretched_bottom = 64, stretched_top = 410, between = 50, above = 84;
+
+/// Polylines in mm, broken by NaN.
+struct Lines {
+  std::vector<double> z, y;
+  void add(std::initializer_list<std::pair<double, double>> points) {
+    for (auto const& [at_z, at_y] : points) {
+      z.push_back(at_z / mm);
+      y.push_back(at_y / mm);
+    }
+    z.push_back(gap);
+    y.push_back(gap);
+  }
+};
+
+struct Drawing {
+  Lines planes, medium, lens, view, cone;
+};
+
+Drawing drawing_of(BenchLayout const& l) {
+  Drawing d;
+  d.planes.add({{l.dots_z, -1.15 * l.dots_half}, {l.dots_z, 1.15 * l.dots_half}});
+  d.planes.add({{l.sensor_z, -l.sensor_half}, {l.sensor_z, l.sensor_half}});
+  double const h = 1.1 * std::max(l.medium_half, l.cone_radius), t = l.medium_half_thickness;
+  d.medium.add({{-t, -h}, {t, -h}, {t, h}, {-t, h}, {-t, -h}});
+  double const rim = 1.35 * std::max(l.pupil_radius, l.sensor_half), tip = 0.012 * (l.sensor_z - l.dots_z);
+  for (double const side : {-1.0, 1.0}) {
+    d.lens.add({{l.lens_z, side * l.pupil_radius}, {l.lens_z, side * rim}});
+    d.lens.add({{l.lens_z - tip / 2, side * rim}, {l.lens_z + tip / 2, side * rim}});
+    d.view.add({{l.dots_z, side * l.dots_half}, {l.lens_z, 0}, {l.sensor_z, -side * l.sensor_half}});
+    d.cone.add({{l.dots_z, 0}, {l.lens_z, side * l.pupil_radius}, {l.sensor_z, 0}});
+  }
+  return d;
+}
+
+/// Puts a panel between two heights [px].
+void place(GnuplotFigure& plot, double low, double high) {
+  double const height = plot.height_px();
+  plot.command(fmt::format("set lmargin at screen {}; set rmargin at screen {}", left, right));
+  plot.command(fmt::format("set bmargin at screen {:.6f}; set tmargin at screen {:.6f}", low / height, high / height));
+}
+
+void distance(GnuplotFigure& plot, double from, double to, double at, std::string const& name) {
+  plot.command(
+      fmt::format("set arrow from first {:.6g},graph {:.3f} to first {:.6g},graph {:.3f} heads size screen 0.006,20 "
+                  "linecolor '#606060'",
+                  from / mm, at, to / mm, at));
+  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} center front boxed textcolor '#202020'",
+                           GnuplotFigure::quoted(fmt::format("{} = {:.5g} mm", name, (to - from) / mm)),
+                           0.5 * (from + to) / mm, at));
+}
+
+void name_part(GnuplotFigure& plot, std::string const& name, double z, double at) {
+  plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} center front boxed textcolor '#202020'",
+                           GnuplotFigure::quoted(name), z / mm, at));
+}
+
+void draw(GnuplotFigure& plot, Drawing const& d) {
+  auto const lines = [&plot](Lines const& l, std::string_view colour, int thickness, std::string const& title) {
+    return fmt::format("{} using 1:2 with lines linewidth {} linecolor '{}' {}", plot.add_table({l.z, l.y}), thickness,
+                       colour, title.empty() ? "notitle" : "title " + GnuplotFigure::quoted(title));
+  };
+  plot.command("plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
+               lines(d.cone, house_colour(1), 2, "light of the dot on the axis") + ", " +
+               lines(d.medium, house_colour(2), 2, "medium") + ", " + lines(d.lens, house_colour(0), 3, "stop") + ", " +
+               lines(d.planes, "#202020", 3, "dots and sensor"));
+}
+
+}  // namespace
+
+BenchLayout bench_layout(Bench<double> const& b) {
+  double const half = b.given->camera.rows / 2.0;
+  return {-b.z_d,
+          b.z_a,
+          b.z_a + b.image_distance(),
+          b.given->thickness / 2,
+          b.pupil() / 2,
+          half * b.given->camera.pixel_pitch,
+          half * b.pixel_at_medium(),
+          half * b.pixel_at_dots(),
+          b.cone_diameter() / 2};
+}
+
+void write_layout_figure(std::string const& path, Bench<double> const& bench) {
+  BenchLayout const l = bench_layout(bench);
+  Drawing const drawing = drawing_of(l);
+  double const length = l.sensor_z - l.dots_z, z_low = l.dots_z - 0.06 * length, z_high = l.sensor_z + 0.06 * length;
+  double const tallest = 1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half});
+  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
+  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // of the panel that is to scale
+  GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
+  plot.command("set style textbox opaque noborder margins 0.4,0.2");
+  plot.command("set multiplot");
+  plot.command(
+      fmt::format("set label 1 {} at screen 0.5,0.965 center font 'DejaVu Sans,14' textcolor '#101010'",
+                  GnuplotFigure::quoted(fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}",
+                                                    bench.focal_length / mm, bench.f_number, bench.magnification()))));
+  plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
+  plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
+  place(plot, stretched_top + between, stretched_top + between + to_scale_px);
+  plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
+  draw(plot, drawing);
+  plot.command("unset label 1; unset label 2");
+  plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
+  place(plot, stretched_bottom, stretched_top);
+  double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
+  plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
+                           GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
+  plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
+  distance(plot, l.dots_z, 0, 0.14, "Z_D");
+  distance(plot, 0, l.lens_z, 0.14, "Z_A");
+  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.14);
+  distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
+  name_part(plot, fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), l.dots_z + 0.03 * length, 0.95);
+  name_part(plot, fmt::format("medium: sees {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm),
+            0, 0.89);
+  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z, 0.83);
+  name_part(plot, fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
+  draw(plot, drawing);
+  plot.command("unset multiplot");
+  plot.write(path);
+}
+
+}  // namespace gladstone

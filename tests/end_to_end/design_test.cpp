@@ -1,0 +1,120 @@
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr char const* tunnel = R"(schema = 1
+[camera]
+pixels = [128, 128]
+pixel_pitch_um = 20.0
+bit_depth = 12
+[camera.noise]
+full_well_e = 30000
+[medium]
+thickness_mm = 20.0
+[medium.field]
+kind = "sinusoid"
+amplitude_kg_m3 = 0.02
+wavelength_mm = 20.0
+[correlate]
+window_px = [32, 16]
+[requirements]
+objective = "gradient_min"
+resolution_mm = 12.0
+field_of_view_mm = [40.0, 40.0]
+[limits]
+z_total_max_mm = 2000.0
+z_a_mm = [300.0, 1500.0]
+z_d_mm = [100.0, 1200.0]
+dot_diameter_mm = [0.1, 3.0]
+[inventory]
+focal_lengths_mm = [50, 105]
+f_numbers = [8, 16]
+[free]
+keys = ["geometry.z_a_mm", "geometry.z_d_mm", "lens.f_number", "lens.focal_length_mm", "target.dot_diameter_mm"]
+)";
+
+/// gladstone design: the sheet, the recommendation and the setup that it writes.
+class Design : public Workplace {};
+
+TEST_F(Design, PrintsTheSheetOfASetup) {
+  auto const sheet = json_of({"design", "setup.toml"})["sheet"];
+  for (char const* const key : {"magnification", "field_of_view_mm", "sensitivity_px_per_kg_m4", "cone_diameter_mm",
+                                "resolution_mm", "dot_diameter_px", "diffraction_diameter_px", "depth_of_field_mm",
+                                "fresnel_scale_mm", "gradient_min_kg_m4", "gradient_max_kg_m4"}) {
+    EXPECT_TRUE(sheet.contains(key)) << key;
+  }
+  EXPECT_EQ(sheet["field_of_view_mm"].size(), 2u);
+  std::string const text = succeed({"design", "setup.toml"});
+  EXPECT_THAT(text, HasSubstr("M Z_D K L_z / (n0 p)"));
+  EXPECT_THAT(text, HasSubstr("green"));
+}
+
+TEST_F(Design, DrawsLayoutAndMap) {
+  auto const json = json_of({"design", "setup.toml", "--figures", "figures", "--figure-format", "svg", "--quiet"});
+  if (json["figures"].empty()) GTEST_SKIP() << "no gnuplot here";
+  EXPECT_THAT(names("figures"), testing::ElementsAre("design_map.svg", "layout.svg"));
+}
+
+// What is recommended keeps what was asked, and the setup that is written is that bench: its own sheet says so.
+TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
+  write("tunnel.toml", tunnel);
+  auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml"});
+  EXPECT_TRUE(json["feasible"]);
+  auto const& predicted = json["predicted"];
+  EXPECT_LE(predicted["resolution_mm"], 12.0 * (1 + 1e-6));
+  EXPECT_GE(predicted["field_of_view_width_mm"], 40.0 * (1 - 1e-6));
+  EXPECT_LE(predicted["z_total_mm"], 2000.0 * (1 + 1e-6));
+  EXPECT_FALSE(json["binding"].empty());
+  EXPECT_EQ(json["choices"].size(), 4u);
+  std::string const applied = read("out.toml");
+  for (char const* const table : {"requirements", "limits", "inventory", "free"}) {
+    EXPECT_THAT(applied, testing::Not(HasSubstr(std::string("[") + table)));
+  }
+  auto const sheet = json_of({"design", "out.toml"})["sheet"];
+  EXPECT_NEAR(sheet["resolution_mm"], predicted["resolution_mm"], 1e-9);
+  EXPECT_NEAR(sheet["gradient_min_kg_m4"], predicted["gradient_min_kg_m4"], 1e-9);
+  render("case", {"--set", "render.rays_per_dot=4"}, "out.toml");
+  EXPECT_THAT(names("case"), testing::Contains("flow.tif"));
+}
+
+TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
+  std::string text = tunnel;
+  text.replace(text.find("resolution_mm = 12.0"), 20, "resolution_mm = 0.5");
+  write("tunnel.toml", text);
+  Outcome const outcome = gladstone({"design", "tunnel.toml", "--json", "--apply", "out.toml"});
+  EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+  auto const json = nlohmann::json::parse(outcome.out);
+  EXPECT_FALSE(json["feasible"]);
+  EXPECT_THAT(json["conflicts"].dump(), HasSubstr("requirements.resolution_mm"));
+  EXPECT_FALSE(json["relaxations"].empty());
+  EXPECT_FALSE(std::filesystem::exists(in("out.toml")));
+}
+
+// pi L t p^2 QE lambda / (4 h c N^2 (1 + M)^2), see the camera equation's own test: it is what a case is exposed by.
+TEST_F(Design, LightExposesWhatIsRendered) {
+  std::string const light = "\n[light]\nradiance_w_m2_sr = 8000.0\nexposure_us = 20.0\n";
+  write("lit.toml", read("setup.toml") + light);
+  double const lit = json_of({"design", "lit.toml"})["sheet"]["peak_electrons"];
+  EXPECT_GT(lit, 0);
+  render("case", {}, "lit.toml");
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  render("again", {}, "case/setup.toml");
+  EXPECT_EQ(nlohmann::json::parse(read("again/summary.json"))["exposure"], summary["exposure"]);
+  write("brighter.toml", read("setup.toml") + "\n[light]\nradiance_w_m2_sr = 16000.0\nexposure_us = 20.0\n");
+  render("brighter", {}, "brighter.toml");
+  double const once = summary["exposure"], twice = nlohmann::json::parse(read("brighter/summary.json"))["exposure"];
+  EXPECT_NEAR(twice / once, 2, 1e-12);
+}
+
+TEST_F(Design, RefusesWhatItCannotAnswer) {
+  expect_refused({"design", "setup.toml", "--apply", "out.toml"}, 2, {"has no [requirements]"});
+  expect_refused({"design", "setup.toml", "--set", "lens.f_number=inf"}, 2, {"has no stop"});
+  write("tunnel.toml", std::string(tunnel) + "[lens]\nfocus = \"medium\"\n");
+  expect_refused({"design", "tunnel.toml"}, 2, {"tunnel.toml:", "lens.focus"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,183 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "studies/design/recommend.h"
+#include "tests/studies/support/table1_bench.h"
+
+namespace gladstone {
+namespace {
+
+using testing::Contains;
+using testing::UnorderedElementsAre;
+
+FreeChoice interval(Choice choice, double low, double high) { return {choice, {}, low, high}; }
+
+/// Table 1's lens with both distances free.
+DesignBranch free_distances(BenchGiven const& given) {
+  DesignBranch branch;
+  branch.given = &given;
+  branch.value = {0.105, 11, 0, 0, 0};
+  branch.dot_px = 3;
+  branch.continuous = {interval(Choice::z_a, 0.2, 5), interval(Choice::z_d, 0.05, 5)};
+  return branch;
+}
+
+// Sensitivity f Z_D / (Z_B - f) grows with Z_B where the view W = w Z_A (Z_B - f) / (f Z_B) is required, and with less
+// Z_A at the same Z_B: the best bench has Z_B = Z, the longest allowed, and Z_A = W f Z / (w (Z - f)). The dots' images
+// have 3 px, so that the random error changes only with the spot, by M.
+TEST(Design, FindsTheOptimumOnPaper) {
+  BenchGiven const given = table1_given();
+  constexpr double f = 0.105, z = 2.4, view = 0.08, sensor = 5.12e-3;
+  std::vector<Limit> const required{{Bound::view_width, view}, {Bound::z_total, z}};
+  Recommendation const answer = recommend(Objective::gradient_min, required, {free_distances(given)});
+  ASSERT_TRUE(answer.feasible());
+  BranchOutcome const& best = answer.outcomes.front();
+  Bench<double> const bench = bench_at(best.branch, best.solution.logarithms);
+  double const z_a = view * f * z / (sensor * (z - f));
+  EXPECT_NEAR(bench.z_a, z_a, 1e-4 * z_a);
+  EXPECT_NEAR(bench.z_d, z - z_a, 1e-4 * z);
+  EXPECT_THAT(answer.binding, Contains("limits.z_total_max_mm"));
+  EXPECT_THAT(answer.binding, Contains("requirements.field_of_view_mm[0]"));
+  // S = f (Z - Z_A) / (Z - f), and a view 1 % wider takes 1 % more Z_A
+  for (RequirementCost const& cost : answer.costs) {
+    if (cost.bound == Bound::view_width) {
+      EXPECT_NEAR(cost.change, (z - z_a) / (z - 1.01 * z_a) - 1, 1e-6);
+    }
+  }
+}
+
+// The random error over the dots' size alone: where its derivative vanishes. A golden section tells the place.
+TEST(Design, FindsTheBestDotSize) {
+  BenchGiven given = table1_given();
+  given.camera.noise.enabled = true;
+  DesignBranch branch;
+  branch.given = &given;
+  branch.value = {0.105, 11, 0.75, 0.25, 0};
+  branch.continuous = {interval(Choice::dot_diameter, 0.02e-3, 0.3e-3)};
+  Recommendation const answer = recommend(Objective::uncertainty, {}, {branch});
+  ASSERT_TRUE(answer.feasible());
+  double best = HUGE_VAL;
+  for (double d = 0.02e-3; d <= 0.3e-3; d *= 1.0001) {
+    Bench<double> const bench{&given, 0.105, 11, 0.75, 0.25, d};
+    bool const within = bench.dot_e2_px() <= random_error_range.most_image && bench.coverage() <= most_coverage;
+    if (within) best = std::min(best, bench.random_error());
+  }
+  EXPECT_NEAR(answer.outcomes.front().solution.objective, best, 1e-4 * best);
+}
+
+// A view of 300 mm at f = 105 mm and w = 5.12 mm takes Z_A of 6 m, more than 2.4 m of way: neither bends the other.
+TEST(Design, NamesTheFewestRequirementsThatConflict) {
+  BenchGiven const given = table1_given();
+  std::vector<Limit> const required{
+      {Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.3}, {Bound::z_total, 2.4}, {Bound::displacement_max, 100}};
+  Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
+  EXPECT_FALSE(answer.feasible());
+  // the interval of Z_A ends at 5 m: the view alone cannot be had
+  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(Bound::view_width));
+  ASSERT_EQ(answer.relaxations.size(), 1u);
+  // within 2.4 m the widest view has Z_D at its least, 50 mm
+  double const widest = 5.12e-3 * 2.35 * (2.4 - 0.105) / (0.105 * 2.4);
+  EXPECT_NEAR(answer.relaxations.front().value, widest, 2e-3 * widest);
+}
+
+TEST(Design, NamesBothWhereTwoConflict) {
+  BenchGiven const given = table1_given();
+  std::vector<Limit> const required{{Bound::uncertainty_max, 1.0}, {Bound::view_width, 0.2}, {Bound::z_total, 2.4}};
+  Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
+  EXPECT_FALSE(answer.feasible());
+  EXPECT_THAT(answer.conflicts, UnorderedElementsAre(Bound::view_width, Bound::z_total));
+  EXPECT_EQ(answer.relaxations.size(), 2u);
+}
+
+/// A question drawn by its seed: requirements about what a bench of the middle has.
+struct DrawnQuestion {
+  Objective objective;
+  std::vector<Limit> required;
+  std::vector<DesignBranch> branches;
+};
+
+DrawnQuestion drawn_question(BenchGiven const& given, unsigned seed) {
+  std::mt19937 generator(seed);
+  auto const uniform = [&generator](double low, double high) {
+    return low + (high - low) * (static_cast<double>(generator()) / 4294967296.0);
+  };
+  DrawnQuestion question;
+  question.objective = static_cast<Objective>(seed % 4);
+  Bench<double> middle{&given, 0.105, 11, uniform(0.5, 1.5), uniform(0.2, 1.0), 0};
+  middle.dot_diameter = uniform(1.5, 3.5) * middle.pixel_at_dots();
+  auto const loose = [&] { return std::exp(uniform(-0.25, 0.6)); };
+  if (question.objective != Objective::gradient_min) {
+    question.required.push_back({Bound::gradient_min, middle.smallest_gradient() * loose()});
+  }
+  if (question.objective != Objective::resolution) {
+    question.required.push_back({Bound::resolution, resolved_wavelength(middle) * loose()});
+  }
+  question.required.push_back({Bound::view_width, 512 * middle.pixel_at_medium() / loose()});
+  question.required.push_back({Bound::z_total, middle.z_b() * loose()});
+  if (seed % 3 == 0) question.required.push_back({Bound::displacement_max, middle.largest_displacement_px() * loose()});
+  for (double const f : {0.05, 0.085, 0.105, 0.2}) {
+    for (double const stop : {5.6, 11.0, 22.0}) {
+      DesignBranch branch;
+      branch.given = &given;
+      branch.value = {f, stop, 0, 0, 0};
+      branch.continuous = {interval(Choice::z_a, 0.3, 2), interval(Choice::z_d, 0.1, 1.2),
+                           interval(Choice::dot_diameter, 0.1e-3, 2e-3)};
+      question.branches.push_back(branch);
+    }
+  }
+  return question;
+}
+
+/// The best objective of a grid over every branch, about 10^5 set-ups in all; infinite: none keeps the limits.
+double best_of_grid(DrawnQuestion const& question) {
+  constexpr int distances = 24, sizes = 15;  // 12 branches of 24 x 24 x 15: 103,680
+  double best = HUGE_VAL;
+  for (DesignBranch const& branch : question.branches) {
+    auto const at = [&branch](std::size_t i, int k, int count) {
+      FreeChoice const& free = branch.continuous[i];
+      return std::log(free.low) + std::log(free.high / free.low) * k / (count - 1);
+    };
+    std::vector<Limit> limits = bench_limits(*branch.given);
+    limits.insert(limits.end(), question.required.begin(), question.required.end());
+    // the dearest last
+    std::stable_partition(limits.begin(), limits.end(), [](Limit const& l) { return l.bound != Bound::resolution; });
+    for (int point = 0; point < distances * distances * sizes; ++point) {
+      Bench<double> const bench = bench_at(
+          branch, std::vector<double>{at(0, point / sizes / distances, distances),
+                                      at(1, point / sizes % distances, distances), at(2, point % sizes, sizes)});
+      bool const kept =
+          std::all_of(limits.begin(), limits.end(), [&bench](Limit const& limit) { return excess(limit, bench) <= 0; });
+      if (kept) best = std::min(best, objective_value(question.objective, bench, bench));
+    }
+  }
+  return best;
+}
+
+// A grid's best is no better than the best of all, so a solver that finds that is never worse than the grid; 2 % are
+// allowed. Where the solver finds nothing, neither may the grid.
+TEST(Design, IsNeverWorseThanAGridOfAHundredThousandSetups) {
+  BenchGiven given = table1_given();
+  given.camera.noise.enabled = true;
+  given.largest_gradient = 20;
+  int feasible = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    DrawnQuestion const question = drawn_question(given, seed);
+    BranchSolution const found =
+        solve_branches({question.objective, question.required}, question.branches).front().solution;
+    double const grid = best_of_grid(question);
+    if (!found.feasible()) {
+      EXPECT_FALSE(std::isfinite(grid)) << seed << ": the grid found " << grid;
+      continue;
+    }
+    ++feasible;
+    EXPECT_LE(found.objective, 1.02 * grid) << seed;
+  }
+  EXPECT_GE(feasible, 8);
+  EXPECT_LE(feasible, 19);
+}
+
+}  // namespace
+}  // namespace gladstone

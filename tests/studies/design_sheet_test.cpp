@@ -1,0 +1,157 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "render/base/units.h"
+#include "studies/design/sheet.h"
+#include "studies/figures/design_map.h"
+#include "studies/figures/layout_figure.h"
+#include "tests/studies/support/table1_bench.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* table1_setup = R"(schema = 1
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [10.0, 0.0, 0.0]
+[correlate]
+window_px = [64, 32, 16]
+)";
+
+/// A sheet with what it was made of.
+struct MadeSheet {
+  CaseSetup loaded;
+  BenchGiven given;
+  Bench<double> bench;
+  DesignSheet sheet;
+};
+
+std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
+  auto made =
+      std::make_unique<MadeSheet>(MadeSheet{load_case_setup(SetupDocument::from_text(text, "setup.toml")), {}, {}, {}});
+  made->given = bench_given(made->loaded);
+  made->bench = bench_of(made->loaded.setup, made->given);
+  made->sheet = bos_sheet(made->loaded.setup, made->bench);
+  return made;
+}
+
+// Every default of a setup is Table 1's; K = 2.26e-4, 10 kg/m^4 over 10 mm.
+TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
+  auto const made = sheet_of(table1_setup);
+  std::set<std::string> ids;
+  for (SheetRow const& row : made->sheet.rows) {
+    ids.insert(row.id);
+    EXPECT_TRUE(std::isfinite(row.value)) << row.key;
+    EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.name.empty()) << row.key;
+  }
+  for (int number = 1; number <= 27; ++number) EXPECT_EQ(ids.count("F" + std::to_string(number)), 1u) << number;
+}
+
+TEST(DesignSheet, IsTableOneToThePrintedDigits) {
+  DesignSheet const sheet = sheet_of(table1_setup)->sheet;
+  EXPECT_NEAR(sheet["magnification"], 0.117318436, 5e-10);
+  EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 0.006626657, 5e-10);
+  EXPECT_NEAR(sheet["cone_diameter_mm"], 2.386364, 5e-7);
+  EXPECT_NEAR(sheet["diffraction_diameter_px"], 1.5954, 5e-5);
+  EXPECT_NEAR(sheet["displacement_px"], 0.06626657, 5e-9);
+  EXPECT_NEAR(sheet["deflection_urad"], 22.5937, 5e-4);  // 3.1: tan theta 2.25937e-5
+  EXPECT_NEAR(sheet["cone_wavelength_mm"], 2.386364 / 0.5145, 1e-5);
+  EXPECT_NEAR(sheet["fresnel_scale_mm"], 0.32, 0.005);               // fact 11
+  EXPECT_NEAR(sheet["share_of_sensitivity"], 0.25, 1e-12);           // F8, half at Z_D = Z_A
+  EXPECT_NEAR(sheet["small_angle_at_edge"], 4.8e-4, 5e-6);           // F27
+  EXPECT_NEAR(sheet["field_of_view_mm"], 5.12 / 0.156424581, 1e-6);  // M_A = M Z_B / Z_A
+  // F27 with faces matched: eps^2 (1/6 + L_z / (24 Z_D)), 8.6e-11 less in sinh than in tan, for 10 kg/m^4
+  EXPECT_NEAR(sheet["small_angle_on_axis"], 2.25937e-5 * 2.25937e-5 * (1.0 / 6 + 0.04 / 24), 1e-15);
+}
+
+// Faces that refract: 3.463e-10 from the exact slab (physics.md 3.1).
+TEST(DesignSheet, SmallAnglesThroughRefractingFacesAreTheSlabs) {
+  std::string text = table1_setup;
+  text.replace(text.find("[medium.field]"), 0, "[medium]\nfaces = \"refract\"\n");
+  EXPECT_NEAR(sheet_of(text)->sheet["small_angle_on_axis"], 3.463e-10, 5e-14);
+}
+
+// A stop of f/4 makes the cone 2.75 times as wide, 6.56 mm against windows of 1.02 mm; one of f/32 the spots 4.6 px.
+TEST(DesignSheet, MarginsSayWhatIsViolated) {
+  auto const at = [](std::string const& stop) {
+    return sheet_of(std::string(table1_setup) + "[lens]\nf_number = " + stop + "\n")->sheet;
+  };
+  EXPECT_EQ(at("4").row("cone_diameter_mm").margin, Margin::violated);
+  EXPECT_EQ(at("4").row("f_number_floor").margin, Margin::violated);
+  EXPECT_EQ(at("32").row("diffraction_diameter_px").margin, Margin::marginal);
+  EXPECT_EQ(at("11").row("diffraction_diameter_px").margin, Margin::green);
+  EXPECT_STREQ(margin_word(Margin::violated), "violated");
+  EXPECT_EQ(at_least(7, 8, 5), Margin::marginal);
+  EXPECT_EQ(at_most(7, 5, 8), Margin::marginal);
+}
+
+// F29: a plume's largest deflection is sqrt(2 pi / e) dn / n0, which is a mean gradient of 1.520347 A / L_z.
+TEST(DesignSheet, PlumesHaveTheGradientOfTheirAbelTransform) {
+  auto const made = sheet_of(
+      "schema = 1\n[medium]\nthickness_mm = 50.0\n[medium.field]\nkind = \"gaussian_plume\"\namplitude_kg_m3 = -0.4\n"
+      "radius_mm = 5.0\n");
+  EXPECT_NEAR(made->given.largest_gradient, 1.520347 * 0.4 / 0.05, 1e-5);
+}
+
+// The cone of a dot on the axis is as wide at the medium as its lines are, and the sensor's edge sees the dots' edge
+// through the middle of the lens.
+TEST(DesignSheet, LayoutIsToScale) {
+  BenchGiven const given = table1_given();
+  BenchLayout const l = bench_layout(table1_bench(given));
+  EXPECT_DOUBLE_EQ(l.lens_z - l.dots_z, 1.0);
+  EXPECT_NEAR(l.cone_radius / l.pupil_radius, -l.dots_z / (l.lens_z - l.dots_z), 1e-12);
+  EXPECT_NEAR(l.dots_half / (l.lens_z - l.dots_z), l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);
+  EXPECT_NEAR(l.medium_half / l.lens_z, l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);
+  EXPECT_NEAR(l.sensor_half, 2.56e-3, 1e-12);
+}
+
+// On the map resolution is never finer than the cone allows, which F23 tells from sensitivity and stop alone.
+TEST(DesignSheet, MapLiesAboveTheInvariant) {
+  BenchGiven const given = table1_given();
+  for (DesignCurve const& curve : design_curves(table1_bench(given))) {
+    ASSERT_FALSE(curve.z_d.empty());
+    for (std::size_t i = 0; i < curve.z_d.size(); ++i) {
+      // a thick field's near slices have narrower cones, and less lever: 1 % at the smallest Z_D
+      EXPECT_GT(curve.resolution[i], 0.98 * curve.cone[i] / 0.51450) << curve.f_number << ' ' << curve.z_d[i];
+    }
+  }
+}
+
+// Droplets of docs/piv.md's example: the sheet says what info particles says, and how far they may move.
+TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
+  CaseSetup const loaded = load_case_setup(SetupDocument::from_text(R"(schema = 1
+experiment = "piv"
+[camera]
+pixels = [512, 512]
+pixel_pitch_um = 5.0
+[lens]
+f_number = 8.0
+[particles]
+number = 20000
+volume_mm = [40.0, 40.0, 3.0]
+[laser]
+thickness_mm = 1.0
+[flow]
+kind = "uniform"
+velocity_m_s = [3.0, 4.0, 20.0]
+dt_us = 20.0
+[correlate]
+window_px = [64, 32]
+)",
+                                                                    "piv.toml"));
+  DesignSheet const sheet = piv_sheet(loaded);
+  double const pixel = 5e-6 / (105.0 / 645);
+  EXPECT_NEAR(sheet["displacement_px"], 5 * 20e-6 / pixel, 1e-9);
+  EXPECT_NEAR(sheet["in_plane_max_m_s"], 16 * pixel / 20e-6, 1e-9);
+  EXPECT_NEAR(sheet["out_of_plane_max_m_s"], 1e-3 / 4 / 20e-6, 1e-9);  // 12.5 m/s, and the flow has 20
+  EXPECT_EQ(sheet.row("out_of_plane_max_m_s").margin, Margin::violated);
+  EXPECT_EQ(sheet.row("in_plane_max_m_s").margin, Margin::green);
+  // 20000 in 40 x 40 x 3 mm, 1 mm of it lit, in windows of 32 px
+  EXPECT_NEAR(sheet["particles_per_window"], 20000.0 / 4800 * std::pow(32 * pixel * 1e3, 2), 1e-6);
+}
+
+}  // namespace
+}  // namespace gladstone
