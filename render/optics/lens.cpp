@@ -30,6 +30,12 @@ class LensBuilder {
     for (std::size_t i = 0; i < lens_.prescription.surfaces.size(); ++i) {
       PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
       for (CoordinateBreak const& here : prescribed.before) frame = broken(frame, here);
+      if (i > 0) {
+        lens_.paraxial.back().to_next += advance(prescribed);
+      } else {  // the frame's origin is the first vertex' own plane
+        lens_.prescription.object_distance += frame.origin.z;
+        frame.origin.z = 0;
+      }
       bool const mirror = prescribed.after.is_mirror();
       Substance const after = mirror ? before : substance(prescribed);
       SurfaceAction const action = mirror                ? SurfaceAction::reflect

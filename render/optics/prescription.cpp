@@ -64,6 +64,12 @@ void refuse_overlap(PrescribedSurface const& one, PrescribedSurface const& next)
 
 }  // namespace
 
+double advance(PrescribedSurface const& surface) {
+  double sum = 0;
+  for (CoordinateBreak const& here : surface.before) sum += here.advance;
+  return sum;
+}
+
 Prescription read_prescription(std::string const& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -55,6 +55,9 @@ struct PrescribedSurface {
   std::vector<CoordinateBreak> before;  ///< breaks in the frame ahead of it
 };
 
+/// How far the breaks ahead of a surface move it along the axis [m].
+double advance(PrescribedSurface const& surface);
+
 /// What sets the width of the stop.
 struct PrescribedAperture {
   enum class Kind {
@@ -69,6 +72,7 @@ struct PrescribedAperture {
 };
 
 /// A lens as its file describes it, in SI. The frame's origin is the vertex of the first surface, light comes from -z.
+/// Breaks ahead of that surface move it across the axis and turn it; what they advance adds to the object's distance.
 struct Prescription {
   std::string file;
   std::string title;

@@ -181,6 +181,9 @@ class ZmxReader {
   }
 
   CoordinateBreak break_of(ZmxSurface const& zmx) const {
+    if (!std::isfinite(zmx.surface.thickness)) {
+      throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
+    }
     auto const parameter = [&](int i) {
       auto const found = zmx.parameters.find(i);
       return found == zmx.parameters.end() ? 0.0 : found->second;
