@@ -60,7 +60,7 @@ class LensBuilder {
       if (prescribed.stop) lens_.stop = static_cast<int>(i);
       frame = frame.moved({0, 0, way});
       before = after;
-      if (last) lens_.image_distance = way;
+      if (last && (way != 0 || lens_.prescription.ends_at_image)) lens_.image_distance = way;
     }
   }
 

@@ -55,9 +55,9 @@ struct Lens {
   std::vector<Pose<double>> poses;        ///< of the surfaces' vertices
   std::vector<ParaxialSurface> paraxial;  ///< decentres and tilts left out
   int stop = 0;
-  double stop_radius = 0;           ///< that rays meet [m]
-  double paraxial_stop_radius = 0;  ///< that its pupils are images of [m]
-  double image_distance = 0;        ///< behind the last surface, as the prescription says; 0: it does not [m]
+  double stop_radius = 0;                ///< that rays meet [m]
+  double paraxial_stop_radius = 0;       ///< that its pupils are images of [m]
+  std::optional<double> image_distance;  ///< behind the last surface; empty: the prescription does not say [m]
   std::vector<std::string> warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }

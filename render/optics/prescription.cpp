@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
@@ -68,6 +69,19 @@ double advance(PrescribedSurface const& surface) {
   double sum = 0;
   for (CoordinateBreak const& here : surface.before) sum += here.advance;
   return sum;
+}
+
+void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where) {
+  auto const idle = [](CoordinateBreak const& here) {
+    return length(here.decentre) == 0 && length(here.tilt) == 0 && here.advance == 0;
+  };
+  if (std::all_of(breaks.begin(), breaks.end(), idle)) return;
+  PrescribedSurface plane;
+  plane.where = where;
+  plane.thickness = std::exchange(breaks.back().advance, 0);
+  plane.before = std::move(breaks);
+  lens.surfaces.push_back(plane);
+  lens.ends_at_image = true;
 }
 
 Prescription read_prescription(std::string const& path) {

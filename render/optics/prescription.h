@@ -81,9 +81,16 @@ struct Prescription {
   double object_distance = std::numeric_limits<double>::infinity();  ///< to the first surface [m]
   PrescribedAperture aperture;
   double primary_wavelength = 0;      ///< [m]; 0: the file says none
+  bool ends_at_image = false;         ///< the last thickness leads to the image, one of 0 too
   std::vector<double> field_angles;   ///< of the object at infinity, against the axis, in the y-z plane [rad]
   std::vector<std::string> warnings;  ///< of what a file says that is not traced
 };
+
+/// Ends a lens at an image whose frame is broken: a plane of reference takes the breaks, so that the last surface's
+/// frame is the image's; what the last break advances becomes that plane's thickness. Nothing where there are no
+/// breaks.
+/// @param where the image stands in the file
+void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where);
 
 /// Reads a prescription: one row per format in prescription.cpp (.toml, Zemax .zmx, CODE V .seq), and checks that it
 /// describes a lens: a surface or more, one stop, finite numbers, glass that does not overlap.

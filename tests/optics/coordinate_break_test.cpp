@@ -65,5 +65,43 @@ TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
               HasSubstr("coordinate break"));
 }
 
+// Newton's telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image 50
+// mm beside the axis. Behind the second break stands the image itself, or a plane of reference and then the image:
+// parallel light meets in a point on the axis either way, and a field angle u at f tan u.
+TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
+  std::string const paraboloid = "STOP\n  CURV -0.0025\n  CONI -1\n  DISZ -150\n  GLAS MIRROR 0 0";
+  std::string const flat = "CURV 0\n  DISZ 0\n  GLAS MIRROR 0 0", turn = "TYPE COORDBRK\n  PARM 3 45\n  DISZ ";
+  std::string const by_break = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "50", image});
+  std::string const by_plane = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "0", "DISZ 50", image});
+  for (std::string const& text : {by_break, by_plane}) {
+    Lens lens = broken_lens("newton.zmx", text);
+    lens.prescription.field_angles = {0, 0.1 * unit::degree};
+    ParaxialLens const paraxial = paraxial_lens(lens);
+    EXPECT_NEAR(paraxial.effective_focal_length, 0.2, 1e-15);
+    FieldAnalysis const field = analyse_field(lens, paraxial, 200);
+    EXPECT_NEAR(field.image_plane, 0.05, 1e-16);
+    EXPECT_LT(field.points[0].spot_rms, 1e-14);
+    EXPECT_LT(length(field.points[0].chief), 1e-14);
+    // the chief ray meets the paraboloid's vertex and is turned there by 2 u: exactly f tan u on a plane 200 mm away
+    EXPECT_NEAR(length(field.points[1].chief), 0.2 * std::tan(0.1 * unit::degree), 1e-14);
+    Vec3d const centre = lens.poses.back().moved({0, 0, field.image_plane}).origin;
+    EXPECT_LT(length(centre - Vec3d{0, centre.y, 0.17 - 0.15}), 1e-16);
+    EXPECT_NEAR(std::abs(centre.y), 0.05, 1e-16);
+  }
+}
+
+// A break that only tilts the image: the plane stays where the thickness before it put it, 0 behind the break.
+TEST(CoordinateBreak, ATiltedImageStaysInItsPlace) {
+  std::string const last = "CURV -0.016666666666666667\n  DISZ 50";
+  Lens const lens = broken_lens("tilt.zmx", zmx_of({front, last, "TYPE COORDBRK\n  PARM 3 10\n  DISZ 0", image}));
+  std::string const tilted =
+      changed(changed(changed(seq, "SI 0.0 0.0", "SI 0.0 0.0; ADE -10"), "50.0 6.0", "60.0 4.0"), "47.0", "50.0");
+  for (Lens const& held : {lens, broken_lens("tilt.seq", tilted)}) {
+    EXPECT_EQ(analyse_field(held, paraxial_lens(held), 100).image_plane, 0);
+    EXPECT_LT(length(held.poses.back().origin - Vec3d{0, 0, 0.054}), 1e-16);
+    EXPECT_NEAR(std::abs(held.poses.back().z.y), std::sin(10 * unit::degree), 1e-15);
+  }
+}
+
 }  // namespace
 }  // namespace gladstone

@@ -87,6 +87,7 @@ class SeqReader {
     result_.object_distance = surfaces_.front().thickness;
     if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil) result_.aperture.value = pupil_ * unit_;
     result_.surfaces.assign(surfaces_.begin() + 1, surfaces_.end());
+    break_before_image(result_, std::move(image_surface_.before), image_surface_.where);
     if (reference_ >= 1 && reference_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(reference_ - 1)];
     } else if (!wavelengths_.empty()) {
@@ -112,6 +113,7 @@ class SeqReader {
     double const thickness = line.size() > 2 ? line.number(2) * unit_ : 0.0;
     if (command == "SI") {
       image_ = true;
+      image_surface_.where = line.where;
       surfaces_.back().thickness += thickness;  // the defocus of the image
       return;
     }
@@ -149,8 +151,9 @@ class SeqReader {
                                              "ADE", "BDE", "CDE", "A",   "B",   "C",   "D",   "E",   "F",   "G"};
     if (!known.contains(command)) return false;
     if (surfaces_.empty()) throw DataError(line.where, fmt::format("{} comes before any surface", command));
-    if (image_) return true;
-    PrescribedSurface& surface = surfaces_.back();
+    PrescribedSurface& surface = image_ ? image_surface_ : surfaces_.back();
+    if (image_ && command == "STO")
+      throw DataError(line.where, "the image SI cannot be the stop; mark another surface");
     if (command == "STO") surface.stop = true;
     if (command == "K") surface.conic = line.number(1);
     if (command == "CYL") {
@@ -190,6 +193,7 @@ class SeqReader {
 
   Prescription result_;
   std::vector<PrescribedSurface> surfaces_;  // the object first
+  PrescribedSurface image_surface_;          // of which the frame counts
   std::vector<double> wavelengths_;
   double unit_ = 1e-3, pupil_ = 0;
   int reference_ = 0;

@@ -80,6 +80,7 @@ class ZmxReader {
       breaks.clear();
       result_.surfaces.push_back(surface);
     }
+    break_before_image(result_, std::move(breaks), surfaces_.back().surface.where);
     return std::move(result_);
   }
 
