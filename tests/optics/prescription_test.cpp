@@ -70,6 +70,20 @@ TEST(Prescription, CoordinateBreaksUndoThemselves) {
   EXPECT_LT(length(lens.poses[0].z - Vec3d{0, 0, 1}), 1e-15);
 }
 
+// A file that was cut off anywhere before its image surface was whole is no other, shorter lens. Breaks and glass of
+// the lens may stand at no distance, as the image does; a number may be cut to 0.
+TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
+  std::string const more =
+      "SURF 3\n  TYPE COORDBRK\n  DISZ 0\nSURF 4\n  DISZ 0.5\n  GLAS N-BK7 0 0\nSURF 5\n  DISZ 0.7\nSURF 6\n";
+  std::string const text = changed(zmx, "SURF 3\n", more);
+  ASSERT_EQ(refusal("whole.zmx", text), "");
+  for (std::size_t cut = 0; cut < text.size(); ++cut) {
+    EXPECT_NE(refusal("cut.zmx", text.substr(0, cut)), "") << text.substr(0, cut);
+  }
+  EXPECT_THAT(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))),
+              AllOf(HasSubstr("cut.zmx:27"), HasSubstr("cut short")));
+}
+
 // What a user may hand over by mistake: each refusal names file, line and cause.
 TEST(Prescription, RefusesBadFilesByLineAndCause) {
   EXPECT_THAT(refusal("a.zmx", changed(zmx, "  TYPE STANDARD\n  CURV -0.02", "  TYPE BINARY_2\n  CURV -0.02")),

@@ -20,7 +20,7 @@ namespace {
 struct ZmxSurface {
   PrescribedSurface surface;
   std::string type = "STANDARD";
-  bool has_glass = false;
+  bool has_glass = false, has_distance = false;
   std::map<int, double> parameters;  // lengths in the file's unit
 };
 
@@ -52,6 +52,7 @@ class ZmxReader {
       throw DataError(path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
     }
+    check_image(surfaces_.back());
     result_.object_distance = surfaces_.front().surface.thickness;
     if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
@@ -143,6 +144,7 @@ class ZmxReader {
     if (key == "CONI") surface.conic = line.number(1);
     if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
     if (key == "DISZ") {
+      zmx.has_distance = true;
       bool const infinite = line.size() > 1 && line[1] == "INFINITY";
       surface.thickness = infinite ? std::numeric_limits<double>::infinity() : line.number(1) * unit_;
     }
@@ -181,6 +183,21 @@ class ZmxReader {
     }
   }
 
+  /// Refuses a last block that is no image surface: what the file goes on with is missing.
+  static void check_image(ZmxSurface const& last) {
+    char const* const why = !last.has_distance            ? "has no DISZ"
+                            : last.surface.thickness != 0 ? "has a thickness (DISZ)"
+                            : last.has_glass              ? "has glass behind it (GLAS)"
+                            : last.surface.stop           ? "is the stop"
+                            : last.type == "COORDBRK"     ? "is a coordinate break"
+                                                          : nullptr;
+    if (why == nullptr) return;
+    throw DataError(last.surface.where,
+                    fmt::format("the last surface {}, so it is no image surface, with which a .zmx file ends: the file "
+                                "is cut short; get it whole, or add the image (SURF, TYPE STANDARD, DISZ 0)",
+                                why));
+  }
+
   CoordinateBreak break_of(ZmxSurface const& zmx) const {
     if (!std::isfinite(zmx.surface.thickness)) {
       throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
@@ -212,7 +229,12 @@ Prescription read_zmx_prescription(std::string const& path) {
   std::string_view rest = text;
   for (int number = 1; !rest.empty(); ++number) {
     std::size_t const end = std::min(rest.find('\n'), rest.size());
-    reader.read_line({fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))});
+    PrescriptionLine const line{fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))};
+    if (end == rest.size() && !line.words.empty() && line[0] == "DISZ") {
+      throw DataError(line.where,
+                      "the file ends within the line DISZ: it is cut short, or its last line lacks its end");
+    }
+    reader.read_line(line);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return reader.finish();
