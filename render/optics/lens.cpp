@@ -7,6 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
+#include "render/optics/axial_beam.h"
 #include "render/optics/paraxial.h"
 
 namespace gladstone {
@@ -230,6 +231,7 @@ Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, doub
   builder.place_surfaces();
   builder.open_stop();
   builder.follow_axis();
+  refuse_crossed_faces(lens, options.object_distance.value_or(lens.prescription.object_distance));
   return lens;
 }
 

@@ -1,0 +1,91 @@
+#include "render/optics/axial_beam.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/aim_disc.h"
+
+namespace gladstone {
+namespace {
+
+constexpr int heights = 16;  // of the beam that rays are followed at
+constexpr std::array<Vec2d, 4> sides{Vec2d{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+constexpr double backwards = 1e-9;  // [m]; less is rounding of a sharp rim
+
+/// The beam from the axis point of the object through the stop.
+struct AxialBeam {
+  RayOrigin origin;
+  AimDisc disc;
+
+  static std::optional<AxialBeam> of(Lens const& lens, double object_distance) {
+    if (!(object_distance > 0)) return std::nullopt;
+    RayOrigin const origin =
+        std::isfinite(object_distance) ? RayOrigin::point({0, 0, -object_distance}) : RayOrigin::direction({0, 0, 1});
+    auto const disc = find_aim_disc(lens, origin);
+    if (!disc) return std::nullopt;
+    return AxialBeam{origin, *disc};
+  }
+  Ray<double> at(double height, Vec2d side) const { return origin.ray_through(disc.at(height * side)); }
+};
+
+void refuse_backwards(Lens const& lens, Ray<double> ray) {
+  RayAccount<double> account;
+  double begun = 0;  // optical path at the last surface that turned the ray
+  for (int i = 0; i < lens.view().count; ++i) {
+    auto const at = static_cast<std::size_t>(i);
+    double const height = std::hypot(ray.position.x, ray.position.y);
+    int ignored;
+    if (lens.view().carry(ray, account, i, i + 1, ignored) != RayStatus::alive) return;
+    auto const [action, n] = lens.surfaces[at].visit([](auto const& s) { return std::pair{s.action, s.n_before}; });
+    if (action == SurfaceAction::pass) continue;
+    double const way = (account.optical_path - begun) / n;
+    begun = account.optical_path;
+    if (i == 0 || n == 1 || way > -backwards) continue;
+    throw DataError(
+        lens.prescription.surfaces[at].where,
+        fmt::format("surface {}: light of the axial beam meets it {:.4g} mm ahead of the face before it, at "
+                    "a height of {:.4g} mm: the faces cross within the beam; make the glass thicker, "
+                    "or the stop narrower",
+                    i + 1, -way / unit::millimetre, height / unit::millimetre));
+  }
+}
+
+}  // namespace
+
+void refuse_crossed_faces(Lens const& lens, double object_distance) {
+  auto const beam = AxialBeam::of(lens, object_distance);
+  if (!beam) return;
+  // the disc is a little wide: what counts is within the stop
+  for (int k = 1; k <= heights; ++k) {
+    for (Vec2d const side : sides) refuse_backwards(lens, beam->at(k / (heights * aim_margin(32)), side));
+  }
+}
+
+std::optional<double> widest_at_stop(Lens const& lens, double object_distance) {
+  auto const beam = AxialBeam::of(lens, object_distance);
+  if (!beam) return std::nullopt;
+  auto const passes = [&](double height) {
+    for (Vec2d const side : sides) {
+      Ray<double> ray = beam->at(height, side);
+      RayAccount<double> account;
+      if (lens.view().carry(ray, account) != RayStatus::alive) return false;
+    }
+    return true;
+  };
+  double const rim = 1 / aim_margin(32);
+  if (passes(rim)) return std::nullopt;
+  double free = 0, taken = rim;
+  for (int halving = 0; halving < 40; ++halving) {
+    double const tried = (free + taken) / 2;
+    (passes(tried) ? free : taken) = tried;
+  }
+  auto const place = place_in_stop(lens, beam->at(free, sides[0]));
+  return place ? length(*place) : 0;
+}
+
+}  // namespace gladstone
