@@ -57,7 +57,7 @@ class ZmxReader {
     if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
     }
-    if (angles_are_fields_) result_.field_angles = fields_;
+    take_fields();
     std::vector<CoordinateBreak> breaks;
     for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
       ZmxSurface& zmx = surfaces_[i];
@@ -111,7 +111,12 @@ class ZmxReader {
       result_.aperture = {Kind::object_na, other_meaning ? std::sin(value * unit::degree) : value};
     }
     if (key == "FLOA") result_.aperture = {};
-    if (key == "FTYP") angles_are_fields_ = line.integer(1) == 0;
+    if (key == "FTYP" && line.integer(1) != 0) heights_at_ = line.where;
+    if (key == "XFLN" || key == "XFLD") {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        if (line.number(i) != 0) across_at_ = line.where;
+      }
+    }
     if (key == "YFLN" || key == "YFLD") {
       for (std::size_t i = 1; i < line.size(); ++i) {
         double const angle = line.number(i) * unit::degree;
@@ -126,6 +131,20 @@ class ZmxReader {
       wavelengths_.push_back(line.number(2) * unit::micrometre);
     }
     if (key == "PWAV") primary_ = line.integer(1);
+  }
+
+  /// Fields are angles in the y-z plane; others are told of, and left out.
+  void take_fields() {
+    bool const any_along = std::any_of(fields_.begin(), fields_.end(), [](double angle) { return angle != 0; });
+    if (heights_at_.empty()) result_.field_angles = fields_;
+    if (!heights_at_.empty() && (any_along || !across_at_.empty())) {
+      result_.warnings.push_back(heights_at_ +
+                                 ": FTYP: fields that are heights are not read, the lens is judged on its axis alone; "
+                                 "give field angles (FTYP 0)");
+    } else if (!across_at_.empty()) {
+      result_.warnings.push_back(across_at_ +
+                                 ": XFLN: fields beside the y-z plane are left out; give them along y (YFLN)");
+    }
   }
 
   void read_surface(PrescriptionLine const& line, ZmxSurface& zmx) {
@@ -218,7 +237,8 @@ class ZmxReader {
   std::vector<double> wavelengths_, fields_;
   double unit_ = 1e-3;
   int primary_ = 1;
-  bool angles_are_fields_ = true;
+  std::string heights_at_,
+      across_at_;  // lines that say that fields are heights, and that some lie beside the y-z plane
 };
 
 }  // namespace
