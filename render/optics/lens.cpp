@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
@@ -186,7 +187,8 @@ class LensBuilder {
   void add(Surface surface, Pose<double> const& frame, PrescribedSurface const& prescribed, Substance before,
            Substance after, SurfaceAction action) {
     surface.pose = frame;
-    surface.semi_diameter = prescribed.semi_diameter;
+    surface.semi_diameter = std::numeric_limits<double>::infinity();
+    if (prescribed.semi_diameter_is_an_edge) surface.semi_diameter = prescribed.semi_diameter;
     surface.n_before = before.n;
     surface.n_after = after.n;
     surface.absorption = before.absorption;

@@ -51,7 +51,7 @@ bool is_turned(PrescribedSurface const& surface) {
 }
 
 /// Refuses a surface that runs through the next real one within their edges, planes of reference between them or not.
-/// Where a width is but that of a beam, a lens ends where its surfaces meet.
+/// Widths for drawings are no edges: a lens ends where its surfaces meet.
 /// @param forwards sense of the light between them
 void refuse_overlap(Prescription const& lens, std::size_t i, double forwards) {
   PrescribedSurface const& one = lens.surfaces[i];
@@ -154,7 +154,8 @@ void check_prescription(Prescription const& lens) {
                       "its sign (behind an odd number of mirrors thicknesses are negative)",
                       surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
     }
-    if (std::isfinite(surface.semi_diameter) && !std::isfinite(sag(surface, surface.semi_diameter))) {
+    bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
+    if (edge && !std::isfinite(sag(surface, surface.semi_diameter))) {
       throw DataError(surface.where,
                       fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; make "
                                   "the radius larger or the semi-diameter smaller",

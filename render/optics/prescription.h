@@ -48,7 +48,7 @@ struct PrescribedSurface {
   double thickness = 0;         ///< along the axis to the next surface; negative behind a mirror [m]
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
-  bool semi_diameter_is_an_edge = true;  ///< false: the width of some beam, as design programs fill it in
+  bool semi_diameter_is_an_edge = true;  ///< false: for drawings, as design programs fill it in; light passes beyond
   bool has_aperture = false;             ///< an aperture of that semi-diameter stands on it, which bounds a stop too
   double obscured = 0;                   ///< radius within which no light passes [m]
   bool stop = false;
