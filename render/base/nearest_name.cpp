@@ -26,12 +26,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 namespace {
 
 /// By how many edits a candidate is off; nothing where that is too many.
-std::optional<std::size_t> edits_to(std::string_view word, std::string const& candidate) {
+std::optional<std::size_t> edits_to(std::string_view word, std::string const& candidate, std::size_t share) {
   // a name without its unit means the one with it
   bool const without_unit =
       !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
   if (without_unit) return 1;
-  std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
+  std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / share);
   // no fewer edits than the lengths differ by: a word as long as a book is compared with nothing
   std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
   if (least > allowed) return std::nullopt;
@@ -43,10 +43,10 @@ std::optional<std::size_t> edits_to(std::string_view word, std::string const& ca
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, std::vector<std::string> const& candidates,
-                                       std::size_t most) {
+                                       std::size_t most, std::size_t share) {
   std::vector<std::pair<std::size_t, std::string>> near;
   for (auto const& candidate : candidates) {
-    auto const edits = edits_to(word, candidate);
+    auto const edits = edits_to(word, candidate, share);
     if (edits) near.emplace_back(*edits, candidate);
   }
   std::stable_sort(near.begin(), near.end(), [](auto const& a, auto const& b) { return a.first < b.first; });

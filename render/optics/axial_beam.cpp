@@ -6,14 +6,14 @@
 #include <cmath>
 #include <utility>
 
-#include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/optics/aim_disc.h"
 
 namespace gladstone {
 namespace {
 
-constexpr int heights = 16;  // of the beam that rays are followed at
+constexpr double rim = 0.99;  // of the disc, which is a little wider than the stop: within it
+constexpr int heights = 16;   // of the beam that rays are followed at
 constexpr std::array<Vec2d, 4> sides{Vec2d{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 constexpr double backwards = 1e-9;  // [m]; less is rounding of a sharp rim
 
@@ -33,40 +33,43 @@ struct AxialBeam {
   Ray<double> at(double height, Vec2d side) const { return origin.ray_through(disc.at(height * side)); }
 };
 
-void refuse_backwards(Lens const& lens, Ray<double> ray) {
+/// What is wrong where a ray runs backwards through glass.
+std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
   RayAccount<double> account;
   double begun = 0;  // optical path at the last surface that turned the ray
   for (int i = 0; i < lens.view().count; ++i) {
     auto const at = static_cast<std::size_t>(i);
     double const height = std::hypot(ray.position.x, ray.position.y);
     int ignored;
-    if (lens.view().carry(ray, account, i, i + 1, ignored) != RayStatus::alive) return;
+    if (lens.view().carry(ray, account, i, i + 1, ignored) != RayStatus::alive) return std::nullopt;
     auto const [action, n] = lens.surfaces[at].visit([](auto const& s) { return std::pair{s.action, s.n_before}; });
     if (action == SurfaceAction::pass) continue;
     double const way = (account.optical_path - begun) / n;
     begun = account.optical_path;
     if (i == 0 || n == 1 || way > -backwards) continue;
-    throw DataError(
-        lens.prescription.surfaces[at].where,
-        fmt::format("surface {}: light of the axial beam meets it {:.4g} mm ahead of the face before it, at "
-                    "a height of {:.4g} mm: the faces cross within the beam; make the glass thicker, "
-                    "or the stop narrower",
-                    i + 1, -way / unit::millimetre, height / unit::millimetre));
+    return fmt::format(
+        "{}: surface {}: light of the axial beam meets it {:.4g} mm ahead of the face before it, at a "
+        "height of {:.4g} mm: the faces cross within the beam, which no lens can have; make the glass "
+        "thicker, or the stop narrower",
+        lens.prescription.surfaces[at].where, i + 1, -way / unit::millimetre, height / unit::millimetre);
   }
+  return std::nullopt;
 }
 
 }  // namespace
 
-void refuse_crossed_faces(Lens const& lens, double object_distance) {
+std::optional<std::string> crossed_faces(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
-  if (!beam) return;
-  // the disc is a little wide: what counts is within the stop
+  if (!beam) return std::nullopt;
   for (int k = 1; k <= heights; ++k) {
-    for (Vec2d const side : sides) refuse_backwards(lens, beam->at(k / (heights * aim_margin(32)), side));
+    for (Vec2d const side : sides) {
+      if (auto const told = told_backwards(lens, beam->at(k * rim / heights, side))) return told;
+    }
   }
+  return std::nullopt;
 }
 
-std::optional<double> widest_at_stop(Lens const& lens, double object_distance) {
+std::optional<double> widest_beam(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
   if (!beam) return std::nullopt;
   auto const passes = [&](double height) {
@@ -77,15 +80,15 @@ std::optional<double> widest_at_stop(Lens const& lens, double object_distance) {
     }
     return true;
   };
-  double const rim = 1 / aim_margin(32);
-  if (passes(rim)) return std::nullopt;
-  double free = 0, taken = rim;
-  for (int halving = 0; halving < 40; ++halving) {
+  double free = passes(rim) ? rim : 0, taken = rim;
+  for (int halving = 0; halving < 40 && free < rim; ++halving) {
     double const tried = (free + taken) / 2;
     (passes(tried) ? free : taken) = tried;
   }
   auto const place = place_in_stop(lens, beam->at(free, sides[0]));
-  return place ? length(*place) : 0;
+  constexpr double whole = 0.97;  // as far as the rim reaches in the stop, where no ray is lost before it
+  if (free == rim && place && length(*place) > whole * lens.stop_radius) return std::nullopt;
+  return length(free * beam->disc.a);
 }
 
 }  // namespace gladstone

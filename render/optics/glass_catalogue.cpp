@@ -163,7 +163,7 @@ GlassCatalogue const& GlassCatalogue::shipped() {
 }
 
 std::string GlassCatalogue::glasses_like(std::string_view name) const {
-  constexpr std::size_t most = 5;
+  constexpr std::size_t most = 5, half = 2;  // names are short: half of one may differ
   std::string const key = compared(name);
   std::vector<std::string> keys;
   // an older glass of lead, "SF6", often lives on without it, "N-SF6"
@@ -173,7 +173,7 @@ std::string GlassCatalogue::glasses_like(std::string_view name) const {
   }
   std::vector<std::string> all;
   for (Glass const& glass : glasses_) all.push_back(compared(glass.name));
-  for (std::string const& near : nearest_names(key, all, most)) keys.push_back(near);
+  for (std::string const& near : nearest_names(key, all, most, half)) keys.push_back(near);
   std::vector<std::string> names;
   for (std::string const& near : keys) {
     for (Glass const& glass : glasses_) {

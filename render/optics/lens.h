@@ -76,8 +76,8 @@ struct LensOptions {
 /// Finds the glasses and places the surfaces. The stop opens as far as the aperture says: to the height of the real
 /// axial ray that enters at the rim of the entrance pupil, or where that ray is lost to the paraxial one's.
 /// @param wavelength [m]
-/// @throws DataError with the surface's place for a glass that is not known, where nothing passes the stop, and where
-/// faces of glass cross within the axial beam
+/// Warns of faces that cross within the axial beam, and of an f-number that opens the stop wider than the prescription.
+/// @throws DataError with the surface's place for a glass that is not known, and where nothing passes the stop
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options = {});
 

@@ -137,6 +137,12 @@ void check_prescription(Prescription const& lens) {
                       fmt::format("a thickness of {:.4g} mm is no distance within a lens (at most a kilometre is)",
                                   surface.thickness / unit::millimetre));
     }
+    if (!(std::abs(advance(surface)) <= longest)) {
+      throw DataError(surface.where,
+                      fmt::format("the coordinate breaks ahead move it by {:.4g} mm, which is no distance "
+                                  "within a lens (at most a kilometre is)",
+                                  advance(surface) / unit::millimetre));
+    }
     if (!(surface.semi_diameter > 0)) {
       throw DataError(surface.where, "the semi-diameter is not positive; give the radius that light passes within");
     }

@@ -63,6 +63,8 @@ TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
               1e-14);
   EXPECT_THAT(refusal("endless.zmx", zmx_of({front, last, "TYPE COORDBRK\n  DISZ INFINITY", third, fourth, image})),
               HasSubstr("coordinate break"));
+  EXPECT_THAT(refusal("far.zmx", zmx_of({front, last, "TYPE COORDBRK\n  DISZ 1e300", third, fourth, image})),
+              HasSubstr("no distance within a lens"));
 }
 
 // Newton's telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image 50
