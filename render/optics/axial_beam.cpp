@@ -12,10 +12,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double rim = 0.99;  // of the disc, which is a little wider than the stop: within it
-constexpr int heights = 16;   // of the beam that rays are followed at
-constexpr std::array<Vec2d, 4> sides{Vec2d{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-constexpr double backwards = 1e-9;  // [m]; less is rounding of a sharp rim
+constexpr double within_disc = 0.99;  // of the disc, which is a little wider than the stop: within it
+constexpr int beam_heights = 16;      // of the beam that rays are followed at
+constexpr std::array<Vec2d, 4> beam_sides{Vec2d{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+constexpr double least_backwards = 1e-9;  // [m]; less is rounding of a sharp rim
 
 /// The beam from the axis point of the object through the stop.
 struct AxialBeam {
@@ -46,7 +46,7 @@ std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
     if (action == SurfaceAction::pass) continue;
     double const way = (account.optical_path - begun) / n;
     begun = account.optical_path;
-    if (i == 0 || n == 1 || way > -backwards) continue;
+    if (i == 0 || n == 1 || way > -least_backwards) continue;
     return fmt::format(
         "{}: surface {}: light of the axial beam meets it {:.4g} mm ahead of the face before it, at a "
         "height of {:.4g} mm: the faces cross within the beam, which no lens can have; make the glass "
@@ -61,9 +61,9 @@ std::optional<std::string> told_backwards(Lens const& lens, Ray<double> ray) {
 std::optional<std::string> crossed_faces(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
   if (!beam) return std::nullopt;
-  for (int k = 1; k <= heights; ++k) {
-    for (Vec2d const side : sides) {
-      if (auto const told = told_backwards(lens, beam->at(k * rim / heights, side))) return told;
+  for (int k = 1; k <= beam_heights; ++k) {
+    for (Vec2d const side : beam_sides) {
+      if (auto const told = told_backwards(lens, beam->at(k * within_disc / beam_heights, side))) return told;
     }
   }
   return std::nullopt;
@@ -73,21 +73,21 @@ std::optional<double> widest_beam(Lens const& lens, double object_distance) {
   auto const beam = AxialBeam::of(lens, object_distance);
   if (!beam) return std::nullopt;
   auto const passes = [&](double height) {
-    for (Vec2d const side : sides) {
+    for (Vec2d const side : beam_sides) {
       Ray<double> ray = beam->at(height, side);
       RayAccount<double> account;
       if (lens.view().carry(ray, account) != RayStatus::alive) return false;
     }
     return true;
   };
-  double free = passes(rim) ? rim : 0, taken = rim;
-  for (int halving = 0; halving < 40 && free < rim; ++halving) {
+  double free = passes(within_disc) ? within_disc : 0, taken = within_disc;
+  for (int halving = 0; halving < 40 && free < within_disc; ++halving) {
     double const tried = (free + taken) / 2;
     (passes(tried) ? free : taken) = tried;
   }
-  auto const place = place_in_stop(lens, beam->at(free, sides[0]));
+  auto const place = place_in_stop(lens, beam->at(free, beam_sides[0]));
   constexpr double whole = 0.97;  // as far as the rim reaches in the stop, where no ray is lost before it
-  if (free == rim && place && length(*place) > whole * lens.stop_radius) return std::nullopt;
+  if (free == within_disc && place && length(*place) > whole * lens.stop_radius) return std::nullopt;
   return length(free * beam->disc.a);
 }
 

@@ -28,10 +28,10 @@ Lens broken_lens(std::string const& name, std::string const& text) {
 }
 
 // An equiconvex lens of N = 1.5, R = 60 mm, 4 mm thick, then one of R = 80 mm; model glass without dispersion.
-std::string const front = "STOP\n  CURV 0.016666666666666667\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
-std::string const third = "CURV 0.0125\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
-std::string const fourth = "CURV -0.0125\n  DISZ 30";
-std::string const image = "CURV 0\n  DISZ 0";
+constexpr char const* front_face = "STOP\n  CURV 0.016666666666666667\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
+constexpr char const* third_face = "CURV 0.0125\n  DISZ 4\n  GLAS ___BLANK 1 0 1.5 0";
+constexpr char const* fourth_face = "CURV -0.0125\n  DISZ 30";
+constexpr char const* image_block = "CURV 0\n  DISZ 0";
 
 double thick_focal_length(double n, double radius, double thickness) {
   return 1 / ((n - 1) * (2 / radius - (n - 1) * thickness / (n * radius * radius)));
@@ -40,9 +40,10 @@ double thick_focal_length(double n, double radius, double thickness) {
 // The airspace between two lenses may stand in a break. f = f1 f2 / (f1 + f2 - d), d from principal plane to principal
 // plane, each (n - 1) f t / (n R) inside its lens.
 TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
-  std::string const by_break =
-      zmx_of({front, "CURV -0.016666666666666667\n  DISZ 0", "TYPE COORDBRK\n  DISZ 20", third, fourth, image});
-  std::string const by_surface = zmx_of({front, "CURV -0.016666666666666667\n  DISZ 20", third, fourth, image});
+  std::string const by_break = zmx_of({front_face, "CURV -0.016666666666666667\n  DISZ 0", "TYPE COORDBRK\n  DISZ 20",
+                                       third_face, fourth_face, image_block});
+  std::string const by_surface =
+      zmx_of({front_face, "CURV -0.016666666666666667\n  DISZ 20", third_face, fourth_face, image_block});
   double const f1 = thick_focal_length(1.5, 60, 4), f2 = thick_focal_length(1.5, 80, 4);
   double const d = 20 + 0.5 * f1 * 4 / (1.5 * 60) + 0.5 * f2 * 4 / (1.5 * 80);
   for (std::string const& text : {by_break, by_surface}) {
@@ -54,27 +55,30 @@ TEST(CoordinateBreak, ItsThicknessIsAnAirspace) {
 // Ahead of the first surface it adds to the object's distance: 100 + 20 mm, wherever the break puts them.
 TEST(CoordinateBreak, ItsThicknessAddsToTheObjectsDistance) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 0";
-  Lens const lens = broken_lens("object.zmx", zmx_of({"TYPE COORDBRK\n  DISZ 20", front, last, image}, "100"));
+  Lens const lens =
+      broken_lens("object.zmx", zmx_of({"TYPE COORDBRK\n  DISZ 20", front_face, last, image_block}, "100"));
   EXPECT_NEAR(lens.prescription.object_distance, 0.12, 1e-16);
   EXPECT_EQ(lens.poses[0].origin.z, 0);
   ParaxialLens const paraxial = paraxial_lens(lens);
   double const object = 0.12 + paraxial.front_principal_plane, f = paraxial.effective_focal_length;
   EXPECT_NEAR(analyse_field(lens, paraxial, 100).image_plane, 1 / (1 / f - 1 / object) + paraxial.rear_principal_plane,
               1e-14);
-  EXPECT_THAT(refusal("endless.zmx", zmx_of({front, last, "TYPE COORDBRK\n  DISZ INFINITY", third, fourth, image})),
+  EXPECT_THAT(refusal("endless.zmx", zmx_of({front_face, last, "TYPE COORDBRK\n  DISZ INFINITY", third_face,
+                                             fourth_face, image_block})),
               HasSubstr("coordinate break"));
-  EXPECT_THAT(refusal("far.zmx", zmx_of({front, last, "TYPE COORDBRK\n  DISZ 1e300", third, fourth, image})),
+  EXPECT_THAT(refusal("far.zmx",
+                      zmx_of({front_face, last, "TYPE COORDBRK\n  DISZ 1e300", third_face, fourth_face, image_block})),
               HasSubstr("no distance within a lens"));
 }
 
-// Newton's telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image 50
-// mm beside the axis. Behind the second break stands the image itself, or a plane of reference and then the image:
+// Newton's telescope: a paraboloid of f = 200 mm, a flat mirror at 45 degrees 150 mm in front of it, and the image
+// 50 mm beside the axis. Behind the second break stands the image itself, or a plane of reference and then the image:
 // parallel light meets in a point on the axis either way, and a field angle u at f tan u.
 TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
   std::string const paraboloid = "STOP\n  CURV -0.0025\n  CONI -1\n  DISZ -150\n  GLAS MIRROR 0 0";
   std::string const flat = "CURV 0\n  DISZ 0\n  GLAS MIRROR 0 0", turn = "TYPE COORDBRK\n  PARM 3 45\n  DISZ ";
-  std::string const by_break = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "50", image});
-  std::string const by_plane = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "0", "DISZ 50", image});
+  std::string const by_break = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "50", image_block});
+  std::string const by_plane = zmx_of({"DISZ 170", paraboloid, turn + "0", flat, turn + "0", "DISZ 50", image_block});
   for (std::string const& text : {by_break, by_plane}) {
     Lens lens = broken_lens("newton.zmx", text);
     lens.prescription.field_angles = {0, 0.1 * unit::degree};
@@ -95,7 +99,8 @@ TEST(CoordinateBreak, AheadOfTheImageItTurnsTheImage) {
 // A break that only tilts the image: the plane stays where the thickness before it put it, 0 behind the break.
 TEST(CoordinateBreak, ATiltedImageStaysInItsPlace) {
   std::string const last = "CURV -0.016666666666666667\n  DISZ 50";
-  Lens const lens = broken_lens("tilt.zmx", zmx_of({front, last, "TYPE COORDBRK\n  PARM 3 10\n  DISZ 0", image}));
+  Lens const lens =
+      broken_lens("tilt.zmx", zmx_of({front_face, last, "TYPE COORDBRK\n  PARM 3 10\n  DISZ 0", image_block}));
   std::string const tilted =
       changed(changed(changed(seq, "SI 0.0 0.0", "SI 0.0 0.0; ADE -10"), "50.0 6.0", "60.0 4.0"), "47.0", "50.0");
   for (Lens const& held : {lens, broken_lens("tilt.seq", tilted)}) {
