@@ -1,6 +1,7 @@
 #include "render/base/nearest_name.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gladstone {
 
@@ -22,23 +23,44 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-std::optional<std::string> nearest_name(std::string_view word, std::vector<std::string> const& candidates) {
-  std::optional<std::string> nearest;
-  std::size_t smallest = 0;
+namespace {
+
+/// By how many edits a candidate is off; nothing where that is too many.
+std::optional<std::size_t> edits_to(std::string_view word, std::string const& candidate, std::size_t share) {
+  // a name without its unit means the one with it
+  bool const without_unit =
+      !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
+  if (without_unit) return 1;
+  std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / share);
+  // no fewer edits than the lengths differ by: a word as long as a book is compared with nothing
+  std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
+  if (least > allowed) return std::nullopt;
+  std::size_t const distance = edit_distance(word, candidate);
+  if (distance > allowed) return std::nullopt;
+  return distance;
+}
+
+}  // namespace
+
+std::vector<std::string> nearest_names(std::string_view word, std::vector<std::string> const& candidates,
+                                       std::size_t most, std::size_t share) {
+  std::vector<std::pair<std::size_t, std::string>> near;
   for (auto const& candidate : candidates) {
-    // a name without its unit means the one with it
-    bool const without_unit =
-        !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
-    std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
-    // no fewer edits than the lengths differ by: a word as long as a book is compared with nothing
-    std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
-    if (!without_unit && (least > allowed || (nearest && least >= smallest))) continue;
-    std::size_t const distance = without_unit ? 1 : edit_distance(word, candidate);
-    if (distance > allowed || (nearest && distance >= smallest)) continue;
-    nearest = candidate;
-    smallest = distance;
+    auto const edits = edits_to(word, candidate, share);
+    if (edits) near.emplace_back(*edits, candidate);
   }
-  return nearest;
+  std::stable_sort(near.begin(), near.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+  std::vector<std::string> names;
+  for (auto const& [edits, name] : near) {
+    if (names.size() == most) break;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+std::optional<std::string> nearest_name(std::string_view word, std::vector<std::string> const& candidates) {
+  std::vector<std::string> const nearest = nearest_names(word, candidates, 1);
+  return nearest.empty() ? std::nullopt : std::optional(nearest.front());
 }
 
 std::string quoted_list(std::vector<std::string> const& words) {

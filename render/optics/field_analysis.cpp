@@ -146,7 +146,7 @@ RayOrigin field_origin(Lens const& lens, ParaxialLens const& paraxial, double an
 
 FieldAnalysis analyse_field(Lens const& lens, ParaxialLens const& paraxial, int rays) {
   FieldAnalysis analysis;
-  analysis.image_plane = lens.image_distance != 0 ? lens.image_distance : paraxial_image(lens, paraxial);
+  analysis.image_plane = lens.image_distance ? *lens.image_distance : paraxial_image(lens, paraxial);
   FieldTracer const tracer(lens, paraxial, analysis.image_plane, rays);
   std::vector<double> angles = lens.prescription.field_angles;
   if (angles.empty()) angles.push_back(0);

@@ -162,6 +162,29 @@ GlassCatalogue const& GlassCatalogue::shipped() {
   return catalogue;
 }
 
+std::string GlassCatalogue::glasses_like(std::string_view name) const {
+  constexpr std::size_t most = 5, half = 2;  // names are short: half of one may differ
+  std::string const key = compared(name);
+  std::vector<std::string> keys;
+  // an older glass of lead, "SF6", often lives on without it, "N-SF6"
+  for (Glass const& glass : glasses_) {
+    std::string const other = compared(glass.name);
+    if (other == std::string("N").append(key) || std::string("N").append(other) == key) keys.push_back(other);
+  }
+  std::vector<std::string> all;
+  for (Glass const& glass : glasses_) all.push_back(compared(glass.name));
+  for (std::string const& near : nearest_names(key, all, most, half)) keys.push_back(near);
+  std::vector<std::string> names;
+  for (std::string const& near : keys) {
+    for (Glass const& glass : glasses_) {
+      std::string const full = fmt::format("{}:{}", glass.catalogue, glass.name);
+      bool const known = std::find(names.begin(), names.end(), full) != names.end();
+      if (names.size() < most && compared(glass.name) == near && !known) names.push_back(full);
+    }
+  }
+  return names.empty() ? "" : "; did you mean " + quoted_list(names) + '?';
+}
+
 Glass const& GlassCatalogue::find(std::string_view name, double wavelength, std::string const& where) const {
   std::string catalogue, own(name);
   if (auto const colon = name.find(':'); colon != std::string_view::npos) {
@@ -177,17 +200,9 @@ Glass const& GlassCatalogue::find(std::string_view name, double wavelength, std:
     if (compared(glass.name) == key && (catalogue.empty() || glass.catalogue == catalogue)) found.push_back(&glass);
   }
   if (found.empty()) {
-    std::vector<std::string> names;
-    for (Glass const& glass : glasses_) names.push_back(glass.name);
-    auto near = nearest_name(own, names);
-    // an older glass of lead, "SF6", often lives on without it, "N-SF6"
-    for (Glass const& glass : glasses_) {
-      std::string const other = compared(glass.name);
-      if (other == std::string("N").append(key) || std::string("N").append(other) == key) near = glass.name;
-    }
     throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
                                        "(AGF), or give its index",
-                                       name, glasses_.size(), near ? "; did you mean " + *near + '?' : std::string()));
+                                       name, glasses_.size(), glasses_like(own)));
   }
   for (Glass const* glass : found) {
     if (wavelength >= glass->shortest && wavelength <= glass->longest) continue;

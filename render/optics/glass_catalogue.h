@@ -32,6 +32,9 @@ class GlassCatalogue {
   Glass const& find(std::string_view name, double wavelength, std::string const& where) const;
 
  private:
+  /// "; did you mean ...?" with the nearest names; empty where none is near.
+  std::string glasses_like(std::string_view name) const;
+
   std::vector<Glass> glasses_;
 };
 

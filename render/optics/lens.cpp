@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
+#include "render/optics/axial_beam.h"
 #include "render/optics/paraxial.h"
 
 namespace gladstone {
@@ -30,6 +32,12 @@ class LensBuilder {
     for (std::size_t i = 0; i < lens_.prescription.surfaces.size(); ++i) {
       PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
       for (CoordinateBreak const& here : prescribed.before) frame = broken(frame, here);
+      if (i > 0) {
+        lens_.paraxial.back().to_next += advance(prescribed);
+      } else {  // the frame's origin is the first vertex' own plane
+        lens_.prescription.object_distance += frame.origin.z;
+        frame.origin.z = 0;
+      }
       bool const mirror = prescribed.after.is_mirror();
       Substance const after = mirror ? before : substance(prescribed);
       SurfaceAction const action = mirror                ? SurfaceAction::reflect
@@ -54,7 +62,7 @@ class LensBuilder {
       if (prescribed.stop) lens_.stop = static_cast<int>(i);
       frame = frame.moved({0, 0, way});
       before = after;
-      if (last) lens_.image_distance = way;
+      if (last && (way != 0 || lens_.prescription.ends_at_image)) lens_.image_distance = way;
     }
   }
 
@@ -82,6 +90,11 @@ class LensBuilder {
       lens_.stop_radius = lens_.paraxial_stop_radius = stop.semi_diameter;
     }
     if (stop.has_aperture) {  // closes what the system's aperture opens too far
+      if (options_.f_number && lens_.paraxial_stop_radius > stop.semi_diameter) {
+        lens_.warnings.push_back(
+            fmt::format("{}: the aperture on the stop opens to f/{:.4g} at the widest, not to f/{:.4g}", stop.where,
+                        *options_.f_number * lens_.paraxial_stop_radius / stop.semi_diameter, *options_.f_number));
+      }
       lens_.stop_radius = std::min(lens_.stop_radius, stop.semi_diameter);
       lens_.paraxial_stop_radius = std::min(lens_.paraxial_stop_radius, stop.semi_diameter);
     }
@@ -179,7 +192,8 @@ class LensBuilder {
   void add(Surface surface, Pose<double> const& frame, PrescribedSurface const& prescribed, Substance before,
            Substance after, SurfaceAction action) {
     surface.pose = frame;
-    surface.semi_diameter = prescribed.semi_diameter;
+    surface.semi_diameter = std::numeric_limits<double>::infinity();
+    if (prescribed.semi_diameter_is_an_edge) surface.semi_diameter = prescribed.semi_diameter;
     surface.n_before = before.n;
     surface.n_after = after.n;
     surface.absorption = before.absorption;
@@ -212,6 +226,34 @@ class LensBuilder {
   LensOptions const& options_;
 };
 
+/// Radius that the prescription itself opens the stop of placed surfaces to, paraxially [m]; empty: it cannot say.
+std::optional<double> prescribed_stop_radius(Lens lens, GlassCatalogue const& catalogue, LensOptions options) {
+  options.f_number.reset();
+  try {
+    LensBuilder(lens, catalogue, options).open_stop();
+  } catch (DataError const&) {
+    return std::nullopt;
+  }
+  return lens.paraxial_stop_radius;
+}
+
+/// Warns of an f-number that opens the stop further than the prescription does, and says what its edges pass of it.
+void note_wide_stop(Lens& lens, double f_number, double own_radius, double object_distance) {
+  constexpr double rounding = 1e-6;
+  if (lens.paraxial_stop_radius <= (1 + rounding) * own_radius) return;
+  std::string text = fmt::format("{}: f/{:.4g} opens the stop wider than the prescription itself, which is f/{:.4g}",
+                                 lens.prescription.file, f_number, f_number * lens.paraxial_stop_radius / own_radius);
+  if (auto const widest = widest_beam(lens, object_distance)) {
+    RayTransfer const to_stop = ray_transfer(lens, 0, lens.stop);
+    double const asked = lens.paraxial_stop_radius / std::abs(to_stop.a + to_stop.b / object_distance);
+    text += fmt::format("; on the axis the lens passes f/{:.4g} at the widest, light beyond is lost at its edges",
+                        f_number * asked / *widest);
+  } else {
+    text += "; no edge of its surfaces limits that beam, which the lens may not be made for: give semi-diameters";
+  }
+  lens.warnings.push_back(text);
+}
+
 }  // namespace
 
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
@@ -222,8 +264,12 @@ Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, doub
   lens.warnings = lens.prescription.warnings;
   LensBuilder builder(lens, catalogue, options);
   builder.place_surfaces();
+  auto const own_radius = options.f_number ? prescribed_stop_radius(lens, catalogue, options) : std::nullopt;
   builder.open_stop();
   builder.follow_axis();
+  double const object_distance = options.object_distance.value_or(lens.prescription.object_distance);
+  if (auto const crossed = crossed_faces(lens, object_distance)) lens.warnings.push_back(*crossed);
+  if (own_radius) note_wide_stop(lens, *options.f_number, *own_radius, object_distance);
   return lens;
 }
 

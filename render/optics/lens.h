@@ -55,9 +55,9 @@ struct Lens {
   std::vector<Pose<double>> poses;        ///< of the surfaces' vertices
   std::vector<ParaxialSurface> paraxial;  ///< decentres and tilts left out
   int stop = 0;
-  double stop_radius = 0;           ///< that rays meet [m]
-  double paraxial_stop_radius = 0;  ///< that its pupils are images of [m]
-  double image_distance = 0;        ///< behind the last surface, as the prescription says; 0: it does not [m]
+  double stop_radius = 0;                ///< that rays meet [m]
+  double paraxial_stop_radius = 0;       ///< that its pupils are images of [m]
+  std::optional<double> image_distance;  ///< behind the last surface; empty: the prescription does not say [m]
   std::vector<std::string> warnings;
 
   LensView<double> view() const { return {surfaces.data(), static_cast<int>(surfaces.size())}; }
@@ -76,6 +76,7 @@ struct LensOptions {
 /// Finds the glasses and places the surfaces. The stop opens as far as the aperture says: to the height of the real
 /// axial ray that enters at the rim of the entrance pupil, or where that ray is lost to the paraxial one's.
 /// @param wavelength [m]
+/// Warns of faces that cross within the axial beam, and of an f-number that opens the stop wider than the prescription.
 /// @throws DataError with the surface's place for a glass that is not known, and where nothing passes the stop
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options = {});

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
@@ -44,25 +45,58 @@ double sag(PrescribedSurface const& surface, double height) {
   return asphere.sag(height, 0);
 }
 
-/// Refuses surfaces that run through each other within their edges. Where an edge is but the width of a beam, a lens
-/// ends where its surfaces meet.
-void refuse_overlap(PrescribedSurface const& one, PrescribedSurface const& next) {
+bool is_turned(PrescribedSurface const& surface) {
+  return std::any_of(surface.before.begin(), surface.before.end(),
+                     [](CoordinateBreak const& here) { return length(here.decentre) != 0 || length(here.tilt) != 0; });
+}
+
+/// Refuses a surface that runs through the next real one within their edges, planes of reference between them or not.
+/// Widths for drawings are no edges: a lens ends where its surfaces meet.
+/// @param forwards sense of the light between them
+void refuse_overlap(Prescription const& lens, std::size_t i, double forwards) {
+  PrescribedSurface const& one = lens.surfaces[i];
+  double way = 0;
+  std::size_t next_real = i + 1;
+  for (; next_real < lens.surfaces.size(); ++next_real) {
+    if (is_turned(lens.surfaces[next_real])) return;
+    way += lens.surfaces[next_real - 1].thickness + advance(lens.surfaces[next_real]);
+    if (is_real(lens, next_real)) break;
+  }
+  if (next_real == lens.surfaces.size()) return;
+  PrescribedSurface const& next = lens.surfaces[next_real];
   double const height = std::min(one.semi_diameter, next.semi_diameter);
-  bool const edges = one.semi_diameter_is_an_edge && next.semi_diameter_is_an_edge;
-  if (!std::isfinite(height) || !next.before.empty() || !edges) return;
-  double const forwards = one.thickness < 0 ? -1.0 : 1.0;
-  for (int i = 0; i <= 32; ++i) {
-    double const r = height * i / 32;
-    double const gap = forwards * (one.thickness + sag(next, r) - sag(one, r));
+  if (!std::isfinite(height) || !one.semi_diameter_is_an_edge || !next.semi_diameter_is_an_edge) return;
+  for (int k = 0; k <= 32; ++k) {
+    double const r = height * k / 32;
+    double const gap = forwards * (way + sag(next, r) - sag(one, r));
     if (gap >= -1e-9 * std::max(height, 1e-3)) continue;
     throw DataError(next.where,
-                    fmt::format("this surface and the one before it overlap by {:.4g} mm at a height of {:.4g} "
+                    fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} "
                                 "mm (check radius, thickness and semi-diameter)",
-                                -gap / unit::millimetre, r / unit::millimetre));
+                                one.where, -gap / unit::millimetre, r / unit::millimetre));
   }
 }
 
 }  // namespace
+
+double advance(PrescribedSurface const& surface) {
+  double sum = 0;
+  for (CoordinateBreak const& here : surface.before) sum += here.advance;
+  return sum;
+}
+
+void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where) {
+  auto const idle = [](CoordinateBreak const& here) {
+    return length(here.decentre) == 0 && length(here.tilt) == 0 && here.advance == 0;
+  };
+  if (std::all_of(breaks.begin(), breaks.end(), idle)) return;
+  PrescribedSurface plane;
+  plane.where = where;
+  plane.thickness = std::exchange(breaks.back().advance, 0);
+  plane.before = std::move(breaks);
+  lens.surfaces.push_back(plane);
+  lens.ends_at_image = true;
+}
 
 Prescription read_prescription(std::string const& path) {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -103,6 +137,12 @@ void check_prescription(Prescription const& lens) {
                       fmt::format("a thickness of {:.4g} mm is no distance within a lens (at most a kilometre is)",
                                   surface.thickness / unit::millimetre));
     }
+    if (!(std::abs(advance(surface)) <= longest)) {
+      throw DataError(surface.where,
+                      fmt::format("the coordinate breaks ahead move it by {:.4g} mm, which is no distance "
+                                  "within a lens (at most a kilometre is)",
+                                  advance(surface) / unit::millimetre));
+    }
     if (!(surface.semi_diameter > 0)) {
       throw DataError(surface.where, "the semi-diameter is not positive; give the radius that light passes within");
     }
@@ -120,7 +160,8 @@ void check_prescription(Prescription const& lens) {
                       "its sign (behind an odd number of mirrors thicknesses are negative)",
                       surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
     }
-    if (std::isfinite(surface.semi_diameter) && !std::isfinite(sag(surface, surface.semi_diameter))) {
+    bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
+    if (edge && !std::isfinite(sag(surface, surface.semi_diameter))) {
       throw DataError(surface.where,
                       fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; make "
                                   "the radius larger or the semi-diameter smaller",
@@ -134,7 +175,7 @@ void check_prescription(Prescription const& lens) {
                                     index->nd, index->vd));
       }
     }
-    if (!last && is_real(lens, i) && is_real(lens, i + 1)) refuse_overlap(surface, lens.surfaces[i + 1]);
+    if (is_real(lens, i)) refuse_overlap(lens, i, forwards);
   }
   if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
   if (stop.empty())

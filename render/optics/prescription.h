@@ -48,12 +48,15 @@ struct PrescribedSurface {
   double thickness = 0;         ///< along the axis to the next surface; negative behind a mirror [m]
   PrescribedMedium after;
   double semi_diameter = std::numeric_limits<double>::infinity();  ///< [m]
-  bool semi_diameter_is_an_edge = true;  ///< false: the width of some beam, as design programs fill it in
+  bool semi_diameter_is_an_edge = true;  ///< false: for drawings, as design programs fill it in; light passes beyond
   bool has_aperture = false;             ///< an aperture of that semi-diameter stands on it, which bounds a stop too
   double obscured = 0;                   ///< radius within which no light passes [m]
   bool stop = false;
   std::vector<CoordinateBreak> before;  ///< breaks in the frame ahead of it
 };
+
+/// How far the breaks ahead of a surface move it along the axis [m].
+double advance(PrescribedSurface const& surface);
 
 /// What sets the width of the stop.
 struct PrescribedAperture {
@@ -69,6 +72,7 @@ struct PrescribedAperture {
 };
 
 /// A lens as its file describes it, in SI. The frame's origin is the vertex of the first surface, light comes from -z.
+/// Breaks ahead of that surface move it across the axis and turn it; what they advance adds to the object's distance.
 struct Prescription {
   std::string file;
   std::string title;
@@ -77,9 +81,16 @@ struct Prescription {
   double object_distance = std::numeric_limits<double>::infinity();  ///< to the first surface [m]
   PrescribedAperture aperture;
   double primary_wavelength = 0;      ///< [m]; 0: the file says none
+  bool ends_at_image = false;         ///< the last thickness leads to the image, one of 0 too
   std::vector<double> field_angles;   ///< of the object at infinity, against the axis, in the y-z plane [rad]
   std::vector<std::string> warnings;  ///< of what a file says that is not traced
 };
+
+/// Ends a lens at an image whose frame is broken: a plane of reference takes the breaks, so that the last surface's
+/// frame is the image's; what the last break advances becomes that plane's thickness. Nothing where there are no
+/// breaks.
+/// @param where the image stands in the file
+void break_before_image(Prescription& lens, std::vector<CoordinateBreak> breaks, std::string const& where);
 
 /// Reads a prescription: one row per format in prescription.cpp (.toml, Zemax .zmx, CODE V .seq), and checks that it
 /// describes a lens: a surface or more, one stop, finite numbers, glass that does not overlap.

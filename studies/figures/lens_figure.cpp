@@ -41,14 +41,15 @@ void place(GnuplotFigure& plot, Panel const& panel) {
                            1 - panel.bottom / h));
 }
 
-/// Half the height that a surface is drawn with: its edge, else what the rays need.
+/// Half the height that a surface is drawn with: its edge, else what its file draws and the rays need.
 std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3d>> const& rays) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
     double height = lens.prescription.surfaces[i].semi_diameter;
-    if (static_cast<int>(i) == lens.stop) height = lens.stop_radius;
-    if (!std::isfinite(height)) {
-      height = 0;
+    if (static_cast<int>(i) == lens.stop) {
+      height = lens.stop_radius;
+    } else if (!lens.prescription.surfaces[i].semi_diameter_is_an_edge || !std::isfinite(height)) {
+      if (!std::isfinite(height)) height = 0;
       for (auto const& ray : rays) {
         if (i + 1 < ray.size()) height = std::max(height, 1.05 * std::abs(lens.poses[i].point_inwards(ray[i + 1]).y));
       }

@@ -21,6 +21,9 @@ TEST(NearestName, IsTheLikelyMeaningOrNothing) {
   EXPECT_EQ(nearest_name("z_a", {"z_d_mm", "z_a_mm"}), "z_a_mm");  // the unit forgotten
   EXPECT_EQ(nearest_name("wavelength", {"file", "kind"}), std::nullopt);
   EXPECT_EQ(nearest_name("x", {}), std::nullopt);
+  std::vector<std::string> const glasses{"BK10", "BK7", "SF6", "BK7", "BAK1"};
+  EXPECT_EQ(nearest_names("BK1", glasses, 5), (std::vector<std::string>{"BK10", "BK7", "BAK1"}));
+  EXPECT_EQ(nearest_names("BK1", glasses, 1), (std::vector<std::string>{"BK10"}));
 }
 
 // Edit distances take the product of both lengths: a book against a hundred keys would take minutes.

@@ -75,7 +75,7 @@ TEST_F(InfoLens, NamesFileLineAndCauseOfABadPrescription) {
   Outcome const outcome = gladstone({"info", "lens", "lens.toml"});
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("lens.toml:5"));
-  EXPECT_THAT(outcome.err, HasSubstr("did you mean N-BK7?"));
+  EXPECT_THAT(outcome.err, HasSubstr("did you mean \"SCHOTT:N-BK7\""));
 }
 
 }  // namespace

@@ -82,7 +82,11 @@ TEST(GlassCatalogue, FindsNamesAsProgramsWriteThem) {
 }
 
 TEST(GlassCatalogue, NamesTheNearestGlassAndTheRange) {
-  EXPECT_THAT(error_of([] { glass("N-BK77"); }), AllOf(HasSubstr("test:1"), HasSubstr("did you mean N-BK7?")));
+  EXPECT_THAT(error_of([] { glass("N-BK77"); }),
+              AllOf(HasSubstr("test:1"), HasSubstr("did you mean \"SCHOTT:N-BK7\"")));
+  // several as near, and the glass that succeeded one of lead first
+  EXPECT_THAT(error_of([] { glass("N-BK8"); }), AllOf(HasSubstr("\"SCHOTT:N-BK7\""), HasSubstr(" or \"SCHOTT:")));
+  EXPECT_THAT(error_of([] { glass("BAF10"); }), HasSubstr("did you mean \"SCHOTT:N-BAF10\""));
   EXPECT_THAT(error_of([] { GlassCatalogue::shipped().find("N-BK7", 12e-6, "test:1"); }),
               HasSubstr("300 to 2500 nm, not at 1.2e+04 nm"));
 }

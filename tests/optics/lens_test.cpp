@@ -66,7 +66,7 @@ TEST(DoubleGauss, AxialRaysMeetTheImageWhereTheListingSays) {
   for (auto const& [height, image] : listing) {
     Ray<double> ray = parallel_ray(height);
     ASSERT_EQ(carry(lens, ray), RayStatus::alive);
-    EXPECT_NEAR(height_behind(lens, ray, lens.image_distance * 1e3), image, 6e-8) << height;
+    EXPECT_NEAR(height_behind(lens, ray, *lens.image_distance * 1e3), image, 6e-8) << height;
   }
 }
 
@@ -81,7 +81,7 @@ TEST(DoubleGauss, ChiefRayAtTenDegreesFollowsTheListing) {
   EXPECT_NEAR(-disc->centre.y / std::tan(angle) * 1e3, 58.7753, 5e-5);
   Ray<double> ray = origin.ray_through(disc->centre);
   ASSERT_EQ(carry(lens, ray), RayStatus::alive);
-  EXPECT_NEAR(height_behind(lens, ray, lens.image_distance * 1e3), 17.485856, 6e-7);
+  EXPECT_NEAR(height_behind(lens, ray, *lens.image_distance * 1e3), 17.485856, 6e-7);
 }
 
 // Lens maker's formula of thick lenses, two balls' worth of digits: R = +-100, t = 10, n = 1.5168; a plano-convex lens;

@@ -12,7 +12,9 @@ namespace gladstone {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 ParaxialLens paraxial_of(std::string const& name, std::string const& bytes) {
   return paraxial_lens(
@@ -68,6 +70,53 @@ TEST(Prescription, CoordinateBreaksUndoThemselves) {
   EXPECT_LT(length(lens.poses[0].origin), 1e-15);
   EXPECT_LT(length(lens.poses[0].x - Vec3d{1, 0, 0}), 1e-15);
   EXPECT_LT(length(lens.poses[0].z - Vec3d{0, 0, 1}), 1e-15);
+}
+
+// A file that was cut off anywhere before its image surface was whole is no other, shorter lens. Breaks and glass of
+// the lens may stand at no distance, as the image does; a number may be cut to 0.
+TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
+  std::string const more =
+      "SURF 3\n  TYPE COORDBRK\n  DISZ 0\nSURF 4\n  DISZ 0.5\n  GLAS N-BK7 0 0\nSURF 5\n  DISZ 0.7\nSURF 6\n";
+  std::string const text = changed(zmx, "SURF 3\n", more);
+  ASSERT_EQ(refusal("whole.zmx", text), "");
+  for (std::size_t cut = 0; cut < text.size(); ++cut) {
+    EXPECT_NE(refusal("cut.zmx", text.substr(0, cut)), "") << text.substr(0, cut);
+  }
+  EXPECT_THAT(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))),
+              AllOf(HasSubstr("cut.zmx:27"), HasSubstr("cut short")));
+}
+
+// "STO S2" marks the second surface wherever it stands; a number that no surface has is refused.
+TEST(Prescription, CodeVCommandsNameTheirSurface) {
+  auto const stop_of = [](std::string const& text) {
+    Prescription const lens = read_prescription(file_of("named.seq", text));
+    return lens.surfaces[0].stop ? 1 : lens.surfaces[1].stop ? 2 : 0;
+  };
+  std::string const unmarked = changed(seq, "  STO; CIR 8.0\n", "");
+  EXPECT_EQ(stop_of(changed(unmarked, "SI 0.0", "STO S1\nSI 0.0")), 1);
+  EXPECT_EQ(stop_of(changed(unmarked, "GO\n", "STO s2\nGO\n")), 2);
+  EXPECT_EQ(stop_of(seq), 1);
+  Prescription const conic = read_prescription(file_of("named.seq", changed(seq, "SI 0.0", "K S1 -0.5\nSI 0.0")));
+  EXPECT_EQ(conic.surfaces[0].conic, -0.5);
+  EXPECT_EQ(conic.surfaces[1].conic, 0);
+  EXPECT_THAT(refusal("t.seq", changed(unmarked, "GO\n", "STO S3\nGO\n")),
+              AllOf(HasSubstr("t.seq:12"), HasSubstr("no such surface")));
+  EXPECT_THAT(refusal("u.seq", changed(unmarked, "GO\n", "STO L'iris'\nGO\n")), HasSubstr("names no surface"));
+  EXPECT_THAT(refusal("v.seq", changed(unmarked, "GO\n", "STO\nGO\n")), HasSubstr("cannot be the stop"));
+}
+
+// Fields that are no angles in the y-z plane are not left out in silence; on the axis they say nothing.
+TEST(Prescription, TellsOfFieldsThatAreLeftOut) {
+  auto const notes = [](char const* name, std::string const& text) {
+    return read_prescription(file_of(name, text)).warnings;
+  };
+  EXPECT_THAT(notes("heights.zmx", changed(zmx, "FTYP 0", "FTYP 1")), ElementsAre(HasSubstr("heights")));
+  EXPECT_THAT(notes("axis.zmx", changed(changed(zmx, "FTYP 0", "FTYP 1"), "YFLN 0 5.0", "YFLN 0 0")), IsEmpty());
+  EXPECT_THAT(notes("across.zmx", changed(zmx, "YFLN", "XFLN 0 3.0\nYFLN")), ElementsAre(HasSubstr("XFLN")));
+  EXPECT_THAT(notes("along.zmx", changed(zmx, "YFLN", "XFLN 0 0.0\nYFLN")), IsEmpty());
+  EXPECT_THAT(notes("across.seq", changed(seq, "REF 2", "REF 2\nXAN 0 3")), ElementsAre(HasSubstr("XAN")));
+  EXPECT_THAT(notes("heights.seq", changed(seq, "REF 2", "REF 2\nYOB 0 3")), ElementsAre(HasSubstr("YOB")));
+  EXPECT_THAT(notes("along.seq", changed(seq, "REF 2", "REF 2\nXAN 0 0\nYAN 0 5")), IsEmpty());
 }
 
 // What a user may hand over by mistake: each refusal names file, line and cause.

@@ -76,6 +76,19 @@ TEST(ZmxOperands, AnApertureOnTheStopBoundsIt) {
   EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 4e-3, 1e-15);
 }
 
+// A semi-diameter that the design program filled in by itself (flag 0) is for drawings and takes no light; one that is
+// given (flag 1) is an edge, and so is an aperture.
+TEST(ZmxOperands, AnAutomaticSemiDiameterIsNoEdge) {
+  std::string const given = changed(zmx, "DISZ 47.0\n  DIAM 8.0 1", "DISZ 47.0\n  DIAM 3.0 1");
+  std::string const automatic = changed(zmx, "DISZ 47.0\n  DIAM 8.0 1", "DISZ 47.0\n  DIAM 3.0 0");
+  EXPECT_EQ(fate(zmx_lens("given.zmx", given), 4), RayStatus::vignetted);
+  Lens const lens = zmx_lens("automatic.zmx", automatic);
+  EXPECT_EQ(fate(lens, 4), RayStatus::alive);
+  EXPECT_EQ(lens.prescription.surfaces[1].semi_diameter, 3e-3);  // as it is drawn
+  EXPECT_EQ(fate(zmx_lens("clap.zmx", changed(automatic, "  DIAM 3.0", "  CLAP 0 3.0 0\n  DIAM 3.0")), 4),
+            RayStatus::vignetted);
+}
+
 TEST(ZmxOperands, WhatBlocksLightOtherwiseIsRefusedByName) {
   for (char const* const line : {"SQAP 3 4 0", "SQOB 1 1 0", "ELAP 3 4 0", "ELOB 1 2 0", "SPID 0.5 3 0", "UDAP 0 0"}) {
     std::string const key = std::string(line).substr(0, 4);

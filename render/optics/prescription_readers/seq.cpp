@@ -21,10 +21,10 @@ namespace {
 
 /// Commands that say nothing about where rays go: weights, variables, solves whose values are written out, names.
 bool is_harmless(std::string const& command) {
-  static std::set<std::string> const harmless{
-      "LEN", "INI", "WTW", "WTF", "XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI", "CCY", "CCX", "THC", "GLC", "PIM",
-      "DER", "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",  "HC",  "POL", "WID", "RES", "WAV", "REM", "TEM", "PRE",
-      "CA",  "CLS", "PIK", "THM", "CUM", "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "CUC"};
+  static std::set<std::string> const harmless{"LEN", "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "PIM", "DER",
+                                              "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",  "HC",  "POL", "WID",
+                                              "RES", "WAV", "REM", "TEM", "PRE", "CA",  "CLS", "PIK", "THM", "CUM",
+                                              "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "CUC"};
   return harmless.contains(command);
 }
 
@@ -64,13 +64,10 @@ class SeqReader {
       reference_ = line.integer(1);
     } else if (command == "YAN") {
       for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
+    } else if (is_other_field(command)) {
+      note_unless_zero(line, "fields are angles in the y-z plane (YAN) here; these are not judged");
     } else if (command == "VUX" || command == "VLX" || command == "VUY" || command == "VLY") {
-      for (std::size_t i = 1; i < line.size(); ++i) {
-        if (line.number(i) == 0) continue;
-        result_.warnings.push_back(line.where + ": " + command +
-                                   ": vignetting factors are not used; the edges of the surfaces vignette");
-        break;
-      }
+      note_unless_zero(line, "vignetting factors are not used; the edges of the surfaces vignette");
     } else if (!read_surface_command(command, line) && !is_harmless(command)) {
       throw DataError(line.where,
                       fmt::format("command {} is not read; leave it out if it does not change the lens", line[0]));
@@ -87,6 +84,7 @@ class SeqReader {
     result_.object_distance = surfaces_.front().thickness;
     if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil) result_.aperture.value = pupil_ * unit_;
     result_.surfaces.assign(surfaces_.begin() + 1, surfaces_.end());
+    break_before_image(result_, std::move(image_surface_.before), image_surface_.where);
     if (reference_ >= 1 && reference_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(reference_ - 1)];
     } else if (!wavelengths_.empty()) {
@@ -101,6 +99,20 @@ class SeqReader {
            std::all_of(command.begin() + 1, command.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   }
 
+  /// Field points that are no angles in the y-z plane.
+  static bool is_other_field(std::string const& command) {
+    static std::set<std::string> const other{"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
+    return other.contains(command);
+  }
+
+  void note_unless_zero(PrescriptionLine const& line, char const* what) {
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      if (line.number(i) == 0) continue;
+      result_.warnings.push_back(fmt::format("{}: {}: {}", line.where, in_capitals(line[0]), what));
+      return;
+    }
+  }
+
   /// "S radius thickness [glass]"
   void begin_surface(std::string const& command, PrescriptionLine const& line) {
     if (image_) throw DataError(line.where, "a surface comes after the image SI; the file is damaged");
@@ -112,6 +124,7 @@ class SeqReader {
     double const thickness = line.size() > 2 ? line.number(2) * unit_ : 0.0;
     if (command == "SI") {
       image_ = true;
+      image_surface_.where = line.where;
       surfaces_.back().thickness += thickness;  // the defocus of the image
       return;
     }
@@ -143,15 +156,37 @@ class SeqReader {
         PrescribedMedium::Described{1 + number("0." + index), number(abbe.substr(0, 2) + '.' + abbe.substr(2) + '0')}};
   }
 
-  /// Commands that belong to the surface before them.
-  bool read_surface_command(std::string const& command, PrescriptionLine const& line) {
+  /// The surface that a command names ("STO S6", counted from the object's S0), and the command without its name.
+  PrescribedSurface& named_surface(PrescriptionLine& line) {
+    if (line.size() > 1 && is_numbered_surface(in_capitals(line[1]))) {
+      PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
+      auto const number = static_cast<std::size_t>(digits.integer(1));
+      if (number == 0 || number >= surfaces_.size()) {
+        throw DataError(line.where,
+                        fmt::format("{} {}: there is no such surface before this line (S1 to S{} are); correct the "
+                                    "number, or put the command below its surface",
+                                    line[0], line[1], surfaces_.size() - 1));
+      }
+      line.words.erase(line.words.begin() + 1);
+      return surfaces_[number];
+    }
+    if (in_capitals(line[0]) == "STO" && line.size() > 1) {
+      throw DataError(line.where, fmt::format("STO {}: names no surface; give its number (STO S6)", line[1]));
+    }
+    return image_ ? image_surface_ : surfaces_.back();
+  }
+
+  /// Commands that belong to the surface before them, or to the one that they name.
+  bool read_surface_command(std::string const& command, PrescriptionLine line) {
     static std::set<std::string> const known{"STO", "K",   "CIR", "CON", "ASP", "SPH", "CYL", "XDE", "YDE", "ZDE",
                                              "ADE", "BDE", "CDE", "A",   "B",   "C",   "D",   "E",   "F",   "G"};
     if (!known.contains(command)) return false;
     if (surfaces_.empty()) throw DataError(line.where, fmt::format("{} comes before any surface", command));
-    if (image_) return true;
-    PrescribedSurface& surface = surfaces_.back();
-    if (command == "STO") surface.stop = true;
+    PrescribedSurface& surface = named_surface(line);
+    if (command == "STO") {
+      if (&surface == &image_surface_) throw DataError(line.where, "the image SI cannot be the stop; mark another one");
+      surface.stop = true;
+    }
     if (command == "K") surface.conic = line.number(1);
     if (command == "CYL") {
       throw DataError(line.where, "cylinders (CYL) are not read from CODE V files; write the lens as TOML");
@@ -190,6 +225,7 @@ class SeqReader {
 
   Prescription result_;
   std::vector<PrescribedSurface> surfaces_;  // the object first
+  PrescribedSurface image_surface_;          // of which the frame counts
   std::vector<double> wavelengths_;
   double unit_ = 1e-3, pupil_ = 0;
   int reference_ = 0;

@@ -20,7 +20,7 @@ namespace {
 struct ZmxSurface {
   PrescribedSurface surface;
   std::string type = "STANDARD";
-  bool has_glass = false;
+  bool has_glass = false, has_distance = false;
   std::map<int, double> parameters;  // lengths in the file's unit
 };
 
@@ -52,11 +52,12 @@ class ZmxReader {
       throw DataError(path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
     }
+    check_image(surfaces_.back());
     result_.object_distance = surfaces_.front().surface.thickness;
     if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
     }
-    if (angles_are_fields_) result_.field_angles = fields_;
+    take_fields();
     std::vector<CoordinateBreak> breaks;
     for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
       ZmxSurface& zmx = surfaces_[i];
@@ -80,6 +81,7 @@ class ZmxReader {
       breaks.clear();
       result_.surfaces.push_back(surface);
     }
+    break_before_image(result_, std::move(breaks), surfaces_.back().surface.where);
     return std::move(result_);
   }
 
@@ -109,7 +111,12 @@ class ZmxReader {
       result_.aperture = {Kind::object_na, other_meaning ? std::sin(value * unit::degree) : value};
     }
     if (key == "FLOA") result_.aperture = {};
-    if (key == "FTYP") angles_are_fields_ = line.integer(1) == 0;
+    if (key == "FTYP" && line.integer(1) != 0) heights_at_ = line.where;
+    if (key == "XFLN" || key == "XFLD") {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        if (line.number(i) != 0) across_at_ = line.where;
+      }
+    }
     if (key == "YFLN" || key == "YFLD") {
       for (std::size_t i = 1; i < line.size(); ++i) {
         double const angle = line.number(i) * unit::degree;
@@ -124,6 +131,20 @@ class ZmxReader {
       wavelengths_.push_back(line.number(2) * unit::micrometre);
     }
     if (key == "PWAV") primary_ = line.integer(1);
+  }
+
+  /// Fields are angles in the y-z plane; others are told of, and left out.
+  void take_fields() {
+    bool const any_along = std::any_of(fields_.begin(), fields_.end(), [](double angle) { return angle != 0; });
+    if (heights_at_.empty()) result_.field_angles = fields_;
+    if (!heights_at_.empty() && (any_along || !across_at_.empty())) {
+      result_.warnings.push_back(heights_at_ +
+                                 ": FTYP: fields that are heights are not read, the lens is judged on its axis alone; "
+                                 "give field angles (FTYP 0)");
+    } else if (!across_at_.empty()) {
+      result_.warnings.push_back(across_at_ +
+                                 ": XFLN: fields beside the y-z plane are left out; give them along y (YFLN)");
+    }
   }
 
   void read_surface(PrescriptionLine const& line, ZmxSurface& zmx) {
@@ -142,6 +163,7 @@ class ZmxReader {
     if (key == "CONI") surface.conic = line.number(1);
     if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
     if (key == "DISZ") {
+      zmx.has_distance = true;
       bool const infinite = line.size() > 1 && line[1] == "INFINITY";
       surface.thickness = infinite ? std::numeric_limits<double>::infinity() : line.number(1) * unit_;
     }
@@ -180,7 +202,25 @@ class ZmxReader {
     }
   }
 
+  /// Refuses a last block that is no image surface: what the file goes on with is missing.
+  static void check_image(ZmxSurface const& last) {
+    char const* const why = !last.has_distance            ? "has no DISZ"
+                            : last.surface.thickness != 0 ? "has a thickness (DISZ)"
+                            : last.has_glass              ? "has glass behind it (GLAS)"
+                            : last.surface.stop           ? "is the stop"
+                            : last.type == "COORDBRK"     ? "is a coordinate break"
+                                                          : nullptr;
+    if (why == nullptr) return;
+    throw DataError(last.surface.where,
+                    fmt::format("the last surface {}, so it is no image surface, with which a .zmx file ends: the file "
+                                "is cut short; get it whole, or add the image (SURF, TYPE STANDARD, DISZ 0)",
+                                why));
+  }
+
   CoordinateBreak break_of(ZmxSurface const& zmx) const {
+    if (!std::isfinite(zmx.surface.thickness)) {
+      throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
+    }
     auto const parameter = [&](int i) {
       auto const found = zmx.parameters.find(i);
       return found == zmx.parameters.end() ? 0.0 : found->second;
@@ -197,7 +237,8 @@ class ZmxReader {
   std::vector<double> wavelengths_, fields_;
   double unit_ = 1e-3;
   int primary_ = 1;
-  bool angles_are_fields_ = true;
+  std::string heights_at_,
+      across_at_;  // lines that say that fields are heights, and that some lie beside the y-z plane
 };
 
 }  // namespace
@@ -208,7 +249,12 @@ Prescription read_zmx_prescription(std::string const& path) {
   std::string_view rest = text;
   for (int number = 1; !rest.empty(); ++number) {
     std::size_t const end = std::min(rest.find('\n'), rest.size());
-    reader.read_line({fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))});
+    PrescriptionLine const line{fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))};
+    if (end == rest.size() && !line.words.empty() && line[0] == "DISZ") {
+      throw DataError(line.where,
+                      "the file ends within the line DISZ: it is cut short, or its last line lacks its end");
+    }
+    reader.read_line(line);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return reader.finish();

@@ -1,0 +1,109 @@
+#include "render/optics/axial_beam.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "render/base/units.h"
+#include "render/optics/paraxial.h"
+#include "tests/optics/lens_fixtures.h"
+#include "tests/optics/prescription_texts.h"
+
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Two lenses 2 mm through each other, whether a bare stop stands between them or not, and wherever it is told to stand.
+TEST(AxialBeam, LensesThatOverlapAreRefusedAcrossAStop) {
+  auto const pair = [](std::string const& between) {
+    std::string const one =
+        "[[surface]]\nradius_mm = 50\nthickness_mm = 8\nindex = 1.5\nsemi_diameter_mm = 15\n"
+        "[[surface]]\nradius_mm = 30\nsemi_diameter_mm = 15\nthickness_mm = ";
+    std::string const other =
+        "[[surface]]\nradius_mm = 30\nthickness_mm = 8\nindex = 1.5\nsemi_diameter_mm = 15\n"
+        "[[surface]]\nradius_mm = -50\nsemi_diameter_mm = 15\n";
+    return "schema = 1\nentrance_pupil_mm = 10.0\n" + one + between + other;
+  };
+  std::string const stop = "[[surface]]\nstop = true\nthickness_mm = ";
+  for (std::string const& between : {"-1\n" + stop + "-1\n", "1\n" + stop + "-3\n", "-3\n" + stop + "1\n"}) {
+    EXPECT_THAT(refusal("ovstop.toml", pair(between)), AllOf(HasSubstr("overlap by 2 mm"), HasSubstr(".toml:")))
+        << between;
+  }
+  EXPECT_EQ(refusal("apart.toml", pair("3\n" + stop + "-1\n")), "");
+  std::string no_stop = pair("-2\n");
+  no_stop.insert(no_stop.find("[[surface]]\n") + 12, "stop = true\n");
+  EXPECT_THAT(refusal("ov.toml", no_stop), HasSubstr("overlap by 2 mm"));
+}
+
+// Faces of R = 60 mm, t = 0.2 mm apart, meet at r = sqrt(R^2 - (R - t/2)^2) = 3.46 mm.
+TEST(AxialBeam, FacesThatCrossWithinItAreToldOf) {
+  double const meet = std::sqrt(60 * 60 - 59.9 * 59.9);
+  auto const lens = [](double pupil) {
+    return "schema = 1\nentrance_pupil_mm = " + std::to_string(pupil) +
+           "\n[[surface]]\nradius_mm = 60\nthickness_mm = 0.2\nindex = 1.5\nstop = true\n[[surface]]\nradius_mm = "
+           "-60\n";
+  };
+  auto const warnings = [&](double pupil) {
+    return build_lens(read_prescription(file_of("sharp.toml", lens(pupil))), GlassCatalogue::shipped(),
+                      spectral_line::d)
+        .warnings;
+  };
+  EXPECT_THAT(warnings(2 * meet - 0.02), IsEmpty());
+  EXPECT_THAT(warnings(2 * meet + 0.4), ElementsAre(AllOf(HasSubstr("sharp.toml:8"), HasSubstr("faces cross"))));
+  EXPECT_THAT(warnings(30), ElementsAre(HasSubstr("faces cross")));
+}
+
+// A singlet of f/8 that is asked for f/2 opens as far and says so. Its front, R = 50 mm, is the stop, so that a ray
+// parallel to the axis meets its edge at the edge's own radius: 8 mm pass f / 16 mm.
+TEST(AxialBeam, AnFNumberWiderThanTheLensIsToldOf) {
+  auto const at = [](double f_number, std::string const& text) {
+    LensOptions options;
+    options.f_number = f_number;
+    return build_lens(read_prescription(file_of("wide.toml", text)), GlassCatalogue::shipped(), spectral_line::d,
+                      options);
+  };
+  std::string const edged =
+      changed(toml, "[[surface]]\n", "[[surface]]\nradius_mm = inf\nsemi_diameter_mm = 8.0\n[[surface]]\n");
+  double const n = GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd();
+  double const f = 50 / (2 * (n - 1) - (n - 1) * (n - 1) * 6 / (n * 50));
+  EXPECT_THAT(at(8, edged).warnings, IsEmpty());
+  EXPECT_THAT(at(11, edged).warnings, IsEmpty());
+  EXPECT_THAT(at(4, edged).warnings, ElementsAre(AllOf(HasSubstr("which is f/8"), HasSubstr("no edge"))));
+  EXPECT_THAT(
+      at(2, edged).warnings,
+      ElementsAre(AllOf(HasSubstr("f/2 opens"), HasSubstr(fmt::format("passes f/{:.4g} at the widest", f / 16)))));
+  // an aperture on the stop bounds it, which is told of, too: 2 mm of 50 mm
+  LensOptions options;
+  options.f_number = 4;
+  Lens const closed =
+      build_lens(read_prescription(file_of("closed.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 0 2.0 0\n"))),
+                 GlassCatalogue::shipped(), spectral_line::d, options);
+  EXPECT_THAT(closed.warnings, ElementsAre(HasSubstr(fmt::format("opens to f/{:.4g} at the widest", f / 4))));
+}
+
+// The f/2 double Gauss passes its axial beam whole and little more: f/1.2 is lost at its edges.
+TEST(AxialBeam, TheDoubleGaussDoesNotPassF1Point2) {
+  LensOptions options;
+  options.f_number = 1.2;
+  Lens const lens = build_lens(read_prescription(GLADSTONE_DATA_DIR "/lenses/double_gauss.toml"),
+                               GlassCatalogue::shipped(), spectral_line::d, options);
+  ASSERT_EQ(lens.warnings.size(), 1u);
+  std::string const key = "passes f/";
+  double const widest = std::stod(lens.warnings[0].substr(lens.warnings[0].find(key) + key.size()));
+  EXPECT_GT(widest, 1.2);
+  EXPECT_LE(widest, 2);
+  for (double const inside : {0.99, 1.01}) {  // a ray within passes, one beyond is taken
+    Ray<double> ray = parallel_ray(inside * 0.5e3 * paraxial_lens(lens).effective_focal_length / widest);
+    EXPECT_EQ(carry(lens, ray) == RayStatus::alive, inside < 1) << widest;
+  }
+}
+
+}  // namespace
+}  // namespace gladstone
