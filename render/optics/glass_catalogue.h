@@ -25,13 +25,16 @@ class GlassCatalogue {
   std::vector<Glass> const& glasses() const { return glasses_; }
 
   /// The glass of that name in upper or lower case, with or without hyphens. "CATALOGUE:NAME" names its catalogue too,
-  /// as does CODE V's "NAME_CATALOGUE".
+  /// as does CODE V's "NAME_CATALOGUE" where no glass bears the whole name.
   /// @param where the name was used, for messages
   /// @throws DataError with candidates, where nobody or several glasses of different index bear the name; or where the
   ///         wavelength [m] is outside the glass's range
   Glass const& find(std::string_view name, double wavelength, std::string const& where) const;
 
  private:
+  /// Those of that name, in that catalogue unless it is empty.
+  std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;
+
   std::vector<Glass> glasses_;
 };
 
