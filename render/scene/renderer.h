@@ -20,7 +20,7 @@ enum class TableState {
   out_of_focus,     ///< a point's rays do not meet on the sensor
   field_too_small,  ///< it hardly reaches beyond the cones, if at all
   field_too_fine,   ///< the table would take more rays than it saves
-  by_rays,          ///< the general renderer knows none
+  by_rays,          ///< the general renderer knows none, nor does a formula
   dots_too_wide,    ///< their cones change too much from place to place of a dot
 };
 /// As the end of the sentence "there is no deflection table: ..."; empty where there is one.
