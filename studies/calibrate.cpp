@@ -37,6 +37,22 @@ CalibrationGrid grid_of(Setup const& setup) {
   return {lattice.half_columns, lattice.half_rows, lattice.spacing, setup.dot_diameter()};
 }
 
+/// The pupil of the setup's lens, and the plane that its sensor is the image of.
+CalibratedLens lens_of(Setup const& setup) {
+  ImagingGeometry const imaging = setup.imaging();
+  Pose<double> const pose = setup.camera_pose();
+  CalibratedLens lens;
+  if (!std::isfinite(setup.focus_distance()) || !std::isfinite(imaging.entrance_pupil)) return lens;
+  lens.pupil_radius = imaging.entrance_pupil / 2;
+  lens.focus_point = pose.origin - setup.focus_distance() * pose.z;
+  // a sensor at z' = z_i - M a . (x', y') is the image of the plane z = -Z + a . (x, y), see sensor_tilt()
+  Vec2d const tilt = sensor_tilt(setup);
+  Vec3d const sensor = Pose<double>{}.turned({tilt.x, tilt.y, 0}).z;
+  double const per_slope = imaging.magnification * setup.z_b() / setup.focus_distance() * sensor.z;
+  lens.focus_normal = normalized(pose.z - (sensor.x / per_slope) * pose.x - (sensor.y / per_slope) * pose.y);
+  return lens;
+}
+
 /// Detects the dots of a plane and adds them to the points.
 void add_plane(Calibration& calibration, Setup const& setup, std::string const& folder, std::size_t plane) {
   CalibratedPlane added;
@@ -125,6 +141,7 @@ Calibration calibrate_case(std::string const& folder) {
   calibration.setup = loaded.document.resolved();
   calibration.seed = setup.render.seed;
   calibration.points.dot_radius = setup.dot_diameter() / 2;
+  calibration.points.lens = lens_of(setup);
   for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) add_plane(calibration, setup, folder, plane);
   try {
     calibration.pinhole =

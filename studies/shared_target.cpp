@@ -36,19 +36,15 @@ Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
   return {in_mm(2 * half.x), in_mm(2 * half.y)};
 }
 
-/// Area of the target that a camera's pixel sees [m^2].
-double pixel_area(Setup const& setup) {
-  double const px = setup.camera.pixel_pitch / setup.imaging().magnification;
-  return px * px;
+/// As many dots as the first camera's, in the words of another one.
+void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
+  // a density that gives the very same number, to the last dot
+  double const density = first.dot_count() * 1024.0 * own.pixel_area() / (extent.x * extent.y);
+  document.set({"target", "dots_per_32px_window"}, node(density));
 }
 
-/// The first camera's dots in the words of another one.
-void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
-  if (first.target.kind == TargetKind::dots) {
-    // a density that gives the very same number, to the last dot
-    double const density = first.dot_count() * 1024.0 * pixel_area(own) / (extent.x * extent.y);
-    document.set({"target", "dots_per_32px_window"}, node(density));
-  }
+/// Dots of the first camera's size, in mm, for another one.
+void share_diameter(SetupDocument& document, Setup const& first) {
   if (first.target.dot_diameter_m) return;
   if (SetupNode const* const table = document.find({"target"}); table && table->find("dot_diameter_px")) {
     SetupNode without = *table;
@@ -78,7 +74,12 @@ void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read
     share_particles(cases, first);
     return;
   }
-  if (first.target.kind == TargetKind::points || first.target.kind == TargetKind::lattice) return;  // the same as it is
+  TargetKind const kind = first.target.kind;
+  if (kind == TargetKind::lattice) return;  // the same as it is
+  if (kind != TargetKind::image) {
+    for (CameraCase& one : cases) share_diameter(one.document, first);
+  }
+  if (kind == TargetKind::points) return;  // where they are is the same for all
   Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
   Vec2d const extent_mm =
       first.target.extent_m ? *first.target.extent_m / unit::millimetre : extent_of_all(read, middle);
@@ -87,7 +88,7 @@ void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read
     SetupDocument& document = cases[i].document;
     if (!read[i].target.extent_m) document.set({"target", "extent_mm"}, node(extent_mm));
     if (!read[i].target.centre_m) document.set({"target", "center_mm"}, node(middle));
-    if (first.target.kind != TargetKind::image) share_dots(document, first, read[i], *first.target.extent_m);
+    if (kind == TargetKind::dots) share_dots(document, first, read[i], *first.target.extent_m);
   }
 }
 

@@ -7,11 +7,20 @@
 
 namespace gladstone {
 
+/// The lens that dots are seen through, as far as it moves the images of those out of focus: light that changes across
+/// the aperture has its middle off the aperture's. Lengths in the world.
+struct CalibratedLens {
+  double pupil_radius = 0;      ///< of the entrance pupil, about the pinhole [m]; 0: chief rays only
+  Vec3d focus_point{};          ///< of the plane that is imaged sharply [m]
+  Vec3d focus_normal{0, 0, 1};  ///< of that plane [1]
+};
+
 /// What a camera is calibrated by: dots whose places in the world are known, and where they are seen.
 struct CalibrationPoints {
   std::vector<Vec3d> world;  ///< centres of the dots, which are discs square to Z [m]
   std::vector<Vec2d> pixel;  ///< centroids of their images [px]
   double dot_radius = 0;     ///< [m]
+  CalibratedLens lens;
 
   std::size_t size() const { return world.size(); }
 };

@@ -16,12 +16,10 @@ namespace {
 constexpr std::size_t least_points = 12;
 using Parameters = std::array<double, PinholeCamera::count>;
 
-/// PinholeCamera::project, for any scalar.
+/// The pixel of a point in the camera's axes.
 template <class T>
-void project(T const* p, T const* world, T* pixel) {
-  T d[3];
-  ceres::AngleAxisRotatePoint(p + 8, world, d);
-  T const depth = d[2] + p[13], x = (d[0] + p[11]) / depth, y = (d[1] + p[12]) / depth;
+void pixel_of(T const* p, T const* d, T* pixel) {
+  T const x = d[0] / d[2], y = d[1] / d[2];
   T const r2 = x * x + y * y, radial = 1.0 + r2 * (p[4] + r2 * p[5]);
   pixel[0] = p[0] * (x * radial + 2.0 * p[6] * x * y + p[7] * (r2 + 2.0 * x * x)) + p[2];
   pixel[1] = p[1] * (y * radial + p[6] * (r2 + 2.0 * y * y) + 2.0 * p[7] * x * y) + p[3];
@@ -34,29 +32,83 @@ void look_at(T const* p, T const* world, T* d) {
   for (int axis = 0; axis < 3; ++axis) d[axis] += p[11 + axis];
 }
 
+/// PinholeCamera::project, for any scalar.
+template <class T>
+void project(T const* p, T const* world, T* pixel) {
+  T d[3];
+  look_at(p, world, d);
+  pixel_of(p, d, pixel);
+}
+
 template <class T>
 T dot3(T const* a, T const* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The centroid of the image of a Lambertian dot: the mean of its disc_points' images, each weighted by the light that
-/// it sends through the lens, cos(slant of the plane) cos(slant of the lens) / distance^2. The lens faces `middle`.
 template <class T>
-void project_dot(T const* p, Vec3d const& centre, double radius, Vec3d const& middle, T* pixel) {
-  T const normal[3] = {T(0.0), T(0.0), T(1.0)}, faced[3] = {T(middle.x), T(middle.y), T(middle.z)};
-  T across[3], axis[3], sum(0.0);
-  ceres::AngleAxisRotatePoint(p + 8, normal, across);
+void turn(T const* p, Vec3d const& world, T* turned) {
+  T const v[3] = {T(world.x), T(world.y), T(world.z)};
+  ceres::AngleAxisRotatePoint(p + 8, v, turned);
+}
+
+/// Adds the light that a point sends through a place of the pupil, cos(slant of the plane) cos(slant of the lens) /
+/// distance^2, to `sum`, and that times where it arrives to `pixel`: at the image of where its ray crosses the plane in
+/// focus, which every ray through that place shares (ideal lens). All in the camera's axes.
+/// @param across the dots' plane's normal @param axis of the lens @param focus normal of the plane in focus; null:
+/// place is the pinhole
+/// @param depth of that plane along its normal, from the camera
+template <class T>
+void add_ray(T const* p, T const* point, T const* place, T const* across, T const* axis, T const* focus, T const& depth,
+             T* pixel, T& sum) {
+  T way[3], crossing[3], one[2];
+  for (int k = 0; k < 3; ++k) way[k] = point[k] - place[k];
+  T const share = focus ? (depth - dot3(focus, place)) / dot3(focus, way) : T(1.0);
+  for (int k = 0; k < 3; ++k) crossing[k] = place[k] + share * way[k];
+  pixel_of(p, crossing, one);
+  T const distance2 = dot3(way, way), light = dot3(across, way) * dot3(axis, way) / (distance2 * distance2);
+  pixel[0] += light * one[0];
+  pixel[1] += light * one[1];
+  sum += light;
+}
+
+/// Two directions across the lens's axis, each of the given length.
+template <class T>
+void across_axis(T const* axis, double length, T* right, T* down) {
+  using std::sqrt;
+  T const size = sqrt(dot3(axis, axis)), flat = sqrt(axis[0] * axis[0] + axis[2] * axis[2]);
+  right[0] = length * axis[2] / flat;
+  right[1] = T(0.0);
+  right[2] = -length * axis[0] / flat;
+  down[0] = axis[1] * right[2] / size;
+  down[1] = (axis[2] * right[0] - axis[0] * right[2]) / size;
+  down[2] = -axis[1] * right[0] / size;
+}
+
+/// The centroid of the image of a Lambertian dot: the mean over its disc_points of where their light arrives, through
+/// disc_points of the lens's pupil where that is known. The lens faces `middle`.
+template <class T>
+void project_dot(T const* p, Vec3d const& centre, double radius, Vec3d const& middle, CalibratedLens const& lens,
+                 T* pixel) {
+  T const faced[3] = {T(middle.x), T(middle.y), T(middle.z)};
+  T across[3], axis[3], focus[3], right[3], down[3], sum(0.0);
+  turn(p, {0, 0, 1}, across);
   look_at(p, faced, axis);
+  turn(p, lens.focus_normal, focus);
+  T const depth = dot(lens.focus_normal, lens.focus_point) + dot3(focus, p + 11);
+  across_axis(axis, lens.pupil_radius, right, down);
   pixel[0] = pixel[1] = T(0.0);
   for (Vec2d const off : disc_points) {
     T const world[3] = {T(centre.x + radius * off.x), T(centre.y + radius * off.y), T(centre.z)};
-    T one[2], way[3];
-    project(p, world, one);
-    look_at(p, world, way);
-    T const distance2 = dot3(way, way), light = dot3(across, way) * dot3(axis, way) / (distance2 * distance2);
-    pixel[0] += light * one[0];
-    pixel[1] += light * one[1];
-    sum += light;
+    T point[3], place[3] = {T(0.0), T(0.0), T(0.0)};
+    look_at(p, world, point);
+    if (lens.pupil_radius == 0) {
+      add_ray<T>(p, point, place, across, axis, nullptr, depth, pixel, sum);
+      continue;
+    }
+    for (Vec2d const at : disc_points) {
+      for (int k = 0; k < 3; ++k) place[k] = at.x * right[k] + at.y * down[k];
+      add_ray<T>(p, point, place, across, axis, focus, depth, pixel, sum);
+    }
   }
   pixel[0] /= sum;
   pixel[1] /= sum;
@@ -73,10 +125,11 @@ struct Residual {
   Vec2d pixel;
   double radius;
   Vec3d middle;
+  CalibratedLens lens;
 
   template <class T>
   bool operator()(T const* parameters, T* residual) const {
-    project_dot(parameters, centre, radius, middle, residual);
+    project_dot(parameters, centre, radius, middle, lens, residual);
     residual[0] = pixel.x - residual[0];
     residual[1] = pixel.y - residual[1];
     return true;
@@ -91,9 +144,10 @@ double refine(CalibrationPoints const& points, Parameters& parameters) {
   for (std::vector<int> const& held : {std::vector<int>{2, 3, 4, 5, 6, 7}, std::vector<int>{4, 5, 6, 7}, {}}) {
     ceres::Problem problem;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 2, static_cast<int>(PinholeCamera::count)>(
-                                   new Residual{points.world[k], points.pixel[k], points.dot_radius, middle}),
-                               nullptr, parameters.data());
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<Residual, 2, static_cast<int>(PinholeCamera::count)>(
+              new Residual{points.world[k], points.pixel[k], points.dot_radius, middle, points.lens}),
+          nullptr, parameters.data());
     }
     if (!held.empty()) {
       problem.SetManifold(parameters.data(), new ceres::SubsetManifold(static_cast<int>(PinholeCamera::count), held));
@@ -118,7 +172,7 @@ Eigen::MatrixXd jacobian(CalibrationPoints const& points, Parameters const& para
   Vec3d const middle = mean_of(points.world);
   for (std::size_t k = 0; k < points.size(); ++k) {
     ceres::AutoDiffCostFunction<Residual, 2, columns> const cost(
-        new Residual{points.world[k], points.pixel[k], points.dot_radius, middle});
+        new Residual{points.world[k], points.pixel[k], points.dot_radius, middle, points.lens});
     double const* const blocks[] = {parameters.data()};
     double residual[2];
     double* rows[] = {all.row(2 * static_cast<Eigen::Index>(k)).data()};
@@ -154,9 +208,9 @@ Vec2d PinholeCamera::project(Vec3d world) const {
   return {pixel[0], pixel[1]};
 }
 
-Vec2d PinholeCamera::image_of_dot(Vec3d centre, double radius, Vec3d middle) const {
+Vec2d PinholeCamera::image_of_dot(Vec3d centre, double radius, Vec3d middle, CalibratedLens const& lens) const {
   double pixel[2];
-  project_dot(value.data(), centre, radius, middle, pixel);
+  project_dot(value.data(), centre, radius, middle, lens, pixel);
   return {pixel[0], pixel[1]};
 }
 
@@ -179,7 +233,8 @@ PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px) {
   double squares = 0;
   Vec3d const middle = mean_of(points.world);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    Vec2d const residual = points.pixel[k] - fit.camera.image_of_dot(points.world[k], points.dot_radius, middle);
+    Vec2d const residual =
+        points.pixel[k] - fit.camera.image_of_dot(points.world[k], points.dot_radius, middle, points.lens);
     fit.residual_px.push_back(residual);
     squares += dot(residual, residual);
   }

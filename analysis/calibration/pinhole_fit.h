@@ -27,8 +27,9 @@ struct PinholeCamera {
   double cy() const { return value[3]; }
   /// The pixel of a point in the world.
   Vec2d project(Vec3d world) const;
-  /// The centroid of the image of a Lambertian dot, see disc_points. @param middle of what the lens faces [m]
-  Vec2d image_of_dot(Vec3d centre, double radius, Vec3d middle = {}) const;
+  /// The centroid of the image of a Lambertian dot, see disc_points; over the lens's pupil likewise.
+  /// @param middle of what the lens faces [m]
+  Vec2d image_of_dot(Vec3d centre, double radius, Vec3d middle = {}, CalibratedLens const& lens = {}) const;
 };
 
 /// A camera fitted to points.

@@ -9,14 +9,13 @@
 
 namespace gladstone {
 
-/// A key whose value is the name of a file.
+/// A key, or an element of its array, whose value is the name of a file.
 struct SetupFileName {
   std::vector<std::string> path;
   std::string absolute;
 };
 
-/// What a SetupDocument and its SetupTables share. Paths: keys from the root; "[2]" for an element of an array of
-/// tables.
+/// What a SetupDocument and its SetupTables share. Paths: keys from the root; "[2]" for an element of an array.
 struct SetupDocument::State {
   std::string name;    ///< of the file, for messages
   std::string folder;  ///< relative file names refer to it

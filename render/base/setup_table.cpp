@@ -84,7 +84,7 @@ std::string counted(std::size_t at_least, std::size_t at_most) {
 template <class Value, class Text>
 std::string array_text(std::vector<Value> const& values, Text const& text) {
   std::string list;
-  for (auto const value : values) list += (list.empty() ? "" : ", ") + text(value);
+  for (auto const& value : values) list += (list.empty() ? "" : ", ") + text(value);
   return '[' + list + ']';
 }
 
@@ -334,6 +334,24 @@ std::string SetupTable::required_path(std::string const& key) {
   state_->files.push_back({below(path_, key), path});
   use(*state_, path_, key, toml_text(std::string_view(path)));
   return path;
+}
+
+std::vector<std::string> SetupTable::path_list(std::string const& key) {
+  auto const objection = [](SetupNode const& element) -> std::string {
+    if (element.kind != Kind::text) return wrong_kind("a file name in quotes", element);
+    return element.text.empty() ? "must not be empty; give a file name" : "";
+  };
+  auto const* const array = read_array(*this, read(*state_, path_, key), key, "file names in quotes", 0,
+                                       std::numeric_limits<std::size_t>::max(), objection);
+  if (!array) return {};
+  std::vector<std::string> paths;
+  for (std::size_t i = 0; i < array->elements.size(); ++i) {
+    paths.push_back(state_->absolute_name(array->elements[i]));
+    state_->files.push_back({below(below(path_, key), '[' + std::to_string(i) + ']'), paths.back()});
+  }
+  use(*state_, path_, key,
+      array_text(paths, [](std::string const& path) { return toml_text(std::string_view(path)); }));
+  return paths;
 }
 
 std::vector<double> SetupTable::numbers(std::string const& key, std::vector<double> const& fallback, std::size_t count,

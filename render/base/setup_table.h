@@ -57,9 +57,9 @@ class SetupDocument {
   /// The setup as it is written, as one TOML document without defaults; file names that were read are absolute.
   std::string written() const;
 
-  /// Absolute names of the files that were asked for by required_path.
+  /// Absolute names of the files that were asked for by required_path and path_list.
   std::vector<std::string> file_names() const;
-  /// Their keys, paths from the root.
+  /// Their keys, paths from the root; "[2]" for an element of an array.
   std::vector<std::vector<std::string>> file_keys() const;
   /// Takes the texts at these keys as the names of files, as reading the setup would find them, and makes them
   /// absolute; others are none.
@@ -135,6 +135,8 @@ class SetupTable {
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
   /// A file name, made absolute against the setup's folder.
   std::string required_path(std::string const& key);
+  /// File names, made absolute likewise; none where the key is absent.
+  std::vector<std::string> path_list(std::string const& key);
 
   std::vector<double> numbers(std::string const& key, std::vector<double> const& fallback, std::size_t count,
                               Range range = Range::any());

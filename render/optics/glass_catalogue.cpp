@@ -185,23 +185,29 @@ std::string GlassCatalogue::glasses_like(std::string_view name) const {
   return names.empty() ? "" : "; did you mean " + quoted_list(names) + '?';
 }
 
-Glass const& GlassCatalogue::find(std::string_view name, double wavelength, std::string const& where) const {
-  std::string catalogue, own(name);
-  if (auto const colon = name.find(':'); colon != std::string_view::npos) {
-    catalogue = compared(name.substr(0, colon));
-    own = name.substr(colon + 1);
-  } else if (auto const bar = name.rfind('_'); bar != std::string_view::npos) {
-    catalogue = compared(name.substr(bar + 1));
-    own = name.substr(0, bar);
-  }
-  std::string const key = compared(own);
+std::vector<Glass const*> GlassCatalogue::named(std::string_view name, std::string_view catalogue) const {
+  std::string const key = compared(name), owner = compared(catalogue);
   std::vector<Glass const*> found;
   for (Glass const& glass : glasses_) {
-    if (compared(glass.name) == key && (catalogue.empty() || glass.catalogue == catalogue)) found.push_back(&glass);
+    if (compared(glass.name) == key && (owner.empty() || glass.catalogue == owner)) found.push_back(&glass);
+  }
+  return found;
+}
+
+Glass const& GlassCatalogue::find(std::string_view name, double wavelength, std::string const& where) const {
+  std::string_view own = name;
+  std::vector<Glass const*> found = named(name, "");  // the whole name first: F_SILICA names no catalogue
+  if (auto const colon = name.find(':'); found.empty() && colon != std::string_view::npos) {
+    own = name.substr(colon + 1);
+    found = named(own, name.substr(0, colon));
+  } else if (auto const bar = name.rfind('_'); found.empty() && bar != std::string_view::npos) {
+    own = name.substr(0, bar);
+    found = named(own, name.substr(bar + 1));
   }
   if (found.empty()) {
     throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
-                                       "(AGF), or give its index",
+                                       "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
+                                       "give a lens its index",
                                        name, glasses_.size(), glasses_like(own)));
   }
   for (Glass const* glass : found) {

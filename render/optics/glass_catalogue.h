@@ -25,7 +25,7 @@ class GlassCatalogue {
   std::vector<Glass> const& glasses() const { return glasses_; }
 
   /// The glass of that name in upper or lower case, with or without hyphens. "CATALOGUE:NAME" names its catalogue too,
-  /// as does CODE V's "NAME_CATALOGUE".
+  /// as does CODE V's "NAME_CATALOGUE" where no glass bears the whole name.
   /// @param where the name was used, for messages
   /// @throws DataError with candidates, where nobody or several glasses of different index bear the name; or where the
   ///         wavelength [m] is outside the glass's range
@@ -34,6 +34,8 @@ class GlassCatalogue {
  private:
   /// "; did you mean ...?" with the nearest names; empty where none is near.
   std::string glasses_like(std::string_view name) const;
+  /// Those of that name, in that catalogue unless it is empty.
+  std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;
 
   std::vector<Glass> glasses_;
 };

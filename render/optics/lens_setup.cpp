@@ -22,6 +22,7 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
     setup.focal_length = table.number("focal_length_mm", 105.0, Range::positive(1e5)) * unit::millimetre;
     setup.f_number = table.number("f_number", 11.0, aperture);
   }
+  setup.glasses = table.path_list("glasses");
   if (table.has("focus_distance_mm")) {
     if (table.has("focus")) {
       table.problem("focus_distance_mm", "stands beside focus (one of them is enough); remove one");
@@ -44,16 +45,28 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   return setup;
 }
 
-void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::optional<double> object_distance,
-                        std::vector<std::string>& warnings) {
+GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table) {
+  GlassCatalogue glasses = GlassCatalogue::shipped();
+  for (std::string const& file : setup.glasses) {
+    try {
+      glasses.add_file(file);
+    } catch (DataError const& error) {
+      table.problem("glasses", error.what());
+    }
+  }
+  return glasses;
+}
+
+void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const& glasses, double wavelength,
+                        std::optional<double> object_distance, std::vector<std::string>& warnings) {
   LensOptions options;
   options.object_distance = object_distance;
   options.fresnel = setup.transmittance != Transmittance::ideal;
   options.absorption = setup.transmittance == Transmittance::glass;
   if (std::isfinite(setup.f_number)) options.f_number = setup.f_number;
   try {
-    auto const lens = std::make_shared<Lens const>(
-        build_lens(read_prescription(setup.file), GlassCatalogue::shipped(), wavelength, options));
+    auto const lens =
+        std::make_shared<Lens const>(build_lens(read_prescription(setup.file), glasses, wavelength, options));
     ParaxialLens const paraxial = paraxial_lens(*lens);
     setup.focal_length = std::abs(paraxial.effective_focal_length);
     if (std::isnan(setup.f_number) && std::isfinite(paraxial.f_number)) setup.f_number = paraxial.f_number;

@@ -26,6 +26,7 @@ struct LensSetup {
   double focus_distance = 0.0;  ///< from the front principal plane, for Focus::distance [m]
   SpotModel spot = SpotModel::gaussian;
   Transmittance transmittance = Transmittance::ideal;
+  std::vector<std::string> glasses;          ///< catalogues (AGF) beside the shipped ones, for windows too
   std::string file;                          ///< of a prescription; empty: an ideal thin lens
   std::shared_ptr<Lens const> prescription;  ///< made ready at the setup's wavelength; null: an ideal thin lens
 };
@@ -34,11 +35,14 @@ struct LensSetup {
 /// @param focus_on what focus = "..." calls the plane of the sources: "target", or "sheet" for PIV; it is the default
 LensSetup read_lens_setup(SetupTable table, std::string const& focus_on = "target");
 
+/// The shipped glasses and those of the catalogues that a setup names. Problems go to the key `glasses`.
+GlassCatalogue read_glasses(LensSetup const& setup, SetupTable table);
+
 /// Reads the prescription that a setup names, at the setup's wavelength [m]: sets focal length and f-number too.
 /// Problems go to the key `file`. @param object_distance from the first vertex to the plane in focus, that the f-number
 /// of a telecentric lens is of [m]; empty: not known @param warnings of glasses that are not known well
-void build_prescription(LensSetup& setup, SetupTable table, double wavelength, std::optional<double> object_distance,
-                        std::vector<std::string>& warnings);
+void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const& glasses, double wavelength,
+                        std::optional<double> object_distance, std::vector<std::string>& warnings);
 
 /// Image distance and magnifications of a thin lens (Raffel 2015, Exp. Fluids 56:60), or of one that is as good as it
 /// about the axis.

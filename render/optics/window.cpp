@@ -10,7 +10,6 @@ std::vector<WindowSetup> read_windows(SetupTable root) {
     WindowSetup window;
     if (table.word("side", "camera", {"camera", "target"}) == "target") window.side = WindowSide::target;
     window.glass = table.text("glass", "N-BK7");
-    window.where = table.where("glass");
     window.thickness = table.number("thickness_mm", 10.0, Range::positive(1e4)) * unit::millimetre;
     auto const position = table.numbers("position_mm", {0, 0, 0}, 3);
     if (!table.has("position_mm")) table.problem("position_mm", "is missing (the centre of the window); add it");

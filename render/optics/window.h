@@ -15,7 +15,6 @@ enum class WindowSide { target, camera };
 struct WindowSetup {
   WindowSide side = WindowSide::camera;
   std::string glass;
-  std::string where;      ///< file:line of the glass, for messages
   double index = 1;       ///< of the glass at the setup's wavelength, against its surroundings [1]
   double absorption = 0;  ///< of the glass, in light per length; 0 unless asked for [1/m]
   double thickness = 0;   ///< [m]

@@ -74,6 +74,13 @@ Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
   return {std::atan2(-tilted.y, tilted.z), std::asin(tilted.x)};
 }
 
+/// Where a pixel of the setup's camera sees the dots' plane [m].
+Vec2d seen_place(Camera const& camera, Setup const& setup, Vec2d pixel) {
+  auto const seen = camera.unproject(pixel, Pose<double>{{0, 0, -setup.z_d}});
+  if (!seen) throw DataError("camera.pose", "its picture reaches beyond the dots' plane; turn the camera less");
+  return seen->place;
+}
+
 }  // namespace
 
 Vec2d sensor_tilt(Setup const& setup) {
@@ -119,18 +126,35 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
 
 Vec2d posed_extent(Setup const& setup) {
   Camera const camera = build_camera(setup);
-  Pose<double> const plane{{0, 0, -setup.z_d}};
   double const margin = setup.view_margin_px, right = setup.camera.columns + margin, low = setup.camera.rows + margin;
   Vec2d const centre = setup.target_centre();
   Vec2d half{};
   for (Vec2d const corner : {Vec2d{-margin, -margin}, {right, -margin}, {-margin, low}, {right, low}}) {
-    auto const seen = camera.unproject(corner, plane);
-    if (!seen) throw DataError("camera.pose", "its picture reaches beyond the dots' plane; turn the camera less");
-    half = {std::max(half.x, std::abs(seen->place.x - centre.x)), std::max(half.y, std::abs(seen->place.y - centre.y))};
+    Vec2d const off = seen_place(camera, setup, corner) - centre;
+    half = {std::max(half.x, std::abs(off.x)), std::max(half.y, std::abs(off.y))};
   }
   // in whole micrometres, so that the resolved setup, which holds mm, gives the same dots to the last bit
   auto const in_mm = [](double metres) { return std::ceil(2 * metres / unit::micrometre) * 1e-3; };
   return Vec2d{in_mm(half.x), in_mm(half.y)} * unit::millimetre;
+}
+
+double posed_view_area(Setup const& setup) {
+  constexpr int pieces = 4;  // of an edge, which distortion curves
+  Camera const camera = build_camera(setup);
+  double const width = setup.camera.columns, height = setup.camera.rows;
+  std::vector<Vec2d> outline;
+  Vec2d const corners[] = {{0, 0}, {width, 0}, {width, height}, {0, height}, {0, 0}};
+  for (int k = 0; k < 4 * pieces; ++k) {
+    Vec2d const from = corners[k / pieces], to = corners[k / pieces + 1];
+    Vec2d const edge = from + (static_cast<double>(k % pieces) / pieces) * (to - from);
+    outline.push_back(seen_place(camera, setup, edge - Vec2d{0.5, 0.5}));
+  }
+  double twice = 0;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    Vec2d const a = outline[k] - outline[0], b = outline[(k + 1) % outline.size()] - outline[0];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return std::abs(twice) / 2;
 }
 
 Camera build_camera(Setup const& setup) {

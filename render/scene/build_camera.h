@@ -19,6 +19,10 @@ Vec2d sensor_tilt(Setup const& setup);
 /// margin all round [m].
 Vec2d posed_extent(Setup const& setup);
 
+/// Area that a turned or tilted camera's picture takes on the dots' plane: of the polygon through several pixels of
+/// each of its edges [m^2].
+double posed_view_area(Setup const& setup);
+
 /// The camera of a setup, focused: an ideal thin lens by its formula; a prescription, or any lens behind windows, by
 /// moving the sensor along the axis to where the rays from the axis point of the plane in focus, traced through stop
 /// and glass, come closest together (least squares). @throws DataError where no ray gets through, or they meet nowhere

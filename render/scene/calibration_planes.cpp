@@ -47,7 +47,8 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
   SetupTable calibration = root.table("calibration");
   double const mm = unit::millimetre, nearest = *std::max_element(setup.planes.begin(), setup.planes.end());
   double const least = setup.lens.prescription ? 0.0 : setup.lens.focal_length;
-  if (double const way = plane_setup(setup, nearest).z_b(); !(way > least)) {
+  double const front = setup.lens.prescription ? paraxial_camera(setup).front : 0.0;  // of its glass
+  if (double const way = plane_setup(setup, nearest).z_b() + front; !(way > least)) {
     calibration.problem("planes_mm",
                         fmt::format("has the plane Z = {:.6g} mm, {:.6g} mm before the lens (within its focal length, "
                                     "or behind it: there is no image); move the planes or the camera",

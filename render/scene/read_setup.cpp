@@ -131,14 +131,32 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
 }
 
+/// Finds what windows are made of. Problems go to the keys `glass`.
+void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& glasses) {
+  std::vector<SetupTable> tables = root.tables("window");  // those that the windows were read from
+  double const wavelength = setup.medium.wavelength;
+  for (std::size_t i = 0; i < setup.windows.size(); ++i) {
+    WindowSetup& window = setup.windows[i];
+    std::string const where = tables[i].where("glass");
+    try {
+      Glass const& glass = glasses.find(window.glass, wavelength, where);
+      window.index = glass.index(wavelength);
+      if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
+    } catch (DataError const& error) {
+      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // which puts the place before it
+    }
+  }
+}
+
 /// Makes lens and windows ready at the setup's wavelength, and finds the principal plane of a lens that is placed by
 /// its first vertex.
 void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
+  GlassCatalogue const glasses = read_glasses(setup.lens, lens);
   if (!setup.lens.file.empty()) {
     std::optional<double> object_distance;
     if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is the first vertex' so far
-    build_prescription(setup.lens, lens, setup.medium.wavelength, object_distance, warnings);
+    build_prescription(setup.lens, lens, glasses, setup.medium.wavelength, object_distance, warnings);
   }
   if (setup.lens.prescription) {
     ParaxialLens const paraxial = paraxial_lens(*setup.lens.prescription);
@@ -153,16 +171,7 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
                                    afocal ? "an afocal" : "a telecentric", afocal ? "principal plane" : "perspective"));
     }
   }
-  for (WindowSetup& window : setup.windows) {
-    try {
-      double const wavelength = setup.medium.wavelength;
-      Glass const& glass = GlassCatalogue::shipped().find(window.glass, wavelength, window.where);
-      window.index = glass.index(wavelength);
-      if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
-    } catch (DataError const& error) {
-      root.problem("window", error.what());
-    }
-  }
+  find_window_glasses(setup, root, glasses);
 }
 
 /// Moves the lens to where it focuses on a sensor that stands where the setup says.

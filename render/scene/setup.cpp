@@ -66,10 +66,15 @@ double Setup::spot_diameter_px() const {
   return SpotSize{spot_scale_px()}.first_zero_diameter() * (lens.spot == SpotModel::seed_eq8 ? pi : 1.0);
 }
 
+double Setup::pixel_area() const {
+  if (pose || camera.tilted()) return posed_view_area(*this) / (camera.columns * camera.rows);
+  double const px = camera.pixel_pitch / imaging().magnification;
+  return px * px;
+}
+
 double Setup::dot_count() const {
   Vec2d const extent = target_extent();
-  double const px = camera.pixel_pitch / imaging().magnification;
-  return std::round(target.dots_per_32px_window / 1024.0 * extent.x * extent.y / (px * px));
+  return std::round(target.dots_per_32px_window / 1024.0 * extent.x * extent.y / pixel_area());
 }
 
 }  // namespace gladstone

@@ -102,6 +102,8 @@ struct Setup {
   /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
   /// "seed_eq8" (pi times that, as the seed prints it); 0 without a spot.
   double spot_diameter_px() const;
+  /// Area of the target that a pixel sees [m^2]; of a turned or tilted camera the mean over its picture.
+  double pixel_area() const;
   /// Number of dots on the target, for kind = "dots".
   double dot_count() const;
 };

@@ -63,6 +63,22 @@ TEST(Pinhole, ADotsImageIsNotThatOfItsCentre) {
   EXPECT_NEAR(shift.y, 0, 1e-12);
 }
 
+// Light that a point of a slanted plane sends through the place (x, y) of a pupil 1 m away is 1 - x tan a, the mean of
+// x over the pupil so weighted - (R^2 / 4) tan a. A ray through x arrives where the plane in focus, D away and square
+// to the axis, has x (1 - D): 1000 x (1 - D) / D px. Left out are fourth powers of R, (R / 1 m)^2 = 4e-4 of this.
+TEST(Pinhole, AcrossTheApertureLightFallsOff) {
+  double const slant = 0.5, c = std::cos(slant), s = std::sin(slant), R = 0.02, D = 0.8;
+  PinholeCamera const camera{{1000, 1000, 0, 0, 0, 0, 0, 0, 0, slant, 0, 0, 0, 1}};
+  Vec3d const axis{-s, 0, c};  // in the world
+  auto const shift = [&](double focus) {
+    return camera.image_of_dot({}, 0, {}, {R, (focus - 1) * axis, axis}) - camera.project({});
+  };
+  double const expected = -1000 * R * R / 4 * std::tan(slant) * (1 - D) / D;
+  EXPECT_NEAR(shift(D).x, expected, 3e-3 * std::abs(expected));
+  EXPECT_NEAR(shift(D).y, 0, 1e-12);
+  EXPECT_NEAR(length(shift(1)), 0, 1e-9);  // in focus all rays meet
+}
+
 TEST(PinholeFit, FindsTheCameraOfExactPoints) {
   PinholeFit const fit = fit_pinhole(points_of(wide_camera(), 0), middle);
   EXPECT_LT(fit.rms_px, 1e-8);

@@ -502,6 +502,27 @@ TEST(SetupDocument, ValuesOfAnotherFileKeepTheirPlaceAndTheirFolder) {
                                            HasSubstr("study.toml:1:1: target.size = -1: must be greater than 0")));
 }
 
+TEST(SetupDocument, AListOfFilesIsRelativeToTheSetupToo) {
+  auto setup = document("[lens]\nglasses = [\"a.agf\", \"/other/b.agf\"]\n");
+  std::vector<std::string> const expected{"/data/cases/a.agf", "/other/b.agf"};
+  EXPECT_EQ(setup.root().table("lens").path_list("glasses"), expected);
+  EXPECT_EQ(setup.file_names(), expected);
+  std::string const absolute = "[lens]\nglasses = [\"/data/cases/a.agf\", \"/other/b.agf\"]\n";
+  EXPECT_EQ(setup.resolved(), absolute);
+  EXPECT_EQ(setup.written(), absolute);
+  auto other = document("[lens]\nglasses = [\"a.agf\", \"/other/b.agf\"]\n");
+  other.name_files(setup.file_keys());
+  EXPECT_EQ(other.file_names(), expected);
+  EXPECT_EQ(other.written(), absolute);
+  auto wrong = document("[lens]\none = \"a.agf\"\nnumber = [1]\nempty = [\"\"]\n");
+  for (char const* key : {"one", "number", "empty", "absent"}) {
+    EXPECT_TRUE(wrong.root().table("lens").path_list(key).empty()) << key;
+  }
+  EXPECT_THAT(problems(wrong), ElementsAre(HasSubstr("case.toml:2:1: lens.one = \"a.agf\": must be an array"),
+                                           HasSubstr("3:1: lens.number = [1]: value 1, 1, must be a file name"),
+                                           HasSubstr("4:1: lens.empty = [\"\"]: value 1, \"\", must not be empty")));
+}
+
 TEST(SetupDocument, WrittenIsTheTextWithFileNamesMadeAbsolute) {
   auto setup = document("schema = 1\n[target]\nfile = \"a.csv\"\n[medium.field]\nkind = \"none\"\n");
   setup.root().table("target").required_path("file");

@@ -86,6 +86,24 @@ TEST_F(Cameras, SeeOneTarget) {
   EXPECT_NE(dataset("case/left/truth.h5", "/dots/reference_px"), dataset("case/right/truth.h5", "/dots/reference_px"));
 }
 
+// Dots of a file, too, are of one size on the target, whatever lens looks at them: 3 px of the first camera.
+TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
+  write("dots.csv", "x_mm,y_mm\n0,0\n0.5,0.25\n");
+  write("points.toml", std::string(stereo) + "\n");
+  render(
+      "case",
+      {"--set", "target.kind=\"points\"", "--set", "target.file=\"dots.csv\"", "--set", "target.dot_diameter_px=3.0"},
+      "points.toml");
+  auto const diameter_mm = [this](std::string const& camera) {
+    std::string const setup = read("case/" + camera + "/setup.toml"), key = "dot_diameter_mm = ";
+    auto const at = setup.find(key);
+    return at == std::string::npos ? 0.0 : std::stod(setup.substr(at + key.size()));
+  };
+  // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um
+  double const z_b = 1000 / std::cos(std::atan(132.3 / 750));
+  EXPECT_NEAR(diameter_mm("right"), 0.03 * (z_b - 105) / 105, 1e-9);
+}
+
 TEST_F(Cameras, EachCaseIsACaseLikeAnyOther) {
   render("case");
   EXPECT_GT(json_of({"correlate", "case/left", "--quiet"})["valid"].get<int>(), 0);

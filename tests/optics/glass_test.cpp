@@ -43,6 +43,20 @@ TEST(Glass, FusedSilicaHasMalitsonsIndices) {
   EXPECT_NEAR(glass("silica").nd(), 1.458463687, 5e-10);
 }
 
+// Zemax's name of fused silica has a bar that names no catalogue; CODE V's bars do.
+TEST(Glass, ABarMayBePartOfTheName) {
+  GlassCatalogue catalogue;
+  std::string const malitson =
+      " 2\nCD 0.6961663 0.00467914826 0.4079426 0.0135120631 0.8974794 97.9340025\nLD 0.21 3.7\n";
+  catalogue.add("NM F_SILICA" + malitson + "NM OTHER" + malitson, "OWN", "own.agf");
+  EXPECT_EQ(catalogue.find("F_SILICA", 532e-9, "test:1").name, "F_SILICA");
+  EXPECT_EQ(catalogue.find("f_silica_own", 532e-9, "test:1").name, "F_SILICA");
+  EXPECT_EQ(catalogue.find("OWN:F_SILICA", 532e-9, "test:1").name, "F_SILICA");
+  EXPECT_EQ(catalogue.find("OTHER_OWN", 532e-9, "test:1").name, "OTHER");
+  EXPECT_THAT(error_of([&] { catalogue.find("OTHER_SCHOTT", 532e-9, "test:1"); }),
+              AllOf(HasSubstr("in no catalogue"), HasSubstr("lens.glasses"), HasSubstr("--glass")));
+}
+
 // Every catalogue line prints nd and Vd, rounded: the formula must give them, or one was copied wrongly.
 TEST(Glass, EveryShippedGlassHasAPlausibleIndexAndAbbeNumber) {
   EXPECT_GT(GlassCatalogue::shipped().glasses().size(), 150u);

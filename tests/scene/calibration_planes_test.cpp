@@ -103,5 +103,15 @@ TEST(CalibrationSetup, MistakesAreNamedWithTheirCure) {
   EXPECT_THAT([] { read_setup_text("[calibration]\n"); }, refused("1:", "experiment = \"calibration\""));
 }
 
+// The wide-angle lens is 94 mm long, and its glass begins before its front principal plane, which stands at Z = 300 mm:
+// a plane 10 mm before that is within the lens.
+TEST(CalibrationPlanes, WithinALensAreRefused) {
+  std::string const lens = "[lens]\nmodel = \"prescription\"\nfile = \"" + std::string(GLADSTONE_DATA_DIR) +
+                           "/lenses/wide_angle.toml\"\n[geometry]\nz_a_mm = 300\n";
+  EXPECT_NO_THROW(read_setup_text(calibration(lens, "planes_mm = [-10, 10]\n")));
+  EXPECT_THAT([&] { read_setup_text(calibration(lens, "planes_mm = [-10, 290]\n")); },
+              refused("3:1", "has the plane Z = 290 mm"));
+}
+
 }  // namespace
 }  // namespace gladstone

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "render/base/units.h"
 #include "render/optics/glass_catalogue.h"
@@ -13,7 +14,10 @@
 namespace gladstone {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 using testing::ThrowsMessage;
 
 Setup setup_of(std::string const& text) { return read_setup_text(text).setup; }
@@ -66,9 +70,20 @@ TEST(Windows, AreReadWithTheirGlass) {
   EXPECT_NEAR(setup.windows[0].index, 1.519472583, 1e-8);
   EXPECT_EQ(setup.windows[1].side, WindowSide::camera);
   EXPECT_NEAR(setup.windows[1].tilt.x, 5 * unit::degree, 1e-15);
-  EXPECT_THAT([] { setup_of("[[window]]\nglass = \"N-BK77\"\nposition_mm = [0, 0, 1]\n"); },
-              ThrowsMessage<SetupError>(HasSubstr("N-BK77")));
   EXPECT_THAT([] { setup_of("[[window]]\n"); }, ThrowsMessage<SetupError>(HasSubstr("position_mm")));
+}
+
+TEST(Windows, OfUnknownGlassAreNamedOnceAtTheirKey) {
+  try {
+    setup_of("[[window]]\nposition_mm = [0, 0, 50]\n[[window]]\nglass = \"N-BK77\"\nposition_mm = [0, 0, 100]\n");
+    FAIL() << "not refused";
+  } catch (SetupError const& error) {
+    ASSERT_EQ(error.problems().size(), 1u);
+    EXPECT_EQ(error.problems()[0].where, "case.toml:4:1");
+    EXPECT_THAT(error.problems()[0].message,
+                AllOf(StartsWith("window[1].glass = \"N-BK77\": glass \"N-BK77\" is in no catalogue"),
+                      Not(HasSubstr("case.toml")), Not(HasSubstr("position_mm")), HasSubstr("lens.glasses")));
+  }
 }
 
 // What a plate of glass passes of the light along the axis: each face 4 n / (n + 1)^2, and the glass what its catalogue
@@ -100,6 +115,35 @@ TEST(PrescribedLens, SetsFocalLengthAndStop) {
   EXPECT_NEAR(stopped.lens.prescription->stop_radius / own.lens.prescription->stop_radius, 2.0 / 8, 0.01);
   // M = f / (Z_B - f) from the front principal plane
   EXPECT_NEAR(own.imaging().magnification, own.lens.focal_length / (1 - own.lens.focal_length), 1e-9);
+}
+
+/// A file in the folder of temporary files. @return its name
+std::string written_file(std::string const& name, std::string const& text) {
+  std::string const path = testing::TempDir() + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+// A catalogue of one's own: n^2 = 1 + 1.25 lambda^2 / (lambda^2 - 0) = 2.25, and fused silica by Malitson (J. Opt. Soc.
+// Am. 55 (1965) 1205), 1.460706345 at 532 nm. A lens of n = 1.5 with radii R = 100 mm and t = 2 mm thick has
+// 1/f = (n - 1) (2 / R - (n - 1) t / (n R^2)).
+TEST(Glasses, OfOnesOwnCatalogueMakeLensesAndWindows) {
+  std::string const own =
+      written_file("own_glasses.agf",
+                   "NM ROUND 2\nCD 1.25 0\nLD 0.3 2\nNM F_SILICA 2\nCD 0.6961663 0.00467914826 0.4079426 0.0135120631 "
+                   "0.8974794 97.9340025\nLD 0.21 3.7\n");
+  std::string const lens = written_file("own_lens.toml",
+                                        "schema = 1\nf_number = 10\n[[surface]]\nradius_mm = 100\nthickness_mm = 2\n"
+                                        "glass = \"ROUND\"\nstop = true\nsemi_diameter_mm = 8\n[[surface]]\n"
+                                        "radius_mm = -100\nthickness_mm = 95\nsemi_diameter_mm = 8\n");
+  std::string const model = "[lens]\nmodel = \"prescription\"\nfile = \"" + lens + "\"\n";
+  std::string const window = "[[window]]\nglass = \"F_SILICA\"\nposition_mm = [0, 0, 100]\n";
+  gladstone::Setup const setup = setup_of(model + "glasses = [\"" + own + "\"]\n" + window);
+  EXPECT_NEAR(setup.lens.focal_length, 1 / (0.5 * (2 / 0.1 - 0.5 * 2e-3 / (1.5 * 0.01))), 1e-9);
+  EXPECT_NEAR(setup.windows.at(0).index, 1.460706345, 5e-10);
+  EXPECT_THAT([&] { setup_of(model); }, refused("3:1", "to the setup's lens.glasses"));
+  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"none.agf\"]\n"); }, refused("2:1", "none.agf"));
+  EXPECT_THAT([&] { setup_of("[lens]\nglasses = [\"" + lens + "\"]\n"); }, refused("2:1", "holds no glass"));
 }
 
 TEST(PrescribedLens, MayBePlacedByItsFirstVertex) {

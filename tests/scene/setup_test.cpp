@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "render/scene/build_camera.h"
 #include "render/scene/scene.h"
 #include "tests/scene/read_setup_text.h"
 #include "tests/scene/small_scenes.h"
@@ -237,6 +238,24 @@ TEST(BuildScene, MakesTheDotsOfTheTarget) {
   Vec2d const px{12.5, 40.25}, back = regular.to_pixel(regular.to_target(px));
   EXPECT_NEAR(back.x, px.x, 1e-12);
   EXPECT_NEAR(back.y, px.y, 1e-12);
+}
+
+// Dots stand at random, so the number in the picture is binomial about the mean that the setup asks for: 20 in 32 x 32
+// px make 1280 in 256 x 256, with a standard deviation below sqrt(1280) = 36. By the magnification on the axis alone a
+// view at 60 degrees would hold 1 / cos(60 deg) = 2 times as many.
+TEST(BuildScene, AnObliqueViewHoldsTheDotsThatAreAskedFor) {
+  for (std::string const sensor : {"", "[camera.sensor]\nscheimpflug = \"auto\"\n"}) {
+    ReadSetup const read = read_setup_text(
+        "[camera]\npixels = [256, 256]\n[camera.pose]\nposition_mm = [866, 0, 250]\nlook_at_mm = [0, 0, -250]\n" +
+        sensor + "[geometry]\nz_d_mm = 250\n[medium.field]\nkind = \"none\"\n[target]\ndots_per_32px_window = 20\n");
+    Camera const camera = build_camera(read.setup);
+    int seen = 0;
+    for (Vec2d const at : build_scene(read.setup).dots.centre) {
+      auto const px = camera.project({at.x, at.y, -0.25});
+      seen += px && std::abs(px->x - 127.5) < 128 && std::abs(px->y - 127.5) < 128;
+    }
+    EXPECT_NEAR(seen, 1280, 4 * 36) << sensor;
+  }
 }
 
 // F13 at Table 1: first zero 1.595 px wide; matched sigma 0.4206 of 0.6539 px; the seed's print times pi, 5.01 px.
