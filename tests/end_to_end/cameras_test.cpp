@@ -86,14 +86,15 @@ TEST_F(Cameras, SeeOneTarget) {
   EXPECT_NE(dataset("case/left/truth.h5", "/dots/reference_px"), dataset("case/right/truth.h5", "/dots/reference_px"));
 }
 
-// Dots of a file, too, are of one size on the target, whatever lens looks at them: 3 px of the first camera.
+// Dots of a file, too, are of one size on the target, whatever lens looks at them: 3 px of the first camera. They stand
+// where the axes meet the target, 132.3 mm / 750 mm of 250 mm off its middle.
 TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
-  write("dots.csv", "x_mm,y_mm\n0,0\n0.5,0.25\n");
-  write("points.toml", std::string(stereo) + "\n");
-  render(
-      "case",
-      {"--set", "target.kind=\"points\"", "--set", "target.file=\"dots.csv\"", "--set", "target.dot_diameter_px=3.0"},
-      "points.toml");
+  write("dots.csv", "x_mm,y_mm\n44.1,0\n44.6,0.5\n-44.1,0\n-44.6,0.5\n");
+  std::string text = stereo;
+  std::string const dots = "dots_per_32px_window = 10.0";
+  text.replace(text.find(dots), dots.size(), "kind = \"points\"\nfile = \"dots.csv\"\ndot_diameter_px = 3.0");
+  write("points.toml", text);
+  render("case", {}, "points.toml");
   auto const diameter_mm = [this](std::string const& camera) {
     std::string const setup = read("case/" + camera + "/setup.toml"), key = "dot_diameter_mm = ";
     auto const at = setup.find(key);
@@ -101,6 +102,7 @@ TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
   };
   // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um
   double const z_b = 1000 / std::cos(std::atan(132.3 / 750));
+  EXPECT_NEAR(diameter_mm("left"), 0.03 * (z_b - 105) / 105, 1e-9);
   EXPECT_NEAR(diameter_mm("right"), 0.03 * (z_b - 105) / 105, 1e-9);
 }
 
