@@ -32,15 +32,14 @@ double off_axis_px(Camera const& camera, Vec2d at) {
   return pixel ? length(*pixel - camera.sensor.axis_pixel()) : std::nan("");
 }
 
-// A concave mirror of f = 200 mm with the stop at its vertex: the image of a plane 2250 mm away lies 1/(1/200 - 1/2250)
-// mm before it, and chief rays turn at the vertex, so that heights are as the distances. The sensor stands where the
-// traced rays of the whole stop meet: a paraboloid has no spherical aberration at infinity, at 2250 mm it is of order
-// (10/400)^2 of a micrometre's shift.
+// A concave mirror of f = 200 mm with the stop at its vertex: the image of a plane s = 2250 mm away lies
+// s' = 1/(1/200 - 1/2250) mm before it, and chief rays turn at the vertex, so that heights are as the distances. An
+// ellipsoid whose foci are these points, e = (s - s')/(s + s') = 37/45, images one into the other by all of its stop.
 TEST(MirrorCamera, ImagesByOneMirror) {
-  Camera const camera =
-      camera_with("one_mirror", "[[surface]]\nradius_mm = -400.0\nconic = -1.0\nglass = \"mirror\"\nstop = true\n");
+  Camera const camera = camera_with(
+      "one_mirror", "[[surface]]\nradius_mm = -400.0\nconic = -0.67604938271604938\nglass = \"mirror\"\nstop = true\n");
   double const image = 1 / (1 / 0.2 - 1 / 2.25);
-  EXPECT_NEAR(camera.sensor.pose.origin.z, 2.0 - image, 1e-6);
+  EXPECT_NEAR(camera.sensor.pose.origin.z, 2.0 - image, 1e-9);
   for (Vec2d const at : {Vec2d{5e-3, 0}, {0, -7e-3}, {4e-3, 3e-3}}) {
     EXPECT_NEAR(off_axis_px(camera, at), image / 2.25 * length(at) / 10e-6, 1e-5 * length(at) / 10e-6);
   }

@@ -23,6 +23,12 @@ window_px = [64, 32, 16]
 
 /// A sheet with what it was made of.
 struct MadeSheet {
+  explicit MadeSheet(CaseSetup setup)
+      : loaded(std::move(setup)),
+        given(bench_given(loaded)),
+        bench(bench_of(loaded.setup, given)),
+        sheet(bos_sheet(loaded.setup, bench)) {}
+
   CaseSetup loaded;
   BenchGiven given;
   Bench<double> bench;
@@ -30,12 +36,7 @@ struct MadeSheet {
 };
 
 std::unique_ptr<MadeSheet> sheet_of(std::string const& text) {
-  auto made =
-      std::make_unique<MadeSheet>(MadeSheet{load_case_setup(SetupDocument::from_text(text, "setup.toml")), {}, {}, {}});
-  made->given = bench_given(made->loaded);
-  made->bench = bench_of(made->loaded.setup, made->given);
-  made->sheet = bos_sheet(made->loaded.setup, made->bench);
-  return made;
+  return std::make_unique<MadeSheet>(load_case_setup(SetupDocument::from_text(text, "setup.toml")));
 }
 
 // Every default of a setup is Table 1's; K = 2.26e-4, 10 kg/m^4 over 10 mm.

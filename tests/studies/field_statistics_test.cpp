@@ -10,7 +10,7 @@ namespace {
 /// A field that no file holds: v = 1 everywhere, and 4 in one node.
 class OneNode final : public FieldSource {
  public:
-  OneNode(std::array<int, 3> nodes, std::array<int, 3> node) : node_(node) {
+  OneNode(std::array<int, 3> nodes, std::array<int, 3> node) : FieldSource(1), node_(node) {
     grid_.nodes = nodes;
     grid_.spacing = {1.0, 0.5, 0.25};
   }
