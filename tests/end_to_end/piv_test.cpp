@@ -302,7 +302,13 @@ TEST_F(Piv, PicturesHaveABackground) {
   render("spoilt", {}, "spoilt.toml");
   succeed({"correlate", "spoilt", "--quiet"});
   auto const errors = json_of({"compare", "spoilt", "--quiet", "--no-figures"});
-  EXPECT_EQ(errors["budget"]["terms"]["estimator"], clean["budget"]["terms"]["estimator"]);
+  // the estimator sees images without a background; their levels differ by the exposure, and correlation in float rounds
+  // them to 6e-8 of a few px
+  for (char const* part : {"bias_u_px", "bias_v_px", "random_u_px", "random_v_px"}) {
+    EXPECT_NEAR(errors["budget"]["terms"]["estimator"][part].get<double>(),
+                clean["budget"]["terms"]["estimator"][part].get<double>(), 5e-7)
+        << part;
+  }
   EXPECT_GT(errors["budget"]["terms"]["noise"]["rms_px"].get<double>(),
             2 * clean["budget"]["terms"]["noise"]["rms_px"].get<double>());
   EXPECT_EQ(dataset("spoilt/truth.h5", "/particles/displacement_px").size(),
