@@ -302,8 +302,8 @@ TEST_F(Piv, PicturesHaveABackground) {
   render("spoilt", {}, "spoilt.toml");
   succeed({"correlate", "spoilt", "--quiet"});
   auto const errors = json_of({"compare", "spoilt", "--quiet", "--no-figures"});
-  // the estimator sees images without a background; their levels differ by the exposure, and correlation in float rounds
-  // them to 6e-8 of a few px
+  // the estimator sees images without a background; their levels differ by the exposure, and correlation in float
+  // rounds them to 6e-8 of a few px
   for (char const* part : {"bias_u_px", "bias_v_px", "random_u_px", "random_v_px"}) {
     EXPECT_NEAR(errors["budget"]["terms"]["estimator"][part].get<double>(),
                 clean["budget"]["terms"]["estimator"][part].get<double>(), 5e-7)

@@ -48,7 +48,8 @@ TEST(DesignSheet, HasEveryFormulaOfBosFromF1ToF27) {
     EXPECT_TRUE(std::isfinite(row.value)) << row.key;
     EXPECT_FALSE(row.formula.empty() || row.source.empty() || row.name.empty()) << row.key;
   }
-  for (int number = 1; number <= 27; ++number) EXPECT_EQ(ids.count(std::string("F").append(std::to_string(number))), 1u) << number;
+  for (int number = 1; number <= 27; ++number)
+    EXPECT_EQ(ids.count(std::string("F").append(std::to_string(number))), 1u) << number;
 }
 
 TEST(DesignSheet, IsTableOneToThePrintedDigits) {
