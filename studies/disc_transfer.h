@@ -1,8 +1,6 @@
 #pragma once
 
-#include <math.h>  // j1
-
-#include <cmath>
+#include <cmath>  // and j1, which is of POSIX
 
 #include "render/base/units.h"
 
