@@ -81,21 +81,24 @@ class Views : public testing::TestWithParam<LensletLayout> {};
 
 // The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, v where the lens images it: a pixel's
 // worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images
-// fall on lenslets alike, knows it to half of an eleventh of a pixel.
+// fall on lenslets alike, knows it to half of an eleventh of a pixel. They lie within one lenslet's
+// width. A row of a hexagonal array stands sqrt(3/4) pitch from the next, the pixels that show its light a whole one:
+// beside the middle row that is up to 0.13 pixels off.
 TEST_P(Views, ShowTheParallaxThatGeometrySays) {
   gladstone::Setup const setup = plenoptic_setup(GetParam());
   PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
   EXPECT_NEAR(camera.picture_px(), 12.04, 0.01);
   double const z_i = 1 / (1 / 0.105 - 1 / 0.75);
+  double const beside = GetParam() == LensletLayout::hexagonal ? 1 - std::sqrt(0.75) : 0;
   for (double const z : {25 * mm, 0.0, -30 * mm}) {
-    Image<double> const raw = picture(setup, spread_at(z, 11, 2, GetParam()));
+    Image<double> const raw = picture(setup, spread_at(z, 11, 0, GetParam()));
     PlenopticViews const views(camera, raw);
     Vec2d const middle = centroid(views.view({}));
     for (Vec2d const s : {Vec2d{8 * mm, 0}, Vec2d{-5 * mm, 6 * mm}, Vec2d{0, -9 * mm}}) {
       double const v = 1 / (1 / 0.105 - 1 / (750 * mm - z));
       Vec2d const moved = (1 - z_i / v) / pitch * Vec2d{-s.x, s.y};  // of the picture, turned round by the lens
       Vec2d const seen = centroid(views.view(s)) - middle;
-      EXPECT_LT(length(seen - moved), 0.05 + 0.03 * length(moved)) << z << ' ' << s.x << ' ' << s.y;
+      EXPECT_LT(length(seen - moved), 0.05 + beside + 0.03 * length(moved)) << z << ' ' << s.x << ' ' << s.y;
     }
   }
 }
