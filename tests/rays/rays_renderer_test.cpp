@@ -66,24 +66,6 @@ TEST(RaysRenderer, GivesTheTruthAndTheImagesOfFocusedDots) {
   EXPECT_LT(levels_between(rays.light.flow, fast.light.flow), 0.5 + 1.0 / 3);
 }
 
-// Out of focus neither knows more than its rays: the same rays would give the same, others do within their scatter.
-TEST(RaysRenderer, AgreesWithPlainRaysOutOfFocus) {
-  auto setup = table1_setup(64);
-  setup.medium.field = uniform_gradient(40, -20);
-  setup.lens.focus = Focus::distance;
-  setup.lens.focus_distance = 0.99;  // a blur of 1.1 px
-  Scene scene = scene_with_dots(setup, {{31.2, 30.4}}, 16384);
-  ASSERT_FALSE(focused_dots(scene));
-  Rendering const plain = render_all(scene), rays = by_rays(scene);
-  Vec2d const off = rays.truth.displacement_px[0] - plain.truth.displacement_px[0];
-  EXPECT_LT(length(off),
-            3 * length(rays.truth.displacement_error_px[0]) + 3 * length(plain.truth.displacement_error_px[0]));
-  EXPECT_NEAR(rays.truth.flux[0].y / plain.truth.flux[0].y, 1, 1e-3);
-  // a pixel has the light of a tenth of the rays, known to 2.5 % by chance; points that fill evenly know it ten times
-  // better
-  EXPECT_LT(levels_between(rays.light.flow, plain.light.flow), 0.0025 * 4095);
-}
-
 TEST(RaysRenderer, LeavesWhatNothingBendsWhereItIs) {
   auto setup = table1_setup(32);
   setup.medium.field = uniform_gradient(0, 0);

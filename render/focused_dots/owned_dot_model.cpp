@@ -1,0 +1,137 @@
+#include "render/focused_dots/owned_dot_model.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/gauss_legendre.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+
+namespace {
+
+constexpr std::uint64_t most_given_rays = 65536;  ///< more tell no more of the table
+constexpr std::uint64_t most_chosen_rays = 256;   ///< of a dot, by "auto"
+
+/// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
+/// other, or side by side on a device, then lies together in memory.
+unsigned z_order(Vec2d p) {
+  auto const x = static_cast<unsigned>(128 * (p.x + 1)), y = static_cast<unsigned>(128 * (p.y + 1));
+  unsigned order = 0;
+  for (unsigned bit = 0; bit < 8; ++bit) order |= (x >> bit & 1u) << (2 * bit) | (y >> bit & 1u) << (2 * bit + 1);
+  return order;
+}
+
+/// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
+/// finest lengths.
+/// @param radius of the cone, in those lengths @param times as many rings and directions
+void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
+  int const rings = std::min(40, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
+  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
+  for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
+  GaussLegendre const nodes(rings);
+  for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
+    double const r = 0.5 * (1 + nodes.node[ring]);
+    int const stride = r > 0.5 ? 1 : (r > 0.25 ? 2 : 4);
+    for (int k = 0; k < count; k += stride) points.push_back({r, nodes.weight[ring] * r * stride / count, k});
+  }
+  std::vector<Vec2d> const& at = directions;
+  std::stable_sort(points.begin(), points.end(), [&at](ConePoint const& a, ConePoint const& b) {
+    return z_order(a.radius * at[static_cast<std::size_t>(a.direction)]) <
+           z_order(b.radius * at[static_cast<std::size_t>(b.direction)]);
+  });
+}
+
+/// The places: exact for polynomials of degree 5, so that the least-squares quadratic is that of the whole source.
+PlaceRule make_place_rule(bool extended, SourceShape shape) {
+  PlaceRule rule{};
+  SourceCubature const places = !extended                    ? SourceCubature{{{0, 0}}, {1.0}}
+                                : shape == SourceShape::disc ? SourceCubature::radon()
+                                                             : SourceCubature::square(3);
+  rule.count = static_cast<int>(places.points.size());
+  int const terms = extended ? PlaceRule::terms : 1;
+  Eigen::MatrixXd basis(rule.count, terms);
+  Eigen::VectorXd weight(rule.count);
+  for (int i = 0; i < rule.count; ++i) {
+    rule.places[i] = places.points[static_cast<std::size_t>(i)];
+    weight(i) = rule.weights[i] = places.weights[static_cast<std::size_t>(i)];
+    double value[PlaceRule::terms];
+    PlaceRule::basis(rule.places[i], value);
+    for (int term = 0; term < terms; ++term) basis(i, term) = value[term];
+  }
+  Eigen::MatrixXd const weighted = basis.transpose() * weight.asDiagonal();
+  Eigen::MatrixXd const fit = (weighted * basis).ldlt().solve(weighted);
+  for (int term = 0; term < terms; ++term) {
+    for (int i = 0; i < rule.count; ++i) rule.fit[term][i] = fit(term, i);
+  }
+  return rule;
+}
+
+/// Points of independently scrambled sequences over source and stop, a source's own by its seed alone.
+std::vector<CheckRay> make_check_rays(Scene const& scene, SourceShape shape, int count, int bits) {
+  BundleView<double> choice;
+  choice.seed = scene.setup.render.seed;
+  choice.scrambling_bits = bits;
+  std::vector<CheckRay> rays;
+  for (int k = 0; k < count; ++k) {
+    double u[sobol_dimensions];
+    sample_coordinates(choice, 0, static_cast<std::uint64_t>(k), u);
+    Vec2d const place = shape == SourceShape::disc ? point_of_circle(std::sqrt(u[2]), u[3])
+                                                   : Vec2d{2 * u[2] - 1, 2 * u[3] - 1};
+    rays.push_back({place, point_of_circle(std::sqrt(u[0]), u[1])});
+  }
+  return rays;
+}
+
+/// Light of a white dot on the axis [fully lit px]; a point sends as much as a disc of one square pixel.
+double light_of_dot(double half_size_px, SourceShape shape) {
+  if (half_size_px == 0) return 1;
+  return (shape == SourceShape::disc ? pi : 4) * half_size_px * half_size_px;
+}
+
+}  // namespace
+
+OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources, DeflectionTable const& table,
+                             bool with_images, MomentImagesBy by) {
+  Scene const& scene = dots.scene();
+  model.axis_px = scene.to_pixel({});
+  model.columns = scene.setup.camera.columns;
+  model.rows = scene.setup.camera.rows;
+  model.source_half = sources.half_size;
+  model.stop_radius = scene.imaging.entrance_pupil / 2;
+  model.bench = dots.bench();
+  model.spot.sigma = scene.spot_sigma_px();
+  double const half_px = model.half_size_px();
+  model.dot_light = light_of_dot(half_px, sources.shape);
+  model.table = table;
+  // a closed form's finest length is no cell but the whole of a wave's slope
+  model.cone.fine = scene.medium.grid.nodes[0] <= 1;
+  double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
+  make_cone_rule(radius, model.cone.fine ? 2 : 1, cone_points, cone_directions);
+  model.cone.points = cone_points.data();
+  model.cone.directions = cone_directions.data();
+  model.cone.count = static_cast<int>(cone_points.size());
+  model.cone.direction_count = static_cast<int>(cone_directions.size());
+  model.places = make_place_rule(sources.half_size > 0, sources.shape);
+
+  std::uint64_t const wanted = std::min(scene.rays_per_dot, most_given_rays);
+  int const bits = scrambling_bits(wanted);
+  model.fewest_rays = static_cast<int>(wanted);
+  model.most_rays =
+      scene.setup.render.rays_per_dot ? model.fewest_rays : static_cast<int>(std::max(wanted, most_chosen_rays));
+  model.scramblings = 1 << bits;
+  rays = make_check_rays(scene, sources.shape, model.most_rays, bits);
+  model.rays = rays.data();
+
+  source = SourceCubature::make(sources.shape, half_px, model.spot.sigma);
+  model.source = {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())};
+  MomentImages& images = model.moment_images;
+  images = MomentImages::plan(half_px, model.spot, model.most_box_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
+  if (with_images && table.exists() && by == MomentImagesBy::host && images.exist()) {
+    moment_images = make_moment_images(images, source.points, source.weights, half_px, model.spot);
+    images.values = moment_images.data();
+  }
+}
+
+}  // namespace gladstone
