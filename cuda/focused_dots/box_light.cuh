@@ -37,7 +37,7 @@ __device__ inline void sort_points(DotBoxes const& boxes, BoxRange const& range,
     for (int base = 0; base < count; base += warp_size) {
       int const k = base + static_cast<int>(lane);
       int box = -1;
-      if (k < count) box = range.index(boxes.box_of(light[k].displacement));
+      if (k < count && light[k].weight != 0) box = range.index(boxes.box_of(light[k].displacement));
       unsigned const same = __match_any_sync(whole_warp, box);
       visit(k, box, same, __popc(same & ((1u << lane) - 1u)));
       __syncwarp();

@@ -59,12 +59,12 @@ __global__ void __launch_bounds__(threads, 3)
       }
       traced = enough;
       TableCheck sum = mine;
-      sum_over_lanes(sum, model.scramblings);
-      if (lane < model.scramblings) of_scramblings[lane] = sum;
+      sum_over_lanes(sum, model.scramblings());
+      if (lane < model.scramblings()) of_scramblings[lane] = sum;
       __syncwarp();
       all = {};
-      for (int i = 0; i < model.scramblings; ++i) all += of_scramblings[i];
-      errors = check_errors(of_scramblings, model.scramblings, all);
+      for (int i = 0; i < model.scramblings(); ++i) all += of_scramblings[i];
+      errors = check_errors(of_scramblings, model.scramblings(), all);
       __syncwarp();
       if (__any_sync(whole_warp, lost)) kind = DotKind::left;
       if (model.enough(errors, traced)) break;
@@ -76,11 +76,10 @@ __global__ void __launch_bounds__(threads, 3)
     cone.aim = aim.pupil;
     cone.light = model.light_of(centre, dots.radiance ? dots.radiance[dot] : 1.0);
     cone.check = all;
+    cone.errors = errors;
     DotTruth seen{};
     seen.origin = model.to_pixel(centre);
     for (int frame = 0; frame < frame_count; ++frame) seen.hits[frame].count = passing[frame];
-    Vec2d const square = model.error2(errors);
-    if (aim.kind != DotKind::still) seen.error = {sqrt(square.x), sqrt(square.y)};
     found_of[dot] = {seen, traced, kind == DotKind::left};
   }
   if (lane == 0) atomicMax(&tally->farthest_aim, static_cast<unsigned long long>(__double_as_longlong(farthest)));

@@ -12,7 +12,7 @@ struct ConeState {
   double without_medium[PlaceRule::most_places];
   double rims[PlaceRule::most_places][ConeRule::most_directions];
   Extent extents[PlaceRule::most_places], extent;  ///< of displacements from places, and of all
-  bool sound, narrow;                              ///< the moments; their spread
+  bool simple, sound, narrow;                      ///< the stop's edge; the moments; their spread
 };
 
 __device__ inline CorrectedCone cone_of(DotModel const& model, DotCone const& dot) {
@@ -27,27 +27,40 @@ __device__ inline double warp_sum(double value) {
   return value;
 }
 
+/// A warp looks for the stop's edge as seen from a place. @return whether it is a simple one
+__device__ inline bool find_rims(CorrectedCone const& cone, ConeRule const& rule, Vec2d offset, double* rims) {
+  bool sound = true;
+  for (int k = threadIdx.x % warp_size; k < rule.direction_count; k += warp_size) {
+    rims[k] = cone.rim(offset, rule.directions[k]);
+    sound = sound && !isnan(rims[k]);
+  }
+  sound = __all_sync(whole_warp, sound);
+  __syncwarp();
+  return sound;
+}
+
 /// Moments of the whole cone at every place, and what they say of its light.
 /// @param kept [place][point] where its points are kept, or null
 __device__ inline void integrate_cone(DotModel const& model, CorrectedCone const& cone, ConeState& state,
                                       ConeLight* kept = nullptr) {
-  int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size, count = model.cone.count;
-  if (threadIdx.x == 0) state.sound = state.narrow = true;
+  int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
+  if (threadIdx.x == 0) state.simple = state.sound = state.narrow = true;
   __syncthreads();
   for (int place = warp; place < model.places.count; place += dot_warps) {
+    if (!find_rims(cone, model.cone, model.offset(model.places.places[place]), state.rims[place])) state.simple = false;
+  }
+  __syncthreads();
+  int const count = model.cone.points_of(state.simple);
+  for (int place = warp; place < model.places.count; place += dot_warps) {
     Vec2d const offset = model.offset(model.places.places[place]);
-    for (int k = lane; k < model.cone.direction_count; k += warp_size) {
-      state.rims[place][k] = cone.rim(offset, model.cone.directions[k]);
-    }
-    __syncwarp();
     DisplacementMoments moments;
     double without_medium = 0;
     Extent extent;
     for (int k = lane; k < count; k += warp_size) {
-      ConeLight const light = cone_light(cone, model.cone, k, offset, state.rims[place]);
+      ConeLight const light = cone_light(cone, model.cone, k, offset, state.simple ? state.rims[place] : nullptr);
       if (kept) kept[place * count + k] = light;
       moments.add(light.weight, light.displacement);
-      extent.include(light.displacement);
+      if (light.weight != 0) extent.include(light.displacement);
       without_medium += light.without_medium;
     }
     without_medium = warp_sum(without_medium);

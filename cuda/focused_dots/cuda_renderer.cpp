@@ -34,11 +34,11 @@ class MirroredModel {
         weights_(host.source.weights, static_cast<std::size_t>(host.source.count), "a cubature"),
         cone_points_(host.cone.points, static_cast<std::size_t>(host.cone.count), "a cubature"),
         directions_(host.cone.directions, static_cast<std::size_t>(host.cone.direction_count), "a cubature"),
-        rays_(host.rays, static_cast<std::size_t>(host.most_rays), "the rays of a dot") {
+        scattered_(host.cone.scattered, static_cast<std::size_t>(host.cone.scattered_count), "a cubature") {
     model_.source = {points_.data(), weights_.data(), host.source.count};
     model_.cone.points = cone_points_.data();
     model_.cone.directions = directions_.data();
-    model_.rays = rays_.data();
+    model_.cone.scattered = scattered_.data();
   }
   void make_images_of_moments() {
     if (!model_.moment_images.exist() || !model_.table.exists()) return;
@@ -53,8 +53,7 @@ class MirroredModel {
   DeviceArray<Vec2d> points_;
   DeviceArray<double> weights_;
   DeviceArray<ConePoint> cone_points_;
-  DeviceArray<Vec2d> directions_;
-  DeviceArray<CheckRay> rays_;
+  DeviceArray<Vec2d> directions_, scattered_;
   DeviceArray<double> moment_images_;
 };
 

@@ -17,6 +17,7 @@ struct DotCone {
   Vec2d centre, aim;
   double light;  ///< in the reference frame [fully lit px]
   TableCheck check;
+  CheckErrors errors;
   Vec2d origin;       ///< where the cone's displacements count from [px]
   Extent extent;      ///< of a wide one
   MomentField field;  ///< of a narrow one

@@ -18,16 +18,26 @@ __global__ void __launch_bounds__(dot_threads, 5)
     if (threadIdx.x == 0) cone = cone_of(model, dot);
     __syncthreads();
     integrate_cone(model, cone, state);
+    if (!state.sound) {
+      if (threadIdx.x == 0) {
+        dot.kind = DotKind::left;
+        found[i].left = true;
+      }
+      continue;
+    }
     if (threadIdx.x == 0) {
       DotTruth& truth = found[i].truth;
       dot.origin = cone.origin();
-      if (!state.sound) {
-        dot.kind = DotKind::left;
-      } else if (dot.kind == DotKind::narrow) {
+      dot.extent = state.extent;
+      if (dot.kind == DotKind::narrow) {
         dot.kind = wide_or_narrow(model, state.narrow, truth.origin + cone.origin(), state.extent);
-        dot.extent = state.extent;
       }
       sum_cone(model, dot.light, cone.origin(), state.moments, state.without_medium, truth);
+      if (dot.kind != DotKind::still) {
+        Vec2d const square = model.error2(dot.errors, state.simple);
+        truth.error = {sqrt(square.x), sqrt(square.y)};
+      }
+      if (dot.kind == DotKind::still) truth.hits[1] = truth.hits[0];
       truth.path = TruthPath::table;
       found[i].left = dot.kind == DotKind::left;
     }

@@ -44,8 +44,8 @@ GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d co
                     : seen.direction.z > 0            ? RayStatus::alive
                                                       : RayStatus::missed_lens;
     if (out[i].status != RayStatus::alive) {
-      double const undefined = std::numeric_limits<double>::quiet_NaN();
-      out[i].displacement = out[i].bend = {undefined, undefined};
+      out[i].displacement.x = out[i].displacement.y = std::numeric_limits<double>::quiet_NaN();
+      out[i].bend = out[i].displacement;
       continue;
     }
     Vec3d const moved = seen.position - start[i].position;

@@ -3,6 +3,7 @@
 #include "render/focused_dots/deflection_table.h"
 #include "render/focused_dots/displacement_moments.h"
 #include "render/light/sources.h"
+#include "render/optics/aperture_stop.h"
 #include "render/scene/truth_error.h"
 
 /// The cone of a dot's rays: the deflection table says what each does, a few traced ones correct it. Integrals over the
@@ -23,12 +24,14 @@ struct ConeRule {
   int count = 0;
   int direction_count = 0;
   bool fine = false;  ///< twice as fine as usual
-};
 
-/// A ray that checks the table, the same of every dot: a place of the source, in units of its half size, and a point of
-/// the stop, in units of its radius.
-struct CheckRay {
-  Vec2d place, at;
+  // where a cone has no simple edge: points of equal weights all over the disc of CorrectedCone::reach
+  Vec2d const* scattered = nullptr;
+  int scattered_count = 0;
+  double smoothing = 0;  ///< of the stop's edge, as ApertureStop::edge
+
+  /// Points that a cone is integrated over at each place. @param simple_edge of the stop, as seen from all of them
+  GLADSTONE_HD int points_of(bool simple_edge) const { return simple_edge ? count : scattered_count; }
 };
 
 /// What the traced rays of a dot say of the table: sums over rays.
@@ -130,7 +133,7 @@ class CorrectedCone {
     using std::abs;
     // where bends change little within their own length two looks do, as if their change went on (Aitken)
     double const first = arriving(offset, direction, stop_radius_);
-    if (!(first <= reach * stop_radius_)) return undefined();
+    if (!(first > 0 && first <= reach * stop_radius_)) return undefined();
     double const second = arriving(offset, direction, first);
     double const change = first - stop_radius_, last = second - first;
     if (abs(change) <= settled * stop_radius_) return second;
@@ -221,9 +224,20 @@ struct ConeLight {
   double without_medium;  ///< and in the reference frame
 };
 
-/// @param rims of the rule's directions, from a place of the source: the points fill what they enclose
+/// @param rims of the rule's directions, from a place of the source: the points fill what they enclose; null where the
+/// stop's edge has no single rim as seen from the source, near a caustic: they fill all that is looked at, and the
+/// stop's edge is smoothed as it is for rays
 GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule const& rule, int point, Vec2d offset,
                                          double const* rims) {
+  if (!rims) {
+    constexpr double wide = CorrectedCone::reach;
+    ApertureStop<double> const stop{0, cone.stop_radius(), rule.smoothing};
+    Vec2d const from_aim = (wide * cone.stop_radius()) * rule.scattered[point], arrival = cone.arrival(offset, from_aim);
+    double const weight = wide * wide / rule.scattered_count;
+    return {cone.displacement(offset, from_aim),
+            weight * cone.lambert(offset, cone.pupil(from_aim)) * stop.transmission(arrival.x, arrival.y),
+            weight * cone.lambert(offset, from_aim) * stop.transmission(from_aim.x, from_aim.y)};
+  }
   ConePoint const at = rule.points[point];
   Vec2d const direction = rule.directions[at.direction];
   double const rim = rims[at.direction], widened = rim / cone.stop_radius();

@@ -4,7 +4,7 @@
 
 namespace gladstone {
 
-DotIntegrator::DotIntegrator(DotModel const& model) : model_(model), rims_(ConeRule::most_directions) {
+DotIntegrator::DotIntegrator(DotModel const& model) : model_(model) {
   SpotView spot;
   spot.model = SpotModel::gaussian;
   spot.gaussian = model.spot;
@@ -24,41 +24,52 @@ void DotIntegrator::enter(int ray, SentRay const& sent, Deflection const& found)
     seen_.truth.hits[frame].count += reaches_sensor_plane(checked.status[frame]);
   }
   if (found.status != RayStatus::alive) seen_.kind = DotKind::left;
-  of_scramblings_[ray % model_.scramblings].add(checked.at, found, checked.expected);
+  of_scramblings_[ray % model_.scramblings()].add(checked.at, found, checked.expected);
 }
 
 bool DotIntegrator::settle() {
   seen_.check = {};
-  for (int i = 0; i < model_.scramblings; ++i) seen_.check += of_scramblings_[i];
-  CheckErrors const errors = check_errors(of_scramblings_, model_.scramblings, seen_.check);
-  Vec2d const square = model_.error2(errors);
-  seen_.truth.error = {std::sqrt(square.x), std::sqrt(square.y)};
-  return model_.enough(errors, seen_.rays);
+  for (int i = 0; i < model_.scramblings(); ++i) seen_.check += of_scramblings_[i];
+  seen_.errors = check_errors(of_scramblings_, model_.scramblings(), seen_.check);
+  return model_.enough(seen_.errors, seen_.rays);
 }
 
 void DotIntegrator::integrate() {
   CorrectedCone const cone = this->cone();
   PlaceRule const& rule = model_.places;
+  auto const directions = static_cast<std::size_t>(model_.cone.direction_count);
+  rims_.clear();
+  for (int i = 0; i < rule.count; ++i) {
+    Vec2d const offset = model_.offset(rule.places[i]);
+    for (std::size_t k = 0; k < directions; ++k) rims_.push_back(cone.rim(offset, model_.cone.directions[k]));
+  }
+  if (std::any_of(rims_.begin(), rims_.end(), [](double rim) { return std::isnan(rim); })) rims_.clear();
+  bool const simple = !rims_.empty();
   bool narrow = true;
   points_.clear();
   for (int i = 0; i < rule.count; ++i) {
     Vec2d const offset = model_.offset(rule.places[i]);
-    for (int k = 0; k < model_.cone.direction_count; ++k) {
-      rims_[static_cast<std::size_t>(k)] = cone.rim(offset, model_.cone.directions[k]);
-    }
-    for (int k = 0; k < model_.cone.count; ++k) {
-      ConeLight const light = cone_light(cone, model_.cone, k, offset, rims_.data());
+    double const* const rims = simple ? rims_.data() + static_cast<std::size_t>(i) * directions : nullptr;
+    for (int k = 0; k < model_.cone.points_of(simple); ++k) {
+      ConeLight const light = cone_light(cone, model_.cone, k, offset, rims);
       seen_.without_medium[i] += light.without_medium;
       seen_.whole[i].add(light.weight, light.displacement);
-      seen_.extent.include(light.displacement);
+      if (light.weight != 0) seen_.extent.include(light.displacement);
       points_.push_back(light);
     }
     cone.finish(seen_.whole[i], seen_.without_medium[i]);
     if (!std::isfinite(seen_.whole[i].square())) seen_.kind = DotKind::left;
     narrow = narrow && model_.narrow(seen_.whole[i]);
   }
-  if (seen_.kind == DotKind::narrow) seen_.kind = wide_or_narrow(model_, narrow, seen_.truth.origin + cone.origin(), seen_.extent);
+  if (seen_.kind == DotKind::narrow) {
+    seen_.kind = wide_or_narrow(model_, narrow, seen_.truth.origin + cone.origin(), seen_.extent);
+  }
   sum_cone(model_, seen_.light, cone.origin(), seen_.whole, seen_.without_medium, seen_.truth);
+  if (seen_.kind != DotKind::still) {
+    Vec2d const square = model_.error2(seen_.errors, simple);
+    seen_.truth.error = {std::sqrt(square.x), std::sqrt(square.y)};
+  }
+  if (seen_.kind == DotKind::still) seen_.truth.hits[1] = seen_.truth.hits[0];
   seen_.truth.path = TruthPath::table;
 }
 
@@ -105,8 +116,9 @@ void DotIntegrator::deposit_wide(LightImage* image) {
   parts_.assign(static_cast<std::size_t>(range.count() * places), {});
   for (std::size_t i = 0; i < points_.size(); ++i) {
     ConeLight const& light = points_[i];
+    if (light.weight == 0) continue;
     Vec2<int> const box = boxes.box_of(light.displacement);
-    std::size_t const place = i / static_cast<std::size_t>(model_.cone.count);
+    std::size_t const place = i * static_cast<std::size_t>(places) / points_.size();
     parts_[static_cast<std::size_t>(range.index(box) * places) + place].add(light.weight,
                                                                            boxes.from_middle(light.displacement, box));
   }

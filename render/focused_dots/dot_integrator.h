@@ -17,6 +17,7 @@ struct SeenDot {
   Vec2d centre{};
   double light = 0;  ///< in the reference frame [fully lit px]
   TableCheck check;
+  CheckErrors errors;
   DotTruth truth;
   DisplacementMoments whole[PlaceRule::most_places];  ///< of the cone, at every place of the source
   double without_medium[PlaceRule::most_places] = {};
@@ -82,7 +83,7 @@ class DotIntegrator {
   SeenDot seen_;
   TableCheck of_scramblings_[most_scramblings];
   std::vector<ConeLight> points_;           ///< of the cone, of all places
-  std::vector<double> rims_;                ///< of a place's directions
+  std::vector<double> rims_;                ///< of all places' directions; empty: they have none
   std::vector<DisplacementMoments> parts_;  ///< by square of displacement and place
   DotPatch::Series column_, row_;           ///< of one point of the source
   StatusCounts statuses_{};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "render/focused_dots/dot_cone.h"
 #include "render/focused_dots/moment_images.h"
 #include "render/scene/ground_truth.h"
@@ -19,7 +21,7 @@ struct CubatureView {
 
 /// What becomes of a dot.
 enum class DotKind : int {
-  left,    ///< to the general renderer: the table does not cover its cone, or rays of it get lost, or cross
+  left,    ///< to the general renderer: the table does not cover its cone, or rays of it get lost
   still,   ///< none of its rays meets the medium: one image in both frames
   narrow,  ///< its light goes by the moments of its cone about their mean
   wide,    ///< by moments, square by square of displacement
@@ -46,9 +48,12 @@ struct DotModel {
   ConeRule cone;
   PlaceRule places;
   MomentImages moment_images;
-  CheckRay const* rays = nullptr;  ///< that a dot may have
-  int fewest_rays = 0, most_rays = 0;
-  int scramblings = 1;  ///< that they are dealt to in turn
+  int fewest_rays = 0, most_rays = 0;          ///< of a dot
+  BundleView<double> choice;                   ///< of them
+  SourceShape shape = SourceShape::disc;
+
+  /// That the rays are dealt to in turn.
+  GLADSTONE_HD int scramblings() const { return 1 << choice.scrambling_bits; }
 
   GLADSTONE_HD double distance() const { return bench.lens_z - bench.plane_z; }
   GLADSTONE_HD double half_size_px() const { return source_half * bench.px_per_metre; }
@@ -80,10 +85,14 @@ struct DotModel {
   }
   /// Squares of standard errors of truth [px^2], what the table leaves of every ray alike included: a share of the
   /// scatter, from ray to ray, of what it is off by. Measured on both DNS planes against 131,072 rays alone: 0.03 to
-  /// 0.04 of it, less than half of that with a rule twice as fine.
-  GLADSTONE_HD Vec2d error2(CheckErrors const& errors) const {
-    double const leaves = cone.fine ? 0.015 : 0.04;
-    return errors.scatter2 + (leaves * leaves) * errors.miss2;
+  /// 0.04 of it, less than half of that with a rule twice as fine, and where the stop's edge is smoothed more with the
+  /// square of the scatter over the width of the cone as the target shows it: up to four times the early plane's
+  /// density.
+  GLADSTONE_HD Vec2d error2(CheckErrors const& errors, bool simple_edge = true) const {
+    double const cone_px = 2 * table.way * stop_radius * bench.px_per_metre;
+    double const leaves = simple_edge && cone.fine ? 0.015 : 0.04, folds = simple_edge ? 0 : 80 / cone_px;
+    auto const left2 = [&](double miss2) { return (leaves * leaves + folds * folds * miss2) * miss2; };
+    return errors.scatter2 + Vec2d{left2(errors.miss2.x), left2(errors.miss2.y)};
   }
   /// Whether so many rays of a dot are enough.
   GLADSTONE_HD bool enough(CheckErrors const& errors, int traced) const {
@@ -99,9 +108,23 @@ struct DotAim {
   double farthest = 0;           ///< from the axis that was aimed at, for a table that ends there [m]
 };
 
-/// Aims at a dot: its ray to the pupil's middle is bent aside, so that it is aimed at again, and again.
+/// Bend of a dot's rays about an aim, on average over middle and ring [m]. @pre the table covers them
+GLADSTONE_HD inline Vec2d mean_bend(DotModel const& model, Vec2d centre, Vec2d aim) {
+  Vec2d sum{};
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      double const away = x != 0 && y != 0 ? 0.5 : 0.7;  // of the stop's radius
+      Vec2d const pupil = aim + (away * model.stop_radius) * Vec2d{static_cast<double>(x), static_cast<double>(y)};
+      sum += model.table.bend(model.table.crossing(centre, pupil), pupil);
+    }
+  }
+  return sum / 9.0;
+}
+
+/// Aims at a dot: its ray to the pupil's middle is bent aside, so that it is aimed at again, and again; where that comes
+/// to no end, near a caustic, as its rays are bent on average.
 GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
-  constexpr int most_rounds = 30;
+  constexpr int rounds_of_one = 8, most_rounds = 24;
   DeflectionTable const& table = model.table;
   double const half = 1.5 * model.source_half, reach = CorrectedCone::reach * model.stop_radius;
   DotAim aim;
@@ -109,16 +132,20 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
     aim.kind = DotKind::still;
     return aim;
   }
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round <= most_rounds; ++round) {
     double const far = length(aim.pupil);
     if (far > aim.farthest) aim.farthest = far;
     if (!table.covers(centre, half, aim.pupil, reach)) return aim;
+    if (round == most_rounds) break;
     Vec2d const last = aim.pupil;
-    aim.pupil = -table.bend(table.crossing(centre, last), last);
-    if (length(aim.pupil - last) > 1e-9 * model.stop_radius) continue;
-    if (table.covers(centre, half, aim.pupil, reach)) aim.kind = DotKind::narrow;
-    return aim;
+    bool const alone = round < rounds_of_one;
+    aim.pupil = alone ? -table.bend(table.crossing(centre, last), last) : -mean_bend(model, centre, last);
+    if (!(length(aim.pupil - last) > (alone ? 1e-6 : 0.01) * model.stop_radius)) {
+      if (!table.covers(centre, half, aim.pupil, reach)) return aim;
+      break;
+    }
   }
+  aim.kind = DotKind::narrow;
   return aim;
 }
 
@@ -129,12 +156,30 @@ struct CheckedRay {
   RayStatus status[frame_count];  ///< where it ends in either frame
 };
 
-/// Where check ray k of a dot starts and what it is sent to.
+/// What a dot's random numbers are keyed by: its place, whatever else is in the scene.
+GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
+  std::uint64_t bits[2];
+  memcpy(bits, &centre, sizeof bits);
+  return random_bits(bits[0], RandomStream::pupil, bits[1], 0);
+}
+/// Where ray k of a dot starts, from its centre in units of its half size, and its point of a stop of radius one.
+struct DotRay {
+  Vec2d place, at;
+
+  GLADSTONE_HD static DotRay choose(BundleView<double> const& choice, SourceShape shape, Vec2d centre, int k) {
+    using std::sqrt;
+    double u[sobol_dimensions];
+    sample_coordinates(choice, key_of(centre), static_cast<std::uint64_t>(k), u);
+    return {shape == SourceShape::disc ? point_of_circle(sqrt(u[2]), u[3]) : Vec2d{2 * u[2] - 1, 2 * u[3] - 1},
+            point_of_circle(sqrt(u[0]), u[1])};
+  }
+};
+/// Where it starts and what it is sent to [m].
 struct SentRay {
   Vec2d from, pupil;
 };
 GLADSTONE_HD inline SentRay send_ray(DotModel const& model, Vec2d centre, Vec2d aim, int k) {
-  CheckRay const ray = model.rays[k];
+  DotRay const ray = DotRay::choose(model.choice, model.shape, centre, k);
   return {centre + model.offset(ray.place), aim + model.stop_radius * ray.at};
 }
 /// Compares it with the table.

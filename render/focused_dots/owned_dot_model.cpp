@@ -6,12 +6,13 @@
 
 #include "render/base/gauss_legendre.h"
 #include "render/base/units.h"
+#include "render/optics/ray_bundle.h"
 
 namespace gladstone {
 
 namespace {
 
-constexpr std::uint64_t most_given_rays = 65536;  ///< more tell no more of the table
+constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more tell no more of the table
 constexpr std::uint64_t most_chosen_rays = 256;   ///< of a dot, by "auto"
 
 /// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
@@ -43,6 +44,14 @@ void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, st
   });
 }
 
+/// A sunflower's points, those that lie together side by side.
+std::vector<Vec2d> scattered_points(int count) {
+  std::vector<Vec2d> points;
+  for (int k = 0; k < count; ++k) points.push_back(sunflower(k, count));
+  std::stable_sort(points.begin(), points.end(), [](Vec2d a, Vec2d b) { return z_order(a) < z_order(b); });
+  return points;
+}
+
 /// The places: exact for polynomials of degree 5, so that the least-squares quadratic is that of the whole source.
 PlaceRule make_place_rule(bool extended, SourceShape shape) {
   PlaceRule rule{};
@@ -66,22 +75,6 @@ PlaceRule make_place_rule(bool extended, SourceShape shape) {
     for (int i = 0; i < rule.count; ++i) rule.fit[term][i] = fit(term, i);
   }
   return rule;
-}
-
-/// Points of independently scrambled sequences over source and stop, a source's own by its seed alone.
-std::vector<CheckRay> make_check_rays(Scene const& scene, SourceShape shape, int count, int bits) {
-  BundleView<double> choice;
-  choice.seed = scene.setup.render.seed;
-  choice.scrambling_bits = bits;
-  std::vector<CheckRay> rays;
-  for (int k = 0; k < count; ++k) {
-    double u[sobol_dimensions];
-    sample_coordinates(choice, 0, static_cast<std::uint64_t>(k), u);
-    Vec2d const place = shape == SourceShape::disc ? point_of_circle(std::sqrt(u[2]), u[3])
-                                                   : Vec2d{2 * u[2] - 1, 2 * u[3] - 1};
-    rays.push_back({place, point_of_circle(std::sqrt(u[0]), u[1])});
-  }
-  return rays;
 }
 
 /// Light of a white dot on the axis [fully lit px]; a point sends as much as a disc of one square pixel.
@@ -113,16 +106,19 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.cone.directions = cone_directions.data();
   model.cone.count = static_cast<int>(cone_points.size());
   model.cone.direction_count = static_cast<int>(cone_directions.size());
+  model.cone.scattered_count = std::max(1024, 2 * model.cone.count);
+  cone_scattered = scattered_points(model.cone.scattered_count);
+  model.cone.scattered = cone_scattered.data();
+  model.cone.smoothing = Scene::stop_edge(model.cone.scattered_count);
   model.places = make_place_rule(sources.half_size > 0, sources.shape);
 
   std::uint64_t const wanted = std::min(scene.rays_per_dot, most_given_rays);
-  int const bits = scrambling_bits(wanted);
+  model.choice.seed = scene.setup.render.seed;
+  model.choice.scrambling_bits = scrambling_bits(wanted);
+  model.shape = sources.shape;
   model.fewest_rays = static_cast<int>(wanted);
   model.most_rays =
       scene.setup.render.rays_per_dot ? model.fewest_rays : static_cast<int>(std::max(wanted, most_chosen_rays));
-  model.scramblings = 1 << bits;
-  rays = make_check_rays(scene, sources.shape, model.most_rays, bits);
-  model.rays = rays.data();
 
   source = SourceCubature::make(sources.shape, half_px, model.spot.sigma);
   model.source = {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())};

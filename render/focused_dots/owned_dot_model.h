@@ -17,8 +17,7 @@ struct OwnedDotModel {
   SourceCubature source;
   std::vector<double> moment_images;
   std::vector<ConePoint> cone_points;
-  std::vector<Vec2d> cone_directions;
-  std::vector<CheckRay> rays;
+  std::vector<Vec2d> cone_directions, cone_scattered;
 
   /// @param sources its dots, or others @param table of the scene, kept by the caller @param with_images false: no
   /// images of moments are worked out

@@ -15,13 +15,13 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t measured_dots = 12;
-constexpr std::uint64_t rays_a_scrambling = 512;
+constexpr int rays_a_scrambling = 2048;
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
  public:
   LoneDot(Scene const& scene, std::size_t dot, int side)
-      : radiance_(scene.dots.radiance_of(dot)), scene_(alone(scene, dot)), side_(side) {
+      : radiance_(scene.dots.radiance_of(dot)), scene_(alone(scene, dot)) {
     FocusedDots const dots = focused_dots(scene_).value();
     Vec2d const centre = scene_.dots.centre[0];
     double room = DeflectionPlan::usual_aim * scene_.imaging.entrance_pupil / 2;
@@ -36,27 +36,32 @@ class LoneDot {
     owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
     integrator_ = std::make_unique<DotIntegrator>(owned_->model);
     std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, radiance_); }, scene_.medium.view);
+    if (left()) return;
+    LightImage frames[frame_count] = {{side, side}, {side, side}};
+    LightImage* const images[frame_count] = {&frames[0], &frames[1]};
+    integrator_->lay_down(images);
+    for (LightImage const& frame : frames) append(as_seen_.light, frame.to_light());
+    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
+      LightImage beside(side, side);
+      Sampled& off = off_[scrambling];
+      off.light.resize(as_seen_.light.size() / 2);  // nothing in the reference frame
+      std::visit(
+          [&](auto const& medium) {
+            if (seen_.kind != DotKind::still) off.displacement = trace(medium, scrambling, beside);
+          },
+          scene_.medium.view);
+      append(off.light, beside.to_light());
+    }
   }
 
   bool left() const { return seen_.kind == DotKind::left; }
 
-  /// What some rays find beside what they were expected to: of truth [px], and added, times `share`, to the light of
-  /// both frames.
-  Sampled sample(int scrambling, double share) {
-    LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
-    LightImage* const images[frame_count] = {&frames[0], &frames[1]};
-    integrator_->lay_down(images);
-    Vec2d const off = std::visit(
-        [&](auto const& medium) {
-          return seen_.kind == DotKind::still ? Vec2d{} : trace(medium, scrambling, share, frames[1]);
-        },
-        scene_.medium.view);
-    Sampled sampled;
-    sampled.displacement = share * off;
-    for (LightImage const& frame : frames) {
-      Image<double> const light = frame.to_light();
-      sampled.light.insert(sampled.light.end(), light.begin(), light.end());
-    }
+  /// One of the four samples of Scatter: the dot as it is seen, and `share` times what some rays find beside it.
+  Sampled sample(int scrambling, double share) const {
+    Sampled sampled = as_seen_;
+    Sampled const& off = off_[scrambling];
+    sampled.displacement = share * off.displacement;
+    for (std::size_t i = 0; i < off.light.size(); ++i) sampled.light[i] += share * off.light[i];
     return sampled;
   }
 
@@ -68,8 +73,13 @@ class LoneDot {
     return copy;
   }
 
+  static void append(std::vector<double>& to, Image<double> const& light) {
+    to.insert(to.end(), light.begin(), light.end());
+  }
+
+  /// What rays of another choice find beside what they were expected to, in truth [px] and added to the light.
   template <class Medium>
-  Vec2d trace(Medium const& medium, int scrambling, double share, LightImage& image) {
+  Vec2d trace(Medium const& medium, int scrambling, LightImage& image) {
     DotModel const& model = owned_->model;
     CorrectedCone const cone = integrator_->cone();
     SpotView spot;
@@ -78,17 +88,13 @@ class LoneDot {
     LightPatch patch(spot);
     BundleView<double> choice;
     choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-    double const weight = CorrectedCone::reach * CorrectedCone::reach / static_cast<double>(rays_a_scrambling);
+    double const weight = CorrectedCone::reach * CorrectedCone::reach / rays_a_scrambling;
     Vec2d sum[2]{};
     double passing[2]{};
-    for (std::uint64_t ray = 0; ray < rays_a_scrambling; ++ray) {
+    for (int ray = 0; ray < rays_a_scrambling; ++ray) {
       throw_if_interrupted();
-      double u[sobol_dimensions];
-      sample_coordinates(choice, 0, ray, u);
-      Vec2d const place = scene_.dots.shape == SourceShape::disc ? point_of_circle(std::sqrt(u[2]), u[3])
-                                                                : Vec2d{2 * u[2] - 1, 2 * u[3] - 1};
-      Vec2d const from_aim = point_of_circle(CorrectedCone::reach * model.stop_radius * std::sqrt(u[0]), u[1]);
-      Vec2d const offset = model.offset(place), pupil = cone.pupil(from_aim);
+      auto const [place, at] = DotRay::choose(choice, model.shape, seen_.centre, ray);
+      Vec2d const from_aim = (CorrectedCone::reach * model.stop_radius) * at, offset = model.offset(place), pupil = cone.pupil(from_aim);
       Vec2d const start = seen_.truth.origin + model.half_size_px() * place;
       Deflection found[1];
       deflect(model.bench, medium, {seen_.centre + offset}, {pupil}, found);
@@ -98,7 +104,7 @@ class LoneDot {
         if (!(length(arrival[by]) <= model.stop_radius)) continue;
         passing[by] += 1;
         sum[by] += model.half_size_px() * place + moved[by];
-        patch.deposit(start + moved[by], (by == 1 ? share : -share) * weight * seen_.light, &image, 1);
+        patch.deposit(start + moved[by], (by == 1 ? weight : -weight) * seen_.light, &image, 1);
       }
     }
     patch.flush(&image, 1);
@@ -107,12 +113,12 @@ class LoneDot {
 
   double radiance_;
   Scene scene_;
-  int side_;
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
   std::unique_ptr<DotIntegrator> integrator_;
   DotAim aim_;
   SeenDot seen_;
+  Sampled as_seen_, off_[plan_scramblings];
 };
 
 }  // namespace
@@ -134,13 +140,19 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   if (lone.empty()) return plan;
   std::vector<std::size_t> places(lone.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
-  // of four samples that lie s e to either side in turn the variance is 4 s^2 e^2 / 3: e^2 with this s
+  // Four samples that lie s (e + noise) to either side in turn have the variance 4 s^2 e^2 / 3 + s^2 noise^2, with this
+  // s e^2 and noise; four to one side that of the noise alone.
   double const share = std::sqrt(0.75);
-  Scatter const scatter = measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
-    return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : -share);
-  });
-  plan.truth_error_px = std::sqrt(mean_variance(scatter.displacements));
-  plan.image_error_levels = levels.error(scatter);
+  auto const scatter_of = [&](double odd) {
+    return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
+      return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : odd);
+    });
+  };
+  Scatter off = scatter_of(-share);
+  Scatter const noise = scatter_of(share);
+  off.light_variance = std::max(0.0, off.light_variance - noise.light_variance);
+  plan.truth_error_px = std::sqrt(std::max(0.0, mean_variance(off.displacements) - mean_variance(noise.displacements)));
+  plan.image_error_levels = levels.error(off);
   return plan;
 }
 
