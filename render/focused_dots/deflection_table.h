@@ -57,7 +57,8 @@ GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d co
 }
 
 /// A square lattice of a plane whose nodes lie at multiples of its spacing, wherever it begins, and cubic Lagrange
-/// polynomials through the sixteen nodes about a point: what it says of a point hangs on nothing else.
+/// polynomials through the sixteen nodes about a point (at its edges beside the point): what it says of a point further
+/// inside hangs on nothing else.
 struct SquareLattice {
   Vec2<int> first{0, 0};  ///< multiples of the spacing at which node (0, 0) lies
   double spacing = 1;     ///< [m]
@@ -71,9 +72,9 @@ struct SquareLattice {
   }
   /// Whether it may be asked within `reach` of a point in either direction.
   GLADSTONE_HD bool covers(Vec2d middle, double reach) const {
-    return (middle.x - reach) * per_metre >= first.x + 1 && (middle.y - reach) * per_metre >= first.y + 1 &&
-           (middle.x + reach) * per_metre < first.x + columns - 2 &&
-           (middle.y + reach) * per_metre < first.y + rows - 2;
+    return (middle.x - reach) * per_metre >= first.x && (middle.y - reach) * per_metre >= first.y &&
+           (middle.x + reach) * per_metre <= first.x + columns - 1 &&
+           (middle.y + reach) * per_metre <= first.y + rows - 1;
   }
 
   /// The nodes about a point and their weights along both axes.
@@ -82,13 +83,12 @@ struct SquareLattice {
     int columns;
     double x[4], y[4];
   };
-  /// @pre covers(q, 0)
+  /// A place beyond the lattice is extrapolated to.
   GLADSTONE_HD Stencil about(Vec2d q) const {
-    using std::floor;
-    double const u = q.x * per_metre, v = q.y * per_metre, column = floor(u), row = floor(v);
+    double const u = q.x * per_metre, v = q.y * per_metre;
+    int const column = inside(u, first.x, columns), row = inside(v, first.y, rows);
     Stencil stencil;
-    stencil.corner = static_cast<long long>(static_cast<int>(row) - first.y - 1) * columns +
-                     (static_cast<int>(column) - first.x - 1);
+    stencil.corner = static_cast<long long>(row - first.y - 1) * columns + (column - first.x - 1);
     stencil.columns = columns;
     weigh(u - column, stencil.x);
     weigh(v - row, stencil.y);
@@ -96,6 +96,12 @@ struct SquareLattice {
   }
 
  private:
+  /// The node before a place, in multiples of the spacing, that has one before it and two behind.
+  GLADSTONE_HD static int inside(double at, int first_node, int count) {
+    using std::floor;
+    int const low = first_node + 1, high = first_node + count - 3;
+    return at < low ? low : (at >= high ? high : static_cast<int>(floor(at)));
+  }
   /// Of the nodes -1, 0, 1, 2 at t (Abramowitz & Stegun 25.2.13).
   GLADSTONE_HD static void weigh(double t, double (&weights)[4]) {
     double const left = (1.0 / 6) * t * (t - 1), right = 0.5 * (t + 1) * (t - 2);

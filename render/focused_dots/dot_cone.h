@@ -96,7 +96,9 @@ GLADSTONE_HD inline CheckErrors check_errors(TableCheck const* of, int scramblin
 /// The cone of a dot's rays by the table, corrected to agree with the traced rays on average.
 class CorrectedCone {
  public:
-  static constexpr double reach = 1.25;  ///< rays further from the aim than so many radii of the stop are not looked at
+  /// Rays further from the aim than so many radii of the stop are not looked at; a table has to cover those that come
+  /// to the stop in fields that widen cones no more than by a tenth, and extrapolates to others.
+  static constexpr double reach = 1.25, covered = 1.1;
 
   /// @param distance target to lens plane [m] @param centre of the dot [m] @param aim point of the pupil about which
   /// the cone lies: what the medium makes of the ray there arrives at the stop's middle [m]

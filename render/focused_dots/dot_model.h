@@ -126,9 +126,10 @@ GLADSTONE_HD inline Vec2d mean_bend(DotModel const& model, Vec2d centre, Vec2d a
 GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
   constexpr int rounds_of_one = 8, most_rounds = 24;
   DeflectionTable const& table = model.table;
-  double const half = 1.5 * model.source_half, reach = CorrectedCone::reach * model.stop_radius;
+  double const half = (model.shape == SourceShape::disc ? 1.0 : 1.42) * model.source_half;
+  double const reach = CorrectedCone::covered * model.stop_radius;
   DotAim aim;
-  if (table.beside(centre, half, reach)) {
+  if (table.beside(centre, half, CorrectedCone::reach * model.stop_radius)) {
     aim.kind = DotKind::still;
     return aim;
   }

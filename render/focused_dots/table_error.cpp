@@ -15,7 +15,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t measured_dots = 12;
-constexpr int rays_a_scrambling = 2048;
+constexpr int rays_a_scrambling = 4096;
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {

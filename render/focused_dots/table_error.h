@@ -8,7 +8,7 @@
 namespace gladstone {
 
 /// Errors of truth and images at the scene's present number of rays, measured: of up to 12 dots spread over the target,
-/// each by a table of its own, which is the scene's where it lies, 8192 rays of another choice are traced. Each of them
+/// each by a table of its own, which is the scene's where it lies, 16,384 rays of another choice are traced. Each of them
 /// tells where the table, corrected by the dot's rays, would have put it and where it lands, in truth and in the image:
 /// their differences are averaged, nothing else. Dots that the table does not cover do not count.
 RaysPlan measure_table_error(FocusedDots const& dots);
