@@ -15,9 +15,13 @@ struct ConeState {
   bool simple, sound, narrow;                      ///< the stop's edge; the moments; their spread
 };
 
-__device__ inline CorrectedCone cone_of(DotModel const& model, DotCone const& dot) {
+inline __device__ CorrectedCone cone_of(DotModel const& model, DotCone const& dot) {
   DeflectionTable const nothing;
-  return {dot.kind == DotKind::still ? nothing : model.table, model.stop_radius, model.distance(), dot.centre, dot.aim,
+  return {dot.kind == DotKind::still ? nothing : model.table,
+          model.stop_radius,
+          model.distance(),
+          dot.centre,
+          dot.aim,
           dot.check};
 }
 
@@ -69,7 +73,8 @@ __device__ inline void integrate_cone(DotModel const& model, CorrectedCone const
       if (lane == 0) state.moments[place].of[i] = sum;
     }
     for (int step = warp_size / 2; step > 0; step /= 2) {
-      extent.include({__shfl_xor_sync(whole_warp, extent.low.x, step), __shfl_xor_sync(whole_warp, extent.low.y, step)});
+      extent.include(
+          {__shfl_xor_sync(whole_warp, extent.low.x, step), __shfl_xor_sync(whole_warp, extent.low.y, step)});
       extent.include(
           {__shfl_xor_sync(whole_warp, extent.high.x, step), __shfl_xor_sync(whole_warp, extent.high.y, step)});
     }

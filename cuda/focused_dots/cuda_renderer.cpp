@@ -157,8 +157,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   std::uint64_t const most =
       std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(most_steps_a_launch / steps));
   Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
-    DeflectionTable const table =
-        uploads_->deflections.table(*bench, sources, farthest_aim, medium.view<double>());
+    DeflectionTable const table = uploads_->deflections.table(*bench, sources, farthest_aim, medium.view<double>());
     // where the device is short of memory, once more with smaller batches, which give the same bits
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all(batch, *bench, sources, medium, table, theory, images == RenderImages::no ? nullptr : &light);

@@ -44,7 +44,8 @@ __global__ void __launch_bounds__(dot_threads, 4)
     __syncthreads();
     ConeLight* const kept = room + blockIdx.x * points_a_block;
     integrate_cone(model, cone, state, kept);
-    expose_boxes(model, dot, cone, state, {kept, order + blockIdx.x * points_a_block, model.cone.points_of(state.simple)},
+    expose_boxes(model, dot, cone, state,
+                 {kept, order + blockIdx.x * points_a_block, model.cone.points_of(state.simple)},
                  *reinterpret_cast<BoxState*>(box_storage), patch, images);
   }
 }
@@ -57,7 +58,8 @@ void expose_wide(DotModel const& model, std::uint64_t count, DotCone const* cone
   int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = patch_bytes(side);
   allow_shared_bytes(kernel, shared);
-  std::size_t const points_a_block = static_cast<std::size_t>(model.places.count * std::max(model.cone.count, model.cone.scattered_count));
+  std::size_t const points_a_block =
+      static_cast<std::size_t>(model.places.count * std::max(model.cone.count, model.cone.scattered_count));
   int blocks = blocks_for(kernel, dot_threads, shared, std::min(count, most_blocks));
   RoomForCones room = RoomForCones::make(points_a_block, blocks);
   kernel<<<blocks, dot_threads, shared>>>(model, count, cones, images, side, room.light.data(), room.order.data(),

@@ -52,8 +52,9 @@ GLADSTONE_HD void add_straight_ray(DotModel const& model, TheoryModel const& the
                                    int i, ConeSum& sum) {
   int const place = i / model.cone.count;
   ConePoint const at = model.cone.points[i % model.cone.count];
-  Ray<double> const ray = model.bench.straight_ray(
-      centre + model.offset(model.places.places[place]), (at.radius * model.stop_radius) * model.cone.directions[at.direction]);
+  Ray<double> const ray =
+      model.bench.straight_ray(centre + model.offset(model.places.places[place]),
+                               (at.radius * model.stop_radius) * model.cone.directions[at.direction]);
   double const cosine2 = ray.direction.z * ray.direction.z;
   double const weight = model.places.weights[place] * at.weight * cosine2 * cosine2;
   sum += {weight * integrate_gradient(medium, ray, theory.step).levered, weight};

@@ -11,11 +11,11 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_rays = 1e8;       // of a table
-constexpr double cheap_rays = 2.5e5;    // that a table of twice as many nodes may take
-constexpr double fewest_nodes = 12;     // along either axis of the view
-constexpr double slope_reach = 0.6;     // of the stop's radius: where the pupil's points are on average
-constexpr double leaning = 2;           // radii of the stop: rays further out are not looked for at a field's sides
+constexpr double most_rays = 1e8;     // of a table
+constexpr double cheap_rays = 2.5e5;  // that a table of twice as many nodes may take
+constexpr double fewest_nodes = 12;   // along either axis of the view
+constexpr double slope_reach = 0.6;   // of the stop's radius: where the pupil's points are on average
+constexpr double leaning = 2;         // radii of the stop: rays further out are not looked for at a field's sides
 
 /// How densely a table's nodes lie.
 struct NodeDensity {
@@ -83,8 +83,7 @@ double table_bytes_needed(Setup const& setup) {
   if (field.kind == FieldKind::none || !reason_against_focused_dots(setup).empty()) return 0;
   Vec2d const crossed = crossed_extent(setup, (setup.z_d + field.center.z) / setup.z_b());
   double const area = crossed.x * crossed.y;
-  NodeDensity const density =
-      NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, crossed);
+  NodeDensity const density = NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, crossed);
   return density.bytes(area) * std::min(1.0, most_rays / density.rays(area));
 }
 
@@ -99,7 +98,7 @@ TableState table_state(Scene const& scene) {
   }
   Vec2d const extent = crossed_extent(scene.setup, way);
   return density_of(scene, extent).rays(extent.x * extent.y) <= most_rays ? TableState::made
-                                                                         : TableState::field_too_fine;
+                                                                          : TableState::field_too_fine;
 }
 
 DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& sources, double farthest_aim) {
@@ -160,9 +159,9 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
               way,
               table.pupil_step};
   for (SquareLattice const& lattice : {table.straight, table.sloping}) {
-    numbers_.insert(numbers_.end(), {static_cast<double>(lattice.first.x), static_cast<double>(lattice.first.y),
-                                     lattice.spacing, static_cast<double>(lattice.columns),
-                                     static_cast<double>(lattice.rows)});
+    numbers_.insert(numbers_.end(),
+                    {static_cast<double>(lattice.first.x), static_cast<double>(lattice.first.y), lattice.spacing,
+                     static_cast<double>(lattice.columns), static_cast<double>(lattice.rows)});
   }
   medium_ = scene.medium.owner;
 }
@@ -208,10 +207,10 @@ DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan
           for (int column = 0; column < table_.sloping.columns; ++column) {
             Vec2d const q = table_.sloping.node(column, row);
             Deflection sides[4];
-            deflect_across(bench, medium, way, {q, q, q, q},
-                           {slope_pupil(table_, 0), slope_pupil(table_, 1), slope_pupil(table_, 2),
-                            slope_pupil(table_, 3)},
-                           sides);
+            deflect_across(
+                bench, medium, way, {q, q, q, q},
+                {slope_pupil(table_, 0), slope_pupil(table_, 1), slope_pupil(table_, 2), slope_pupil(table_, 3)},
+                sides);
             DeflectionSlopes const node = slopes_of(table_, sides);
             displacement_slopes_[first + static_cast<std::size_t>(column)] = node.displacement;
             bend_slopes_[first + static_cast<std::size_t>(column)] = node.bend;

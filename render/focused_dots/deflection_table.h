@@ -23,8 +23,8 @@ struct BenchView {
 
 /// What the medium does to a ray, as the camera sees it.
 struct Deflection {
-  Vec2d displacement;  ///< on the sensor [px]
-  Vec2d bend;          ///< on the lens plane [m]
+  Vec2d displacement;                   ///< on the sensor [px]
+  Vec2d bend;                           ///< on the lens plane [m]
   RayStatus status = RayStatus::alive;  ///< or how it was lost on its way to the lens: NaN then
 };
 

@@ -234,7 +234,8 @@ GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule con
   if (!rims) {
     constexpr double wide = CorrectedCone::reach;
     ApertureStop<double> const stop{0, cone.stop_radius(), rule.smoothing};
-    Vec2d const from_aim = (wide * cone.stop_radius()) * rule.scattered[point], arrival = cone.arrival(offset, from_aim);
+    Vec2d const from_aim = (wide * cone.stop_radius()) * rule.scattered[point],
+                arrival = cone.arrival(offset, from_aim);
     double const weight = wide * wide / rule.scattered_count;
     return {cone.displacement(offset, from_aim),
             weight * cone.lambert(offset, cone.pupil(from_aim)) * stop.transmission(arrival.x, arrival.y),

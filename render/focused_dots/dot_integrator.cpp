@@ -13,8 +13,12 @@ DotIntegrator::DotIntegrator(DotModel const& model) : model_(model) {
 
 CorrectedCone DotIntegrator::cone() const {
   DeflectionTable const nothing;
-  return {seen_.kind == DotKind::still ? nothing : model_.table, model_.stop_radius, model_.distance(), seen_.centre,
-          seen_.aim.pupil, seen_.check};
+  return {seen_.kind == DotKind::still ? nothing : model_.table,
+          model_.stop_radius,
+          model_.distance(),
+          seen_.centre,
+          seen_.aim.pupil,
+          seen_.check};
 }
 
 void DotIntegrator::enter(int ray, SentRay const& sent, Deflection const& found) {
@@ -120,7 +124,7 @@ void DotIntegrator::deposit_wide(LightImage* image) {
     Vec2<int> const box = boxes.box_of(light.displacement);
     std::size_t const place = i * static_cast<std::size_t>(places) / points_.size();
     parts_[static_cast<std::size_t>(range.index(box) * places) + place].add(light.weight,
-                                                                           boxes.from_middle(light.displacement, box));
+                                                                            boxes.from_middle(light.displacement, box));
   }
   for (int index = 0; index < range.count(); ++index) {
     DisplacementMoments* const part = parts_.data() + index * places;

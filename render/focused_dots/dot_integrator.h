@@ -55,7 +55,8 @@ class DotIntegrator {
   template <class Medium>
   void trace(Medium const& medium) {
     std::fill_n(of_scramblings_, most_scramblings, TableCheck{});
-    for (int enough = model_.fewest_rays; seen_.kind != DotKind::left; enough = std::min(2 * enough, model_.most_rays)) {
+    for (int enough = model_.fewest_rays; seen_.kind != DotKind::left;
+         enough = std::min(2 * enough, model_.most_rays)) {
       for (; seen_.rays < enough; seen_.rays += 2) {
         throw_if_interrupted();  // each of them may take a million steps
         int const next = std::min(seen_.rays + 1, enough - 1);

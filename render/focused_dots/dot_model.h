@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstring>
-
 #include "render/focused_dots/dot_cone.h"
 #include "render/focused_dots/moment_images.h"
 #include "render/scene/ground_truth.h"
@@ -31,9 +29,9 @@ enum class DotKind : int {
 ///
 /// A thin lens focused on the target maps every ray of a source's point on one image point, so the reference image is
 /// the source's disc convolved with the spot. In the flow a table of deflections tells what every ray of a dot's cone
-/// does; a few rays of each dot are traced and correct it (CorrectedCone). Truth is an integral over the cone, and light
-/// goes by the moments of its displacements; no spot is laid down for a ray. What the rule over the cone and the table
-/// are off by beyond the rays' mean, their spread and a tilt of the bend stays, whatever the number of rays:
+/// does; a few rays of each dot are traced and correct it (CorrectedCone). Truth is an integral over the cone, and
+/// light goes by the moments of its displacements; no spot is laid down for a ray. What the rule over the cone and the
+/// table are off by beyond the rays' mean, their spread and a tilt of the bend stays, whatever the number of rays:
 /// table_error() measures it.
 struct DotModel {
   Vec2d axis_px{};            ///< where the optical axis meets the sensor [px]
@@ -48,8 +46,8 @@ struct DotModel {
   ConeRule cone;
   PlaceRule places;
   MomentImages moment_images;
-  int fewest_rays = 0, most_rays = 0;          ///< of a dot
-  BundleView<double> choice;                   ///< of them
+  int fewest_rays = 0, most_rays = 0;  ///< of a dot
+  BundleView<double> choice;           ///< of them
   SourceShape shape = SourceShape::disc;
 
   /// That the rays are dealt to in turn.
@@ -87,12 +85,13 @@ struct DotModel {
   /// scatter, from ray to ray, of what it is off by. Measured on both DNS planes against 131,072 rays alone: 0.03 to
   /// 0.04 of it, less than half of that with a rule twice as fine, and where the stop's edge is smoothed more with the
   /// square of the scatter over the width of the cone as the target shows it: up to four times the early plane's
-  /// density.
+  /// density. A millionth of a pixel or two comes from rims, which the same rays move.
   GLADSTONE_HD Vec2d error2(CheckErrors const& errors, bool simple_edge = true) const {
     double const cone_px = 2 * table.way * stop_radius * bench.px_per_metre;
     double const leaves = simple_edge && cone.fine ? 0.015 : 0.04, folds = simple_edge ? 0 : 80 / cone_px;
     auto const left2 = [&](double miss2) { return (leaves * leaves + folds * folds * miss2) * miss2; };
-    return errors.scatter2 + Vec2d{left2(errors.miss2.x), left2(errors.miss2.y)};
+    constexpr double rims2 = 2e-6 * 2e-6;
+    return errors.scatter2 + Vec2d{left2(errors.miss2.x) + rims2, left2(errors.miss2.y) + rims2};
   }
   /// Whether so many rays of a dot are enough.
   GLADSTONE_HD bool enough(CheckErrors const& errors, int traced) const {
@@ -121,8 +120,8 @@ GLADSTONE_HD inline Vec2d mean_bend(DotModel const& model, Vec2d centre, Vec2d a
   return sum / 9.0;
 }
 
-/// Aims at a dot: its ray to the pupil's middle is bent aside, so that it is aimed at again, and again; where that comes
-/// to no end, near a caustic, as its rays are bent on average.
+/// Aims at a dot: its ray to the pupil's middle is bent aside, so that it is aimed at again, and again; where that
+/// comes to no end, near a caustic, as its rays are bent on average.
 GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
   constexpr int rounds_of_one = 8, most_rounds = 24;
   DeflectionTable const& table = model.table;
@@ -157,11 +156,13 @@ struct CheckedRay {
   RayStatus status[frame_count];  ///< where it ends in either frame
 };
 
-/// What a dot's random numbers are keyed by: its place, whatever else is in the scene.
+/// What a dot's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene.
 GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
-  std::uint64_t bits[2];
-  memcpy(bits, &centre, sizeof bits);
-  return random_bits(bits[0], RandomStream::pupil, bits[1], 0);
+  using std::floor;
+  auto const nanometres = [](double at) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(floor(1e9 * at + 0.5)));
+  };
+  return random_bits(nanometres(centre.x), RandomStream::pupil, nanometres(centre.y), 0);
 }
 /// Where ray k of a dot starts, from its centre in units of its half size, and its point of a stop of radius one.
 struct DotRay {
@@ -231,7 +232,8 @@ GLADSTONE_HD inline void sum_cone(DotModel const& model, double light, Vec2d ori
 }
 
 /// How the light of a dot in the flow goes whose cone the table covers. @param narrow its moments are, at all places
-/// @param origin image of its centre, moved by what its rays are on average [px] @param extent of displacements about it
+/// @param origin image of its centre, moved by what its rays are on average [px] @param extent of displacements about
+/// it
 GLADSTONE_HD inline DotKind wide_or_narrow(DotModel const& model, bool narrow, Vec2d origin, Extent const& extent) {
   if (narrow) return DotKind::narrow;
   MomentImages const& images = model.moment_images;

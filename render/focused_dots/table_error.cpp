@@ -15,7 +15,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t measured_dots = 12;
-constexpr int rays_a_scrambling = 4096;
+constexpr int traced_rays = 4096, tabled_rays = 16384;  ///< a scrambling
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
@@ -44,13 +44,13 @@ class LoneDot {
     for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
       LightImage beside(side, side);
       Sampled& off = off_[scrambling];
-      off.light.resize(as_seen_.light.size() / 2);  // nothing in the reference frame
-      std::visit(
-          [&](auto const& medium) {
-            if (seen_.kind != DotKind::still) off.displacement = trace(medium, scrambling, beside);
-          },
-          scene_.medium.view);
-      append(off.light, beside.to_light());
+      off.light.resize(as_seen_.light.size());  // nothing in the reference frame
+      if (seen_.kind == DotKind::still) continue;
+      std::visit([&](auto const& medium) { off.displacement = trace(medium, scrambling, beside); }, scene_.medium.view);
+      Image<double> const light = beside.to_light();
+      for (std::size_t i = light.size(); i < off.light.size(); ++i) {
+        off.light[i] = light.data()[i - light.size()] - as_seen_.light[i];
+      }
     }
   }
 
@@ -77,7 +77,8 @@ class LoneDot {
     to.insert(to.end(), light.begin(), light.end());
   }
 
-  /// What rays of another choice find beside what they were expected to, in truth [px] and added to the light.
+  /// By what truth [px] and the light in the flow would be more by rays of another choice alone. Many rays are told by
+  /// the table where they land, and some of them, traced, by what they land beside that.
   template <class Medium>
   Vec2d trace(Medium const& medium, int scrambling, LightImage& image) {
     DotModel const& model = owned_->model;
@@ -88,27 +89,36 @@ class LoneDot {
     LightPatch patch(spot);
     BundleView<double> choice;
     choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-    double const weight = CorrectedCone::reach * CorrectedCone::reach / rays_a_scrambling;
-    Vec2d sum[2]{};
-    double passing[2]{};
-    for (int ray = 0; ray < rays_a_scrambling; ++ray) {
+    constexpr double wide = CorrectedCone::reach;
+    struct Sum {
+      Vec2d first{};
+      double count = 0;
+      Vec2d mean() const { return first / count; }
+    };
+    Sum tabled, also_tabled, traced;
+    for (int ray = 0; ray < tabled_rays; ++ray) {
       throw_if_interrupted();
       auto const [place, at] = DotRay::choose(choice, model.shape, seen_.centre, ray);
-      Vec2d const from_aim = (CorrectedCone::reach * model.stop_radius) * at, offset = model.offset(place), pupil = cone.pupil(from_aim);
-      Vec2d const start = seen_.truth.origin + model.half_size_px() * place;
+      Vec2d const from_aim = (wide * model.stop_radius) * at, offset = model.offset(place);
+      Vec2d const on_dot = model.half_size_px() * place;
+      auto const enter = [&](Vec2d moved, Vec2d arrival, double sign, int rays, Sum& sum) {
+        if (!(length(arrival) <= model.stop_radius)) return;
+        sum.first += on_dot + moved;
+        sum.count += 1;
+        patch.deposit(seen_.truth.origin + on_dot + moved, sign * wide * wide / rays * seen_.light, &image, 1);
+      };
+      Vec2d const moved = cone.origin() + cone.displacement(offset, from_aim), arrival = cone.arrival(offset, from_aim);
+      enter(moved, arrival, 1, tabled_rays, tabled);
+      if (ray >= traced_rays) continue;
+      Vec2d const pupil = cone.pupil(from_aim);
       Deflection found[1];
       deflect(model.bench, medium, {seen_.centre + offset}, {pupil}, found);
-      Vec2d const moved[2] = {cone.origin() + cone.displacement(offset, from_aim), found[0].displacement};
-      Vec2d const arrival[2] = {cone.arrival(offset, from_aim), pupil + found[0].bend};
-      for (int by : {0, 1}) {
-        if (!(length(arrival[by]) <= model.stop_radius)) continue;
-        passing[by] += 1;
-        sum[by] += model.half_size_px() * place + moved[by];
-        patch.deposit(start + moved[by], (by == 1 ? weight : -weight) * seen_.light, &image, 1);
-      }
+      enter(moved, arrival, -1, traced_rays, also_tabled);
+      enter(found[0].displacement, pupil + found[0].bend, 1, traced_rays, traced);
     }
     patch.flush(&image, 1);
-    return sum[1] / passing[1] - sum[0] / passing[0];
+    Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
+    return tabled.mean() + traced.mean() - also_tabled.mean() - told;
   }
 
   double radiance_;

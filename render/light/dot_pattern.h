@@ -20,8 +20,8 @@ struct DotPattern {
   std::uint64_t number_of(std::size_t dot) const { return number.empty() ? dot : number[dot]; }
   double radiance_of(std::size_t dot) const { return radiance.empty() ? 1.0 : radiance[dot]; }
   SourcesView<double> view(double plane_z) const {
-    return {centre.data(), radiance.empty() ? nullptr : radiance.data(), centre.size(), plane_z, half_size, shape,
-            number.empty() ? nullptr : number.data()};
+    return {centre.data(), radiance.empty() ? nullptr : radiance.data(), centre.size(), plane_z, half_size,
+            shape,         number.empty() ? nullptr : number.data()};
   }
 };
 

@@ -7,7 +7,8 @@
 namespace gladstone {
 
 /// Flat Lambertian sources of a target, as the general renderer takes sources: points in space with an intensity by
-/// direction. Every kind has place(), point(), intensity(), number(), middle(), reach(), area(); another is another such struct.
+/// direction. Every kind has place(), point(), intensity(), number(), middle(), reach(), area(); another is another
+/// such struct.
 template <class T>
 struct LambertSources {
   SourcesView<T> dots;

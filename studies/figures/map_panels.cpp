@@ -43,7 +43,9 @@ ColourRange range_of(std::vector<double> const& values, ColourScale scale) {
   if (range.upper > range.lower) return range;
   // A constant map still needs a range.
   double const half = range.upper == 0.0 ? 1.0 : 1e-3 * std::abs(range.upper);
-  return scale == ColourScale::magnitude || scale == ColourScale::grey ? ColourRange{0.0, half} : ColourRange{range.lower - half, range.upper + half};
+  return scale == ColourScale::magnitude || scale == ColourScale::grey
+             ? ColourRange{0.0, half}
+             : ColourRange{range.lower - half, range.upper + half};
 }
 
 std::vector<double> finite_values(Image<double> const& map) {

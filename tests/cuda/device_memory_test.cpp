@@ -11,9 +11,9 @@
 
 #include "analysis/correlation/correlator.h"
 #include "cuda/backend.h"
+#include "cuda/focused_dots/dot_cones.h"
 #include "render/base/error.h"
 #include "render/focused_dots/deflection_map.h"
-#include "cuda/focused_dots/dot_cones.h"
 #include "tests/analysis/support/particle_pair.h"
 #include "tests/scene/small_scenes.h"
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "render/focused_dots/dot_patch.h"
 #include "render/focused_dots/dot_model.h"
+#include "render/focused_dots/dot_patch.h"
 #include "render/scene/source_cubature.h"
 
 namespace gladstone {

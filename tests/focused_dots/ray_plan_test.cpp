@@ -88,8 +88,8 @@ TEST(PlanStep, KeepsAGivenStepAndMeasuresIt) {
 
 TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
-  setup.render.rays_per_dot = 77;
-  Scene scene = scene_with_dots(setup, {{30, 30}}, 1);
+  Scene scene = scene_with_dots(setup, {{30, 30}}, 77);
+  scene.rays_per_dot = 1;
   EXPECT_EQ(plan_rays(scene).rays, 77u);
   EXPECT_EQ(scene.rays_per_dot, 77u);
 }
@@ -105,8 +105,8 @@ TEST(PlanRays, OneChiefRayOfAPointIsEnough) {
   EXPECT_TRUE(plan.converged);
 }
 
-// Fronts of a cell's width under a cone of 38 cells at f/11, 105 at f/4: no number of rays mends what the table leaves of
-// images, and the plan says so.
+// Fronts of a cell's width under a cone of 38 cells at f/11, 105 at f/4: no number of rays mends what the table leaves
+// of images, and the plan says so.
 TEST(PlanRays, AdmitsWhatItCannotReach) {
   for (double const f_number : {11.0, 4.0}) {
     auto setup = table1_setup(64);

@@ -39,8 +39,9 @@ void report(benchmark::State& state, Scene& scene, std::unique_ptr<Renderer> (*m
   state.counters["Grays/s"] = 1e-9 * rays_of(scene) / median;
 }
 
-/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot of the general renderer: how far
-/// the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to 90 %], both rms.
+/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot of the general
+/// renderer: how far the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to
+/// 90 %], both rms.
 void report_accuracy(benchmark::State& state, Scene scene) {
   constexpr std::size_t parts = 128;
   Progress::enable(false);
@@ -74,7 +75,8 @@ void case_p(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene);
 }
-BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->UseManualTime()->Iterations(7)->Unit(benchmark::kMillisecond);
+BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->UseManualTime()->Iterations(7)->Unit(
+    benchmark::kMillisecond);
 
 /// The same to accuracy: the step that plan_step chooses of two cells and less, and rays for half a grey level of 12
 /// bits.
@@ -107,8 +109,13 @@ void case_p_by_rays(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene, cuda::make_rays_renderer);
 }
-BENCHMARK(case_p_by_rays)->ArgName("rays")->Arg(128)->Arg(10000)->UseManualTime()->Iterations(5)->Unit(
-    benchmark::kMillisecond);
+BENCHMARK(case_p_by_rays)
+    ->ArgName("rays")
+    ->Arg(128)
+    ->Arg(10000)
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Unit(benchmark::kMillisecond);
 
 /// Case T: Table 1 on 1024 x 1024 px, the late plane tiled, 20,480 random dots.
 void case_t(benchmark::State& state) {
