@@ -26,13 +26,13 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 # All from Debian bookworm. OpenCV's two small packages instead of libopencv-dev, which draws in two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
-	libceres-dev 	zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core libgtest-dev libgmock-dev libbenchmark-dev
+	libceres-dev zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format clang-tidy
 # the compiler of PRESET=dev, with libFuzzer, and what makes its reports readable
 DEV_PACKAGES := clang libclang-rt-dev llvm
 PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
 # programs that only tests call; without them those are skipped
-TEST_PACKAGES := munge slurmctld slurmd slurm-client
+TEST_PACKAGES := munge slurmctld slurmd slurm-client chromium chromium-driver python3-selenium tidy
 
 ROOMS := render analysis cuda studies
 SOURCES = $(shell find $(ROOMS) tests -name '*.h' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh')

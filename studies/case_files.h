@@ -30,7 +30,9 @@ inline constexpr std::array derived{vectors,
                                     "displacement_maps.png",
                                     "error_histograms.png",
                                     "error_against_gradient.png",
-                                    "error_budget.png"};
+                                    "error_budget.png",
+                                    "report.html",
+                                    "report.md"};
 }  // namespace case_file
 
 /// What makes a folder a CASE, and what goes when it is rendered again.

@@ -390,10 +390,12 @@ std::string errors_json(Comparison const& comparison) {
   return json_text(json) + "\n";
 }
 
-std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison) {
+std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
+                                         std::string const& format) {
   DisplacementField const& measured = comparison.measured;
   bool const piv = comparison.chain == BudgetChain::piv;
   std::vector<std::string> drawn;
+  auto const next = [&](char const* name) { return drawn.emplace_back(folder + '/' + name + '.' + format); };
   auto const difference = [&](std::vector<Vec2d> const& from) {
     std::vector<Vec2d> error(measured.size());
     for (std::size_t i = 0; i < error.size(); ++i) {
@@ -425,8 +427,7 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
       drawings.push_back(maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px));
     }
     drawings.push_back(maps("measurement", measured.displacement_px));
-    drawn.push_back(folder + "/displacement_maps.png");
-    write_displacement_maps(drawn.back(), "Displacement, and differences from ray truth", axes, drawings);
+    write_displacement_maps(next("displacement_maps"), "Displacement, and differences from ray truth", axes, drawings);
   }
   std::vector<ErrorSeries> series{{"against ray truth", difference(comparison.point.displacement_px)}};
   if (piv) {
@@ -436,17 +437,15 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
     series.push_back({"against Eq. 9", difference(comparison.point.eq9_px)});
     series.push_back({"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)});
   }
-  drawn.push_back(folder + "/error_histograms.png");
-  write_error_histograms(drawn.back(), "Measurement error", series);
+  write_error_histograms(next("error_histograms"), "Measurement error", series);
   if (measured.columns > 1 && measured.rows > 1) {
     DisplacementField truth = measured;
     truth.displacement_px = comparison.point.displacement_px;
-    drawn.push_back(folder + "/error_against_gradient.png");
-    write_error_against_gradient(drawn.back(), "Measurement error against the local gradient", truth, series);
+    write_error_against_gradient(next("error_against_gradient"), "Measurement error against the local gradient", truth,
+                                 series);
   }
-  drawn.push_back(folder + "/error_budget.png");
   write_budget_bars(
-      drawn.back(),
+      next("error_budget"),
       piv ? "Error budget, from the flow to the measurement" : "Error budget, from Eq. 9 to the measurement",
       comparison.budget);
   return drawn;

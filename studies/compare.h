@@ -93,7 +93,9 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
 /// errors.json: for each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
 std::string errors_json(Comparison const& comparison);
 
-/// Draws displacement maps, histograms, error against gradient and the budget into the CASE. @return their paths
-std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison);
+/// Draws displacement maps, histograms, error against gradient and the budget into a folder.
+/// @param format "png", "svg" or "pdf" @return their paths
+std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
+                                         std::string const& format = "png");
 
 }  // namespace gladstone

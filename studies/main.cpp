@@ -39,6 +39,8 @@ constexpr std::array commands{
     Command{"sweep", "Parameter studies: plan, run, status, collect",
             "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
             attach_sweep},
+    Command{"report", "Write one file that tells what a study or a case found, with charts and every setting",
+            "gladstone report out/run -o report.html", attach_report},
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
     Command{"gallery", "Render particle images as they should be, and with what spoils them",
             "gladstone gallery -o out/gallery", attach_gallery},

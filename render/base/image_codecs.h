@@ -55,6 +55,9 @@ class ImageCodecs {
   /// A TIFF without compression and without a date. @return why it failed; empty: it did not
   virtual std::string encode_tiff(std::string const& path, GreyPage const& page,
                                   std::vector<unsigned char>& bytes) const = 0;
+  /// A grey PNG of 8 bits. @return as encode_tiff
+  virtual std::string encode_png(int columns, int rows, std::uint8_t const* values,
+                                 std::vector<unsigned char>& bytes) const = 0;
 };
 
 /// Loads the library when it is first called: libgladstone_image_codecs.so, from the folder that GLADSTONE_IMAGE_CODECS

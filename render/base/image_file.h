@@ -33,4 +33,7 @@ std::size_t count_not_finite(Image<double> const& image);
 /// Writes a 16-bit grey TIFF as one whole file. @throws OutputError
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);
 
+/// The bytes of a PNG of 8 bits. @throws DataError
+std::string encode_png(Image<std::uint8_t> const& image);
+
 }  // namespace gladstone

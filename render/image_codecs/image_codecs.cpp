@@ -122,6 +122,17 @@ class OiioCodecs final : public ImageCodecs {
                          output->write_image(OIIO::TypeDesc::UINT16, page.values);
     return !output->close() || !written ? "out of memory?" : "";
   }
+
+  std::string encode_png(int columns, int rows, std::uint8_t const* values,
+                         std::vector<unsigned char>& bytes) const override {
+    OIIO::ImageSpec const spec(columns, rows, 1, OIIO::TypeDesc::UINT8);
+    auto const output = OIIO::ImageOutput::create("png");
+    if (!output) return "no writer of PNG is installed";
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    bool const written = output->set_ioproxy(&memory) && output->open("picture.png", spec) &&
+                         output->write_image(OIIO::TypeDesc::UINT8, values);
+    return !output->close() || !written ? "out of memory?" : "";
+  }
 };
 
 }  // namespace

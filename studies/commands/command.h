@@ -54,6 +54,7 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_report(CLI::App& app, GlobalOptions const& options);
 
 /// Of `gladstone sweep`: its own commands.
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options);

@@ -71,9 +71,26 @@ std::string text_of(std::string const& path) {
   return text.str();
 }
 
-/// What a whole picture ends with: gnuplot ends well even where the disk was full and its picture is cut short.
-constexpr char const* end_of_png = "IEND";
-constexpr char const* end_of_svg = "</svg>";
+/// A format of pictures.
+struct PictureFormat {
+  std::string_view ending;
+  std::string_view terminal;  ///< of gnuplot
+  /// What a whole picture ends with: gnuplot ends well even where the disk was full and its picture is cut short.
+  std::string_view last;
+  double units_per_px;  ///< of the terminal's sizes
+  std::string_view unit;
+};
+constexpr std::array formats{
+    PictureFormat{".png", "pngcairo", "IEND", 1, ""}, PictureFormat{".svg", "svg", "</svg>", 1, ""},
+    PictureFormat{".pdf", "pdfcairo", "%%EOF", 1.0 / 96, "in"}};  // 96 px an inch, as CSS has it
+
+/// PNG where the name tells none.
+PictureFormat const& format_of(std::string const& path) {
+  for (PictureFormat const& format : formats) {
+    if (path.ends_with(format.ending)) return format;
+  }
+  return formats.front();
+}
 
 /// No byte more can be written into the folder.
 bool is_full(std::string const& folder) {
@@ -140,14 +157,14 @@ std::string GnuplotFigure::add_table(std::vector<std::vector<double>> const& col
 
 void GnuplotFigure::write(std::string const& path) const {
   OutputFile output(path);
-  bool const svg = path.ends_with(".svg");
+  PictureFormat const& format = format_of(path);
   {
     errno = 0;
     std::ofstream script(folder_ + "/script.gp", std::ios::binary);
     script << fmt::format(
-        "set terminal {} size {},{} font 'DejaVu Sans,11' noenhanced background '#ffffff'\nset encoding utf8\n"
+        "set terminal {0} size {1}{3},{2}{3} font 'DejaVu Sans,11' noenhanced background '#ffffff'\nset encoding utf8\n"
         "set output 'figure'\n",
-        svg ? "svg" : "pngcairo", width_px_, height_px_);
+        format.terminal, width_px_ * format.units_per_px, height_px_ * format.units_per_px, format.unit);
     script << script_ << "\nunset output\n";
     if (!script.flush()) throw OutputError(folder_ + "/script.gp", why_not(errno));
   }
@@ -155,7 +172,7 @@ void GnuplotFigure::write(std::string const& path) const {
   throw_if_interrupted();  // Ctrl-C stops gnuplot as well
   std::string const picture = folder_ + "/figure";
   std::string const bytes = text_of(picture);
-  if (code != 0 || bytes.find(svg ? end_of_svg : end_of_png) == std::string::npos) {
+  if (code != 0 || bytes.find(format.last) == std::string::npos) {
     if (is_full(folder_)) throw OutputError(picture, why_not(ENOSPC));
     throw OutputError(path, fmt::format("gnuplot failed (exit code {}): {}", code, text_of(folder_ + "/log.txt")));
   }

@@ -41,7 +41,7 @@ class GnuplotFigure {
   /// Stores columns of equal length and returns their data source; columns are 1, 2, ... for `using`. NaN breaks lines.
   std::string add_table(std::vector<std::vector<double>> const& columns);
 
-  /// Runs gnuplot and writes the picture as one whole file: SVG where the path ends so, else PNG.
+  /// Runs gnuplot and writes the picture as one whole file: SVG or PDF where the path ends so, else PNG.
   /// @throws GnuplotMissing; OutputError where the picture cannot be made or written
   void write(std::string const& path) const;
 

@@ -123,17 +123,18 @@ std::string file_part(std::string key) {
 
 }  // namespace
 
-std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table) {
+std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
+                                    std::vector<std::string> const& formats) {
   StudyCells const cells(table), map_cells(table, sampled_places_in_maps(table.points.size()));
   bool const repeated = table.repeats() > 1;
   StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
   StudyCells const points(point_table);
   std::vector<std::unique_ptr<GnuplotFigure>> figures;
-  std::vector<std::string> paths;  // two a figure
+  std::vector<std::string> paths;  // one for each format of a figure
   auto const add = [&](std::unique_ptr<GnuplotFigure> figure, std::string const& name) {
     if (!figure) return;
     figures.push_back(std::move(figure));
-    for (char const* ending : {".png", ".svg"}) paths.push_back(folder + '/' + name + ending);
+    for (std::string const& format : formats) paths.push_back(folder + '/' + name + '.' + format);
   };
   std::vector<std::size_t> const& varied = cells.varied();
   for (std::size_t i = 0; i < varied.size(); ++i) {
@@ -148,8 +149,7 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   }
   // gnuplot takes most of the time: a process a figure, as many at once as there are threads
   parallel_for(figures.size(), [&](std::size_t i) {
-    figures[i]->write(paths[2 * i]);
-    figures[i]->write(paths[2 * i + 1]);
+    for (std::size_t k = 0; k < formats.size(); ++k) figures[i]->write(paths[i * formats.size() + k]);
   });
   return paths;
 }

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Draws a study, each figure as PNG and SVG:
+/// Draws a study, each figure in every format:
 ///
 /// error_against_AXIS  the error of the measurement against ray truth and against Eq. 9 over the axis, a curve for each
 ///                     combination of the other axes; without any, all references in one panel. With more combinations
@@ -20,8 +20,11 @@ namespace gladstone {
 ///
 /// An axis of one value is no axis. Points are the root mean square over repeats, bars reach from the smallest to the
 /// largest. Cases that are not done are left out; a study without one has no figures.
-/// @param folder made where it is missing @return the paths
+/// @param folder  made where it is missing
+/// @param formats "png", "svg", "pdf"
+/// @return the paths
 /// @throws GnuplotMissing, OutputError
-std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table);
+std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
+                                    std::vector<std::string> const& formats = {"png", "svg"});
 
 }  // namespace gladstone

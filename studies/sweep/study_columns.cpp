@@ -8,16 +8,6 @@
 namespace gladstone {
 namespace {
 
-/// @param name of a column; a statistic of a measure has the measure's unit
-std::string unit_of(std::string name) {
-  for (char const* statistic : {".mean", ".std"}) {
-    if (name.ends_with(statistic)) name.erase(name.rfind('.'));
-  }
-  if (name.starts_with("seconds_")) return "s";
-  if (name == "exposure") return "e";
-  return std::string(unit_ending(name).value_or(UnitEnding{"", "1"}).unit);
-}
-
 std::string description_of(std::string const& measure) {
   static std::map<std::string, std::string> const known{
       {"signal_px", "rms of the ray truth at the vectors that count, per component"},
@@ -55,6 +45,15 @@ void add_measures(StudyTable const& table, std::vector<StudyColumn>& columns) {
 }
 
 }  // namespace
+
+std::string unit_of_column(std::string name) {
+  for (char const* statistic : {".mean", ".std"}) {
+    if (name.ends_with(statistic)) name.erase(name.rfind('.'));
+  }
+  if (name.starts_with("seconds_")) return "s";
+  if (name == "exposure") return "e";
+  return std::string(unit_ending(name).value_or(UnitEnding{"", "1"}).unit);
+}
 
 std::vector<StudyColumn> axis_columns(StudyTable const& table) {
   std::vector<StudyColumn> columns;
@@ -132,7 +131,7 @@ void write_columns(Hdf5Writer& file, std::string const& group, std::string const
     } else {
       std::vector<double> numbers;
       for (StudyRow const& row : table.rows) numbers.push_back(column.number(row));
-      file.write(name, numbers, shape, unit_of(column.name), column.description, row_name);
+      file.write(name, numbers, shape, unit_of_column(column.name), column.description, row_name);
     }
     if (!column.labels.empty()) file.attribute(name, "labels", nlohmann::json(column.labels).dump());
   }

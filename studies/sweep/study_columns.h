@@ -18,6 +18,9 @@ struct StudyColumn {
   bool whole = false;
 };
 
+/// Of a column by its name: "px", or "1" of a pure number; a statistic of a measure has the measure's unit.
+std::string unit_of_column(std::string name);
+
 /// Columns that tell a table's rows apart: its axes and the case.
 std::vector<StudyColumn> axis_columns(StudyTable const& table);
 /// All columns of study.csv and study.h5.

@@ -1,0 +1,19 @@
+# embed_text(target name file): puts a file of text into a target as gladstone::embedded::NAME, a std::string_view
+# (studies/report/embedded_text.h). The file is read when CMake runs, which it does again when the file changes.
+function(embed_text target name file)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  file(READ ${file} hexadecimal HEX)
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${hexadecimal}")
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/embedded/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT [[
+#include "studies/report/embedded_text.h"
+
+namespace gladstone::embedded {
+namespace {
+constexpr char bytes[] = {@bytes@};
+}
+std::string_view const @name@{bytes, sizeof bytes};
+}  // namespace gladstone::embedded
+]] @ONLY)
+  target_sources(${target} PRIVATE ${source})
+endfunction()

@@ -1,0 +1,46 @@
+#include "studies/report/report.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "studies/commands/arguments.h"
+#include "studies/commands/command.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+
+CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    ReportOptions report;
+    std::string format = "html";
+  };
+  auto arguments = std::make_shared<Arguments>();
+  arguments->report.figure_format = "png";
+  app.add_option("folder", arguments->report.source, "RUN of a study, or CASE")->required();
+  app.add_option("-o,--output", arguments->report.output, "File, default report.html (report.md) in the folder");
+  app.add_option("--format", arguments->format, "html (one file, works offline) or md")
+      ->check(one_of({"html", "md"}))
+      ->capture_default_str();
+  app.add_option("--vectors", arguments->report.vectors, "Of a CASE: vectors as gladstone compare takes them");
+  app.add_option("--figures", arguments->report.figures, "Folder for the figures as files of their own");
+  app.add_option("--figure-format", arguments->report.figure_format, "png, svg or pdf")
+      ->check(one_of({"png", "svg", "pdf"}))
+      ->capture_default_str();
+  return [arguments, &options] {
+    ReportOptions report = arguments->report;
+    report.markdown = arguments->format == "md";
+    if (report.output.empty()) {
+      report.output = (std::filesystem::path(report.source) / ("report." + arguments->format)).string();
+    }
+    if (report.markdown && report.figures.empty()) {
+      report.figures = std::filesystem::path(report.output).replace_extension("").string() + "_figures";
+    }
+    std::string const findings = write_report(report, options.open_device());
+    print_result(options, json_text(nlohmann::json{{"report", report.output}, {"findings", findings}}),
+                 findings + "wrote " + report.output + '\n');
+    return ok;
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,348 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "analysis/errors/error_summary.h"
+#include "analysis/errors/uncertainty_quality.h"
+#include "render/base/image_file.h"
+#include "render/base/text_file.h"
+#include "studies/case_files.h"
+#include "studies/compare.h"
+#include "studies/report/report.h"
+#include "studies/sweep/job_array.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_frame_px = 1024;    ///< of a picture in a report, across and down
+constexpr std::size_t bin_count = 10;  ///< of the uncertainty
+
+/// Displacements at the vectors as a map of the report: whole multiples of 1e-6 px, null where unknown.
+nlohmann::json component_json(std::vector<Vec2d> const& values, double Vec2d::*component) {
+  nlohmann::json json = nlohmann::json::array();
+  for (Vec2d const& value : values) {
+    double const number = value.*component;
+    json.push_back(std::isfinite(number) ? nlohmann::json(std::round(number * 1e6) * 1e-6) : nlohmann::json(nullptr));
+  }
+  return json;
+}
+
+struct CaseView {
+  Comparison comparison;
+  bool piv = false;
+  nlohmann::json fields = nlohmann::json::array();
+  nlohmann::json errors = nlohmann::json::array();
+
+  explicit CaseView(Comparison compared) : comparison(std::move(compared)), piv(comparison.chain == BudgetChain::piv) {}
+
+  void add_field(std::string const& name, std::string const& title, std::vector<Vec2d> const& values) {
+    if (values.empty()) return;
+    fields.push_back({{"name", name},
+                      {"title", title},
+                      {"u", component_json(values, &Vec2d::x)},
+                      {"v", component_json(values, &Vec2d::y)}});
+  }
+  /// What `to` is beyond `from`, at the vectors that count.
+  std::vector<Vec2d> difference(std::vector<Vec2d> const& to, std::vector<Vec2d> const& from) const {
+    if (to.empty() || from.empty()) return {};
+    std::vector<Vec2d> values(to.size(), Vec2d{std::nan(""), std::nan("")});
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (comparison.mask[i]) values[i] = to[i] - from[i];
+    }
+    return values;
+  }
+  void add_error(std::string const& name, std::string const& title, std::vector<Vec2d> const& truth) {
+    std::vector<Vec2d> const values = difference(comparison.measured.displacement_px, truth);
+    errors.push_back({{"name", name},
+                      {"title", title},
+                      {"u", component_json(values, &Vec2d::x)},
+                      {"v", component_json(values, &Vec2d::y)}});
+    add_field(name, "error " + title, values);
+  }
+};
+
+/// The displacements of the budget's chain, and what each cause adds to them.
+void add_maps(CaseView& view) {
+  Comparison const& all = view.comparison;
+  std::vector<Vec2d> const& measured = all.measured.displacement_px;
+  std::vector<Vec2d> const& truth = all.point.displacement_px;
+  std::vector<Vec2d> const& window = all.window.displacement_px;
+  view.add_field("measured", "measurement", measured);
+  view.add_field("truth", "ray truth", truth);
+  if (view.piv) {
+    view.add_field("flow", "flow", all.flow_px);
+    view.add_field("ambient", "without medium", all.ambient_px);
+  } else {
+    view.add_field("eq9", "Eq. 9", all.point.eq9_px);
+    view.add_field("eq9_cone", "cone-averaged Eq. 9", all.point.eq9_cone_px);
+  }
+  view.add_field("sigma", "estimated uncertainty", all.measured.sigma_px);
+  view.add_error("error_truth", "against ray truth", truth);
+  if (view.piv) {
+    view.add_error("error_flow", "against the flow", all.flow_px);
+  } else {
+    view.add_error("error_eq9", "against Eq. 9", all.point.eq9_px);
+    view.add_field("cone", "cause: cone", view.difference(all.point.eq9_cone_px, all.point.chief_px));
+    view.add_field("refraction", "cause: refraction", view.difference(all.thin_lens, all.point.eq9_cone_px));
+    view.add_field("aberration", "cause: aberration", view.difference(truth, all.thin_lens));
+  }
+  view.add_field("window", "cause: window", view.difference(window, truth));
+  view.add_field("estimator", "cause: estimator",
+                 view.difference(all.noise_free.empty() ? measured : all.noise_free, window));
+  view.add_field("noise", "cause: noise", view.difference(measured, all.noise_free));
+}
+
+/// rms of the error over bins of equal count of the estimated uncertainty.
+nlohmann::json reliability_of(Comparison const& all) {
+  std::vector<std::pair<double, double>> both;
+  for (std::size_t i = 0; i < all.measured.sigma_px.size(); ++i) {
+    Vec2d const sigma = all.measured.sigma_px[i];
+    Vec2d const error = all.measured.displacement_px[i] - all.window.displacement_px[i];
+    if (!all.mask[i] || length(error) > gross_error_px) continue;
+    if (std::isfinite(sigma.x) && std::isfinite(error.x)) both.emplace_back(sigma.x, error.x);
+    if (std::isfinite(sigma.y) && std::isfinite(error.y)) both.emplace_back(sigma.y, error.y);
+  }
+  std::sort(both.begin(), both.end());
+  nlohmann::json bins = nlohmann::json::array();
+  if (both.size() < 10 * bin_count) return bins;
+  for (std::size_t k = 0; k < bin_count; ++k) {
+    std::size_t const begin = k * both.size() / bin_count, end = (k + 1) * both.size() / bin_count;
+    double sigma = 0, error = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      sigma += both[i].first * both[i].first;
+      error += both[i].second * both[i].second;
+    }
+    auto const n = static_cast<double>(end - begin);
+    bins.push_back({{"sigma", std::sqrt(sigma / n)}, {"error", std::sqrt(error / n)}, {"n", end - begin}});
+  }
+  return bins;
+}
+
+TextTable errors_table(CaseView const& view) {
+  Comparison const& all = view.comparison;
+  TextTable table{"Measured less reference", {"measure"}, {}};
+  std::vector<std::pair<std::string, std::vector<Vec2d> const*>> references{{"ray truth", &all.point.displacement_px}};
+  if (view.piv) {
+    references.insert(references.end(), {{"flow", &all.flow_px}, {"without medium", &all.ambient_px}});
+  } else {
+    references.insert(references.end(),
+                      {{"Eq. 9", &all.point.eq9_px}, {"cone-averaged Eq. 9", &all.point.eq9_cone_px}});
+  }
+  references.emplace_back("truth on the window", &all.window.displacement_px);
+  for (auto const& [name, truth] : references) {
+    table.header.push_back(name);
+    auto const measures = error_measures(all.measured.displacement_px, *truth, all.mask, all.vectors_in_file());
+    table.rows.resize(measures.size());
+    for (std::size_t i = 0; i < measures.size(); ++i) {
+      if (table.rows[i].empty()) table.rows[i].push_back({std::string(measures[i].first)});
+      table.rows[i].push_back(TableCell::of(measures[i].second));
+    }
+  }
+  return table;
+}
+
+TextTable budget_table(ErrorBudget const& budget) {
+  TextTable table{"The error budget [px]; the terms correlate, so that their squares do not add up",
+                  {"cause", "bias u", "bias v", "random u", "random v", "rms"},
+                  {}};
+  auto const add = [&](BudgetTerm const& term) {
+    table.rows.push_back({{term.name},
+                          TableCell::of(term.bias_u_px),
+                          TableCell::of(term.bias_v_px),
+                          TableCell::of(term.random_u_px),
+                          TableCell::of(term.random_v_px),
+                          TableCell::of(term.rms_px)});
+  };
+  for (BudgetTerm const& term : budget.terms) add(term);
+  add(budget.total);
+  return table;
+}
+
+nlohmann::json budget_json(ErrorBudget const& budget) {
+  nlohmann::json json = nlohmann::json::array();
+  auto const add = [&](BudgetTerm const& term) {
+    if (!term.known()) return;
+    json.push_back({{"name", term.name},
+                    {"rms", term.rms_px},
+                    {"bias_u", term.bias_u_px},
+                    {"bias_v", term.bias_v_px},
+                    {"random_u", term.random_u_px},
+                    {"random_v", term.random_v_px}});
+  };
+  for (BudgetTerm const& term : budget.terms) add(term);
+  add(budget.total);
+  return json;
+}
+
+std::string largest_term(ErrorBudget const& budget) {
+  BudgetTerm const* largest = nullptr;
+  for (BudgetTerm const& term : budget.terms) {
+    if (term.known() && (!largest || term.rms_px > largest->rms_px)) largest = &term;
+  }
+  if (!largest) return "";
+  return fmt::format(
+      "The largest cause of error is {}, with a bias of ({:.2g}, {:.2g}) px, a random part of ({:.2g}, "
+      "{:.2g}) px and an rms of {:.3g} px; the total rms is {:.3g} px.",
+      largest->name, largest->bias_u_px, largest->bias_v_px, largest->random_u_px, largest->random_v_px,
+      largest->rms_px, budget.total.rms_px);
+}
+
+/// What an uncertainty report says in the words of the GUM (JCGM 100:2008).
+std::vector<std::string> uncertainty_statements(CaseView const& view) {
+  Comparison const& all = view.comparison;
+  std::vector<std::string> statements;
+  UncertaintyQuality const quality =
+      uncertainty_quality(all.measured.displacement_px, all.window.displacement_px, all.measured.sigma_px, all.mask);
+  if (!all.measured.sigma_px.empty() && quality.count > 0) {
+    std::vector<double> sigmas;
+    for (std::size_t i = 0; i < all.mask.size(); ++i) {
+      if (!all.mask[i]) continue;
+      for (double const one : {all.measured.sigma_px[i].x, all.measured.sigma_px[i].y}) {
+        if (std::isfinite(one)) sigmas.push_back(one);
+      }
+    }
+    statements.push_back(fmt::format(
+        "The estimator's standard uncertainty is {:.3g} px in the median ({:.3g} to {:.3g} px for 10 to 90 % of the "
+        "components). It covers {:.1f} % of the errors against truth on the window (68.3 % would be right), twice of "
+        "it "
+        "{:.1f} % (95.4 %); {} components, {} vectors with gross errors left out.",
+        quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1,
+        100 * quality.coverage_2, quality.count, quality.gross));
+    statements.push_back(fmt::format("Its rms is {:.2f} times the rms error. {}", quality.rms_ratio,
+                                     quality.rms_ratio < 0.85 ? "It is too small: enlarge it by the inverse before use."
+                                     : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."
+                                                                : "That is within 15 %."));
+  }
+  ErrorBudget const& budget = all.budget;
+  double const bias = std::hypot(budget.total.bias_u_px, budget.total.bias_v_px);
+  double const random = std::sqrt(
+      (budget.total.random_u_px * budget.total.random_u_px + budget.total.random_v_px * budget.total.random_v_px) / 2);
+  statements.push_back(fmt::format(
+      "Against {}, all causes together: the combined standard uncertainty of a component is {:.3g} px (type B, from "
+      "this "
+      "simulated measurement over {} vectors), the expanded uncertainty {:.3g} px with a coverage factor of 2. The "
+      "uncorrected bias of {:.3g} px is stated apart and is not in it.",
+      view.piv ? "the displacement of the flow" : "Eq. 9", random, budget.count, 2 * random, bias));
+  return statements;
+}
+
+std::vector<std::string> findings_of(CaseView const& view) {
+  Comparison const& all = view.comparison;
+  std::vector<std::string> findings;
+  auto const rms = [&](std::vector<Vec2d> const& truth) {
+    return summarize_errors(all.measured.displacement_px, truth, all.mask, all.vectors_in_file());
+  };
+  ErrorSummary const truth = rms(all.point.displacement_px);
+  ErrorSummary const theory = rms(view.piv ? all.flow_px : all.point.eq9_px);
+  findings.push_back(
+      fmt::format("The measurement is wrong by {:.3g} px rms against ray truth and by {:.3g} px against {}; {} of {} "
+                  "vectors count, "
+                  "{:.2g} % of them with gross errors.",
+                  truth.rms_px, theory.rms_px, view.piv ? "the displacement of the flow" : "Eq. 9", truth.count,
+                  all.vectors_in_file(), 100 * truth.gross_fraction));
+  if (std::string const cause = largest_term(all.budget); !cause.empty()) findings.push_back(cause);
+  findings.push_back(uncertainty_statements(view).front());
+  return findings;
+}
+
+/// Grey values of a frame from black to white as 8 bits, of its middle where it is large.
+std::string png_of(Image<double> const& frame, double black, double white) {
+  int const columns = std::min(frame.columns(), most_frame_px), rows = std::min(frame.rows(), most_frame_px);
+  int const left = (frame.columns() - columns) / 2, top = (frame.rows() - rows) / 2;
+  Image<std::uint8_t> picture(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      double const share = (frame(left + column, top + row) - black) / (white - black);
+      picture(column, row) = static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+    }
+  }
+  return encode_png(picture);
+}
+
+}  // namespace
+
+FramePictures frame_pictures(std::string const& folder, std::string const& title) {
+  Image<double> const reference = read_image((fs::path(folder) / case_file::reference).string());
+  Image<double> const flow = read_image((fs::path(folder) / case_file::flow).string());
+  std::vector<double> levels(reference.begin(), reference.end());
+  double const black = quantile(levels, 0), white = std::max(black + 1, quantile(levels, 0.999));
+  bool const cut = reference.columns() > most_frame_px || reference.rows() > most_frame_px;
+  return {
+      title,
+      fmt::format("{} x {} px{}, grey from {:.0f} to {:.0f}, equal for both frames", reference.columns(),
+                  reference.rows(), cut ? fmt::format(", the middle {} px of them", most_frame_px) : "", black, white),
+      "reference",
+      "flow",
+      png_of(reference, black, white),
+      png_of(flow, black, white)};
+}
+
+ReportPage case_report(ReportOptions const& options, Device const& device) {
+  CompareOptions compare;
+  compare.vectors = options.vectors;
+  CaseView view(compare_case(options.source, device, compare));
+  Comparison const& all = view.comparison;
+  add_maps(view);
+  ReportPage page;
+  page.title = "Case " + fs::path(options.source).lexically_normal().filename().string();
+  if (page.title == "Case ")
+    page.title = "Case " + fs::absolute(options.source).lexically_normal().parent_path().filename().string();
+  page.question = fmt::format("How wrong is this {} measurement, and why? {} vectors, compared with what the rays did.",
+                              view.piv ? "PIV" : "BOS", all.vectors_in_file());
+  page.findings = findings_of(view);
+  bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
+  page.data = {{"errors", view.errors}, {"budget", budget_json(all.budget)}};
+  page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
+  if (gridded) {
+    page.data["fields"] = view.fields;
+    page.data["grid"] = {{"columns", all.measured.columns},
+                         {"rows", all.measured.rows},
+                         {"x", component_json(all.measured.position_px, &Vec2d::x)},
+                         {"y", component_json(all.measured.position_px, &Vec2d::y)}};
+    page.sections.push_back(
+        {"Maps", {Chart{"field", "Displacement, errors, and what each cause adds", page.findings.front()}}});
+  }
+  page.sections.push_back(
+      {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
+  page.sections.push_back(
+      {"Causes of error", {Chart{"budget", "rms of every cause", largest_term(all.budget)}, budget_table(all.budget)}});
+  ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
+  if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
+    uncertainty.blocks.push_back(Chart{
+        "reliability", "Does the estimated uncertainty tell the error?",
+        fmt::format(
+            "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
+            "against truth on the window is {:.3g} px in the first and {:.3g} px in the last. On the dashed line "
+            "they are equal.",
+            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(),
+            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
+    page.data["reliability"] = std::move(bins);
+  }
+  page.sections.push_back(std::move(uncertainty));
+  auto const draw = [&](std::string const& folder, std::string const& format) {
+    return draw_comparison(folder, all, format);
+  };
+  if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
+    page.sections.push_back(std::move(figures));
+  }
+  std::string const setup = in_case(options.source, case_file::setup);
+  page.sections.push_back(
+      {"Settings",
+       {Verbatim{"The resolved setup", read_text_file(setup)},
+        Verbatim{"Summary of the rendering", read_text_file(in_case(options.source, case_file::summary))}}});
+  std::vector<std::pair<std::string, std::string>> sources;
+  for (SourceFiles::Source const& source : all.sources.all()) {
+    if (!source.name.empty()) sources.emplace_back(source.name, source.sha256);
+  }
+  std::string const place = shell_word(options.source);
+  page.sections.push_back(
+      how_it_was_made(sources, {"gladstone render setup.toml -o " + place, "gladstone correlate " + place,
+                                "gladstone compare " + place, "gladstone report " + place}));
+  return page;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,67 @@
+#include "studies/report/report.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/base/output_file.h"
+#include "studies/case_files.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/sweep/manifest.h"
+#include "studies/version_text.h"
+
+namespace gladstone {
+
+namespace fs = std::filesystem;
+
+ReportSection drawn_figures(
+    ReportOptions const& options,
+    std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw) {
+  ReportSection section{"Figures", {}};
+  if (options.figures.empty()) return section;
+  try {
+    fs::path const beside = fs::absolute(options.output).parent_path();
+    for (std::string const& path : draw(options.figures, options.figure_format)) {
+      section.blocks.push_back(
+          FigureFile{fs::absolute(path).lexically_proximate(beside).string(), fs::path(path).stem().string()});
+    }
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+  }
+  return section;
+}
+
+ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,
+                              std::vector<std::string> const& commands) {
+  TextTable files{"What this report was made from (SHA-256)", {"what", "SHA-256"}, {}};
+  for (auto const& [name, sha256] : sources) files.rows.push_back({{name}, {sha256}});
+  std::string text;
+  for (std::string const& command : commands) text += command + '\n';
+  return {"How it was made, and how to cite it",
+          {Paragraph{"gladstone " + build_text() + " wrote this report."}, std::move(files),
+           Verbatim{"Commands that make it again", text},
+           Paragraph{"Cite gladstone with its version and commit as above; for the method: L. K. Rajendran, S. P. M. "
+                     "Bane, P. P. Vlachos, PIV/BOS synthetic image generation in variable density environments for "
+                     "error analysis and experiment design, Measurement Science and Technology 30 (2019) 085302."}}};
+}
+
+std::string write_report(ReportOptions const& options, Device const& device) {
+  bool const run = fs::exists(fs::path(options.source) / run_file::manifest);
+  if (!run && !fs::exists(fs::path(options.source) / case_file::setup)) {
+    throw DataError(options.source, fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "
+                                                "of a planned and computed study, or of a rendered case",
+                                                run_file::manifest, case_file::setup));
+  }
+  OutputFile output(options.output);  // shows that the place can be written
+  ReportPage const page = run ? run_report(options) : case_report(options, device);
+  std::string const text = options.markdown ? markdown_page(page) : html_page(page);
+  output.write(text.data(), text.size());
+  output.commit();
+  std::string findings;
+  for (std::string const& finding : page.findings) findings += finding + '\n';
+  return findings;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "studies/device.h"
+#include "studies/report/report_page.h"
+
+namespace gladstone {
+
+/// What a report is written from and as.
+struct ReportOptions {
+  std::string source;         ///< RUN or CASE folder
+  std::string output;         ///< file
+  bool markdown = false;      ///< else HTML
+  std::string figures;        ///< folder for the figures of a paper; empty: none
+  std::string figure_format;  ///< "png", "svg" or "pdf"
+  std::string vectors;        ///< of a CASE: file; empty: its own
+};
+
+/// Writes the report of a study or of a case, and its figures. @return the findings, a line each
+/// @throws DataError where the folder is neither, holds no finished case, or was never correlated; OutputError
+std::string write_report(ReportOptions const& options, Device const& device);
+
+/// The report of a RUN from what is finished: nothing is computed.
+ReportPage run_report(ReportOptions const& options);
+
+/// The report of a CASE, which is compared with truth and theory anew.
+ReportPage case_report(ReportOptions const& options, Device const& device);
+
+/// The figures of a paper, as blocks that name them: what `draw` draws into a folder in a format, without gnuplot none.
+/// Empty where none are wanted.
+ReportSection drawn_figures(
+    ReportOptions const& options,
+    std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw);
+
+/// How every report ends: versions, checksums, commands, how to cite.
+/// @param sources name and SHA-256 of what it was made from
+ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,
+                              std::vector<std::string> const& commands);
+
+/// Two frames as 8-bit pictures of equal grey scale; of large ones the middle.
+FramePictures frame_pictures(std::string const& folder, std::string const& title);
+
+}  // namespace gladstone

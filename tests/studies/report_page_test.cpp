@@ -1,0 +1,65 @@
+#include "studies/report/report_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/base/base64.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// RFC 4648, section 10.
+TEST(Base64, HasTheVectorsOfItsStandard) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64(std::string_view("\xff\x00", 2)), "/wA=");
+}
+
+ReportPage hostile_page() {
+  std::string const hostile = "</script><script>alert(\"1\")</script> & | `x`";
+  ReportPage page;
+  page.title = hostile;
+  page.question = hostile;
+  page.findings = {hostile};
+  page.sections = {
+      {hostile,
+       {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
+        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true}, Chart{"curves", hostile, hostile},
+        FramePictures{hostile, hostile, "a", "b", "one", "two"}, FigureFile{hostile, hostile}}}};
+  page.data = {{"text", hostile}};
+  return page;
+}
+
+TEST(ReportPage, TakesNoTextForMarks) {
+  std::string const html = html_page(hostile_page());
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(html, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt; &amp;"));
+  EXPECT_THAT(html, HasSubstr("data-value=\"0.1234567\">0.1235</td>"));
+  EXPECT_THAT(markdown_page(hostile_page()), HasSubstr("\\<script\\>alert(\"1\")\\</script\\> & \\| \\`x\\`"));
+}
+
+TEST(ReportPage, HoldsAllThatItNeeds) {
+  std::string const html = html_page(hostile_page());
+  EXPECT_THAT(html, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(html, HasSubstr("d3js.org v5"));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64," + base64("one")));
+  EXPECT_THAT(html, HasSubstr("Copyright"));
+  EXPECT_THAT(html, HasSubstr("{\"text\":\"\\u003c/script>\\u003cscript>"));
+}
+
+TEST(ReportPage, SaysThatANumberIsUnknown) {
+  TableCell const cell = TableCell::of(std::nan(""));
+  EXPECT_EQ(cell.text, "unknown");
+  EXPECT_FALSE(cell.number);
+}
+
+}  // namespace
+}  // namespace gladstone
