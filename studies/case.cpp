@@ -149,14 +149,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
-  if (by_table && !prepared.rays.converged) {
-    warn(prepared.warnings,
-         fmt::format("what the table of deflections leaves: images are off by {:.2g} grey levels of {} bits, truth by "
-                     "{:.2g} px, where {} and {} are asked; render.method = \"rays\" leaves nothing, but takes many "
-                     "render.rays_per_dot to scatter less",
-                     prepared.rays.image_error_levels, prepared.rays.bits, prepared.rays.truth_error_px,
-                     image_tolerance_levels, truth_tolerance_px));
-  } else if (!prepared.rays.converged) {
+  if (!by_table && !prepared.rays.converged) {
     warn(prepared.warnings,
          fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
                      "{:.2g} px, where {} and {} are asked (that would take some {:.2g} rays a dot and {:.0f} s of one "

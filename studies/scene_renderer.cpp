@@ -146,13 +146,20 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
 
 RaysPlan plan_rays_of(Scene& scene) {
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
+  constexpr std::uint64_t rivals = 4096;  // of a dot: fewer scatter by more than tables leave
   RaysPlan plan = plan_rays(enter(scene));
+  auto const given = given_rays(scene.setup);
   if (scene.setup.render.method == RenderMethod::automatic) {
     plan.method = RenderMethod::focused_dots;
+    if (given && given->rays >= rivals) {
+      scene.rays_per_dot = given->rays;
+      plan = measure_table_error(enter(scene));
+      plan.method = RenderMethod::focused_dots;
+    }
     if (plan.excess() > 1) {  // is the other way better?
       Scene other = scene;
       RaysPlan by_rays = plan_rays_by_rays(other);
-      if (given_rays(scene.setup)) by_rays = measure_rays_by_rays(other);
+      if (given) by_rays = measure_rays_by_rays(other);
       by_rays.method = RenderMethod::rays;
       if (by_rays.excess() < plan.excess()) plan = by_rays;
     }

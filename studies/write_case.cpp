@@ -11,6 +11,7 @@
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/units.h"
+#include "render/focused_dots/table_error.h"
 #include "render/sensor/detector.h"
 #include "studies/case.h"
 #include "studies/json_text.h"
@@ -49,6 +50,22 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
                   "that matters",
                   accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
                   accuracy.largest_px, why, rays));
+}
+
+/// What the deflection table leaves of truth and images, measured where the plan has not; with a warning where it is
+/// more than is asked.
+RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan, std::vector<std::string>& warnings) {
+  bool const measured = plan.truth_error_px > 0 || plan.image_error_levels > 0;
+  RaysPlan const error = measured ? plan : measure_table_error(focused_dots(scene).value());
+  if (error.excess() > 1) {
+    warn(warnings,
+         fmt::format("what the table of deflections leaves: images are off by {:.2g} grey levels of {} bits, truth by "
+                     "{:.2g} px, where {} and {} are asked; render.method = \"rays\" leaves nothing, but takes many "
+                     "render.rays_per_dot to scatter less",
+                     error.image_error_levels, error.bits, error.truth_error_px, image_tolerance_levels,
+                     truth_tolerance_px));
+  }
+  return error;
 }
 
 /// Least, median and most of some numbers.
@@ -149,6 +166,8 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = scene.setup.camera;
   bool const by_table = rendering.method == RenderMethod::focused_dots;
+  std::optional<RaysPlan> table_error;
+  if (by_table) table_error = error_of_table(scene, prepared.rays, warnings);
   std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
   // where the rays are planned again, they are planned for the same exposure
@@ -187,7 +206,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
     write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, origin);
   } else {
     write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
-                rendering.method, by_table ? &prepared.rays : nullptr, origin);
+                rendering.method, table_error ? &*table_error : nullptr, origin);
   }
   OutputFile::write_text(place(case_file::setup), resolved);
 

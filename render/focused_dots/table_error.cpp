@@ -14,8 +14,8 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t measured_dots = 12;
-constexpr int traced_rays = 4096, tabled_rays = 16384;  ///< a scrambling
+constexpr std::size_t measured_dots = 8;
+constexpr int traced_rays = 2048, tabled_rays = 16384;  ///< a scrambling
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
@@ -167,15 +167,15 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
 }
 
 RaysPlan plan_rays(FocusedDots const& dots) {
-  auto const given = given_rays(dots.scene().setup);
+  if (auto const given = given_rays(dots.scene().setup)) return *given;
   Scene searched = dots.scene();  // at one number of rays after the other
   FocusedDots const here = focused_dots(searched).value();
-  for (searched.rays_per_dot = given ? given->rays : 32;; searched.rays_per_dot *= 4) {
+  for (searched.rays_per_dot = 32;; searched.rays_per_dot *= 4) {
     RaysPlan plan = measure_table_error(here);
     plan.converged = plan.excess() <= 1;
     plan.rays_wanted = static_cast<double>(plan.rays);
     plan.seconds = rays_seconds(searched) * static_cast<double>(plan.rays);
-    if (given || plan.converged || searched.rays_per_dot >= 512) return plan;
+    if (plan.converged || searched.rays_per_dot >= 512) return plan;
   }
 }
 
