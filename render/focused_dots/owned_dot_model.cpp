@@ -13,7 +13,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more tell no more of the table
-constexpr std::uint64_t most_chosen_rays = 256;   ///< of a dot, by "auto"
+constexpr std::uint64_t most_chosen_rays = 256;                    ///< of a dot, by "auto"
 
 /// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
 /// other, or side by side on a device, then lies together in memory.
@@ -112,13 +112,14 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.cone.smoothing = Scene::stop_edge(model.cone.scattered_count);
   model.places = make_place_rule(sources.half_size > 0, sources.shape);
 
-  std::uint64_t const wanted = std::min(scene.rays_per_dot, most_given_rays);
+  bool const given = scene.setup.render.rays_per_dot.has_value();
+  std::uint64_t const asked = std::min(scene.rays_per_dot, most_given_rays);
+  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;  // a warp's
   model.choice.seed = scene.setup.render.seed;
   model.choice.scrambling_bits = scrambling_bits(wanted);
   model.shape = sources.shape;
   model.fewest_rays = static_cast<int>(wanted);
-  model.most_rays =
-      scene.setup.render.rays_per_dot ? model.fewest_rays : static_cast<int>(std::max(wanted, most_chosen_rays));
+  model.most_rays = static_cast<int>(given ? wanted : std::max(wanted, most_chosen_rays));
 
   source = SourceCubature::make(sources.shape, half_px, model.spot.sigma);
   model.source = {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())};
