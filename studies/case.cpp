@@ -8,6 +8,7 @@
 #include "render/base/text_encoding.h"
 #include "render/base/units.h"
 #include "render/focused_dots/focused_dots.h"
+#include "render/ideal_images/ideal_images.h"
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "studies/cameras.h"
@@ -46,16 +47,39 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
     };
     place("camera.pixels", root.tables("camera"));
     place("medium.field.file", root.table("medium").tables("field"));
+    place("medium.second_field.file", root.table("medium").tables("second_field"));
     place("target.dots_per_32px_window", {});
     place("render.rays_per_dot", {});
+    place("flow.file", {});
     for (char const* const key : {"number", "per_mm3", "per_pixel", "volume_mm"}) {
       place(std::string("particles.") + key, {});
     }
   }
 }
 
+/// Refuses ideal images where they do not hold, and rays of what has none.
+void cross_check_formula(CaseSetup& loaded) {
+  Setup const& setup = loaded.setup;
+  SetupTable root = loaded.document.root();
+  bool const needed = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
+  bool const wanted = setup.render.method == RenderMethod::formula;
+  std::string const reason = needed || wanted ? reason_against_ideal_images(setup) : "";
+  if (wanted && !reason.empty()) {
+    root.table("render").problem("method", "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
+  } else if (needed && !reason.empty()) {
+    root.table("particles")
+        .problem("scattering", "is of ideal images, which do not hold here (" + reason +
+                                   "); use \"mie\" or \"lambert\", whose light goes ray by ray");
+  } else if (needed && setup.render.method == RenderMethod::rays) {
+    root.table("render").problem("method",
+                                 "stands beside particles.scattering = \"gaussian\", which has no rays; use "
+                                 "\"formula\", or scattering = \"mie\" or \"lambert\"");
+  }
+}
+
 /// Refuses the fast renderer where it does not hold.
 void cross_check_method(CaseSetup& loaded) {
+  cross_check_formula(loaded);
   if (loaded.setup.render.method != RenderMethod::focused_dots) return;
   std::string const reason = loaded.setup.calibration() ? "the dots of a calibration are on several planes"
                                                         : reason_against_focused_dots(loaded.setup);
@@ -88,6 +112,18 @@ void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
                      scene.setup.camera.columns * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3,
                      scene.setup.camera.rows * scene.setup.camera.pixel_pitch / scene.imaging.magnification * 1e3));
   }
+}
+
+/// Warns where ideal images leave out a blur that would be seen.
+void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
+  if (!scene.setup.piv || method_of(scene) != RenderMethod::formula) return;
+  double const blur = ideal_images(scene)->largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
+  if (blur < 0.5 * spot) return;
+  warn(warnings,
+       fmt::format("render.method: ideal images are all in focus, where particles of this sheet would be up to "
+                   "{:.3g} px wide besides the {:.3g} px of diffraction; take a thinner sheet, a smaller stop "
+                   "or rays",
+                   blur, spot));
 }
 
 }  // namespace
@@ -131,6 +167,9 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   prepared.scene = build_scene(loaded.setup, known.medium);
   Scene& scene = prepared.scene;
   for (auto const& text : scene.medium.warnings) warn(prepared.warnings, text);
+  if (scene.second_medium) {
+    for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
+  }
   if (known.step) {
     prepared.step = *known.step;
     use_step(scene, prepared.step);
@@ -144,6 +183,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
                     prepared.step.step_mm, prepared.step.limiting_dot, prepared.step.change_px));
   }
   warn_of_view(scene, prepared.warnings);
+  warn_of_blur(scene, prepared.warnings);
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;

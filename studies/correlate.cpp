@@ -7,9 +7,11 @@
 #include <chrono>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/correlation/ensemble.h"
 #include "analysis/correlation/pair_verdict.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/vector_file.h"
+#include "render/base/contracts.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
 #include "studies/case.h"
@@ -55,6 +57,19 @@ void warn_of_colour(std::string const& path, ImageMetadata const& metadata) {
                path);
 }
 
+/// Correlates what the masks and steps of the settings leave of the frames.
+Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Device const& device) {
+  auto const start = std::chrono::steady_clock::now();
+  HostFrames const prepared = prepare_frames(frames, settings.preparation);
+  settings.preparation = {};
+  Measurement measurement = correlate_frames(prepared, settings, device);
+  if (known_part(prepared) == 0.0)
+    measurement.field.warnings.emplace_back(
+        "the masks leave no pixel of the frames (so that every vector is masked); make correlate.mask smaller");
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
+}
+
 /// Pixels that are nan or infinite are left out of every window, as the correlator does: they are told, and refused
 /// where nothing else is there.
 void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
@@ -92,9 +107,10 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
 }
 
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device) {
+  if (!settings.preparation.empty()) return correlate_prepared(frames, settings, device);
   auto const start = std::chrono::steady_clock::now();
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
-  Measurement measurement{correlator->correlate_pair(frames), 0};
+  Measurement measurement{correlator->correlate_pair(frames), 0, device.correlates_on(settings)};
   judge_pair(measurement.field, frames, *correlator, settings);
   estimate_uncertainty(measurement.field, frames, settings);
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -117,6 +133,12 @@ Image<double> read_frame(std::string const& path, std::string const& name, Sourc
   return frame;
 }
 
+void add_preparation(CorrelationSettings const& settings, SourceFiles& sources) {
+  std::size_t number = 0;
+  for (std::string const& file : settings.preparation.files)
+    sources.add(fmt::format("preparation_{}", ++number), file, SourceFiles::Holds::pixels);
+}
+
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources) {
   ImageMetadata metadata;
   sources.add("", pair, SourceFiles::Holds::bytes);
@@ -125,6 +147,33 @@ std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& s
   sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
   sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
   return frames;
+}
+
+Measurement correlate_ensemble_files(std::vector<std::string> const& files, CorrelationSettings const& settings,
+                                     SourceFiles& sources) {
+  GLADSTONE_EXPECTS(!files.empty() && files.size() % 2 == 0);
+  auto const start = std::chrono::steady_clock::now();
+  int columns = 0, rows = 0;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    Image<double> const frame =
+        read_frame(files[k], fmt::format("{}_{}", k % 2 == 0 ? "reference" : "flow", k / 2 + 1), sources);
+    if (k == 0) {
+      columns = frame.columns();
+      rows = frame.rows();
+    }
+    if (frame.columns() != columns || frame.rows() != rows)
+      throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames need one size)",
+                                            frame.columns(), frame.rows(), files[0], columns, rows));
+  }
+  if (std::string const problem = window_problem(settings, columns, rows); !problem.empty())
+    throw DataError(files[0], problem);
+  PairSequence const pairs{files.size() / 2, [&](std::size_t k) {
+                             HostFrames const frames(read_image(files[2 * k]), read_image(files[2 * k + 1]));
+                             return prepare_frames(frames, settings.preparation);
+                           }};
+  Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
+  measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return measurement;
 }
 
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
@@ -138,10 +187,11 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
   CorrelationSettings const& settings = other ? other->settings : loaded.correlate;
   Image<double> const reference_frame = read_frame(reference, "reference", sources);
   Image<double> const flow_frame = read_frame(flow, "flow", sources);
+  add_preparation(settings, sources);
   Measurement measurement = correlate_frames(reference, reference_frame, flow, flow_frame, settings, device);
   FileOrigin origin{
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
-      device.name(),       sources};
+      measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
   return measurement;
 }

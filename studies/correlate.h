@@ -15,6 +15,7 @@ namespace gladstone {
 struct Measurement {
   DisplacementField field;  ///< as judge_pair() leaves it
   double seconds = 0;
+  std::string device;  ///< that correlated: "cpu" or "cuda"
 };
 
 /// Correlates two frames. @throws DataError where they differ in size or are smaller than a window
@@ -39,6 +40,15 @@ Image<double> read_frame(std::string const& path, std::string const& name, Sourc
 
 /// The same for a file of two pages, reference and flow.
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
+
+/// The one displacement of many pairs, `files` being reference and flow of each in turn: correlate_ensemble(). Frames
+/// are read in every pass, one pair at a time, and entered among the sources as reference_1, flow_1, reference_2, ...
+/// @throws DataError
+Measurement correlate_ensemble_files(std::vector<std::string> const& files, CorrelationSettings const& settings,
+                                     SourceFiles& sources);
+
+/// Enters the pictures that masks and steps read among the sources, as preparation_1, preparation_2, ...
+void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
 
 /// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
 /// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then

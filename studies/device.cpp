@@ -36,10 +36,7 @@ Device open_device(std::string const& wanted) {
     cuda::DeviceState const state = cuda::device_state();
     if (state.usable) {
       spdlog::info("device: cuda, {}", state.text);
-      // particles are rendered on the CPU: "auto" takes it, "cuda" is refused where there are any
-      std::unique_ptr<Renderer> particles;
-      if (wanted == "auto") particles = std::make_unique<RaysRenderer>();
-      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer(), std::move(particles)),
+      return {std::make_unique<SceneRenderer>(cuda::make_renderer(), cuda::make_rays_renderer()),
               [wanted](CorrelationSettings const& settings) { return correlator_on_gpu(settings, wanted == "cuda"); }};
     }
     if (wanted == "cuda") throw DeviceError("--device cuda: " + state.text + "; use --device cpu or auto");

@@ -15,6 +15,10 @@ struct Device {
   std::function<std::unique_ptr<Correlator>(CorrelationSettings const&)> correlator;
 
   std::string name() const { return renderer->device(); }
+  /// The same of what correlates with these settings: the CPU where the GPU does not have all that they ask for.
+  std::string correlates_on(CorrelationSettings const& settings) const {
+    return missing_on_gpu(settings).empty() ? name() : "cpu";
+  }
 };
 
 /// @param wanted "cpu", "cuda", or "auto": the GPU where one can be used. Says on the log which it is.

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "render/medium/density_field.h"
+#include "render/base/fields/field_file.h"
 
 namespace gladstone {
 

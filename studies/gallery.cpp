@@ -36,6 +36,8 @@ constexpr std::array pictures{
     Picture{"shock", "normal shock seen askew", "particles behind the front are shifted and drawn out along it"},
     Picture{"oblique", "oblique view, sensor square to the axis", "sharp along one line alone"},
     Picture{"scheimpflug", "oblique view, Scheimpflug", "the same view with the sensor tilted: sharp all over"},
+    Picture{"plenoptic", "plenoptic raw image",
+            "one disc of the stop for a particle in focus, parts of it in several lenslets for others"},
 };
 
 /// Below this share of pixels the normal picture is shown without clipping; the brightest particles are white.

@@ -36,6 +36,8 @@ constexpr std::array commands{
     Command{"validate", "Run the built-in oracles: measured against exact", "gladstone validate", attach_validate},
     Command{"calibrate", "Fit cameras to the dots of a calibration case", "gladstone calibrate out/calibration",
             attach_calibrate},
+    Command{"views", "Extract the views that a plenoptic picture holds, and focus it anew",
+            "gladstone views out/plenoptic --refocus 4", attach_views},
     Command{"sweep", "Parameter studies: plan, run, status, collect",
             "gladstone sweep plan study.toml -o run && gladstone sweep run run --jobs 2 && gladstone sweep collect run",
             attach_sweep},

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "render/base/units.h"
+#include "render/ideal_images/ideal_images.h"
 #include "render/scene/particle_scene.h"
+#include "studies/scene_renderer.h"
 
 namespace gladstone {
 namespace {
@@ -65,7 +67,7 @@ nlohmann::json spread_of_light(std::vector<double> values) {
 }  // namespace
 
 void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
-                          StatusCounts const& statuses, FileOrigin const& origin) {
+                          StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   std::vector<double> position;
@@ -99,7 +101,7 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
   file.attribute("/particles", "conventions",
                  "displacement = second pulse minus first; column right and row down from 0 at the first pixel's "
                  "centre; the medium stands before both pulses");
-  file.attribute("/", "method", "rays");
+  file.attribute("/", "method", to_string(method));
   file.attribute("/particles", "step_mm", scene.step * 1e3);
   file.attribute("/particles", "magnification", scene.imaging.magnification);
   file.attribute("/particles", "path_error_m", scene.particles.path.error);
@@ -158,6 +160,7 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
       {"photons", spread_of_light(photons)},
       {"electrons_per_photon", exposure_e / scene.photon_unit},
       {"path", {{"steps", path.steps}, {"error_px", path.error / px}, {"lag_error_px", path.lag_error / px}}}};
+  if (auto const ideal = ideal_images(scene)) particles["largest_blur_px"] = ideal->largest_blur_px(scene.particles);
   if (scene.mie) particles["scattering_table_error"] = scene.mie->error();
   return {{"particles", particles}, {"photons_fully_lit", scene.photon_unit}};
 }

@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Writes truth.h5 of PIV: /particles and /rays (docs/file-formats.md).
 void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
-                          StatusCounts const& statuses, FileOrigin const& origin);
+                          StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin);
 
 /// What summary.json says of particles beside what it says of dots: how many there are, are lit and in view, their
 /// light, and how well their paths are known.

@@ -103,7 +103,7 @@ ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec
     return trace();
   };
   points.seen = truth_of(false);
-  bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view);
+  bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view) && !scene.second_medium;
   points.ambient_px = empty ? points.seen.displacement_px : truth_of(true).particles.displacement_ambient_px;
   return points;
 }

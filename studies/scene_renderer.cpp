@@ -1,7 +1,5 @@
 #include "studies/scene_renderer.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -10,9 +8,11 @@
 #include "render/base/error.h"
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/focused_dots/table_error.h"
+#include "render/ideal_images/ideal_images.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/side_faces.h"
+#include "render/scene/two_media.h"
 
 namespace gladstone {
 namespace {
@@ -73,21 +73,40 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
 RenderMethod method_of(Scene const& scene) {
   RenderMethod const wanted = scene.setup.render.method;
   if (wanted != RenderMethod::automatic) return wanted;
+  if (scene.setup.piv && scene.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+    return RenderMethod::formula;
+  }
   return focused_dots(scene) ? RenderMethod::focused_dots : RenderMethod::rays;
 }
 
-char const* to_string(RenderMethod method) { return method == RenderMethod::focused_dots ? "focused_dots" : "rays"; }
+char const* to_string(RenderMethod method) {
+  switch (method) {
+    case RenderMethod::focused_dots:
+      return "focused_dots";
+    case RenderMethod::formula:
+      return "formula";
+    case RenderMethod::automatic:
+    case RenderMethod::rays:
+      break;
+  }
+  return "rays";
+}
 
-SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
-                             std::unique_ptr<Renderer> particles)
-    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)), particles_(std::move(particles)) {}
+SceneRenderer::SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays)
+    : focused_dots_(std::move(focused_dots)), rays_(std::move(rays)) {}
 
 Rendering SceneRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
                                           RenderImages images) {
-  Renderer& renderer = particles_ ? *particles_ : *rays_;
-  if (particles_ && images != RenderImages::no) spdlog::info("particles are rendered on the CPU");
-  Rendering rendering = renderer.render_particles(scene, particles, light, images);
-  rendering.device = renderer.device();
+  if (scene.second_medium) return render_in_two_media(*this, scene, particles, light, images);
+  if (method_of(scene) == RenderMethod::formula) {
+    auto const ideal = ideal_images(scene);
+    GLADSTONE_EXPECTS(ideal);
+    Rendering rendering = render_ideal_images(*ideal, particles, light, images);
+    rendering.device = "cpu";
+    return rendering;
+  }
+  Rendering rendering = rays_->render_particles(scene, particles, light, images);
+  rendering.device = device();
   return rendering;
 }
 
@@ -123,7 +142,18 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   return all;
 }
 
-StepPlan plan_step_of(Scene& scene) { return plan_step_by_rays(scene); }
+StepPlan plan_step_of(Scene& scene) {
+  if (scene.second_medium) {  // the shorter step of both
+    Scene first = scene, second = at_second_pulse(scene);
+    first.second_medium.reset();
+    StepPlan const a = plan_step_of(first), b = plan_step_of(second);
+    StepPlan plan = b.step_mm < a.step_mm ? b : a;
+    plan.largest_bend = std::max(a.largest_bend, b.largest_bend);
+    use_step(scene, plan);
+    return plan;
+  }
+  return plan_step_by_rays(scene);
+}
 
 namespace {
 
@@ -145,6 +175,19 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
 }  // namespace
 
 RaysPlan plan_rays_of(Scene& scene) {
+  if (scene.second_medium) {  // the more rays of both
+    Scene first = scene, second = at_second_pulse(scene);
+    first.second_medium.reset();
+    RaysPlan const a = plan_rays_of(first), b = plan_rays_of(second), plan = b.rays > a.rays ? b : a;
+    scene.rays_per_dot = plan.rays;
+    return plan;
+  }
+  if (method_of(scene) == RenderMethod::formula) {  // has none; what is written down is one
+    RaysPlan plan;
+    plan.rays = scene.rays_per_dot = 1;
+    plan.bits = scene.setup.camera.bit_depth;
+    return plan;
+  }
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
   constexpr std::uint64_t rivals = 4096;  // of a dot: fewer scatter by more than tables leave
   RaysPlan plan = plan_rays(enter(scene));

@@ -19,9 +19,8 @@ char const* to_string(RenderMethod method);
 /// or where their rays get lost, go ray by ray all the same, and by a number of rays of their own.
 class SceneRenderer : public Renderer {
  public:
-  /// @param focused_dots,rays the renderers of that device @param particles who renders particles; null: `rays`
-  SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays,
-                std::unique_ptr<Renderer> particles = nullptr);
+  /// @param focused_dots,rays the renderers of that device
+  SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
 
   std::string device() const override { return rays_->device(); }
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
@@ -31,7 +30,7 @@ class SceneRenderer : public Renderer {
  private:
   Rendering render_focused(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
 
-  std::unique_ptr<Renderer> focused_dots_, rays_, particles_;
+  std::unique_ptr<Renderer> focused_dots_, rays_;
 };
 
 /// What plans a scene and maps its field, by its method.

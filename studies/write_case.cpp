@@ -98,8 +98,10 @@ std::string saturation_cure(CameraSetup const& camera, double light_e) {
   double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
   double const offset_e = camera.offset_dn / full_scale * noise.full_well_e;
   double const dark_e = noise.enabled ? noise.dark_current_e : 0.0;
-  bool const without_noise = offset_e + light_e + dark_e >= noise.full_well_e;
+  double const stray_e = camera.background.most_e();
+  bool const without_noise = offset_e + light_e + stray_e + dark_e >= noise.full_well_e;
   if (without_noise && dark_e > light_e) return "lower camera.noise.dark_current_e";
+  if (without_noise && stray_e > light_e) return "lower camera.background";
   double const shot_e = noise.shot_noise ? std::sqrt(light_e + dark_e) : 0.0;
   if (without_noise || noise.read_noise_e <= shot_e) return "lower camera.exposure";
   return fmt::format("lower camera.noise.read_noise_e: {:.4g} electrons are {:.2g} of the full well",
@@ -203,7 +205,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   for (auto const& [path, hash] : loaded.input_hashes) origin.sources.add("", path, SourceFiles::Holds::bytes, hash);
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   if (scene.setup.piv) {
-    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, origin);
+    write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
   } else {
     write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
                 rendering.method, table_error ? &*table_error : nullptr, origin);

@@ -25,6 +25,10 @@ struct AxisWeightsView {
   GLADSTONE_HD double autocorrelation(int window, int lag) const {
     return autocorrelations[static_cast<long long>(window) * lags(size) + (lag < 0 ? -lag : lag)];
   }
+  /// That over its value at no lag: what a correlation plane falls off by.
+  GLADSTONE_HD double fall_off(int window, int lag) const {
+    return autocorrelation(window, lag) / autocorrelation(window, 0);
+  }
 };
 
 /// The weights of the windows along one axis, cut off at the image's border, and their autocorrelation.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <functional>
 #include <vector>
 
 #include "render/base/contracts.h"
@@ -15,23 +14,25 @@ namespace gladstone {
 
 /// Weights of the degree + 1 B-splines that are not zero at `t` past a node, 0 <= t < 1, from the leftmost on.
 /// Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821, eq. 2.3, written out in powers of t.
-template <int degree, class T>
+/// @tparam T a number, or several side by side @tparam Number that such are made of
+template <int degree, class T, class Number = T>
 GLADSTONE_HD void bspline_weights(T t, T* w) {
   static_assert(degree == 3 || degree == 5);
-  T const s = T(1) - t;
+  using N = Number;
+  T const s = N(1) - t;
   T const t2 = t * t;
   if constexpr (degree == 3) {
-    w[0] = s * s * s / T(6);
-    w[1] = (T(4) + t2 * (T(3) * t - T(6))) / T(6);
-    w[2] = (T(1) + t * (T(3) + t * (T(3) - T(3) * t))) / T(6);
-    w[3] = t2 * t / T(6);
+    w[0] = s * s * s / N(6);
+    w[1] = (N(4) + t2 * (N(3) * t - N(6))) / N(6);
+    w[2] = (N(1) + t * (N(3) + t * (N(3) - N(3) * t))) / N(6);
+    w[3] = t2 * t / N(6);
   } else {
-    T const c = T(1) / T(120);
+    N const c = N(1) / N(120);
     w[0] = c * s * s * s * s * s;
-    w[1] = c * (T(26) + t * (T(-50) + t * (T(20) + t * (T(20) + t * (T(-20) + T(5) * t)))));
-    w[2] = c * (T(66) + t2 * (T(-60) + t2 * (T(30) - T(10) * t)));
-    w[3] = c * (T(26) + t * (T(50) + t * (T(20) + t * (T(-20) + t * (T(-20) + T(10) * t)))));
-    w[4] = c * (T(1) + t * (T(5) + t * (T(10) + t * (T(10) + t * (T(5) - T(5) * t)))));
+    w[1] = c * (N(26) + t * (N(-50) + t * (N(20) + t * (N(20) + t * (N(-20) + N(5) * t)))));
+    w[2] = c * (N(66) + t2 * (N(-60) + t2 * (N(30) - N(10) * t)));
+    w[3] = c * (N(26) + t * (N(50) + t * (N(20) + t * (N(-20) + t * (N(-20) + N(10) * t)))));
+    w[4] = c * (N(1) + t * (N(5) + t * (N(10) + t * (N(10) + t * (N(5) - N(5) * t)))));
     w[5] = c * t2 * t2 * t;
   }
 }
@@ -102,7 +103,7 @@ struct BsplineView {
     return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
   }
 
- private:
+  /// A base pixel at most one outside the image.
   GLADSTONE_HD static int clamp(int base, int count) { return base < -1 ? -1 : (base > count - 1 ? count - 1 : base); }
 };
 
@@ -113,7 +114,8 @@ template <class T>
 class BsplineImage {
  public:
   /// @param pixel value at (column, row), called once each @param degree 3 or 5
-  BsplineImage(int columns, int rows, int degree, std::function<double(int column, int row)> const& pixel)
+  template <class Pixel>
+  BsplineImage(int columns, int rows, int degree, Pixel const& pixel)
       : columns_(columns), rows_(rows), stride_(columns + View::margin_before + View::margin_after) {
     GLADSTONE_EXPECTS(columns > 0 && rows > 0 && (degree == 3 || degree == 5));
     coefficients_.resize(static_cast<std::size_t>(stride_) * (rows + View::margin_before + View::margin_after));
@@ -130,12 +132,18 @@ class BsplineImage {
 
   T* row(int j) { return coefficients_.data() + static_cast<std::size_t>(j + View::margin_before) * stride_; }
 
-  /// Turns `count` samples of `block` interleaved lines into coefficients.
+  /// What filter_lines() leaves out: its samples come with this factor. @param count of a line
+  static double filter_gain(int count, int degree) {
+    double gain = 1.0;
+    if (count > 1)
+      for (double const z : bspline_poles(degree)) gain *= (1.0 - z) * (1.0 - 1.0 / z);
+    return gain;
+  }
+
+  /// Turns `count` samples of `block` interleaved lines, times filter_gain(), into coefficients.
   static void filter_lines(double* c, int count, int degree) {
     if (count == 1) return;
     for (double const z : bspline_poles(degree)) {
-      double const gain = (1.0 - z) * (1.0 - 1.0 / z);
-      for (int i = 0; i < count * block; ++i) c[i] *= gain;
       // first causal value: the reflected signal summed until z^k is below rounding
       int const horizon = static_cast<int>(std::ceil(std::log(1e-17) / std::log(std::abs(z))));
       for (int l = 0; l < block; ++l) {
@@ -152,31 +160,40 @@ class BsplineImage {
     }
   }
 
-  void filter_rows(int degree, std::function<double(int, int)> const& pixel) {
+  template <class Pixel>
+  void filter_rows(int degree, Pixel const& pixel) {
+    double const gain = filter_gain(columns_, degree);
     parallel_chunks(static_cast<std::size_t>(rows_), block, [&](std::size_t begin, std::size_t end) {
       int const first = static_cast<int>(begin), used = static_cast<int>(end - begin);
       std::vector<double> lines(static_cast<std::size_t>(columns_) * block);
       for (int l = 0; l < used; ++l)
-        for (int i = 0; i < columns_; ++i) lines[static_cast<std::size_t>(i) * block + l] = pixel(i, first + l);
+        for (int i = 0; i < columns_; ++i) lines[static_cast<std::size_t>(i) * block + l] = gain * pixel(i, first + l);
       filter_lines(lines.data(), columns_, degree);
       for (int l = 0; l < used; ++l) {
-        T* out = row(first + l);
-        for (int i = -View::margin_before; i < columns_ + View::margin_after; ++i)
-          out[i + View::margin_before] =
-              static_cast<T>(lines[static_cast<std::size_t>(mirrored_index(i, columns_)) * block + l]);
+        T* const out = row(first + l) + View::margin_before;
+        for (int i = 0; i < columns_; ++i) out[i] = static_cast<T>(lines[static_cast<std::size_t>(i) * block + l]);
+        for (int i = -View::margin_before; i < 0; ++i) out[i] = out[mirrored_index(i, columns_)];
+        for (int i = columns_; i < columns_ + View::margin_after; ++i) out[i] = out[mirrored_index(i, columns_)];
       }
     });
   }
 
   void filter_columns(int degree) {
+    double const gain = filter_gain(rows_, degree);
     parallel_chunks(static_cast<std::size_t>(stride_), block, [&](std::size_t begin, std::size_t end) {
+      std::size_t const used = end - begin;
       std::vector<double> lines(static_cast<std::size_t>(rows_) * block);
-      for (int j = 0; j < rows_; ++j)
-        for (std::size_t i = begin; i < end; ++i) lines[static_cast<std::size_t>(j) * block + (i - begin)] = row(j)[i];
+      for (int j = 0; j < rows_; ++j) {
+        T const* const from = row(j) + begin;
+        double* const to = lines.data() + static_cast<std::size_t>(j) * block;
+        for (std::size_t l = 0; l < used; ++l) to[l] = gain * from[l];
+      }
       filter_lines(lines.data(), rows_, degree);
-      for (int j = 0; j < rows_; ++j)
-        for (std::size_t i = begin; i < end; ++i)
-          row(j)[i] = static_cast<T>(lines[static_cast<std::size_t>(j) * block + (i - begin)]);
+      for (int j = 0; j < rows_; ++j) {
+        T* const to = row(j) + begin;
+        double const* const from = lines.data() + static_cast<std::size_t>(j) * block;
+        for (std::size_t l = 0; l < used; ++l) to[l] = static_cast<T>(from[l]);
+      }
     });
   }
 

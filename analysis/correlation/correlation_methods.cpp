@@ -9,9 +9,12 @@ namespace {
 
 /// Every correlation method, one row each.
 constexpr std::array rows{
-    CorrelationMethod{"scc", correlate_scc, true}, CorrelationMethod{"rpc", correlate_rpc},
-    CorrelationMethod{"spc", correlate_spc},       CorrelationMethod{"zncc", correlate_zncc},
-    CorrelationMethod{"mqd", correlate_mqd},       CorrelationMethod{"opencv", correlate_by_opencv},
+    CorrelationMethod{"scc", correlate_scc, true},
+    CorrelationMethod{"rpc", correlate_rpc},
+    CorrelationMethod{"spc", correlate_spc},
+    CorrelationMethod{"zncc", correlate_zncc},
+    CorrelationMethod{"mqd", correlate_mqd},
+    CorrelationMethod{.name = "opencv", .correlate = correlate_by_opencv, .in_ensembles = false},
 };
 
 }  // namespace

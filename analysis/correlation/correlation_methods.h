@@ -28,7 +28,8 @@ std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
 struct CorrelationMethod {
   char const* name;
   CorrelateWindows correlate;
-  bool on_gpu = false;  ///< whether the correlator of CUDA has it, too
+  bool on_gpu = false;       ///< whether the correlator of CUDA has it, too
+  bool in_ensembles = true;  ///< whether it heeds a job's ensemble
 };
 
 /// Every method.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/preparation/frame_preparation.h"
 #include "render/base/setup_table.h"
 
 namespace gladstone {
@@ -27,6 +28,7 @@ struct CorrelationSettings {
   /// Peak ratio from which a vector of the first pass may differ from its neighbours (is_trusted()); none: no vector
   /// may
   std::optional<double> trusted_peak_ratio = 2.0;
+  FramePreparation preparation;  ///< what is done to the frames before; correlators take them as they then are
 };
 
 /// Reads the table [correlate]; problems are collected in its document.

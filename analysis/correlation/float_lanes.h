@@ -29,22 +29,35 @@ inline FloatLanes load_lanes(float const* from) {
   return v;
 }
 
-/// Value k of row l becomes lane l of column k.
-inline void transpose_lanes(FloatLanes (&v)[lane_count]) {
-  FloatLanes t[8], u[8];
-  for (int k = 0; k < 8; k += 2) {
-    t[k] = __builtin_shufflevector(v[k], v[k + 1], 0, 8, 1, 9, 4, 12, 5, 13);
-    t[k + 1] = __builtin_shufflevector(v[k], v[k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-  }
-  for (int k = 0; k < 8; k += 4)
-    for (int i = 0; i < 2; ++i) {
-      u[k + 2 * i] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 0, 1, 8, 9, 4, 5, 12, 13);
-      u[k + 2 * i + 1] = __builtin_shufflevector(t[k + i], t[k + 2 + i], 2, 3, 10, 11, 6, 7, 14, 15);
+inline void store_lanes(float* to, FloatLanes v) { __builtin_memcpy(to, &v, sizeof v); }
+
+/// Four values of one row and, behind them, four of another.
+inline FloatLanes join_halves(float const* low, float const* high) {
+  using Half = float __attribute__((vector_size(16)));
+  Half a, b;
+  __builtin_memcpy(&a, low, sizeof a);
+  __builtin_memcpy(&b, high, sizeof b);
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+/// Reads eight columns of eight rows: value k of row l becomes lane l of column k.
+/// @param row first of the eight values of a row by its number
+template <class Row>
+[[gnu::always_inline]] inline void read_columns(Row const& row, FloatLanes (&column)[lane_count]) {
+  FloatLanes u[8];
+  for (int half = 0; half < 2; ++half) {
+    FloatLanes v[4], t[4];
+    for (int l = 0; l < 4; ++l) v[l] = join_halves(row(l) + 4 * half, row(l + 4) + 4 * half);
+    for (int l = 0; l < 4; l += 2) {
+      t[l] = __builtin_shufflevector(v[l], v[l + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+      t[l + 1] = __builtin_shufflevector(v[l], v[l + 1], 2, 10, 3, 11, 6, 14, 7, 15);
     }
-  for (int k = 0; k < 4; ++k) {
-    v[k] = __builtin_shufflevector(u[k], u[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    v[k + 4] = __builtin_shufflevector(u[k], u[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    for (int l = 0; l < 2; ++l) {
+      u[4 * half + 2 * l] = __builtin_shufflevector(t[l], t[l + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      u[4 * half + 2 * l + 1] = __builtin_shufflevector(t[l], t[l + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
   }
+  for (int k = 0; k < 8; ++k) column[k] = u[k];
 }
 
 /// a where the mask is set, else b.
@@ -52,7 +65,30 @@ inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) {
   return reinterpret_cast<FloatLanes>((mask & reinterpret_cast<IntLanes>(a)) | (~mask & reinterpret_cast<IntLanes>(b)));
 }
 
-inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) { return select_lanes(a > b, a, b); }
+inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) {
+#if defined(__AVX__)
+  return __builtin_ia32_maxps256(a, b);
+#else
+  return select_lanes(a > b, a, b);
+#endif
+}
+
+/// Bit l: whether lane l of a mask is set.
+inline unsigned bits_of_lanes(IntLanes mask) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<FloatLanes>(mask)));
+#else
+  unsigned bits = 0;
+  for (int l = 0; l < lane_count; ++l) bits |= mask[l] != 0 ? 1u << l : 0u;
+  return bits;
+#endif
+}
+
+/// The largest whole numbers not above numbers below 2^31.
+inline IntLanes floor_lanes(FloatLanes a) {
+  IntLanes const cut = __builtin_convertvector(a, IntLanes);
+  return cut + (a < __builtin_convertvector(cut, FloatLanes));  // a mask is -1
+}
 
 inline FloatLanes root_lanes(FloatLanes a) {
   FloatLanes r;

@@ -11,6 +11,8 @@
 
 namespace gladstone {
 
+class PlaneSums;
+
 /// One pass over a pair: all windows of a grid are to be correlated.
 struct InterrogationJob {
   ImagePair const& pair;
@@ -19,6 +21,8 @@ struct InterrogationJob {
   int search_radius_px = 1;  ///< largest shift looked for along either axis, at most half a window
   SubpixelFit fit = fit_gauss3;
   std::string label{};  ///< of the progress bar
+  /// Of an ensemble: receives the planes of this pair, and gives the peaks of all so far; null: the pair by itself.
+  PlaneSums* ensemble = nullptr;
 };
 
 /// One result a window of the grid; the same bits for any number of threads.

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "analysis/correlation/lane_peaks.h"
+#include "analysis/correlation/plane_sums.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -13,13 +16,47 @@ namespace {
 
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
 
+/// What one piece of the work needs; the next takes it over.
+struct Workplace {
+  LaneCorrelation correlation;
+  LanePlane plane;
+  VisitPlanes visit;
+};
+
+/// Workplaces that nobody works at.
+class FreeWorkplaces {
+ public:
+  explicit FreeWorkplaces(std::function<std::unique_ptr<Workplace>()> make) : make_(std::move(make)) {}
+
+  std::unique_ptr<Workplace> take() {
+    {
+      std::lock_guard<std::mutex> const lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<Workplace> place = std::move(free_.back());
+        free_.pop_back();
+        return place;
+      }
+    }
+    return make_();
+  }
+  void give_back(std::unique_ptr<Workplace> place) {
+    std::lock_guard<std::mutex> const lock(mutex_);
+    free_.push_back(std::move(place));
+  }
+
+ private:
+  std::function<std::unique_ptr<Workplace>()> make_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workplace>> free_;
+};
+
 }  // namespace
 
 LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
                                  KnownTiles const& tiles, LaneFourier const& fourier, bool with_margin)
     : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, with_margin) {
   int const size = fourier.size(), side = windows_.side();
-  pitch_ = size + 1;  // odd numbers of cache lines: columns do not fall on the same places of the cache
+  pitch_ = LaneFourier::pitch(size);
   half_pitch_ = (size / 2 + 1) | 1;
   std::size_t const lines = static_cast<std::size_t>(side);
   spectrum_.resize(lines * pitch_);
@@ -44,8 +81,7 @@ void LaneCorrelation::load(WindowTerm term) {
   int const side = windows_.side();
   for (int j = 0; j < side; ++j) {
     windows_.row(j, term, line_.data());
-    fourier_.forward(line_.data(), 1, side, spectrum_.data() + static_cast<std::size_t>(j) * pitch_, 1,
-                     scratch_.data());
+    fourier_.forward(line_.data(), 1, side, spectrum_.data() + static_cast<std::size_t>(j) * pitch_, scratch_.data());
   }
 }
 
@@ -61,11 +97,11 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
   FloatLanes const half = 0.5f * scale, quarter = 0.25f * scale;
   for (int kx = 0; kx <= size / 2; ++kx) {
     int const mx = (size - kx) % size;
-    fourier_.forward(spectrum_.data() + kx, pitch_, side, column_.data(), 1, scratch_.data());
+    fourier_.forward(spectrum_.data() + kx, pitch_, side, column_.data(), scratch_.data());
     ComplexLanes const* z = column_.data();
     ComplexLanes const* m = z;
     if (mx != kx) {
-      fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), 1, scratch_.data());
+      fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), scratch_.data());
       m = mirror_.data();
     }
     // as cross_spectrum() has it
@@ -76,7 +112,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
                                              quarter * ((b.re * b.re + b.im * b.im) - (a.re * a.re + a.im * a.im))};
     }
     if (filter) filter(line_.data(), kx, size);
-    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    fourier_.inverse(line_.data(), column_.data(), scratch_.data());
     for (int dy = -reach; dy <= reach; ++dy)
       half_[static_cast<std::size_t>(dy + reach) * half_pitch_ + kx] =
           column_[static_cast<std::size_t>(dy < 0 ? dy + size : dy)];
@@ -94,7 +130,7 @@ void LaneCorrelation::make_rows(LanePlane& plane) {
       line_[static_cast<std::size_t>(k)] = {a[k].re - b[k].im, a[k].im + b[k].re};
       if (k > 0 && k < size / 2) line_[static_cast<std::size_t>(size - k)] = {a[k].re + b[k].im, b[k].re - a[k].im};
     }
-    fourier_.inverse(line_.data(), 1, column_.data(), 1, scratch_.data());
+    fourier_.inverse(line_.data(), column_.data(), scratch_.data());
     for (int dx = -reach; dx <= reach; ++dx) {
       ComplexLanes const& value = column_[static_cast<std::size_t>(dx < 0 ? dx + size : dx)];
       plane(dx, dy) = value.re;
@@ -112,16 +148,19 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
   KnownTiles const tiles(job.pair);
   LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));
   Progress progress(job.label, job.grid.size());
+  FreeWorkplaces workplaces([&] {
+    return std::unique_ptr<Workplace>(new Workplace{
+        {job, x.view(), y.view(), tiles, fourier, method.with_margin}, LanePlane(radius), make_visitor()});
+  });
   parallel_chunks(job.grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    LaneCorrelation work(job, x.view(), y.view(), tiles, fourier, method.with_margin);
-    LanePlane plane(radius);
-    VisitPlanes const visit = make_visitor();
+    std::unique_ptr<Workplace> here = workplaces.take();
     for (std::size_t first = begin; first < end; first += lane_count) {
       int const count = static_cast<int>(std::min<std::size_t>(lane_count, end - first));
-      work.windows().place(first, count);
-      method.make(work, plane);
-      visit(first, count, work, plane);
+      here->correlation.windows().place(first, count);
+      method.make(here->correlation, here->plane);
+      here->visit(first, count, here->correlation, here->plane);
     }
+    workplaces.give_back(std::move(here));
     progress.advance(end - begin);
   });
 }
@@ -130,8 +169,11 @@ std::vector<WindowCorrelation> correlate_in_lanes(InterrogationJob const& job, P
   std::vector<WindowCorrelation> results(job.grid.size());
   visit_planes(job, method, [&] {
     auto const peaks = std::make_shared<LanePeaks>(job, method.falls_off);
-    return [peaks, &results](std::size_t first, int count, LaneCorrelation& work, LanePlane const& plane) {
-      peaks->pick(work, plane, count, results.data() + first);
+    return [peaks, &results, &job](std::size_t first, int count, LaneCorrelation& work, LanePlane& plane) {
+      WindowCorrelation::Outcome outcome[lane_count];
+      for (int lane = 0; lane < count; ++lane) outcome[lane] = work.windows().outcome(lane);
+      if (job.ensemble != nullptr) job.ensemble->add(first, count, plane, outcome);
+      peaks->pick(work, plane, outcome, count, results.data() + first);
     };
   });
   return results;

@@ -87,10 +87,11 @@ struct PlaneMethod {
 };
 
 /// What is done with the planes of windows first .. first + count - 1.
-using VisitPlanes = std::function<void(std::size_t first, int count, LaneCorrelation& work, LanePlane const& plane)>;
+/// They may be changed by it.
+using VisitPlanes = std::function<void(std::size_t first, int count, LaneCorrelation& work, LanePlane& plane)>;
 
 /// Makes the planes of all windows of a job, eight at a time, on all threads.
-/// @param make_visitor called once for each piece of the work, so that visitors may have memory of their own
+/// @param make_visitor called for each thread that works at a time, so that visitors may have memory of their own
 void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
                   std::function<VisitPlanes()> const& make_visitor);
 

@@ -1,8 +1,10 @@
 #include "analysis/correlation/lane_fourier.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <type_traits>
 
 #include "render/base/contracts.h"
 
@@ -28,9 +30,8 @@ ComplexLanes operator+(ComplexLanes const& a, ComplexLanes const& b) { return {a
 ComplexLanes operator-(ComplexLanes const& a, ComplexLanes const& b) { return {a.re - b.re, a.im - b.im}; }
 ComplexLanes operator*(float s, ComplexLanes const& a) { return {s * a.re, s * a.im}; }
 ComplexLanes times_minus_i(ComplexLanes const& a) { return {a.im, -a.re}; }
-/// a times the complex number of its cosine and sine at w.
-ComplexLanes turned(ComplexLanes const& a, float const* w) {
-  return {w[0] * a.re - w[1] * a.im, w[0] * a.im + w[1] * a.re};
+ComplexLanes operator*(ComplexLanes const& a, ComplexLanes const& w) {
+  return {w.re * a.re - w.im * a.im, w.re * a.im + w.im * a.re};
 }
 
 /// The Fourier transform of `radix` numbers, in place.
@@ -53,6 +54,33 @@ template <int radix>
     v[1] = b + d;
     v[2] = a - c;
     v[3] = b - d;
+  } else if constexpr (radix == 6) {
+    // two of three, of the even and, three places on, of the odd ones: no factors between them (Good & Thomas)
+    ComplexLanes even[3] = {v[0], v[2], v[4]}, odd[3] = {v[3], v[5], v[1]};
+    butterfly<3>(even);
+    butterfly<3>(odd);
+    v[0] = even[0] + odd[0];
+    v[3] = even[0] - odd[0];
+    v[4] = even[1] + odd[1];
+    v[1] = even[1] - odd[1];
+    v[2] = even[2] + odd[2];
+    v[5] = even[2] - odd[2];
+  } else if constexpr (radix == 8) {
+    ComplexLanes even[4] = {v[0], v[2], v[4], v[6]}, odd[4] = {v[1], v[3], v[5], v[7]};
+    butterfly<4>(even);
+    butterfly<4>(odd);
+    constexpr float half = 0.70710678118654752f;  // sqrt(1/2)
+    ComplexLanes const a = half * ComplexLanes{odd[1].re + odd[1].im, odd[1].im - odd[1].re};
+    ComplexLanes const b = times_minus_i(odd[2]);
+    ComplexLanes const c = half * ComplexLanes{odd[3].im - odd[3].re, -odd[3].re - odd[3].im};
+    v[0] = even[0] + odd[0];
+    v[4] = even[0] - odd[0];
+    v[1] = even[1] + a;
+    v[5] = even[1] - a;
+    v[2] = even[2] + b;
+    v[6] = even[2] - b;
+    v[3] = even[3] + c;
+    v[7] = even[3] - c;
   } else {
     // cosines and sines of 2 pi/5 and 4 pi/5
     constexpr float c1 = 0.30901699437494742f, c2 = -0.80901699437494742f;
@@ -68,23 +96,37 @@ template <int radix>
   }
 }
 
+/// The first pass of a transform of `left` values. Six and eight take fewer reads and writes than their factors; odd
+/// ones come first and meet the zeros of a padded window.
+constexpr int radix_of(int left) {
+  if (left % 24 == 0) return 6;
+  for (int const radix : {3, 5})
+    if (left % radix == 0) return radix;
+  if (left % 8 == 0 && left != 16) return 8;
+  return left % 4 == 0 ? 4 : 2;
+}
+
+template <int n>
+using Fixed = std::integral_constant<int, n>;
+
+/// Where a pass reads and writes. @tparam Stride int, or Fixed where it is known to the compiler
+template <class Stride>
 struct PassView {
   ComplexLanes const* in;
-  int in_stride;
+  Stride in_stride;
   int filled;
   ComplexLanes* out;
-  int out_stride;
 };
 
-template <int radix, bool back_in, bool back_out, bool padded>
-void run_pass(PassView const& view, int groups, int stride, float const* twiddles) {
-  std::ptrdiff_t const in_step = view.in_stride, leg = static_cast<std::ptrdiff_t>(groups) * stride * in_step;
-  std::ptrdiff_t const out_step = view.out_stride, arm = stride * out_step;
-  ComplexLanes const* in = view.in;
-  ComplexLanes* out = view.out;
-  for (int p = 0; p < groups; ++p, out += (radix - 1) * arm) {
-    float const* const w = twiddles + 2 * (radix - 1) * p;
-    for (int q = 0; q < stride; ++q, in += in_step, out += out_step) {
+/// One pass. @tparam Groups, Stride int, or Fixed: then all distances are constants
+template <int radix, bool back_in, bool back_out, bool padded, class InStride, class Groups, class Stride>
+[[gnu::always_inline]] inline void run_pass(PassView<InStride> view, Groups groups, Stride stride,
+                                            ComplexLanes const* twiddles) {
+  std::ptrdiff_t const in_step = view.in_stride, leg = groups * stride * in_step;
+  auto const butterflies = [&](int p, auto turn) {
+    ComplexLanes const* in = view.in + p * stride * in_step;
+    ComplexLanes* out = view.out + static_cast<std::ptrdiff_t>(p) * radix * stride;
+    for (int q = 0; q < stride; ++q, in += in_step, ++out) {
       ComplexLanes v[radix];
       for (int k = 0; k < radix; ++k) {
         bool const read = !padded || q + stride * (p + k * groups) < view.filled;
@@ -92,27 +134,106 @@ void run_pass(PassView const& view, int groups, int stride, float const* twiddle
       }
       butterfly<radix>(v);
       write_value<back_out>(out[0], v[0]);
-      if (p == 0)
-        for (int k = 1; k < radix; ++k) write_value<back_out>(out[k * arm], v[k]);
-      else
-        for (int k = 1; k < radix; ++k) write_value<back_out>(out[k * arm], turned(v[k], w + 2 * (k - 1)));
+      for (int k = 1; k < radix; ++k) write_value<back_out>(out[k * stride], turn(v[k], k));
     }
+  };
+  butterflies(0, [](ComplexLanes const& v, int) { return v; });
+  for (int p = 1; p < groups; ++p) {
+    ComplexLanes const* const w = twiddles + (radix - 1) * p - 1;
+    butterflies(p, [w](ComplexLanes const& v, int k) { return v * w[k]; });
   }
 }
 
-template <bool back_in, bool back_out, bool padded = false>
-void run_pass(int radix, PassView const& view, int groups, int stride, float const* twiddles) {
+template <bool back_in, bool back_out, bool padded>
+void run_any_pass(int radix, PassView<int> const& view, int groups, int stride, ComplexLanes const* twiddles) {
+  auto const run = [&](auto r) {
+    run_pass<decltype(r)::value, back_in, back_out, padded>(view, groups, stride, twiddles);
+  };
   switch (radix) {
     case 2:
-      return run_pass<2, back_in, back_out, padded>(view, groups, stride, twiddles);
+      return run(Fixed<2>{});
     case 3:
-      return run_pass<3, back_in, back_out, padded>(view, groups, stride, twiddles);
+      return run(Fixed<3>{});
     case 4:
-      return run_pass<4, back_in, back_out, padded>(view, groups, stride, twiddles);
+      return run(Fixed<4>{});
+    case 5:
+      return run(Fixed<5>{});
+    case 6:
+      return run(Fixed<6>{});
     default:
-      return run_pass<5, back_in, back_out, padded>(view, groups, stride, twiddles);
+      return run(Fixed<8>{});
   }
 }
+
+/// All passes from the one on that has `left` values to go, of any size.
+template <bool backward, bool padded>
+void run_any(PassView<int> view, int size, int left, ComplexLanes* scratch, ComplexLanes const* twiddles) {
+  ComplexLanes* const out = view.out;
+  for (int stride = 1; left > 1;) {
+    int const radix = radix_of(left), groups = left / radix;
+    bool const first = stride == 1, last = groups == 1;
+    view.out = last ? out : scratch;
+    if (first && last)
+      run_any_pass<backward, backward, padded>(radix, view, groups, stride, twiddles);
+    else if (first)
+      run_any_pass<backward, false, padded>(radix, view, groups, stride, twiddles);
+    else if (last)
+      run_any_pass<false, backward, false>(radix, view, groups, stride, twiddles);
+    else
+      run_any_pass<false, false, false>(radix, view, groups, stride, twiddles);
+    twiddles += (radix - 1) * groups;
+    view = {scratch, 1, size, out};
+    scratch += first ? size : -size;
+    left = groups;
+    stride *= radix;
+  }
+}
+
+/// The same with all distances known to the compiler, of one size.
+template <bool backward, bool padded, int size, int left, class InStride>
+void run_fixed(PassView<InStride> view, ComplexLanes* scratch, ComplexLanes const* twiddles) {
+  constexpr int radix = radix_of(left), groups = left / radix, stride = size / left;
+  constexpr bool first = stride == 1, last = groups == 1;
+  ComplexLanes* const out = view.out;
+  if constexpr (!last) view.out = scratch;
+  run_pass<radix, first && backward, last && backward, first && padded>(view, Fixed<groups>{}, Fixed<stride>{},
+                                                                        twiddles);
+  if constexpr (!last)
+    run_fixed<backward, false, size, groups>(PassView<Fixed<1>>{scratch, {}, size, out},
+                                             first ? scratch + size : scratch - size, twiddles + (radix - 1) * groups);
+}
+
+template <int size>
+void run_forward(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch,
+                 ComplexLanes const* twiddles) {
+  auto const run = [&](auto stride) {
+    PassView<decltype(stride)> const view{in, stride, filled, out};
+    if (filled < size)
+      run_fixed<false, true, size, size>(view, scratch, twiddles);
+    else
+      run_fixed<false, false, size, size>(view, scratch, twiddles);
+  };
+  if (in_stride == 1) return run(Fixed<1>{});
+  if (in_stride == LaneFourier::pitch(size)) return run(Fixed<LaneFourier::pitch(size)>{});
+  run(in_stride);
+}
+
+template <int size>
+void run_inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch, ComplexLanes const* twiddles) {
+  run_fixed<true, false, size, size>(PassView<Fixed<1>>{in, {}, size, out}, scratch, twiddles);
+}
+
+/// The sizes that have code of their own: those of the default's passes, and of usual windows.
+struct FixedSize {
+  int size;
+  decltype(&run_forward<4>) forward;
+  decltype(&run_inverse<4>) inverse;
+};
+template <int... sizes>
+constexpr std::array<FixedSize, sizeof...(sizes)> fixed_sizes_of() {
+  return {FixedSize{sizes, run_forward<sizes>, run_inverse<sizes>}...};
+}
+constexpr auto fixed_sizes = fixed_sizes_of<16, 24, 32, 40, 48, 64, 96, 128>();
 
 int without_factors(int n) {
   for (int const factor : {2, 3, 5})
@@ -130,60 +251,34 @@ int lane_fourier_size(int least) {
 
 LaneFourier::LaneFourier(int size) : size_(size) {
   GLADSTONE_EXPECTS(size >= 4 && size == lane_fourier_size(size));
-  int left = size, stride = 1;
-  while (left > 1) {
-    // odd ones first: they meet the zeros of a padded window
-    int const radix = left % 3 == 0 ? 3 : left % 5 == 0 ? 5 : left % 4 == 0 ? 4 : 2;
-    int const groups = left / radix;
-    passes_.push_back({radix, groups, stride, static_cast<int>(twiddles_.size())});
-    for (int p = 0; p < groups; ++p)
+  for (int left = size; left > 1; left /= radix_of(left)) {
+    int const radix = radix_of(left);
+    for (int p = 0; p < left / radix; ++p)
       for (int k = 1; k < radix; ++k) {
         double const angle = -2.0 * std::numbers::pi * p * k / left;
-        twiddles_.push_back(static_cast<float>(std::cos(angle)));
-        twiddles_.push_back(static_cast<float>(std::sin(angle)));
+        twiddles_.push_back(
+            {all_lanes(static_cast<float>(std::cos(angle))), all_lanes(static_cast<float>(std::sin(angle)))});
       }
-    left = groups;
-    stride *= radix;
   }
-}
-
-template <bool backward>
-void LaneFourier::transform(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, int out_stride,
-                            ComplexLanes* scratch) const {
-  PassView view{in, in_stride, filled, scratch, 1};
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
-    Pass const& pass = passes_[i];
-    float const* const w = twiddles_.data() + pass.first;
-    bool const first = i == 0, last = i + 1 == passes_.size();
-    if (last) {
-      view.out = out;
-      view.out_stride = out_stride;
+  for (FixedSize const& row : fixed_sizes)
+    if (row.size == size) {
+      forward_ = row.forward;
+      inverse_ = row.inverse;
     }
-    if (first && last)
-      run_pass<backward, backward, true>(pass.radix, view, pass.groups, pass.stride, w);
-    else if (first && filled < size_)
-      run_pass<backward, false, true>(pass.radix, view, pass.groups, pass.stride, w);
-    else if (first)
-      run_pass<backward, false>(pass.radix, view, pass.groups, pass.stride, w);
-    else if (last)
-      run_pass<false, backward>(pass.radix, view, pass.groups, pass.stride, w);
-    else
-      run_pass<false, false>(pass.radix, view, pass.groups, pass.stride, w);
-    view.in = view.out;
-    view.in_stride = 1;
-    view.filled = size_;
-    view.out = view.out == scratch ? scratch + size_ : scratch;
-  }
 }
 
-void LaneFourier::forward(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, int out_stride,
+void LaneFourier::forward(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out,
                           ComplexLanes* scratch) const {
-  transform<false>(in, in_stride, filled, out, out_stride, scratch);
+  if (forward_ != nullptr) return forward_(in, in_stride, filled, out, scratch, twiddles_.data());
+  if (filled < size_)
+    run_any<false, true>({in, in_stride, filled, out}, size_, size_, scratch, twiddles_.data());
+  else
+    run_any<false, false>({in, in_stride, filled, out}, size_, size_, scratch, twiddles_.data());
 }
 
-void LaneFourier::inverse(ComplexLanes const* in, int in_stride, ComplexLanes* out, int out_stride,
-                          ComplexLanes* scratch) const {
-  transform<true>(in, in_stride, size_, out, out_stride, scratch);
+void LaneFourier::inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch) const {
+  if (inverse_ != nullptr) return inverse_(in, out, scratch, twiddles_.data());
+  run_any<true, false>({in, 1, size_, out}, size_, size_, scratch, twiddles_.data());
 }
 
 }  // namespace gladstone

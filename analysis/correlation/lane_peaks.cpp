@@ -3,67 +3,79 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "analysis/correlation/window_peak.h"
-
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
 
 namespace gladstone {
 namespace {
 
-/// Bit l: whether lane l of a mask is set.
-unsigned bits_of(IntLanes mask) {
-#if defined(__AVX2__)
-  return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
-#else
-  unsigned bits = 0;
-  for (int l = 0; l < lane_count; ++l) bits |= mask[l] != 0 ? 1u << l : 0u;
-  return bits;
-#endif
-}
+/// Eight maxima with the samples left, right, above and below; a lane left alone is level.
+struct LaneSamples {
+  FloatLanes centre = all_lanes(1.0f), beside[4] = {centre, centre, centre, centre};
 
-/// The higher of two values in all lanes.
-FloatLanes highest(FloatLanes a, FloatLanes b) {
-#if defined(__AVX2__)
-  return _mm256_max_ps(a, b);
-#else
-  return larger_lanes(a, b);
-#endif
-}
+  void read(int k, LanePlaneView const& view, PlanePeak<float> const& peak) {
+    centre[k] = view(peak.x, peak.y);
+    beside[0][k] = view(peak.x - 1, peak.y);
+    beside[1][k] = view(peak.x + 1, peak.y);
+    beside[2][k] = view(peak.x, peak.y - 1);
+    beside[3][k] = view(peak.x, peak.y + 1);
+  }
+};
+
+/// fit_gauss3() in all lanes.
+struct LaneGauss3 {
+  FloatLanes offset[2];  ///< along x and y [px]
+  FloatLanes rise;       ///< factor of the height there over the centre sample, largest_rise at most
+  unsigned positive;     ///< bit of a lane: whether all its samples are, else nothing above holds
+
+  explicit LaneGauss3(LaneSamples const& at) {
+    FloatLanes const least = 1e-30f * at.centre;
+    IntLanes all = at.centre > 0.0f;
+    FloatLanes log_rise{};
+    for (int axis = 0; axis < 2; ++axis) {
+      FloatLanes const left = at.beside[2 * axis], right = at.beside[2 * axis + 1];
+      all &= (left > 0.0f) & (right > 0.0f);
+      FloatLanes const l = log_lanes(larger_lanes(left, least) / at.centre);
+      FloatLanes const r = log_lanes(larger_lanes(right, least) / at.centre), curvature = l + r;
+      IntLanes const down = curvature < 0.0f;
+      FloatLanes const vertex = 0.5f * (l - r) / select_lanes(down, curvature, all_lanes(-1.0f));
+      FloatLanes const within = larger_lanes(all_lanes(-1.0f), -larger_lanes(all_lanes(-1.0f), -vertex));
+      offset[axis] = select_lanes(down, within, FloatLanes{});
+      log_rise += 0.5f * offset[axis] * ((r - l) + curvature * offset[axis]);
+    }
+    FloatLanes const most = all_lanes(static_cast<float>(largest_rise));
+    FloatLanes const factor = exp_lanes(-larger_lanes(-log_rise, -most));
+    rise = -larger_lanes(-factor, -most);
+    positive = bits_of_lanes(all);
+  }
+};
 
 /// Puts the heights between the samples, as refined_peak() has them, into up to eight maxima of one window.
 void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
-  FloatLanes centre = all_lanes(1.0f), beside[4] = {centre, centre, centre, centre};
-  for (int k = 0; k < count; ++k) {
-    centre[k] = peaks[k].height;
-    beside[0][k] = view(peaks[k].x - 1, peaks[k].y);
-    beside[1][k] = view(peaks[k].x + 1, peaks[k].y);
-    beside[2][k] = view(peaks[k].x, peaks[k].y - 1);
-    beside[3][k] = view(peaks[k].x, peaks[k].y + 1);
-  }
-  FloatLanes const least = 1e-30f * centre;
-  IntLanes positive = beside[0] > 0.0f;
-  FloatLanes logarithm[4];
-  for (int i = 0; i < 4; ++i) {
-    positive &= beside[i] > 0.0f;
-    logarithm[i] = log_lanes(larger_lanes(beside[i], least) / centre);
-  }
-  FloatLanes rise{};
-  for (int i = 0; i < 4; i += 2) {
-    FloatLanes const l = logarithm[i], r = logarithm[i + 1], curvature = l + r;
-    FloatLanes const offset = select_lanes(
-        curvature < 0.0f, 0.5f * (l - r) / select_lanes(curvature < 0.0f, curvature, all_lanes(-1.0f)), FloatLanes{});
-    rise += 0.5f * offset * ((r - l) + curvature * offset);
-  }
-  FloatLanes const most = all_lanes(static_cast<float>(largest_rise));
-  FloatLanes const factor = exp_lanes(select_lanes(rise < 2.0f, rise, all_lanes(2.0f)));
-  FloatLanes const height = centre * select_lanes(factor < most, factor, most);
-  unsigned const bits = bits_of(positive);
+  LaneSamples samples;
+  for (int k = 0; k < count; ++k) samples.read(k, view, peaks[k]);
+  LaneGauss3 const fit(samples);
   for (int k = 0; k < count; ++k)
-    peaks[k].height =
-        (bits >> k & 1u) != 0u ? height[k] : refined_peak(view, peaks[k].x, peaks[k].y, peaks[k].height).height;
+    peaks[k].height = (fit.positive >> k & 1u) != 0u
+                          ? samples.centre[k] * fit.rise[k]
+                          : refined_peak(view, peaks[k].x, peaks[k].y, peaks[k].height).height;
+}
+
+/// The third highest sample of maxima that are not close to each other; 0 where there are fewer.
+float third_highest(PlanePeak<float> const* maxima, std::size_t count) {
+  PlanePeak<float> const none{};
+  PlanePeak<float> const *first = &none, *second = &none, *third = &none;
+  for (PlanePeak<float> const* peak = maxima; peak != maxima + count; ++peak) {
+    if (!(peak->height > third->height)) continue;
+    third = peak->height > second->height ? std::exchange(second, peak) : peak;
+    if (second->height > first->height) std::swap(first, second);
+  }
+  if (!are_close(*first, *second) && !are_close(*first, *third) && !are_close(*second, *third)) return third->height;
+  PeakList<float> highest;
+  for (std::size_t k = 0; k < count; ++k)
+    if (can_enter(highest, maxima[k].height)) insert_peak(highest, maxima[k]);
+  return highest.count == PeakList<float>::capacity ? highest.peak[2].height : 0.0f;
 }
 
 }  // namespace
@@ -83,7 +95,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
   int const radius = job_.search_radius_px, count = 2 * radius + 1;
   auto const highest_of_three = [&](int y, FloatLanes* to) {
     FloatLanes const* const row = plane.row(y) - radius;
-    for (int x = 0; x < count; ++x) to[x] = highest(highest(row[x - 1], row[x]), row[x + 1]);
+    for (int x = 0; x < count; ++x) to[x] = larger_lanes(larger_lanes(row[x - 1], row[x]), row[x + 1]);
   };
   std::vector<FloatLanes>*above = &highest_[0], *here = &highest_[1], *below = &highest_[2];
   highest_of_three(-radius - 1, above->data());
@@ -96,7 +108,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
       std::size_t const at = static_cast<std::size_t>(x);
       IntLanes const mask =
           (v > 0.0f) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > (*above)[at]) & (v >= (*below)[at]);
-      found_[at] = static_cast<unsigned char>(bits_of(mask));
+      found_[at] = static_cast<unsigned char>(bits_of_lanes(mask));
     }
     // eight places at a time: bit 8 x + lane
     for (int first = 0; first < count; first += 8) {
@@ -115,54 +127,94 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
   }
 }
 
-/// Heights between the samples as refined_peak() has them, eight maxima of one window at a time, then find_peaks().
+/// find_peaks() of one window, the heights between the samples eight maxima at a time. No maximum that stays below
+/// three others can be or remove one of those three: such are left out, unless in the end there are no three as high.
 PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
-  std::vector<PlanePeak<float>>& maxima = maxima_[lane];
+  PlanePeak<float> const* const maxima = maxima_[lane].data();
+  std::size_t const all = static_cast<std::size_t>(counts_[lane]);
   LanePlaneView const view{plane, lane};
   PeakList<float> found;
-  std::size_t const all = static_cast<std::size_t>(counts_[lane]);
-  std::size_t next = 0, kept = 0;
-  while (next < all) {
-    PlanePeak<float> group[lane_count];
-    int count = 0;
-    for (; next < all && count < lane_count; ++next)
-      if (can_enter(found, static_cast<float>(largest_rise) * maxima[next].height)) group[count++] = maxima[next];
-    refine(view, group, count);
-    for (int k = 0; k < count; ++k) {
-      maxima[kept++] = group[k];
-      if (can_enter(found, group[k].height)) insert_peak(found, group[k]);
-    }
+  for (float least = third_highest(maxima, all);; least = 0.0f) {
+    float const enough = static_cast<float>(nearly_as_high / largest_rise) * least;  // for prefer_nearest(), too
+    found = {};
+    refined_.clear();
+    for (std::size_t k = 0; k < all; ++k)
+      if (maxima[k].height >= enough) refined_.push_back(maxima[k]);
+    for (std::size_t k = 0; k < refined_.size(); k += lane_count)
+      refine(view, refined_.data() + k, static_cast<int>(std::min<std::size_t>(lane_count, refined_.size() - k)));
+    for (PlanePeak<float> const& peak : refined_)
+      if (peak.height >= least && can_enter(found, peak.height)) insert_peak(found, peak);
+    bool const sure = found.count == PeakList<float>::capacity && found.peak[found.count - 1].height >= least;
+    if (least == 0.0f || sure) break;
   }
   prefer_nearest(view, job_.search_radius_px, found, [&](auto const& visit) {
-    for (std::size_t k = 0; k < kept; ++k) visit(maxima[k]);
+    for (PlanePeak<float> const& peak : refined_) visit(peak);
   });
   return found;
 }
 
-MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const& plane, int lane, int x, int y) const {
+/// fitted_peak() by any fit, or where a sample is not positive.
+MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const {
   if (!falls_off_) return fitted_peak(job_.fit, plane, x, y);
-  return fitted_peak(job_.fit, plane, x, y, work.weights_x(), work.windows().column(lane), work.weights_y(),
-                     work.windows().row_of(lane));
+  return fitted_peak(job_.fit, plane, x, y, work.weights_x(), work.windows().column(plane.lane), work.weights_y(),
+                     work.windows().row_of(plane.lane));
 }
 
-void LanePeaks::pick(LaneCorrelation& work, LanePlane const& plane, int count, WindowCorrelation* results) {
+/// Peak p of all windows.
+void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
+                            WindowCorrelation* results) const {
+  LaneSamples samples;
+  FloatLanes down[3], across[3];  // what divides the fall-off out, one pixel before to one behind the peak
+  for (FloatLanes* factor : {down, across}) std::fill_n(factor, 3, all_lanes(1.0f));
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (p >= found[lane].count) continue;
+    PlanePeak<float> const& peak = found[lane].peak[p];
+    samples.read(lane, {plane, lane}, peak);
+    if (!falls_off_) continue;
+    int const column = work.windows().column(lane), row = work.windows().row_of(lane);
+    for (int i = -1; i <= 1; ++i) {
+      across[i + 1][lane] = static_cast<float>(work.weights_x().fall_off(column, peak.x + i));
+      down[i + 1][lane] = static_cast<float>(work.weights_y().fall_off(row, peak.y + i));
+    }
+  }
+  samples.beside[0] /= across[0] * down[1];
+  samples.beside[1] /= across[2] * down[1];
+  samples.beside[2] /= across[1] * down[0];
+  samples.beside[3] /= across[1] * down[2];
+  samples.centre /= across[1] * down[1];
+  LaneGauss3 const fit(samples);
+  FloatLanes const height = samples.centre * fit.rise;
+  bool const lanes_fit = job_.fit == fit_gauss3;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    if (p >= found[lane].count) continue;
+    PlanePeak<float> const& peak = found[lane].peak[p];
+    bool const fitted = lanes_fit && (fit.positive >> lane & 1u) != 0u;
+    MeasuredPeak const measured = fitted ? MeasuredPeak{{static_cast<double>(peak.x) + fit.offset[0][lane],
+                                                         static_cast<double>(peak.y) + fit.offset[1][lane]},
+                                                        height[lane]}
+                                         : measure(work, {plane, lane}, peak.x, peak.y);
+    results[lane].shift[static_cast<std::size_t>(p)] = measured.shift;
+    results[lane].coefficient[static_cast<std::size_t>(p)] = measured.coefficient;
+  }
+}
+
+void LanePeaks::pick(LaneCorrelation const& work, LanePlane const& plane, WindowCorrelation::Outcome const* outcome,
+                     int count, WindowCorrelation* results) {
   find_maxima(plane);
+  PeakList<float> found[lane_count];
+  int most = 0;
   for (int lane = 0; lane < count; ++lane) {
     WindowCorrelation& result = results[lane];
-    result.outcome = work.windows().outcome(lane);
+    result.outcome = outcome[lane];
     if (result.outcome != WindowCorrelation::Outcome::measured) continue;
-    PeakList<float> const found = rank(plane, lane);
-    result.peaks = found.count;
-    if (found.count == 0) result.outcome = WindowCorrelation::Outcome::no_peak;
-    LanePlaneView const view{plane, lane};
-    for (int p = 0; p < found.count; ++p) {
-      MeasuredPeak const peak = measure(work, view, lane, found.peak[p].x, found.peak[p].y);
-      result.shift[p] = peak.shift;
-      result.coefficient[p] = peak.coefficient;
-    }
-    if (found.count > 0)
-      result.peak_ratio = peak_ratio(found.peak[0].height, found.peak[1].height, found.peak[2].height);
+    PeakList<float> const& peaks = found[lane] = rank(plane, lane);
+    most = std::max(most, peaks.count);
+    result.peaks = peaks.count;
+    if (peaks.count == 0) result.outcome = WindowCorrelation::Outcome::no_peak;
+    if (peaks.count > 0)
+      result.peak_ratio = peak_ratio(peaks.peak[0].height, peaks.peak[1].height, peaks.peak[2].height);
   }
+  for (int p = 0; p < most; ++p) measure_all(work, plane, p, found, results);
 }
 
 }  // namespace gladstone

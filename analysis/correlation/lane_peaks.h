@@ -14,13 +14,17 @@ class LanePeaks {
   /// @param falls_off whether the planes fall off with the shift as the windows' common weight does
   LanePeaks(InterrogationJob const& job, bool falls_off);
 
+  /// @param outcome of each window so far: only those that are measured have a plane
   /// @param results receives `count` windows
-  void pick(LaneCorrelation& work, LanePlane const& plane, int count, WindowCorrelation* results);
+  void pick(LaneCorrelation const& work, LanePlane const& plane, WindowCorrelation::Outcome const* outcome, int count,
+            WindowCorrelation* results);
 
  private:
   void find_maxima(LanePlane const& plane);
   PeakList<float> rank(LanePlane const& plane, int lane);
-  MeasuredPeak measure(LaneCorrelation const& work, LanePlaneView const& plane, int lane, int x, int y) const;
+  MeasuredPeak measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const;
+  void measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
+                   WindowCorrelation* results) const;
 
   InterrogationJob const& job_;
   bool falls_off_;
@@ -28,6 +32,7 @@ class LanePeaks {
   std::vector<unsigned char> found_;    // of a row, one bit a lane
   int counts_[lane_count] = {};
   std::vector<PlanePeak<float>> maxima_[lane_count];  // in reading order
+  std::vector<PlanePeak<float>> refined_;             // those of a window whose height between the samples is known
 };
 
 }  // namespace gladstone

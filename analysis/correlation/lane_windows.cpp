@@ -7,11 +7,22 @@ namespace {
 
 int whole_lanes(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
+float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+
+/// Weighted sums over the pixels of a window, gathered row by row.
 struct LaneSums {
-  float weight = 0.0f, reference = 0.0f, flow = 0.0f;
+  FloatLanes weight{}, reference{}, flow{};
+
+  float mean_reference(float all) const { return sum_of_lanes(reference) / all; }
+  float mean_flow(float all) const { return sum_of_lanes(flow) / all; }
 };
 
-float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+/// The first `count` of eight values, 0 behind them.
+FloatLanes load_some(float const* from, int count) {
+  FloatLanes v{};
+  __builtin_memcpy(&v, from, sizeof(float) * static_cast<std::size_t>(count));
+  return v;
+}
 
 }  // namespace
 
@@ -46,7 +57,7 @@ void LaneWindows::place(std::size_t begin, int count) {
 void LaneWindows::gather_weights() {
   for (int i = 0; i < side_; ++i)
     for (int lane = 0; lane < lane_count; ++lane) {
-      weight_x_[static_cast<std::size_t>(i)][lane] = x_.weight(column_[lane])[offset_ + i];
+      weight_x_[static_cast<std::size_t>(margin_ + i)][lane] = x_.weight(column_[lane])[offset_ + i];
       weight_y_[static_cast<std::size_t>(i)][lane] = y_.weight(row_[lane])[offset_ + i];
     }
 }
@@ -67,66 +78,73 @@ void LaneWindows::place_lane(int lane, std::size_t window) {
   std::size_t const at = static_cast<std::size_t>(first_y) * pair.columns + first_x;
   Source source{pair.reference.data() + at, pair.flow.data() + at, pair.columns, 0.0f, 0.0f};
   LaneSums sums;
-  int const whole = side_ / lane_count * lane_count;
+  int const whole = side_ / lane_count * lane_count, rest = side_ - whole;
   for (int j = 0; j < side_; ++j) {
     float const* a = source.reference + static_cast<std::size_t>(j) * source.stride;
     float const* b = source.flow + static_cast<std::size_t>(j) * source.stride;
-    FloatLanes weight{}, reference{}, flow{};
+    FloatLanes reference{}, flow{};
     for (int i = 0; i < whole; i += lane_count) {
       FloatLanes const w = load_lanes(wx + i);
-      weight += w;
       reference += w * load_lanes(a + i);
       flow += w * load_lanes(b + i);
     }
-    LaneSums line{sum_of_lanes(weight), sum_of_lanes(reference), sum_of_lanes(flow)};
-    for (int i = whole; i < side_; ++i) {
-      line.weight += wx[i];
-      line.reference += wx[i] * a[i];
-      line.flow += wx[i] * b[i];
+    if (rest > 0) {
+      FloatLanes const w = load_some(wx + whole, rest);
+      reference += w * load_some(a + whole, rest);
+      flow += w * load_some(b + whole, rest);
     }
-    sums.weight += wy[j] * line.weight;
-    sums.reference += wy[j] * line.reference;
-    sums.flow += wy[j] * line.flow;
+    sums.reference += wy[j] * reference;
+    sums.flow += wy[j] * flow;
   }
-  source.mean_reference = sums.reference / sums.weight;
-  source.mean_flow = sums.flow / sums.weight;
+  float const weight = static_cast<float>(x_.sum(column_[lane]) * y_.sum(row_[lane]));
+  source.mean_reference = sums.mean_reference(weight);
+  source.mean_flow = sums.mean_flow(weight);
   source_[lane] = source;
 }
 
 /// A window at the border or with unknown pixels is copied, its mean taken off and 0 where nothing is known.
 void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* weight_x, float const* weight_y) {
   ImagePair const& pair = job_.pair;
-  int const side = side_ + 2 * margin_;
+  int const side = side_ + 2 * margin_, left = first_x - margin_, top = first_y - margin_;
   std::size_t const plane = static_cast<std::size_t>(padded_) * side;
-  patch_[lane].assign(2 * plane, 0.0f);
+  patch_[lane].assign(3 * plane + padded_, 0.0f);
   float* const reference = patch_[lane].data();
   float* const flow = reference + plane;
-  auto const for_each_known = [&](auto const& visit) {
-    for (int j = 0; j < side; ++j)
-      for (int i = 0; i < side; ++i) {
-        int const x = first_x - margin_ + i, y = first_y - margin_ + j;
-        if (x < 0 || x >= pair.columns || y < 0 || y >= pair.rows) continue;
-        std::size_t const at = static_cast<std::size_t>(y) * pair.columns + x;
-        if (!pair.available.empty() && pair.available[at] == 0.0f) continue;
-        int const wi = i - margin_, wj = j - margin_;
-        bool const counts = wi >= 0 && wi < side_ && wj >= 0 && wj < side_;
-        visit(static_cast<std::size_t>(j) * padded_ + i, at, counts ? weight_x[wi] * weight_y[wj] : 0.0f);
-      }
-  };
+  float* const known = flow + plane;
+  float* const weight = known + plane;  // along x, with the margin
+  std::copy_n(weight_x, side_, weight + margin_);
+  int const begin_x = std::max(0, -left), end_x = std::min(side, pair.columns - left);
+  int const begin_y = std::max(0, -top), end_y = std::min(side, pair.rows - top);
   LaneSums sums;
-  for_each_known([&](std::size_t, std::size_t at, float weight) {
-    sums.weight += weight;
-    sums.reference += weight * pair.reference[at];
-    sums.flow += weight * pair.flow[at];
-  });
-  if (sums.weight < smallest_known_part * x_.sum(column_[lane]) * y_.sum(row_[lane]))
+  for (int j = begin_y; j < end_y && begin_x < end_x; ++j) {
+    std::size_t const at = static_cast<std::size_t>(top + j) * pair.columns + (left + begin_x);
+    std::size_t const to = static_cast<std::size_t>(j) * padded_;
+    std::size_t const count = static_cast<std::size_t>(end_x - begin_x);
+    std::copy_n(pair.reference.data() + at, count, reference + to + begin_x);
+    std::copy_n(pair.flow.data() + at, count, flow + to + begin_x);
+    if (pair.available.empty())
+      std::fill_n(known + to + begin_x, count, 1.0f);
+    else
+      std::copy_n(pair.available.data() + at, count, known + to + begin_x);
+    if (j < margin_ || j >= margin_ + side_) continue;
+    float const down = weight_y[j - margin_];
+    for (int i = 0; i < padded_; i += lane_count) {
+      FloatLanes const w = down * load_lanes(weight + i) * load_lanes(known + to + i);
+      sums.weight += w;
+      sums.reference += w * load_lanes(reference + to + i);
+      sums.flow += w * load_lanes(flow + to + i);
+    }
+  }
+  float const all = sum_of_lanes(sums.weight);
+  if (all < smallest_known_part * x_.sum(column_[lane]) * y_.sum(row_[lane]))
     outcome_[lane] = WindowCorrelation::Outcome::masked;
-  float const known = sums.weight > 0.0f ? sums.weight : 1.0f;
-  float const mean_reference = sums.reference / known, mean_flow = sums.flow / known;
-  for_each_known([&](std::size_t to, std::size_t at, float) {
-    reference[to] = pair.reference[at] - mean_reference;
-    flow[to] = pair.flow[at] - mean_flow;
-  });
+  float const mean_reference = sums.mean_reference(all > 0.0f ? all : 1.0f);
+  float const mean_flow = sums.mean_flow(all > 0.0f ? all : 1.0f);
+  for (std::size_t i = 0; i < plane; i += lane_count) {
+    FloatLanes const here = load_lanes(known + i);
+    store_lanes(reference + i, here * (load_lanes(reference + i) - mean_reference));
+    store_lanes(flow + i, here * (load_lanes(flow + i) - mean_flow));
+  }
   std::size_t const first = static_cast<std::size_t>(margin_) * padded_ + margin_;
   source_[lane] = {reference + first, flow + first, padded_, 0.0f, 0.0f};
 }
@@ -145,57 +163,53 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
 }  // namespace
 
 template <WindowTerm term>
-void LaneWindows::row_of_term(int j, ComplexLanes* out) {
-  constexpr bool with_energies = term == WindowTerm::frames || term == WindowTerm::search;
-  int const count = side(), line = j - margin_;
+void LaneWindows::row_of_term(int j, ComplexLanes* out) const {
+  int const line = j - margin_;
   bool const in_window = line >= 0 && line < side_;
-  int const core_first = job_.grid.window_px / 2 - offset_, core_end = core_first + job_.grid.window_px;
   FloatLanes const wy = in_window ? weight_y_[static_cast<std::size_t>(line)] : FloatLanes{};
-  FloatLanes reference{}, flow{}, core_reference{}, core_flow{};
-  for (int i = 0; i < count; i += lane_count) {
+  for (int i = 0; i < padded_; i += lane_count) {
     FloatLanes a[lane_count], b[lane_count];
-    for (int lane = 0; lane < lane_count; ++lane) {
-      std::ptrdiff_t const at = static_cast<std::ptrdiff_t>(line) * source_[lane].stride + (i - margin_);
-      a[lane] = load_lanes(source_[lane].reference + at);
-      b[lane] = load_lanes(source_[lane].flow + at);
-    }
-    transpose_lanes(a);
-    transpose_lanes(b);
-    for (int k = 0; k < lane_count && i + k < count; ++k) {
-      int const at = i + k - margin_;
-      FloatLanes const w = at >= 0 && at < side_ ? wy * weight_x_[static_cast<std::size_t>(at)] : FloatLanes{};
-      FloatLanes const in_reference = a[k] - mean_reference_, in_flow = b[k] - mean_flow_;
-      out[i + k] = term_of<term>(w, in_reference, in_flow);
-      if constexpr (with_energies) {
-        FloatLanes const wa = w * in_reference, wb = w * in_flow, aa = wa * wa, bb = wb * wb;
-        reference += aa;
-        flow += bb;
-        if (at >= core_first && at < core_end) {
-          core_reference += aa;
-          core_flow += bb;
-        }
-      }
-    }
+    auto const at = [&](int lane) { return static_cast<std::ptrdiff_t>(line) * source_[lane].stride + (i - margin_); };
+    read_columns([&](int lane) { return source_[lane].reference + at(lane); }, a);
+    read_columns([&](int lane) { return source_[lane].flow + at(lane); }, b);
+    for (int k = 0; k < lane_count; ++k)
+      out[i + k] =
+          term_of<term>(wy * weight_x_[static_cast<std::size_t>(i + k)], a[k] - mean_reference_, b[k] - mean_flow_);
   }
-  if constexpr (with_energies) {
-    reference_ += reference;
-    flow_ += flow;
-    if (line >= core_first && line < core_end) {
-      core_reference_ += core_reference;
-      core_flow_ += core_flow;
+}
+
+/// Adds up the squares of a row of w A and w B. What a border cuts off has no weight.
+void LaneWindows::gather_energies(int j, ComplexLanes const* row) {
+  int const core_first = margin_ + job_.grid.window_px / 2 - offset_, core_end = core_first + job_.grid.window_px;
+  ComplexLanes outer{}, core{};
+  auto const add = [&](int first, int end, ComplexLanes& sum) {
+    for (int i = first; i < end; ++i) {
+      sum.re += row[i].re * row[i].re;
+      sum.im += row[i].im * row[i].im;
     }
-  }
+  };
+  add(margin_, core_first, outer);
+  add(core_first, core_end, core);
+  add(core_end, margin_ + side_, outer);
+  reference_ += outer.re + core.re;
+  flow_ += outer.im + core.im;
+  if (j < core_first || j >= core_end) return;
+  core_reference_ += core.re;
+  core_flow_ += core.im;
 }
 
 void LaneWindows::row(int j, WindowTerm term, ComplexLanes* out) {
   switch (term) {
     case WindowTerm::frames:
-      return row_of_term<WindowTerm::frames>(j, out);
+      row_of_term<WindowTerm::frames>(j, out);
+      return gather_energies(j, out);
     case WindowTerm::reference_energy:
       return row_of_term<WindowTerm::reference_energy>(j, out);
     case WindowTerm::flow_energy:
       return row_of_term<WindowTerm::flow_energy>(j, out);
     case WindowTerm::search:
+      row_of_term<WindowTerm::frames>(j, out);
+      gather_energies(j, out);
       return row_of_term<WindowTerm::search>(j, out);
     case WindowTerm::search_energy:
       return row_of_term<WindowTerm::search_energy>(j, out);

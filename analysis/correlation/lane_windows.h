@@ -30,7 +30,7 @@ class LaneWindows {
   /// Looks up the windows begin .. begin + count - 1, and takes their means. Lanes from `count` on repeat the last.
   void place(std::size_t begin, int count);
   /// Row j of side() of all eight: reference as real, flow as imaginary parts. Energies of w A and w B are gathered on
-  /// the way of the frames and the search.
+  /// the way of the frames and the search. `out` has room for whole lanes: side() and seven more.
   void row(int j, WindowTerm term, ComplexLanes* out);
   /// Outcome of a window that cannot be correlated; measured where it can, so far.
   WindowCorrelation::Outcome outcome(int lane) const { return outcome_[lane]; }
@@ -53,7 +53,8 @@ class LaneWindows {
   void copy_lane(int lane, int first_x, int first_y, float const* weight_x, float const* weight_y);
   void gather_weights();
   template <WindowTerm term>
-  void row_of_term(int j, ComplexLanes* out);
+  void row_of_term(int j, ComplexLanes* out) const;
+  void gather_energies(int j, ComplexLanes const* row);
 
   InterrogationJob const& job_;
   AxisWeightsView x_, y_;
@@ -66,8 +67,8 @@ class LaneWindows {
   int column_[lane_count], row_[lane_count];
   WindowCorrelation::Outcome outcome_[lane_count];
   FloatLanes mean_reference_, mean_flow_, reference_, flow_, core_reference_, core_flow_;
-  std::vector<FloatLanes> weight_x_, weight_y_;
-  bool gathered_ = false;  // whether weight_x_, weight_y_ are those of uncut windows in all lanes
+  std::vector<FloatLanes> weight_x_, weight_y_;  // along x with the margin
+  bool gathered_ = false;                        // whether weight_x_, weight_y_ are those of uncut windows in all lanes
   std::vector<float> patch_[lane_count];
 };
 

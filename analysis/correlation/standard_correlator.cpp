@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/ensemble.h"
+#include "analysis/correlation/plane_sums.h"
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -26,18 +28,59 @@ class StandardCorrelator final : public Correlator {
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
     int const columns = reference.columns(), rows = reference.rows();
     check_image_sizes(settings_, columns, rows, flow.columns(), flow.rows());
-
     std::optional<PairDeformer> deformer;
-    if (schedule_.passes() > 1) deformer.emplace(reference, flow, schedule_.spline_degree());
+    ImagePair single, deformed;
+    if (schedule_.passes() > 1)
+      deformer.emplace(reference, flow, schedule_.spline_degree());
+    else
+      single = make_image_pair(reference, flow);
+    return run_passes(columns, rows, [&](int pass, InterrogationGrid const& grid, DensePredictor const* predictor) {
+      if (predictor != nullptr) deformer->deform(*predictor, deformed);
+      ImagePair const& pair = predictor != nullptr ? deformed : (deformer ? deformer->original() : single);
+      return correlate_(job(pass, pair, grid, nullptr));
+    });
+  }
+
+  DisplacementField correlate_all(PairSequence const& pairs) const {
+    HostFrames const first = pairs.frames(0);
+    int const columns = first.reference().columns(), rows = first.reference().rows();
+    return run_passes(columns, rows, [&](int pass, InterrogationGrid const& grid, DensePredictor const* predictor) {
+      PlaneSums planes(grid.size(), schedule_.search_radius_px(pass));
+      std::vector<WindowCorrelation> windows;
+      for (std::size_t k = 0; k < pairs.size; ++k) {
+        HostFrames const frames = pairs.frames(k);
+        Image<double> const &reference = frames.reference(), &flow = frames.flow();
+        check_image_sizes(settings_, reference.columns(), reference.rows(), flow.columns(), flow.rows());
+        check_image_sizes(settings_, columns, rows, flow.columns(), flow.rows());
+        ImagePair const pair = predictor == nullptr
+                                   ? make_image_pair(reference, flow)
+                                   : PairDeformer(reference, flow, schedule_.spline_degree()).deform(*predictor);
+        windows = correlate_(job(pass, pair, grid, &planes));
+      }
+      return windows;
+    });
+  }
+
+ private:
+  InterrogationJob job(int pass, ImagePair const& pair, InterrogationGrid const& grid, PlaneSums* ensemble) const {
+    return {pair,
+            grid,
+            schedule_.weighting(),
+            schedule_.search_radius_px(pass),
+            fit_,
+            fmt::format("correlate {}/{}", pass + 1, schedule_.passes()),
+            ensemble};
+  }
+
+  /// @param measure gives the windows of a grid in a pass, deformed by the predictor; null: in the first, as they are
+  template <class Measure>
+  DisplacementField run_passes(int columns, int rows, Measure const& measure) const {
     std::optional<DensePredictor> predictor;
     std::vector<char> ambiguous;
     InterrogationGrid grid_before;
     for (int pass = 0;; ++pass) {
       InterrogationGrid const grid = schedule_.grid(pass, columns, rows);
-      ImagePair const pair = predictor ? deformer->deform(*predictor) : make_image_pair(reference, flow);
-      std::vector<WindowCorrelation> const windows =
-          correlate_({pair, grid, schedule_.weighting(), schedule_.search_radius_px(pass), fit_,
-                      fmt::format("correlate {}/{}", pass + 1, schedule_.passes())});
+      std::vector<WindowCorrelation> const windows = measure(pass, grid, predictor ? &*predictor : nullptr);
       std::vector<GridVector> vectors(windows.size());
       auto const predicted = [&](std::size_t i) { return predictor ? predictor->at(grid.centre(i)) : Vec2d{}; };
       AmbiguousPlaces const before{grid_before, pass > 0 ? ambiguous.data() : nullptr};
@@ -58,7 +101,6 @@ class StandardCorrelator final : public Correlator {
     }
   }
 
- private:
   CorrelationSettings settings_;
   CorrelationSchedule schedule_;
   CorrelateWindows correlate_;
@@ -128,6 +170,20 @@ DisplacementField displacement_field(InterrogationGrid const& grid, std::span<Me
     field.ambiguous.push_back(vectors[i].ambiguous);
   }
   return field;
+}
+
+DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSettings const& settings) {
+  GLADSTONE_EXPECTS(pairs.size > 0);
+  for (CorrelationMethod const& method : all_correlation_methods())
+    if (settings.method == method.name && !method.in_ensembles)
+      throw DataError("ensemble", fmt::format("correlate.method = \"{}\" is of single pairs (it gives no planes to "
+                                              "average); use another, such as \"scc\"",
+                                              settings.method));
+  if (settings.uncertainty != "none")
+    throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" is of single pairs (it compares matched "
+                                            "frames); use \"none\"",
+                                            settings.uncertainty));
+  return StandardCorrelator(settings).correlate_all(pairs);
 }
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {

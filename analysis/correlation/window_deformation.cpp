@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/correlation/lane_deformation.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
 
@@ -61,28 +62,6 @@ double middle_level(Image<double> const& reference, Image<double> const& flow) {
   return some.low <= some.high ? 0.5 * (some.low + some.high) : 0.0;
 }
 
-template <int degree>
-void deform_rows(BsplineView<float> reference, BsplineView<float> flow, ImagePair const& original,
-                 DensePredictor const& predictor, ImagePair& pair) {
-  int const columns = pair.columns, rows = pair.rows;
-  auto const known = [&](int i, int j) {
-    return original.available.empty() ? 1.0f : original.available[static_cast<std::size_t>(j) * columns + i];
-  };
-  parallel_chunks(static_cast<std::size_t>(rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> u(static_cast<std::size_t>(columns)), v(u);
-    for (std::size_t j = begin; j < end; ++j) {
-      predictor.row(static_cast<int>(j), u, v);
-      std::size_t const at = j * static_cast<std::size_t>(columns);
-      for (int i = 0; i < columns; ++i) {
-        DeformedPixel const pixel = deformed_pixel<degree>(reference, flow, i, static_cast<int>(j), u[i], v[i], known);
-        pair.reference[at + i] = pixel.reference;
-        pair.flow[at + i] = pixel.flow;
-        pair.available[at + i] = pixel.available;
-      }
-    }
-  });
-}
-
 }  // namespace
 
 ImagePair make_image_pair(Image<double> const& reference, Image<double> const& flow) {
@@ -128,21 +107,34 @@ DensePredictor::DensePredictor(InterrogationGrid const& grid, std::span<Vec2d co
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i)
       nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended_node(grid, nodes.data(), i - ghosts_, j - ghosts_);
-  column_taps_.reserve(static_cast<std::size_t>(image_columns));
-  for (int i = 0; i < image_columns; ++i) column_taps_.push_back(view().taps(i, columns_));
+  for (int i = 0; i < image_columns; ++i) {
+    PredictorView::Taps const x = view().taps(i, columns_);
+    column_first_.push_back(x.first);
+    for (int k = 0; k < 4; ++k) column_weights_[k].push_back(static_cast<float>(x.weight[k]));
+  }
 }
 
 void DensePredictor::row(int image_row, std::span<float> u, std::span<float> v) const {
   PredictorView::Taps const y = view().taps(image_row, rows_);
-  std::vector<Vec2d> line(static_cast<std::size_t>(columns_));
-  for (int i = 0; i < columns_; ++i)
-    for (int j = 0; j < 4; ++j) line[i] += y.weight[j] * nodes_[static_cast<std::size_t>(y.first + j) * columns_ + i];
-  for (std::size_t i = 0; i < column_taps_.size(); ++i) {
-    PredictorView::Taps const& x = column_taps_[i];
+  std::vector<float> line_u(static_cast<std::size_t>(columns_)), line_v(line_u);
+  for (int i = 0; i < columns_; ++i) {
     Vec2d sum;
-    for (int k = 0; k < 4; ++k) sum += x.weight[k] * line[x.first + k];
-    u[i] = static_cast<float>(sum.x);
-    v[i] = static_cast<float>(sum.y);
+    for (int j = 0; j < 4; ++j) sum += y.weight[j] * nodes_[static_cast<std::size_t>(y.first + j) * columns_ + i];
+    line_u[i] = static_cast<float>(sum.x);
+    line_v[i] = static_cast<float>(sum.y);
+  }
+  // between two nodes the same four count
+  std::size_t const all = column_first_.size();
+  for (std::size_t begin = 0, end = 0; begin < all; begin = end) {
+    int const first = column_first_[begin];
+    while (end < all && column_first_[end] == first) ++end;
+    float const *const a = line_u.data() + first, *const b = line_v.data() + first;
+    for (std::size_t i = begin; i < end; ++i) {
+      float const w0 = column_weights_[0][i], w1 = column_weights_[1][i];
+      float const w2 = column_weights_[2][i], w3 = column_weights_[3][i];
+      u[i] = w0 * a[0] + w1 * a[1] + w2 * a[2] + w3 * a[3];
+      v[i] = w0 * b[0] + w1 * b[1] + w2 * b[2] + w3 * b[3];
+    }
   }
 }
 
@@ -157,19 +149,29 @@ PairDeformer::PairDeformer(Image<double> const& reference, Image<double> const& 
 
 ImagePair PairDeformer::deform(DensePredictor const& predictor) const {
   ImagePair pair;
+  deform(predictor, pair);
+  return pair;
+}
+
+void PairDeformer::deform(DensePredictor const& predictor, ImagePair& pair) const {
   pair.columns = original_.columns;
   pair.rows = original_.rows;
   pair.contrast = original_.contrast;
   pair.reference.resize(original_.reference.size());
   pair.flow.resize(pair.reference.size());
   pair.available.resize(pair.reference.size());
-  if (degree_ == 3)
-    deform_rows<3>(reference_.view(), flow_.view(), original_, predictor, pair);
-  else
-    deform_rows<5>(reference_.view(), flow_.view(), original_, predictor, pair);
+  LaneDeformation const deformation{reference_.view(), flow_.view(), original_.available};
+  parallel_chunks(static_cast<std::size_t>(pair.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> u(static_cast<std::size_t>(pair.columns)), v(u);
+    for (std::size_t j = begin; j < end; ++j) {
+      predictor.row(static_cast<int>(j), u, v);
+      std::size_t const at = j * static_cast<std::size_t>(pair.columns);
+      deformation.row(degree_, static_cast<int>(j), u, v,
+                      {pair.reference.data() + at, pair.flow.data() + at, pair.available.data() + at});
+    }
+  });
   if (std::all_of(pair.available.begin(), pair.available.end(), [](float known) { return known == 1.0f; }))
     pair.available.clear();
-  return pair;
 }
 
 }  // namespace gladstone

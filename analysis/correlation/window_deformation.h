@@ -41,7 +41,8 @@ class DensePredictor {
   int columns_;  // with the ghost nodes
   int rows_;
   std::vector<Vec2d> nodes_;
-  std::vector<PredictorView::Taps> column_taps_;
+  std::vector<int> column_first_;         // of the four nodes that count at a pixel column
+  std::vector<float> column_weights_[4];  // of each of them, for every pixel column
 };
 
 /// One pixel of a deformed pair.
@@ -51,6 +52,18 @@ struct DeformedPixel {
   float available;
 };
 
+/// Whether (x, y) [px] is known: 1 inside an image where known(column, row) of the nearest pixel is, else 0.
+template <class Known>
+GLADSTONE_HD float known_at(float x, float y, int columns, int rows, Known const& known) {
+  auto const nearest = [](float position, int count) {
+    int const k = static_cast<int>(std::lround(position));
+    return k < 0 ? 0 : (k > count - 1 ? count - 1 : k);
+  };
+  bool const inside =
+      x >= -0.5f && x <= static_cast<float>(columns) - 0.5f && y >= -0.5f && y <= static_cast<float>(rows) - 0.5f;
+  return inside ? known(nearest(x, columns), nearest(y, rows)) : 0.0f;
+}
+
 /// Pixel (i, j) of reference(x - d/2) and flow(x + d/2).
 /// @param u, v  the displacement d there [px]
 /// @param known 1 where both original images are known at a pixel (column, row), 0 elsewhere
@@ -58,18 +71,10 @@ template <int degree, class Known>
 GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, BsplineView<float> const& flow, int i,
                                           int j, float u, float v, Known const& known) {
   int const columns = reference.columns, rows = reference.rows;
-  auto const nearest = [](float position, int count) {
-    int const k = static_cast<int>(std::lround(position));
-    return k < 0 ? 0 : (k > count - 1 ? count - 1 : k);
-  };
-  auto const known_at = [&](float x, float y) {
-    bool const inside =
-        x >= -0.5f && x <= static_cast<float>(columns) - 0.5f && y >= -0.5f && y <= static_cast<float>(rows) - 0.5f;
-    return inside ? known(nearest(x, columns), nearest(y, rows)) : 0.0f;
-  };
   float const half_u = 0.5f * u, half_v = 0.5f * v;
   float const x = static_cast<float>(i), y = static_cast<float>(j);
-  float const in_reference = known_at(x - half_u, y - half_v), in_flow = known_at(x + half_u, y + half_v);
+  float const in_reference = known_at(x - half_u, y - half_v, columns, rows, known);
+  float const in_flow = known_at(x + half_u, y + half_v, columns, rows, known);
   return {reference.sample<degree>(i, j, -half_u, -half_v), flow.sample<degree>(i, j, half_u, half_v),
           in_reference < in_flow ? in_reference : in_flow};
 }
@@ -84,6 +89,10 @@ class PairDeformer {
 
   /// The pair: reference(x - d(x)/2) and flow(x + d(x)/2) with d the predictor [px].
   ImagePair deform(DensePredictor const& predictor) const;
+  /// The same into a pair that may hold an earlier one: its memory is used again.
+  void deform(DensePredictor const& predictor, ImagePair& pair) const;
+  /// The pair as it was taken.
+  ImagePair const& original() const { return original_; }
 
  private:
   int degree_;

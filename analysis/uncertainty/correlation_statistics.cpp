@@ -70,11 +70,7 @@ std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input) {
     u[i] = along_x * along_x;
     v[i] = along_y * along_y;
   });
-  u = averaged_over_neighbours(u, input.grid);
-  v = averaged_over_neighbours(v, input.grid);
-  std::vector<Vec2d> sigma(u.size());
-  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = {std::sqrt(u[i]), std::sqrt(v[i])};
-  return sigma;
+  return sigma_of_variances(u, v, input.grid);
 }
 
 }  // namespace gladstone

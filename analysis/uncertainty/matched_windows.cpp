@@ -81,4 +81,12 @@ std::vector<double> averaged_over_neighbours(std::vector<double> const& values, 
   return result;
 }
 
+std::vector<Vec2d> sigma_of_variances(std::vector<double> const& u, std::vector<double> const& v,
+                                      InterrogationGrid const& grid) {
+  std::vector<double> const along_x = averaged_over_neighbours(u, grid), along_y = averaged_over_neighbours(v, grid);
+  std::vector<Vec2d> sigma(u.size());
+  for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = {std::sqrt(along_x[i]), std::sqrt(along_y[i])};
+  return sigma;
+}
+
 }  // namespace gladstone

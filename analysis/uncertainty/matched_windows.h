@@ -25,4 +25,8 @@ void visit_matched_windows(UncertaintyInput const& input,
 /// Mean of values and their valid neighbours on the grid, 3 x 3: variances that a few particles gave scatter.
 std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid);
 
+/// Standard uncertainties from the variances along both axes, averaged so [px].
+std::vector<Vec2d> sigma_of_variances(std::vector<double> const& u, std::vector<double> const& v,
+                                      InterrogationGrid const& grid);
+
 }  // namespace gladstone

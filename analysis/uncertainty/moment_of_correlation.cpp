@@ -31,7 +31,7 @@ std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input) {
   // what is left over by the matched frames is small: the peak is the highest value about no shift
   InterrogationJob const job{input.matched, input.grid, window_weighting(input.settings), 2, fit_gauss3, "uncertainty"};
   visit_planes(job, {make_robust_phase_plane}, [&] {
-    return [&](std::size_t first, int count, LaneCorrelation&, LanePlane const& plane) {
+    return [&](std::size_t first, int count, LaneCorrelation&, LanePlane& plane) {
       for (int lane = 0; lane < count; ++lane) {
         LanePlaneView const view{plane, lane};
         int x = 0, y = 0;

@@ -76,9 +76,15 @@ RecordedFrames DeviceLight::record(Detector const& detector) const {
   auto frames = std::make_shared<DeviceFrames>(columns_, rows_);
   DeviceArray<unsigned long long> saturated(frame_count, "the images");
   saturated.zero();
+  PixelDetector pixel = detector.pixel();
+  DeviceArray<double> glare;
+  if (pixel.glare_e) {
+    glare = DeviceArray<double>(pixel.glare_e, pixels(), "the glare");
+    pixel.glare_e = glare.data();
+  }
   for (Frame const frame : {Frame::reference, Frame::flow}) {
     int const at = static_cast<int>(frame);
-    record_levels(detector.pixel(), frame == Frame::flow ? RandomStream::noise_flow : RandomStream::noise_reference,
+    record_levels(pixel, frame == Frame::flow ? RandomStream::noise_flow : RandomStream::noise_reference,
                   light_[at].data(), pixels(), frames->levels(frame), saturated.data() + at);
   }
   unsigned long long counted[frame_count] = {};

@@ -8,7 +8,9 @@
 
 #include "cuda/device/device_images.h"
 #include "cuda/device/launch.h"
+#include "cuda/rays/cuda_particle_tracer.h"
 #include "cuda/rays/trace_sources.h"
+#include "render/base/freed_memory.h"
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -282,18 +284,27 @@ class SceneTracer {
 
 struct CudaRaysRenderer::Uploads {
   KeptMedium medium;
+  KeptScattering scattering;
   PinnedBuffer staging;
+
+  /// The scene's medium, on the device.
+  DeviceMedium<double> medium_of(Scene const& scene) {
+    if (!medium.serves(scene, true)) medium.upload(scene, true);
+    return medium.medium().view<double>();
+  }
 };
 
-CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) { keep_freed_device_memory(); }
+CudaRaysRenderer::CudaRaysRenderer() : uploads_(std::make_unique<Uploads>()) {
+  keep_freed_memory();
+  keep_freed_device_memory();
+}
 CudaRaysRenderer::~CudaRaysRenderer() = default;
 
 Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) {
   bool const lit = images != RenderImages::no;
   std::optional<AiryTable> airy;
   RaysLaunch const launch(scene, lit ? make_spot(scene, airy) : SpotView{});
-  if (!uploads_->medium.serves(scene, true)) uploads_->medium.upload(scene, true);
-  DeviceMedium<double> const mirrored = uploads_->medium.medium().view<double>();
+  DeviceMedium<double> const mirrored = uploads_->medium_of(scene);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
@@ -321,6 +332,12 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::kept) rendering.kept = std::move(light);
   return std::move(rendering);
+}
+
+Rendering CudaRaysRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                                             RenderImages images) {
+  return trace_particles_on_device(scene, particles, light, images, uploads_->medium_of(scene), uploads_->scattering,
+                                   uploads_->staging);
 }
 
 }  // namespace gladstone::cuda

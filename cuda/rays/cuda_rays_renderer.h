@@ -17,6 +17,9 @@ class CudaRaysRenderer final : public Renderer {
   std::string device() const override { return "cuda"; }
   /// As Renderer::render. @throws also DeviceError, out of memory with the sizes
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
+  /// As Renderer::render_particles; which rays fill the stop is found on the device. @throws as render
+  Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
+                             RenderImages images) override;
 
  private:
   struct Uploads;  ///< what scenes that follow each other have in common

@@ -64,26 +64,29 @@ struct HitWindow {
 };
 
 /// Where the parts lie.
+/// @tparam Launch has camera, spline, most_window_px, and windows: how many a block has
 struct SharedParts {
   CameraElement<double>* elements;
   RaySums* sums;      ///< one a thread
   double* rows_seen;  ///< in the place of sums, which are done with then
   double* share;      ///< of the spline
-  int* nodes;         ///< of both windows; null: there are none
+  int* nodes;         ///< of all windows; null: there are none
 
-  __device__ SharedParts(unsigned char* memory, SourcesLaunch const& launch) {
+  template <class Launch>
+  __device__ SharedParts(unsigned char* memory, Launch const& launch, int threads) {
     elements = reinterpret_cast<CameraElement<double>*>(memory);
     memory += elements_bytes(launch);
     sums = reinterpret_cast<RaySums*>(memory);
     rows_seen = reinterpret_cast<double*>(memory);
-    memory += common_bytes(launch);
+    memory += common_bytes(launch, threads);
     share = reinterpret_cast<double*>(memory);
     nodes = launch.most_window_px > 0 ? reinterpret_cast<int*>(memory + share_bytes(launch)) : nullptr;
   }
   /// Copies what all sources share. The threads must meet before it is used.
-  __device__ void fill(SourcesLaunch const& launch) const {
-    auto const copy = [](void* to, void const* from, std::size_t bytes) {
-      for (std::size_t i = threadIdx.x; i < bytes / sizeof(double); i += source_threads) {
+  template <class Launch>
+  __device__ void fill(Launch const& launch, int threads) const {
+    auto const copy = [threads](void* to, void const* from, std::size_t bytes) {
+      for (std::size_t i = threadIdx.x; i < bytes / sizeof(double); i += static_cast<std::size_t>(threads)) {
         static_cast<double*>(to)[i] = static_cast<double const*>(from)[i];
       }
     };
@@ -91,26 +94,30 @@ struct SharedParts {
     if (nodes) copy(share, launch.spline.share, share_bytes(launch));
   }
 
-  static std::size_t bytes(SourcesLaunch const& launch) {
+  template <class Launch>
+  GLADSTONE_HD static std::size_t bytes(Launch const& launch, int threads) {
     auto const side = static_cast<std::size_t>(launch.most_window_px * launch.spline.per_px);
-    return elements_bytes(launch) + common_bytes(launch) + share_bytes(launch) +
-           frame_count * side * side * sizeof(int);
+    return elements_bytes(launch) + common_bytes(launch, threads) + share_bytes(launch) +
+           launch.windows * side * side * sizeof(int);
   }
 
  private:
-  GLADSTONE_HD static std::size_t elements_bytes(SourcesLaunch const& launch) {
+  template <class Launch>
+  GLADSTONE_HD static std::size_t elements_bytes(Launch const& launch) {
     static_assert(sizeof(CameraElement<double>) % 16 == 0);
     return static_cast<std::size_t>(launch.camera.count) * sizeof(CameraElement<double>);
   }
-  GLADSTONE_HD static std::size_t common_bytes(SourcesLaunch const& launch) {
-    std::size_t const of_sums = source_threads * sizeof(RaySums);
+  template <class Launch>
+  GLADSTONE_HD static std::size_t common_bytes(Launch const& launch, int threads) {
+    std::size_t const of_sums = static_cast<std::size_t>(threads) * sizeof(RaySums);
     if (launch.most_window_px == 0) return of_sums;
     int const side = launch.most_window_px * launch.spline.per_px;
     std::size_t const of_rows =
         static_cast<std::size_t>(side) * static_cast<std::size_t>(launch.spline.pixels({0, side})) * sizeof(double);
     return of_rows > of_sums ? of_rows : of_sums;
   }
-  GLADSTONE_HD static std::size_t share_bytes(SourcesLaunch const& launch) {
+  template <class Launch>
+  GLADSTONE_HD static std::size_t share_bytes(Launch const& launch) {
     return launch.most_window_px > 0 ? static_cast<std::size_t>(launch.spline.count()) * sizeof(double) : 0;
   }
 };

@@ -1,45 +1,12 @@
 #include "cuda/device/block_sum.cuh"
-#include "cuda/device/device_images.cuh"
 #include "cuda/device/launch.h"
 #include "cuda/rays/hit_window.cuh"
+#include "cuda/rays/lay_down_spot.cuh"
 
 namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = source_threads;
-constexpr int warp_size = 32;
-constexpr unsigned int whole_warp = 0xffffffffu;
-
-/// Lays down one ray's spot by a warp.
-__device__ void lay_down_spot(SpotView const& spot, Vec2d p, double units, int frame, DeviceImages const& images) {
-  if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return;
-  int const half = spot.half_width(), width = 2 * half + 1;
-  int const column = static_cast<int>(floor(p.x + 0.5)) - half, row = static_cast<int>(floor(p.y + 0.5)) - half;
-  auto const gaussian = [&](double place, int pixel) {
-    double const left = (pixel - 0.5 - place) / spot.gaussian.sigma;
-    return GaussianSpot<double>::edge_value(left + 1 / spot.gaussian.sigma) - GaussianSpot<double>::edge_value(left);
-  };
-  for (int k = threadIdx.x % warp_size; k < width * width; k += warp_size) {
-    int const i = k % width, j = k / width;
-    double share = 1;
-    if (spot.model == SpotModel::airy) {
-      share = spot.airy.share(p.x - (column + half), p.y - (row + half), j, i);
-    } else if (spot.model != SpotModel::none) {
-      share = gaussian(p.x, column + i) * gaussian(p.y, row + j);
-    }
-    add_light(images, static_cast<Frame>(frame), column + i, row + j, whole_units(units * share));
-  }
-}
-
-/// Lays down, one after the other, the spots of those of a warp's rays that no window took.
-__device__ void lay_down_spots(SourcesLaunch const& launch, bool mine, RayHit<double> const& hit, int frame) {
-  for (unsigned int rest = __ballot_sync(whole_warp, mine); rest != 0; rest &= rest - 1) {
-    int const lane = __ffs(static_cast<int>(rest)) - 1;
-    Vec2d const p{__shfl_sync(whole_warp, hit.pixel.x, lane), __shfl_sync(whole_warp, hit.pixel.y, lane)};
-    double const weight = __shfl_sync(whole_warp, hit.weight, lane);
-    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, frame, launch.images);
-  }
-}
 
 /// One block's part of a source.
 template <class Medium>
@@ -79,9 +46,9 @@ __global__ void __launch_bounds__(threads, 3)
                          SourceOnDevice const* const sources, std::uint64_t const count, SourcesTraced const traced) {
   extern __shared__ __align__(16) unsigned char dynamic[];
   __shared__ unsigned int counts[frame_count * ray_status_count];
-  SharedParts const parts(dynamic, launch);
+  SharedParts const parts(dynamic, launch, threads);
   if (threadIdx.x < frame_count * ray_status_count) counts[threadIdx.x] = 0;
-  parts.fill(launch);
+  parts.fill(launch, threads);
   __syncthreads();
   CameraView<double> camera = launch.camera;
   camera.elements = parts.elements;
@@ -140,7 +107,7 @@ int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& me
   SourcesLaunch probe = launch;
   for (probe.most_window_px = most_window_nodes / launch.spline.per_px; probe.most_window_px > 0;
        --probe.most_window_px) {
-    if (SharedParts::bytes(probe) <= most_block_bytes) break;
+    if (SharedParts::bytes(probe, threads) <= most_block_bytes) break;
   }
   return probe.most_window_px;
 }
@@ -150,7 +117,7 @@ void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medi
   std::visit(
       [&](auto const& held) {
         auto* const kernel = trace_sources_kernel<std::remove_cvref_t<decltype(held)>>;
-        std::size_t const shared = SharedParts::bytes(launch);
+        std::size_t const shared = SharedParts::bytes(launch, threads);
         allow_shared_bytes(kernel, shared);
         kernel<<<blocks_for(kernel, threads, shared, count * launch.shares()), threads, shared>>>(launch, held, sources,
                                                                                                   count, traced);

@@ -32,6 +32,8 @@ struct SourceOnDevice {
 
 /// What all sources of a launch share.
 struct SourcesLaunch {
+  static constexpr std::size_t windows = frame_count;  ///< of a block: one a frame
+
   CameraView<double> camera;  ///< its elements on the device
   TracingOptions<double> tracing;
   LambertSources<double> sources;  ///< on the device

@@ -1,5 +1,6 @@
 #include "render/light/flow.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -13,23 +14,53 @@ std::vector<std::string> kind_words(FlowKinds<Kinds...>) {
 
 /// Reads the kind of that name. @pre it is one of them
 template <class... Kinds>
-void read_kind(FlowKinds<Kinds...>, std::string const& word, SetupTable& table, Flow& flow) {
+void read_kind(FlowKinds<Kinds...>, std::string const& word, SetupTable& table, FlowSetup& setup) {
   auto const read = [&]<class Kind>(Kind const*) {
-    if (word == Kind::kind) flow.kind = Kind::read(table);
+    if (word != Kind::kind) return;
+    if constexpr (requires { Kind::read(table, setup); }) {
+      setup.flow.kind = Kind::read(table, setup);
+    } else {
+      setup.flow.kind = Kind::read(table);
+    }
   };
   (read(static_cast<Kinds const*>(nullptr)), ...);
 }
 
 }  // namespace
 
-FlowSetup read_flow_setup(SetupTable table) {
+FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& shock) {
   FlowSetup setup;
+  setup.shock = shock;
   std::string const word = table.kind_word("kind", UniformFlow::kind, kind_words(AllFlows{}));
-  read_kind(AllFlows{}, word, table, setup.flow);
+  read_kind(AllFlows{}, word, table, setup);
   Vec3d const fallback = word == UniformFlow::kind ? Vec3d{10, 0, 0} : Vec3d{};
   setup.flow.uniform = read_vector(table, "velocity_m_s", fallback, 1.0, {-1e9, 1e9});
+  if (shock && word == NormalShockFlow::kind) {
+    Vec3d const normal{std::cos(shock->tilt), 0, std::sin(shock->tilt)};
+    if (std::abs(dot(setup.flow.uniform, normal)) > 1e-9 * length(setup.flow.uniform)) {
+      table.problem(
+          "velocity_m_s",
+          "has a part across the shock's front (which stands still, and gas crosses it at medium.field.mach); "
+          "give one along the front");
+    }
+  }
   setup.dt = table.number("dt_us", 10.0, Range::positive(1e12)) * unit::microsecond;
   return setup;
+}
+
+std::string load_flow(FlowSetup& setup) {
+  if (!setup.file || setup.owner) return {};
+  LoadedVelocity loaded = load_velocity(*setup.file);
+  setup.owner = std::move(loaded.coefficients);
+  setup.flow.kind = loaded.flow;
+  return loaded.warning;
+}
+
+bool velocity_known(FlowSetup const& setup, Vec3d place) {
+  return setup.flow.kind.visit([place](auto const& held) {
+    if constexpr (requires { held.covers(place); }) return held.covers(place);
+    return true;
+  });
 }
 
 }  // namespace gladstone

@@ -11,6 +11,13 @@ struct ParticleVelocity {
   double tau = 0;       ///< rho_p d^2 / (18 mu) [s]; 0: they follow the flow
   double interval = 0;  ///< that derivatives along the flow are taken over [s]; @pre > 0 where tau is
 
+  /// Whether the particles' paths are known in closed form, lag and all.
+  bool exact() const {
+    return flow.kind.visit([](auto const& held) {
+      return requires { held.moved(Vec3d{}, 0.0, 0.0); };
+    });
+  }
+
   /// [m/s] at a place [m]
   Vec3d operator()(Vec3d p) const {
     Vec3d const u = flow(p);
@@ -40,6 +47,17 @@ Vec3d moved(Velocity const& velocity, Vec3d p, double time, int steps) {
     p += (h / 6) * (a + 2.0 * b + 2.0 * c + d);
   }
   return p;
+}
+
+/// The same by closed forms where the flow has them; the uniform velocity comes on top.
+inline Vec3d moved(ParticleVelocity const& velocity, Vec3d p, double time, int steps) {
+  return velocity.flow.kind.visit([&](auto const& held) {
+    if constexpr (requires { held.moved(p, time, velocity.tau); }) {
+      return held.moved(p, time, velocity.tau) + time * velocity.flow.uniform;
+    } else {
+      return moved<ParticleVelocity>(velocity, p, time, steps);
+    }
+  });
 }
 
 /// How well the motion over a time is known.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <filesystem>
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/light/existing_file.h"
 #include "render/light/flows/read_vector.h"
 #include "render/light/particle_material.h"
 
@@ -15,14 +15,6 @@ namespace {
 
 constexpr double most_particles = 4e9;
 constexpr double widest_um = 1e4;  // of a diameter
-
-std::string existing_file(SetupTable& table) {
-  std::string const file = table.required_path("file");
-  if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {
-    table.problem("file", "there is no file " + file + "; relative names start at the setup file's folder");
-  }
-  return file;
-}
 
 void read_count(SetupTable& table, ParticleSetup& setup) {
   std::array<char const*, 4> const keys{"number", "per_mm3", "per_pixel", "file"};
@@ -93,8 +85,9 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
   } else {
     setup.diameter = read_diameter(table);
   }
-  bool const mie = table.word("scattering", "mie", {"mie", "lambert"}) == "mie";
-  setup.scattering = mie ? ParticleScattering::mie : ParticleScattering::lambert;
+  std::string const scattering = table.word("scattering", "mie", {"mie", "lambert", "gaussian"});
+  if (scattering == "lambert") setup.scattering = ParticleScattering::lambert;
+  if (scattering == "gaussian") setup.scattering = ParticleScattering::gaussian;
   setup.index = read_particle_index(table, wavelength);
   if (table.has("density_kg_m3")) {
     setup.density = table.number("density_kg_m3", 1000.0, Range::positive(1e6));

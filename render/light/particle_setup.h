@@ -15,7 +15,11 @@ enum class ParticleCount { number, per_mm3, per_pixel, file };
 /// How diameters are spread over particles.
 enum class DiameterSpread { one, lognormal, normal, table };
 /// What particles make of the laser's light.
-enum class ParticleScattering { mie, lambert };
+enum class ParticleScattering {
+  mie,
+  lambert,   ///< matt white spheres
+  gaussian,  ///< what falls on the particle's disc, alike into all directions: for ideal images, without rays
+};
 
 /// Diameters of particles, in SI.
 struct DiameterSetup {

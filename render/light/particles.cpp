@@ -28,6 +28,7 @@ PathPlan plan_paths(ParticleSetup const& setup, FlowSetup const& flow, std::vect
                     std::vector<double> const& diameter, double time, double tolerance) {
   std::size_t const count = std::min(start.size(), planned_paths);
   PathPlan plan;
+  if (velocity_of(setup, flow, 0).exact()) return plan;
   auto const particle = [&](std::size_t k) { return k * start.size() / count; };
   auto const ends = [&](int steps) {
     std::vector<Vec3d> found(count);
@@ -96,6 +97,38 @@ KeyedEngine size_engine(std::uint64_t seed, std::size_t particle) {
   return {mix64(seed + 1), RandomStream::particles, particle};
 }
 
+/// How many more places are to be drawn than particles seeded, where these crowd: those that are left are as the
+/// flow's crowding says.
+double draws_per_particle(ParticleSetup const& setup, FlowSetup const& flow) {
+  return flow.flow.kind.visit([&](auto const& held) {
+    if constexpr (requires { held.most_crowding(); }) {
+      double const tau = setup.response_time(setup.diameter.middle);
+      return held.most_crowding() / held.mean_crowding(*setup.volume, setup.center, tau);
+    }
+    return 1.0;
+  });
+}
+
+/// Whether a particle that was drawn is seeded. @param u uniform in [0, 1)
+bool crowds_here(Flow const& flow, Vec3d place, double tau, KeyedEngine& engine) {
+  return flow.kind.visit([&](auto const& held) {
+    if constexpr (requires { held.most_crowding(); }) {
+      return to_unit(engine()) * held.most_crowding() < held.crowding(place, tau);
+    }
+    return true;
+  });
+}
+
+/// Particles whose paths go where the flow's velocity is not known.
+std::size_t count_outside(FlowSetup const& flow, Particles const& particles) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; flow.file && i < particles.size(); ++i) {
+    bool const inside = velocity_known(flow, particles.place[0][i]) && velocity_known(flow, particles.place[1][i]);
+    count += inside ? 0 : 1;
+  }
+  return count;
+}
+
 }  // namespace
 
 void Particles::resize(std::size_t count) {
@@ -122,6 +155,12 @@ Vec3d motion_margin(FlowSetup const& flow, Vec3d volume, Vec3d center) {
     Vec3d const u = flow.flow(center + Vec3d{volume.x * at.x, volume.y * at.y, volume.z * at.z} / (nodes - 1.0));
     most = {std::max(most.x, std::abs(u.x)), std::max(most.y, std::abs(u.y)), std::max(most.z, std::abs(u.z))};
   }
+  flow.flow.kind.visit([&most](auto const& held) {
+    if constexpr (requires { held.fastest(); }) {
+      Vec3d const u = held.fastest();
+      most = {std::max(most.x, std::abs(u.x)), std::max(most.y, std::abs(u.y)), std::max(most.z, std::abs(u.z))};
+    }
+  });
   return (1.25 * flow.dt / 2) * most;
 }
 
@@ -158,16 +197,18 @@ Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup con
   Vec3d const volume = *setup.volume;
   Vec3d const wider = volume + 2.0 * motion_margin(flow, volume, setup.center);
   double const share = wider.x * wider.y * wider.z / (volume.x * volume.y * volume.z);
-  auto const seeded = static_cast<std::size_t>(std::llround(count * share));
+  auto const seeded = static_cast<std::size_t>(std::llround(count * share * draws_per_particle(setup, flow)));
   Particles particles;
   particles.resize(seeded);
   particles.diameter = draw_diameters(setup.diameter, setup.seed, seeded);
   std::vector<Vec3d>& middle = particles.place[0];
+  std::vector<char> wanted(seeded);
   parallel_chunks(seeded, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       KeyedEngine engine(setup.seed, RandomStream::particles, i);
       double const x = to_unit(engine()) - 0.5, y = to_unit(engine()) - 0.5, z = to_unit(engine()) - 0.5;
       middle[i] = setup.center + Vec3d{x * wider.x, y * wider.y, z * wider.z};
+      wanted[i] = crowds_here(flow.flow, middle[i], setup.response_time(particles.diameter[i]), engine) ? 1 : 0;
     }
   });
   particles.path = plan_paths(setup, flow, middle, particles.diameter, flow.dt / 2, tolerance);
@@ -181,9 +222,11 @@ Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup con
   light_particles(setup, sheet, particles);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < seeded; ++i) {
+    if (wanted[i] == 0) continue;
     if (particles.photons[0][i] > 0 || particles.photons[1][i] > 0) particles.copy(i, kept++);
   }
   particles.resize(kept);
+  particles.outside_flow = count_outside(flow, particles);
   return particles;
 }
 
@@ -216,6 +259,7 @@ Particles read_particles(ParticleSetup const& setup, FlowSetup const& flow, Lase
     }
   });
   light_particles(setup, sheet, particles);
+  particles.outside_flow = count_outside(flow, particles);
   return particles;
 }
 

@@ -16,6 +16,7 @@ struct Particles {
   std::vector<double> photons[2];  ///< per area, that either pulse brings there [1/m^2]; 0: outside volume or sheet
   std::vector<double> diameter;    ///< [m]
   PathPlan path;                   ///< how well `place` is known
+  std::size_t outside_flow = 0;    ///< of them, those that are where a file's velocity has ended, at either pulse
 
   std::size_t size() const { return diameter.size(); }
   void resize(std::size_t count);
@@ -30,9 +31,10 @@ inline constexpr double bytes_per_particle = 450;
 /// [m]: a fourth more than on a lattice of places in it.
 Vec3d motion_margin(FlowSetup const& flow, Vec3d volume, Vec3d center);
 
-/// Random particles in a volume, `count` of them at either pulse on average: seeded uniformly at mid-time over the
-/// volume and what moves into it, and moved from there by -dt/2 and +dt/2 along the flow. Those that are outside at
-/// both pulses are left out. A particle depends on the seed and its number alone.
+/// Random particles in a volume, `count` of them at either pulse on average: seeded at mid-time over the volume and
+/// what moves into it, and moved from there by -dt/2 and +dt/2 along the flow; uniformly, but behind a shock, where
+/// they crowd as continuity of their own flow says. Those that are outside at both pulses are left out. A particle
+/// depends on the seed and its number alone.
 /// @param tolerance that a place is to be known to by halving the steps of its path [m]
 /// @pre setup.volume
 Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup const& flow,

@@ -113,9 +113,22 @@ MediumSetup read_medium_setup(SetupTable table) {
     for (std::size_t other = 1; other < fields.size(); ++other) fields[other].excuse();
   }
   setup.field = read_field(fields.empty() ? table.table("field") : fields.front());
+  if (SetupTable second = table.table("second_field"); second.present()) setup.second_field = read_field(second);
   setup.automatic_thickness = !thickness_mm;
-  setup.thickness = thickness_mm.value_or(automatic_thickness_mm(setup.field)) * unit::millimetre;
+  setup.thickness = thickness_mm.value_or(automatic_thickness_mm(setup)) * unit::millimetre;
   return setup;
+}
+
+MediumSetup at_second_pulse(MediumSetup const& setup) {
+  MediumSetup second = setup;
+  second.field = *setup.second_field;
+  second.second_field.reset();
+  return second;
+}
+
+double automatic_thickness_mm(MediumSetup const& setup) {
+  double const first = automatic_thickness_mm(setup.field);
+  return setup.second_field ? std::max(first, automatic_thickness_mm(*setup.second_field)) : first;
 }
 
 double automatic_thickness_mm(FieldSetup const& field) {

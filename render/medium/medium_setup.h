@@ -58,15 +58,21 @@ struct MediumSetup {
   Faces faces = Faces::matched;
   std::optional<double> step_mm;  ///< [mm], kept as written; empty: auto
   FieldSetup field;
+  std::optional<FieldSetup> second_field;  ///< that PIV's second pulse sees instead
 
   double ambient_refractivity() const { return gladstone_dale * ambient_density; }
 };
 
 MediumSetup read_medium_setup(SetupTable table);
 
+/// The medium that the second pulse sees. @pre setup.second_field
+MediumSetup at_second_pulse(MediumSetup const& setup);
+
 /// What medium.thickness_mm = "auto" stands for: 10 mm, and for a plume or a blob, whose displacement a slab about its
 /// middle cuts off by erfc(half thickness / radius), at least seven radii, which cut off 7e-7 of it [mm].
 double automatic_thickness_mm(FieldSetup const& field);
+/// Of a setup's field, or of the second pulse's where that is more.
+double automatic_thickness_mm(MediumSetup const& setup);
 
 /// Share of a field's displacement that the faces of its slab cut off [1]: erfc(half thickness / radius) for a plume
 /// and a blob, whose density is a Gaussian along Z; 0 for fields that have no size along Z.

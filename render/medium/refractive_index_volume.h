@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "render/base/fields/interpolation.h"
 #include "render/base/lanes.h"
 #include "render/base/regular_grid.h"
 #include "render/medium/index_sample.h"
-#include "render/medium/interpolation.h"
 
 namespace gladstone {
 

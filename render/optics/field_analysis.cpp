@@ -130,8 +130,8 @@ double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
   double const distance = lens.prescription.object_distance;
   if (!std::isfinite(distance)) return paraxial.back_focal_length;
   RayTransfer const m = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
-  // from the axis point of the object: y = distance, n u = 1
-  return -(m.a * distance + m.b) / (m.c * distance + m.d);
+  // from the axis point of the object: y = distance, n u = 1; times n, which mirrors turn, since the way is reduced
+  return -lens.paraxial.back().n_after * (m.a * distance + m.b) / (m.c * distance + m.d);
 }
 
 }  // namespace

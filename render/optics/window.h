@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "render/base/pose.h"
 #include "render/base/setup_table.h"
 #include "render/base/vec.h"
 
@@ -21,6 +22,8 @@ struct WindowSetup {
   Vec3d position{};       ///< of its centre [m]
   Vec2d tilt{};           ///< right-handed about x, then about the turned y [rad]
 
+  /// Of its middle, in the world; light goes along its z.
+  Pose<double> pose() const { return Pose<double>{position}.turned({tilt.x, tilt.y, 0}); }
   /// By how much it brings nearer what is seen through it squarely, t (1 - 1/n) [m].
   double shift() const { return thickness * (1 - 1 / index); }
 };

@@ -1,10 +1,18 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
 #include <type_traits>
 
-#include "render/rays/source_tracer.h"
+#include "render/base/units.h"
+#include "render/rays/aimed_sources.h"
+#include "render/scene/camera.h"
+
+// loops over rays stay loops on a device: each of their bodies holds a whole camera and a medium
+#if defined(__CUDA_ARCH__)
+#define GLADSTONE_RAY_BY_RAY _Pragma("unroll 1")
+#else
+#define GLADSTONE_RAY_BY_RAY
+#endif
 
 namespace gladstone {
 
@@ -12,58 +20,218 @@ namespace gladstone {
 /// the light of a source is wrong by, which is half a grey level of 12 bits.
 inline constexpr double filled_to = 6e-5;
 
-/// Where rays of a point are to be sent so that they fill the stop and nothing else, through a medium or without: the
-/// ellipse that the stop is seen as, moved and stretched against what the medium does to four rays of its rim. Eight
-/// rays just within its rim must pass the stop, and eight just beyond it must not; nothing where they do otherwise, in
-/// media that change much within the cone and behind lenses whose pupil is no ellipse.
-/// @param view with a sharp stop
-template <class Medium>
-std::optional<WorldAimDisc> filled_stop(RaysLaunch const& launch, CameraView<double> const& view, Medium const& medium,
-                                        Vec3d point) {
-  auto const wide = launch.sight(point);
-  if (!wide) return std::nullopt;
-  double const margin = Camera::sight_margin();
-  WorldAimDisc disc{wide->centre, wide->a / margin, wide->b / margin};
-  auto const to = [point](Vec3d aim) { return Ray<double>{point, normalized(aim - point)}; };
-  auto const trace = [&](auto const& through, Vec3d aim) {
-    return trace_ray(view, through, launch.tracing, to(aim), 1.0);
-  };
-  if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
-    // by how much the medium moves a ray on the aim plane
-    auto const moved = [&](Vec3d aim, Vec3d& by) {
-      RayHit<double> const straight = trace(NoMedium<double>{}, aim), bent = trace(medium, aim);
-      Vec2d const on_plane = bent.at_lens - straight.at_lens;
-      by = launch.camera.aim_plane.direction_outwards({on_plane.x, on_plane.y, 0});
-      return std::max(straight.status, bent.status) <= RayStatus::vignetted;
-    };
-    WorldAimDisc const straight = disc;
-    Vec3d more_a, less_a, more_b, less_b;
-    bool const known = moved(straight.centre + straight.a, more_a) && moved(straight.centre - straight.a, less_a) &&
-                       moved(straight.centre + straight.b, more_b) && moved(straight.centre - straight.b, less_b);
-    if (!known) return std::nullopt;
-    // the map of aims to places on the plane, to first order, inverted
-    Pose<double> const& plane = launch.camera.aim_plane;
-    Vec3d const by_a = straight.a + 0.5 * (more_a - less_a), by_b = straight.b + 0.5 * (more_b - less_b);
-    Vec2d const a{dot(by_a, plane.x), dot(by_a, plane.y)}, b{dot(by_b, plane.x), dot(by_b, plane.y)};
-    double const area = a.x * b.y - a.y * b.x;
-    if (area == 0) return std::nullopt;
-    auto const aimed = [&](Vec3d wanted) {
-      Vec2d const w{dot(wanted, plane.x), dot(wanted, plane.y)};
-      return ((w.x * b.y - w.y * b.x) / area) * straight.a + ((a.x * w.y - a.y * w.x) / area) * straight.b;
-    };
-    disc = {straight.centre - aimed(0.25 * (more_a + less_a + more_b + less_b)), aimed(straight.a), aimed(straight.b)};
+/// A camera's stop as rays are sent to it: a view that owns nothing.
+struct StopView {
+  CameraView<double> camera;  ///< its stop with a sharp rim
+  int stop = 0;               ///< of the elements
+  double radius = 0;          ///< of the stop [m]
+  Pose<double> pose;          ///< of the camera
+  double front = 0;           ///< first surface, along the camera's z [m]
+  double window_shift = 0;    ///< as ParaxialCamera's [m]
+  RayTransfer to_stop;        ///< from the first surface
+
+  StopView() = default;
+  explicit StopView(Camera const& of)
+      : camera(of.view()),
+        stop(of.stop),
+        radius(of.stop_radius),
+        pose(of.pose),
+        front(of.paraxial.front),
+        window_shift(of.paraxial.window_shift),
+        to_stop(of.paraxial.to_stop) {}
+};
+
+/// Sends the unit disc to the aim plane: centre + sum of a_m Re z^m + b_m Im z^m over m = 1, 2, 3, z = x + i y [m]. The
+/// first order makes an ellipse of it; the others bend that as a lens' aberrations bend its pupil. Harmonic polynomials
+/// follow the rim into the disc.
+struct AimMap {
+  static constexpr int orders = 3;
+
+  Vec2d centre{};
+  Vec2d a[orders]{}, b[orders]{};
+
+  GLADSTONE_HD Vec2d at(Vec2d u) const {
+    Vec2d place = centre, power = u;
+    for (int m = 0; m < orders; ++m) {
+      place += power.x * a[m] + power.y * b[m];
+      power = {power.x * u.x - power.y * u.y, power.x * u.y + power.y * u.x};
+    }
+    return place;
   }
-  constexpr int rays = 8;
-  for (int k = 0; k < rays; ++k) {
-    Vec2d const at = point_of_circle(1.0, (k + 0.5) / rays);
-    Vec3d const rim = at.x * disc.a + at.y * disc.b;
-    bool const within = reaches_sensor_plane(trace(medium, disc.centre + (1 - filled_to) * rim).status);
-    bool const beyond = trace(medium, disc.centre + (1 + filled_to) * rim).status == RayStatus::vignetted;
-    if (!within || !beyond) return std::nullopt;
+  /// Area on the plane over that of the disc, about a place of it; negative where the map mirrors [m^2].
+  GLADSTONE_HD double stretch(Vec2d u) const {
+    Vec2d by_x{}, by_y{}, power{1, 0};
+    for (int m = 0; m < orders; ++m) {
+      double const times = m + 1;
+      by_x += times * (power.x * a[m] + power.y * b[m]);
+      by_y += times * (power.x * b[m] - power.y * a[m]);
+      power = {power.x * u.x - power.y * u.y, power.x * u.y + power.y * u.x};
+    }
+    return by_x.x * by_y.y - by_x.y * by_y.x;
+  }
+};
+
+/// Where rays of a point go to fill the stop.
+struct FilledStop {
+  AimMap map;
+  Vec2d low{}, high{};  ///< between which the rays of the rim end on the sensor [px]
+};
+
+namespace detail {
+
+/// Takes a ray through an element, past its rim or not. @return false where it is lost
+GLADSTONE_HD inline bool goes_on(CameraElement<double> const& element, Ray<double>& ray) {
+  RayAccount<double> account;
+  RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
+  return status == RayStatus::alive || status == RayStatus::vignetted;
+}
+
+/// Where a ray meets the stop through a medium or without, in the stop's frame [m]. @return false: it is lost before
+template <class Medium>
+GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
+                             Ray<double> ray, Vec2d& place) {
+  CameraView<double> const& camera = view.camera;
+  for (int i = 0; i < camera.before_medium; ++i) {
+    if (!goes_on(camera.elements[i], ray)) return false;
+  }
+  if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
+    Ray<double> const start[1] = {ray};
+    MediumPassage<double> way[1];
+    trace_medium(medium, options, start, way);
+    if (way[0].status != RayStatus::alive) return false;
+    ray = outgoing_ray(ray, way[0]);
+  }
+  for (int i = camera.before_medium; i < view.stop; ++i) {
+    if (!goes_on(camera.elements[i], ray)) return false;
+  }
+  return camera.elements[view.stop].visit([&](auto const& held) { return held.meet(ray, place); });
+}
+
+}  // namespace detail
+
+/// The ray from a point to a place of the aim plane.
+GLADSTONE_HD inline Ray<double> ray_to_aim(CameraView<double> const& camera, Vec3d point, Vec2d aim) {
+  return {point, normalized(camera.aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
+}
+
+/// What a point sees of the stop in paraxial light, without a medium.
+GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
+  Vec3d const q = view.pose.point_inwards(point);
+  double const distance = view.front - q.z - view.window_shift;
+  double const per_slope = view.to_stop.a * distance + view.to_stop.b;  // in the stop, over a ray's slope [m]
+  double const height = view.to_stop.b / per_slope, radius = view.radius * distance / per_slope;
+  AimMap map;
+  map.centre = {height * q.x, height * q.y};
+  map.a[0] = {radius, 0};
+  map.b[0] = {0, radius};
+  return map;
+}
+
+inline constexpr int rim_rays = 8;
+
+/// Moves the aims of eight rays until they meet the stop's rim at equal angles, the first on its x axis, and gives the
+/// map through them. The ellipse nearest to them stands for derivatives, so that a turn leaves of what is wrong the
+/// share that the pupil's aberration is of the pupil.
+/// @param map begins with the one to start from @return false: there are no such rays
+template <class Medium>
+GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
+                              Vec3d point, AimMap& map) {
+  constexpr int most_turns = 16;
+  constexpr double settled = 1e-7;  // of the radius; what the last turn leaves is less by far
+  Vec2d aim[rim_rays], miss[rim_rays];
+  for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_of_circle(1.0, static_cast<double>(k) / rim_rays));
+  double change = 1;
+  GLADSTONE_RAY_BY_RAY
+  for (int turn = 0; !(change <= settled); ++turn) {
+    if (turn == most_turns) return false;
+    Vec2d a{}, b{}, by_a{}, by_b{};  // the ellipse, and where its axes come to in the stop
+    GLADSTONE_RAY_BY_RAY
+    for (int k = 0; k < rim_rays; ++k) {
+      Vec2d met;
+      if (!detail::meets_stop(view, medium, options, ray_to_aim(view.camera, point, aim[k]), met)) return false;
+      Vec2d const here = point_of_circle(1.0, static_cast<double>(k) / rim_rays);
+      a += (2.0 / rim_rays) * here.x * aim[k];
+      b += (2.0 / rim_rays) * here.y * aim[k];
+      by_a += (2.0 / rim_rays) * here.x * met;
+      by_b += (2.0 / rim_rays) * here.y * met;
+      miss[k] = met - view.radius * here;
+    }
+    double const area = by_a.x * by_b.y - by_a.y * by_b.x;
+    if (!(area > 1e-6 * view.radius * view.radius || area < -1e-6 * view.radius * view.radius)) return false;
+    change = 0;
+    for (int k = 0; k < rim_rays; ++k) {
+      Vec2d const by = ((miss[k].x * by_b.y - miss[k].y * by_b.x) / area) * a +
+                       ((by_a.x * miss[k].y - by_a.y * miss[k].x) / area) * b;
+      aim[k] -= by;
+      double const moved = length(by) / length(a);
+      if (!(moved <= change)) change = moved;
+    }
+  }
+  map = {};
+  for (int k = 0; k < rim_rays; ++k) {
+    map.centre += (1.0 / rim_rays) * aim[k];
+    for (int m = 0; m < AimMap::orders; ++m) {
+      Vec2d const here = point_of_circle(2.0 / rim_rays, static_cast<double>(k * (m + 1)) / rim_rays);
+      map.a[m] += here.x * aim[k];
+      map.b[m] += here.y * aim[k];
+    }
+  }
+  return true;
+}
+
+/// Where rays of a point are to be sent so that they fill the stop and nothing else, through a medium or without. Eight
+/// rays just within the rim must pass the camera, and eight just beyond it must not.
+/// @param filled begins with the map to start from
+/// @return false where rays do otherwise: in media that change much within the cone, and where more than one rim
+/// bounds the light
+template <class Medium>
+GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
+                            Vec3d point, FilledStop& filled) {
+  if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
+  GLADSTONE_RAY_BY_RAY
+  for (int k = 0; k < 2 * rim_rays; ++k) {
+    bool const within = k % 2 == 0;
+    Vec2d const at = point_of_circle(within ? 1 - filled_to : 1 + filled_to, (k / 2 + 0.5) / rim_rays);
+    RayHit<double> const hit =
+        trace_ray(view.camera, medium, options, ray_to_aim(view.camera, point, filled.map.at(at)), 1.0);
+    if (within ? !reaches_sensor_plane(hit.status) : hit.status != RayStatus::vignetted) return false;
+    if (!within) continue;
+    Vec2d const p = hit.pixel;
+    if (k == 0) filled.low = filled.high = p;
+    filled.low = {p.x < filled.low.x ? p.x : filled.low.x, p.y < filled.low.y ? p.y : filled.low.y};
+    filled.high = {p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
   }
   // a hair's breadth inside, so that rounding clips no ray
-  constexpr double inside = 1 - 1e-7;
-  return WorldAimDisc{disc.centre, inside * disc.a, inside * disc.b};
+  double inside = 1;
+  for (int m = 0; m < AimMap::orders; ++m) {
+    inside *= 1 - 1e-7;
+    filled.map.a[m] *= inside;
+    filled.map.b[m] *= inside;
+  }
+  return true;
+}
+
+/// The whole pixel that a source's sums count from [px].
+GLADSTONE_HD inline Vec2d origin_of(FilledStop const& filled) {
+  using std::floor;
+  Vec2d const middle = 0.5 * (filled.low + filled.high);
+  return {floor(middle.x + 0.5), floor(middle.y + 0.5)};
+}
+
+/// The ray of source i to a place of the aim plane. @param area of the plane that it stands for, times the number of
+/// rays [m^2]
+template <class Sources>
+GLADSTONE_HD AimedRay<double> ray_to_plane(Sources const& sources, Pose<double> const& plane, Vec2d place, double area,
+                                           std::uint64_t i) {
+  AimedBundle<double> const there{plane.point_outwards({place.x, place.y, 0}), {}, {}, area * plane.z, {}};
+  return ray_to(sources, there, i, {}, {});
+}
+
+/// The ray of source i to a place of the unit disc that a map sends to the plane.
+template <class Sources>
+GLADSTONE_HD AimedRay<double> ray_to(Sources const& sources, Pose<double> const& plane, AimMap const& map,
+                                     std::uint64_t i, Vec2d at) {
+  return ray_to_plane(sources, plane, map.at(at), pi * map.stretch(at), i);
 }
 
 }  // namespace gladstone

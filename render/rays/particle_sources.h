@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "render/light/laser_sheet.h"
+#include "render/light/sources.h"
 
 namespace gladstone {
 
@@ -28,6 +29,19 @@ struct ParticleSources {
   GLADSTONE_HD T reach() const { return T(0); }
   GLADSTONE_HD T area() const { return T(0); }
 };
+
+/// Where on the unit disc ray j of particle i goes. Those of a scrambling come in pairs, to opposite places: what
+/// changes evenly over the lens does not move their centroid.
+template <class T>
+GLADSTONE_HD Vec2<T> place_of_ray(BundleView<T> const& choice, std::uint64_t i, std::uint64_t j) {
+  using std::sqrt;
+  int const bits = choice.scrambling_bits;
+  std::uint64_t const of_scrambling = j >> bits, scrambling = j & ((std::uint64_t{1} << bits) - 1);
+  T u[sobol_dimensions];
+  sample_coordinates(choice, i, ((of_scrambling >> 1) << bits) | scrambling, u);
+  Vec2<T> const at = point_of_circle(sqrt(u[0]), u[1]);
+  return of_scrambling % 2 == 1 ? -at : at;
+}
 
 /// What sends the same light into all directions.
 template <class T>

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <type_traits>
 
+#include "render/rays/aimed_sources.h"
 #include "render/rays/filled_stop.h"
+#include "render/rays/particle_sources.h"
+#include "render/rays/source_tracer.h"
 
 namespace gladstone {
 
@@ -13,12 +16,6 @@ struct ParticleLaunch {
   RaysLaunch smooth, sharp;
 
   ParticleLaunch(Scene const& scene, SpotView const& spot) : smooth(scene, spot), sharp(scene, spot, StopRim::sharp) {}
-};
-
-/// What a camera sees of one particle.
-struct ParticleSeen {
-  DotTruth truth;    ///< first pulse and second, through the medium
-  DotTruth ambient;  ///< the same without it
 };
 
 /// Traces the rays of particles, one particle at a time: the medium stands before both frames, and each frame has a
@@ -38,7 +35,7 @@ class ParticleTracer {
         pulses_{pulses[0], pulses[1]},
         medium_(medium),
         view_(launch.smooth.camera.view()),
-        sharp_(launch.sharp.camera.view()),
+        stop_(launch.sharp.camera),
         with_images_(with_images) {
     for (auto& light : light_) light.emplace(launch_);
   }
@@ -48,16 +45,14 @@ class ParticleTracer {
   ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_weight) {
     std::fill_n(seen_, most_scramblings, RaySums{});
     std::fill_n(ambient_, most_scramblings, RaySums{});
-    bool placed = false;
+    origin_ = {};
+    placed_ = false;
     for (int frame = 0; frame < frame_count; ++frame) {
       if (!(pulses_[frame].photons[particle] > 0)) continue;
-      Vec3d const place = pulses_[frame].middle(particle);
-      auto const pixel = placed ? std::nullopt : launch_.camera.project(place);
-      if (!placed) origin_ = pixel ? Vec2d{std::round(pixel->x), std::round(pixel->y)} : Vec2d{};
-      placed = true;
-      if (!fill_stop(frame, particle, images[frame], light_per_weight)) {
+      if (!trace_filled(frame, particle, images[frame], light_per_weight)) {
         trace_wide(frame, particle, images[frame], light_per_weight);
       }
+      placed_ = true;
     }
     int const scramblings = 1 << launch_.choice.scrambling_bits;
     return {source_truth(seen_, scramblings, origin_), source_truth(ambient_, scramblings, origin_)};
@@ -73,22 +68,27 @@ class ParticleTracer {
   static constexpr int side_by_side = bends ? 2 : 4;
 
   /// Sends rays to the very stop, with and without the medium. @return false: it is not known where they go
-  bool fill_stop(int frame, std::uint64_t particle, LightImage* image, double light_per_weight) {
+  bool trace_filled(int frame, std::uint64_t particle, LightImage* image, double light_per_weight) {
     if (launch_.camera.chief_rays_only()) return false;
     Vec3d const place = pulses_[frame].middle(particle);
-    auto const straight = filled_stop(launch_, sharp_, NoMedium<double>{}, place);
-    if (!straight) return false;
-    std::optional<WorldAimDisc> bent = straight;
-    if constexpr (bends) bent = filled_stop(launch_, sharp_, medium_, place);
-    if (!bent) return false;
-    AimedBundle<double> const of_seen = bundle_of(*bent), of_ambient = bundle_of(*straight);
+    FilledStop straight;
+    straight.map = paraxial_aim(stop_, place);
+    if (!fill_stop(stop_, NoMedium<double>{}, launch_.tracing, place, straight)) return false;
+    FilledStop bent = straight;
+    if constexpr (bends) {
+      if (!fill_stop(stop_, medium_, launch_.tracing, place, bent)) return false;
+    }
+    if (!placed_) origin_ = origin_of(straight);
+    auto const aimed_by = [&](AimMap const& map) {
+      return [&](Vec2d at) { return ray_to(pulses_[frame], stop_.camera.aim_plane, map, particle, at); };
+    };
     if (with_images_) light_[frame]->begin(image, light_per_weight);
     largest_bend2_ = 0;
     all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
       RayHit<double> seen[N], ambient[N];
-      trace_through(frame, of_seen, particle, at, sharp_, medium_, seen);
+      trace_through(aimed_by(bent.map), at, stop_.camera, medium_, seen);
       if constexpr (bends) {
-        trace_through(frame, of_ambient, particle, at, sharp_, NoMedium<double>{}, ambient);
+        trace_through(aimed_by(straight.map), at, stop_.camera, NoMedium<double>{}, ambient);
       } else {
         std::copy_n(seen, N, ambient);
       }
@@ -103,15 +103,17 @@ class ParticleTracer {
   void trace_wide(int frame, std::uint64_t particle, LightImage* image, double light_per_weight) {
     SourceAim aim = aim_at_stop(launch_, view_, medium_, pulses_[frame].middle(particle));
     if (!aim.disc) return;
+    if (!placed_) origin_ = aim.origin;
     auto const trace = [&](double sign) {
       AimedBundle<double> const bundle = launch_.bundle(*aim.disc, 0, aim.margin);
+      auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
       if (with_images_) light_[frame]->begin(image, sign * light_per_weight);
       largest_bend2_ = 0;
       all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
         RayHit<double> seen[N], ambient[N];
-        trace_through(frame, bundle, particle, at, view_, NoMedium<double>{}, ambient);
+        trace_through(aimed, at, view_, NoMedium<double>{}, ambient);
         if constexpr (bends) {
-          trace_through(frame, bundle, particle, at, view_, medium_, seen);
+          trace_through(aimed, at, view_, medium_, seen);
         } else {
           std::copy_n(ambient, N, seen);
         }
@@ -132,12 +134,7 @@ class ParticleTracer {
     largest_margin_ = std::max(largest_margin_, aim.margin);
   }
 
-  AimedBundle<double> bundle_of(WorldAimDisc const& disc) const {
-    return {disc.centre, disc.a, disc.b, pi * cross(disc.a, disc.b), launch_.choice};
-  }
-
-  /// Calls some(rays, places on the unit disc) for all rays. Those of a scrambling come in pairs, to opposite places:
-  /// what changes evenly over the lens does not move their centroid.
+  /// Calls some(rays, places on the unit disc) for all rays.
   template <class Some>
   void all_rays(std::uint64_t particle, Some&& some) {
     std::uint64_t ray = 0;
@@ -147,29 +144,25 @@ class ParticleTracer {
   template <int N, class Some>
   void these_rays(std::uint64_t particle, std::uint64_t first, Some&& some) {
     throw_if_interrupted();
-    int const bits = launch_.choice.scrambling_bits;
     std::uint64_t ray[N];
     Vec2d at[N];
     for (int i = 0; i < N; ++i) {
       ray[i] = first + static_cast<std::uint64_t>(i);
-      std::uint64_t const of_scrambling = ray[i] >> bits, scrambling = ray[i] & ((std::uint64_t{1} << bits) - 1);
-      double u[sobol_dimensions];
-      sample_coordinates(launch_.choice, particle, ((of_scrambling >> 1) << bits) | scrambling, u);
-      at[i] = point_of_circle(std::sqrt(u[0]), u[1]);
-      if (of_scrambling % 2 == 1) at[i] = -at[i];
+      at[i] = place_of_ray(launch_.choice, particle, ray[i]);
     }
     some(ray, at);
   }
 
-  template <int N, class Through>
-  void trace_through(int frame, AimedBundle<double> const& bundle, std::uint64_t particle, Vec2d const (&at)[N],
-                     CameraView<double> const& view, Through const& medium, RayHit<double> (&hit)[N]) const {
+  /// @param aimed gives the AimedRay to a place of the unit disc
+  template <int N, class Aimed, class Through>
+  void trace_through(Aimed const& aimed, Vec2d const (&at)[N], CameraView<double> const& view, Through const& medium,
+                     RayHit<double> (&hit)[N]) const {
     Ray<double> start[N];
     double weight[N];
     for (int i = 0; i < N; ++i) {
-      AimedRay<double> const aimed = ray_to(pulses_[frame], bundle, particle, {}, at[i]);
-      start[i] = aimed.ray;
-      weight[i] = aimed.weight;
+      AimedRay<double> const one = aimed(at[i]);
+      start[i] = one.ray;
+      weight[i] = one.weight;
     }
     trace_rays(view, medium, launch_.tracing, start, weight, hit);
   }
@@ -195,11 +188,13 @@ class ParticleTracer {
   RaysLaunch const& launch_;
   Sources pulses_[frame_count];
   Medium const& medium_;
-  CameraView<double> view_, sharp_;
+  CameraView<double> view_;
+  StopView stop_;
   bool with_images_;
   std::optional<RayLight> light_[frame_count];
   RaySums seen_[most_scramblings], ambient_[most_scramblings];
-  Vec2d origin_{};
+  bool placed_ = false;  ///< the origin is known, from the first pulse that lights it
+  Vec2d origin_{};       ///< whole pixel that sums count from [px]
   StatusCounts statuses_{};
   double largest_bend2_ = 0, largest_margin_ = 0;
 };

@@ -54,21 +54,6 @@ double RaysLaunch::wider_margin(double bend) const {
   return margin;
 }
 
-DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  DotTruth truth;
-  truth.origin = origin;
-  truth.error = {nan, nan};
-  RaySums all;
-  for (int i = 0; i < scramblings; ++i) all += of_scramblings[i];
-  for (int frame = 0; frame < frame_count; ++frame) truth.hits[frame] = all.hits[frame];
-  if (scramblings > 1) {
-    Vec2d const squares = truth_errors(of_scramblings, scramblings, all).rays2;
-    truth.error = {std::sqrt(squares.x), std::sqrt(squares.y)};
-  }
-  return truth;
-}
-
 RayLight::RayLight(RaysLaunch const& launch) : patch_(launch.spot) {
   bool const gaussian = launch.spot.model != SpotModel::none && launch.spot.model != SpotModel::airy;
   if (gaussian && HitGrid::pays(launch.spot.gaussian.sigma, launch.rays)) grid_.emplace(launch.spot.gaussian);

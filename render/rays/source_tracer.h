@@ -9,10 +9,10 @@
 #include "render/base/interrupt.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
+#include "render/rays/source_truth.h"
 #include "render/scene/camera.h"
 #include "render/scene/light_patch.h"
 #include "render/scene/scene.h"
-#include "render/scene/truth_error.h"
 
 namespace gladstone {
 
@@ -98,9 +98,6 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
   aim.margin = 1.25 * bend;
   return aim;
 }
-
-/// The truth of a source from the sums over its scramblings. @param scramblings 0: NaN, no ray of it gets through
-DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin);
 
 /// Traces the rays of sources, both frames by the same, one source at a time: its light and its truth.
 /// @tparam View CameraView, or another that says where rays land

@@ -1,5 +1,6 @@
 #include "render/rays/trace_particles.h"
 
+#include <limits>
 #include <mutex>
 
 #include "render/base/parallel.h"
@@ -9,31 +10,35 @@
 namespace gladstone {
 namespace {
 
-/// Truth of so many particles, to be filled in.
-GroundTruth empty_truth(Particles const& particles, std::uint64_t rays) {
-  GroundTruth truth;
+constexpr Vec2d unknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+
+}  // namespace
+
+Rendering empty_rendering(Particles const& particles, std::uint64_t rays) {
+  Rendering rendering;
+  rendering.rays = frame_count * static_cast<std::int64_t>(particles.size() * rays);
+  rendering.table = TableState::by_rays;
+  rendering.method = RenderMethod::rays;
+  GroundTruth& truth = rendering.truth;
   std::size_t const count = particles.size();
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   truth.resize(count);
   truth.position_m = particles.place[0];
   truth.rays_planned.assign(count, static_cast<std::int64_t>(rays));
-  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, {nan, nan});
+  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, unknown);
   truth.particles.second_m = particles.place[1];
   truth.particles.diameter_m = particles.diameter;
   truth.particles.reference_ambient_px.resize(count);
   truth.particles.displacement_ambient_px.resize(count);
-  return truth;
+  return rendering;
 }
 
-void set_ambient(GroundTruth& truth, std::size_t particle, DotTruth const& found) {
-  GroundTruth one;
-  one.resize(1);
-  one.set_hits(0, found, 1);
-  truth.particles.reference_ambient_px[particle] = one.reference_px[0];
-  truth.particles.displacement_ambient_px[particle] = one.displacement_px[0];
+void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, double photons_per_weight) {
+  truth.set_hits(particle, seen.truth, photons_per_weight);
+  CentroidSum<double> const &first = seen.ambient.hits[0], &second = seen.ambient.hits[1];
+  bool const there[2] = {first.weight > 0, second.weight > 0};
+  truth.particles.reference_ambient_px[particle] = there[0] ? seen.ambient.origin + first.mean() : unknown;
+  truth.particles.displacement_ambient_px[particle] = there[0] && there[1] ? second.mean() - first.mean() : unknown;
 }
-
-}  // namespace
 
 Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images) {
   std::optional<AiryTable> airy;
@@ -41,11 +46,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
   bool const lit = images != RenderImages::no;
   ParticleLaunch const launch(scene, lit ? spot : SpotView{});
   std::uint64_t const rays = scene.rays_per_dot;
-  Rendering rendering;
-  rendering.truth = empty_truth(particles, rays);
-  rendering.rays = frame_count * static_cast<std::int64_t>(particles.size() * rays);
-  rendering.table = TableState::by_rays;
-  rendering.method = RenderMethod::rays;
+  Rendering rendering = empty_rendering(particles, rays);
   std::optional<LightImage> frames[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; lit && frame < frame_count; ++frame) {
@@ -60,8 +61,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
       ParticleTracer tracer(launch, pulses, medium, lit);
       for (std::size_t i = begin; i < end; ++i) {
         ParticleSeen const seen = tracer.trace(i, targets, photons_per_weight / scene.photon_unit);
-        rendering.truth.set_hits(i, seen.truth, photons_per_weight);
-        set_ambient(rendering.truth, i, seen.ambient);
+        set_particle(rendering.truth, i, seen, photons_per_weight);
       }
       progress.advance(end - begin);
       std::lock_guard const lock(merge);

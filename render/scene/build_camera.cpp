@@ -16,7 +16,7 @@ constexpr double sharp = 0;  // rim of a stop
 
 /// The window's two faces, in the order that light along +Z meets them.
 void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
-  Pose<double> const middle = Pose<double>{window.position}.turned({window.tilt.x, window.tilt.y, 0});
+  Pose<double> const middle = window.pose();
   ShapedSurface<double, Quadric<double>> face;
   face.semi_diameter = std::numeric_limits<double>::infinity();
   face.pose = middle.moved({0, 0, -window.thickness / 2});
@@ -154,12 +154,12 @@ Camera build_camera(Setup const& setup) {
   RayTransfer const& m = paraxial.whole;
   double image = -(m.a * focus + m.b) / (m.c * focus + m.d);
   if (thin && setup.windows.empty()) image = setup.imaging().image_distance;
-  if (!(paraxial.forwards * image > 0) || !std::isfinite(image)) {
+  if (!(image > 0) || !std::isfinite(image)) {  // reduced, t/n: mirrors turn the sign of both
     throw DataError("lens", "the plane in focus has no real image behind it; check lens.focus and the geometry");
   }
   Pose<double> behind = paraxial.behind;
   if (paraxial.forwards < 0) behind = {behind.origin, -1.0 * behind.x, behind.y, -1.0 * behind.z};
-  double const along = std::abs(image);
+  double const along = image;
   camera.sensor = {behind.moved({0, 0, along}).within(camera.pose),
                    setup.camera.pixel_pitch,
                    setup.camera.columns,

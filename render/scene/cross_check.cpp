@@ -116,28 +116,6 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
   return true;
 }
 
-/// Refuses dots or a lens inside the medium.
-void cross_check_geometry(Setup const& setup, SetupTable geometry) {
-  double const mm = unit::millimetre;
-  FieldKind const kind = setup.medium.field.kind;
-  if (kind != FieldKind::none && (kind != FieldKind::file || setup.medium.field.extrude)) {
-    double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
-    if (!setup.piv && -setup.z_d > centre - half) {
-      geometry.problem(
-          "z_d_mm", fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
-                                "z_d_mm beyond {:.6g} or make the medium thinner{}",
-                                -setup.z_d < centre + half ? "inside" : "in front of", half / mm, (half - centre) / mm,
-                                metres_hint(setup.z_d)));
-    }
-    if (setup.camera_pose().origin.z < centre + half) {
-      geometry.problem("z_a_mm",
-                       fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane; increase "
-                                   "z_a_mm or make the medium thinner{}",
-                                   half / mm, metres_hint(setup.z_a)));
-    }
-  }
-}
-
 /// Refuses diffraction spots in which nothing could be seen.
 void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens, SetupTable root) {
   double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
@@ -184,6 +162,11 @@ void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::st
     }
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
+    }
+    if (setup.target.polarity == Polarity::dark && setup.lenslets) {
+      target.problem("polarity",
+                     "dark dots on white paper are not rendered through lenslets (the paper's light through each of "
+                     "them is not known); take bright dots");
     }
   }
 }
@@ -232,10 +215,18 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   }
   SetupTable medium = root.table("medium");
   cross_check_geometry(setup, root.table("geometry"));
+  cross_check_windows(setup, root);
   cross_check_thickness(setup, medium, warnings);
   cross_check_noise(setup, warnings);
   cross_check_steps(setup, medium);
   cross_check_density(setup, medium, warnings);
+  if (setup.medium.second_field) {
+    Setup second = setup;
+    second.medium = at_second_pulse(setup.medium);
+    cross_check_geometry(second, root.table("geometry"));
+    cross_check_steps(second, medium, "second_field");
+    cross_check_density(second, medium, warnings, "second_field");
+  }
   if (setup.piv) {
     cross_check_spot(setup, setup.spot_diameter_px(), root.table("lens"), root);
     cross_check_particles(setup, root, warnings);

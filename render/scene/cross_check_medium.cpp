@@ -120,7 +120,8 @@ void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<st
   medium.resolve("thickness_mm", depth / mm);
 }
 
-void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,
+                         std::string const& of_field) {
   FieldSetup const& field = setup.medium.field;
   double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
   if (!possible_refractivity(K * ambient)) {
@@ -133,7 +134,7 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
   auto const [lowest, highest] = density_range(setup);
   char const* const key = density_key(field.kind);
   if (!possible_refractivity(K * lowest) || !possible_refractivity(K * highest)) {
-    medium.tables("field").front().problem(
+    medium.tables(of_field).front().problem(
         key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no such medium); "
                          "check it and medium.gladstone_dale",
                          1 + K * lowest, 1 + K * highest));
@@ -142,12 +143,12 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
   } else if (field.kind == FieldKind::uniform_gradient) {
     Vec2d const half = half_extent_at_medium(setup);
     warnings.push_back(
-        fmt::format("medium.field.gradient_kg_m4: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
+        fmt::format("medium.{}.gradient_kg_m4: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
                     "the {:.4g} x {:.4g} mm that rays cross (no gas has that); reduce the gradient or increase "
                     "medium.ambient_density_kg_m3",
-                    lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+                    of_field, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
   } else {
-    medium.tables("field").front().problem(
+    medium.tables(of_field).front().problem(
         key,
         fmt::format("makes the density negative, {:.6g} kg/m^3 at the lowest (about medium.ambient_density_kg_m3 = "
                     "{:.6g}); reduce the amplitude or increase the ambient density",
@@ -155,7 +156,7 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
   }
 }
 
-void cross_check_steps(Setup const& setup, SetupTable medium) {
+void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field) {
   FieldKind const kind = setup.medium.field.kind;
   if (kind == FieldKind::none) return;
   double const thickness_mm = setup.medium.thickness / unit::millimetre;
@@ -172,7 +173,7 @@ void cross_check_steps(Setup const& setup, SetupTable medium) {
   }
   if (steps <= most_steps) return;
   std::string const key = length_key(setup.medium.field);
-  medium.tables("field").front().problem(
+  medium.tables(of_field).front().problem(
       key, fmt::format("makes the field so fine that a ray would need {:.3g} steps across the medium ({:.0g} at most); "
                        "{}lengths are in mm",
                        steps, most_steps, key == "file" ? "give medium.field.spacing_mm; " : "use a longer one; "));

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "render/light/lambert_sphere.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/setup_checks.h"
 
@@ -68,6 +68,49 @@ double sheet_beside(ParticleSetup const& particles, Pose<double> const& sheet) {
   return std::max(0.0, std::abs(dot(particles.center - sheet.origin, n)) - reach);
 }
 
+/// Refuses a file's velocity that ends inside the particles' volume. What cannot be read is left to those who read it.
+void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
+  ParticleSetup const& particles = setup.piv->particles;
+  if (!particles.volume) return;
+  try {
+    RegularGrid const grid = velocity_grid(*setup.piv->flow.file);
+    double const mm = unit::millimetre;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto const a = static_cast<std::size_t>(axis);
+      if (grid.periodic[a] || (axis == 2 && grid.nodes[2] == 1)) continue;
+      double const low = grid.origin[axis], high = low + grid.spacing[axis] * (grid.nodes[a] - 1);
+      double const half = (*particles.volume)[axis] / 2, middle = particles.center[axis];
+      double const rounding = 1e-9 * (high - low);
+      if (middle - half >= low - rounding && middle + half <= high + rounding) continue;
+      flow.problem("file", fmt::format("holds a velocity that reaches from {} = {:.6g} to {:.6g} mm, and ends inside "
+                                       "the particles' volume, {:.6g} to {:.6g} mm; make particles.volume_mm smaller, "
+                                       "or check flow.spacing_mm, center_mm and periodic",
+                                       "XYZ"[axis], low / mm, high / mm, (middle - half) / mm, (middle + half) / mm));
+    }
+  } catch (DataError const&) {
+  }
+}
+
+/// Photons through the lens from the particle that sends most.
+double brightest_photons(Scene const& scene) {
+  Particles const& particles = scene.particles;
+  LightThroughLens const through_lens(scene);
+  std::mutex merge;
+  double brightest = 0;
+  parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int pulse = 0; pulse < 2; ++pulse) {
+        double const photons = particles.photons[pulse][i];
+        if (photons > 0) most = std::max(most, photons * through_lens(particles.place[pulse][i], i, pulse));
+      }
+    }
+    std::lock_guard const lock(merge);
+    brightest = std::max(brightest, most);
+  });
+  return brightest;
+}
+
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -100,6 +143,7 @@ MemoryNeed particle_memory(Setup const& setup) {
 }
 
 void add_particles(Scene& scene) {
+  scene.flow_warning = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
   double const tolerance = path_tolerance_px * pixel_there(scene.setup);
@@ -121,25 +165,8 @@ void add_particles(Scene& scene) {
                              sheet.wave(piv.laser.centre, 0)};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
-  double brightest = 0;
-  for (int pulse = 0; pulse < 2; ++pulse) {
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-      if (particles.photons[pulse][i] > 0) brightest = std::max(brightest, photons_through_lens(scene, i, pulse));
-    }
-  }
+  double const brightest = brightest_photons(scene);
   scene.photon_unit = brightest > 0 ? brightest : 1;
-}
-
-double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {
-  Vec3d const place = scene.particles.place[pulse][particle], way = scene.camera.aim_plane.origin - place;
-  double const far = length(way), pupil = scene.imaging.entrance_pupil;
-  LightWave<double> const wave = laser_sheet<double>(scene.setup.piv->laser).wave(place, pulse);
-  double const section =
-      scene.mie ? scene.mie->view<double>().cross_section(particle, way / far, wave)
-                : LambertSpheres<double>{scene.particles.diameter.data()}.cross_section(particle, way / far, wave);
-  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // chief rays are worth a square metre
-  double const facing = std::abs(dot(scene.camera.aim_plane.z, way)) / far;
-  return scene.particles.photons[pulse][particle] * section * area * facing / (far * far);
 }
 
 ParticleCensus count_particles(Scene const& scene) {
@@ -177,6 +204,13 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "a "
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
+  }
+  if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
+  if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
+    warnings.push_back(
+        fmt::format("flow.file: {} of {} particles are beyond the velocity field at either pulse (they move as at its "
+                    "edge); take a larger field, or a smaller particles.volume_mm",
+                    outside, scene.particles.size()));
   }
   PathPlan const& path = scene.particles.path;
   double const px = pixel_there(scene.setup);
@@ -229,6 +263,7 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
       particles.problem("volume_mm", "reaches to the lens or beyond it; make it thinner, or move the camera away");
     }
   }
+  if (piv.flow.file) cross_check_velocity_file(setup, root.table("flow"));
   for (WindowSetup const& window : setup.windows) {
     double const face = window.position.z - window.thickness / 2;
     if (window.side == WindowSide::target) {

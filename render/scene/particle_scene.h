@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "render/scene/scene.h"
+#include "render/light/mie_scattering.h"
+#include "render/scene/renderer.h"
 
 namespace gladstone {
 
@@ -18,7 +19,25 @@ MemoryNeed particle_memory(Setup const& setup);
 /// @throws DataError where no particle is lit
 void add_particles(Scene& scene);
 
-/// Photons that a particle sends through the lens at a pulse, by its light into the middle of the lens.
+/// What a particle sends through the lens, by its light into the middle of the lens.
+class LightThroughLens {
+ public:
+  /// The scene must outlive it. @param light as it scatters the laser's, or alike into all directions
+  explicit LightThroughLens(Scene const& scene, ParticleLight light = ParticleLight::scattered);
+
+  /// Photons through the lens from a place [m], over those per area that light the particle there [m^2].
+  double operator()(Vec3d place, std::size_t particle, int pulse) const;
+
+ private:
+  double cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const;
+
+  Scene const& scene_;
+  ParticleLight light_;
+  LaserSheet<double> sheet_;
+  MieScatteringView<double> mie_;
+};
+
+/// Photons that a particle sends through the lens at a pulse.
 double photons_through_lens(Scene const& scene, std::size_t particle, int pulse);
 
 /// What the warnings of a PIV case rest on.

@@ -6,6 +6,7 @@
 
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
+#include "render/medium/analytic_fields.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
@@ -39,9 +40,10 @@ RenderSetup read_render_setup(SetupTable table) {
   if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
   setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
   if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
-  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots"});
+  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots", "formula"});
   if (method == "rays") setup.method = RenderMethod::rays;
   if (method == "focused_dots") setup.method = RenderMethod::focused_dots;
+  if (method == "formula") setup.method = RenderMethod::formula;
   return setup;
 }
 
@@ -51,8 +53,8 @@ constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a
 void resolve_thickness(Setup& setup, SetupTable medium) {
   MediumSetup& slab = setup.medium;
   if (!slab.automatic_thickness) return;
-  double thickness_mm = automatic_thickness_mm(slab.field);
-  if (has_size_along_z(slab.field.kind)) {
+  double thickness_mm = automatic_thickness_mm(slab);
+  if (thickness_mm > automatic_thickness_mm(FieldSetup{})) {
     double const way_mm = (setup.z_d == 0 ? setup.z_a : std::min(setup.z_a, setup.z_d)) / unit::millimetre;
     thickness_mm = std::min(thickness_mm, 2 * automatic_reach * way_mm);
   }
@@ -190,11 +192,21 @@ void read_calibration(Setup& setup, SetupTable root) {
   root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
 }
 
+/// The front of a medium of kind normal_shock, for the flow.
+std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
+  if (field.kind != FieldKind::normal_shock) return std::nullopt;
+  return ShockPlane{field.mach, shock_density_ratio(field.mach, constant::gamma_air), field.position, field.tilt};
+}
+
 void read_piv(Setup& setup, SetupTable root) {
   PivSetup piv;
   piv.laser = read_laser_setup(root.table("laser"), setup.medium.wavelength);
   piv.particles = read_particle_setup(root.table("particles"), piv.laser.wavelength);
-  piv.flow = read_flow_setup(root.table("flow"));
+  piv.flow = read_flow_setup(root.table("flow"), shock_plane(setup.medium.field));
+  if (setup.medium.second_field && piv.flow.flow.kind_word() == NormalShockFlow::kind) {
+    root.table("medium").problem("second_field",
+                                 "stands beside a flow of kind \"normal_shock\", which is steady; remove one");
+  }
   setup.piv = piv;
   root.refuse("target", "is of BOS (PIV's sources are [particles]); remove it");
   root.refuse("calibration", "stands in a setup of PIV (it is of experiment = \"calibration\"); remove it");
@@ -228,6 +240,9 @@ Setup read_setup(SetupTable root) {
     setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
   }
   setup.medium = read_medium_setup(root.table("medium"));
+  if (!piv && setup.medium.second_field) {
+    root.table("medium").problem("second_field", "is what PIV's second pulse sees; remove it, or change experiment");
+  }
   if (calibration && setup.medium.field.kind != FieldKind::none) {
     root.table("medium").problem("field", "is of BOS (a camera is calibrated without flow); remove it");
   }

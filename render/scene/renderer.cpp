@@ -26,7 +26,7 @@ char const* to_string(TableState state) {
 }
 
 Rendering Renderer::render_particles(Scene&, Particles const&, ParticleLight, RenderImages) {
-  throw DeviceError("particles are rendered on the CPU alone in this version; use --device cpu or auto");
+  throw DeviceError("this renderer traces dots alone; particles are traced by the general one");
 }
 
 TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {

@@ -18,7 +18,7 @@ enum class TableState {
   no_sources,       ///< there is nothing to see
   field_too_small,  ///< it hardly reaches beyond the cones, if at all
   field_too_fine,   ///< the table would take too many rays
-  by_rays,          ///< the general renderer knows none
+  by_rays,          ///< the general renderer knows none, nor does a formula
   dots_too_wide,    ///< their cones change too much from place to place of a dot
 };
 /// As the end of the sentence "there is no deflection table: ..."; empty where there is one.

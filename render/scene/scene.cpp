@@ -8,10 +8,10 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/fields/field_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
-#include "render/medium/density_field.h"
 #include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"
@@ -181,6 +181,13 @@ void check_memory(Setup const& setup, FieldMemory field_memory, std::vector<Memo
       setup.piv ? particle_memory(setup)
                 : MemoryNeed{"target.dots_per_32px_window", "dots",
                              setup.target.kind == TargetKind::dots ? setup.dot_count() * 200 : 0.0}};
+  if (setup.medium.second_field) {
+    double const bytes = static_cast<double>(medium_bytes_needed(at_second_pulse(setup.medium)));
+    needs.push_back({"medium.second_field.file", "second field", bytes});
+  }
+  if (setup.piv && setup.piv->flow.file) {
+    needs.push_back({"flow.file", "velocity", velocity_bytes(*setup.piv->flow.file)});
+  }
   needs.insert(needs.end(), more.begin(), more.end());
   double needed = 0;
   std::string sizes;
@@ -222,6 +229,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   }
 
   scene.medium = medium ? *medium : build_checked_medium(setup.medium);
+  if (setup.medium.second_field) scene.second_medium = build_checked_medium(at_second_pulse(setup.medium));
   if (setup.medium.field.kind == FieldKind::file && !setup.medium.field.extrude) {
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
     bool const dots_inside = !setup.piv && -setup.z_d > box.low.z;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,13 @@ struct Scene {
   Camera camera;
   DotPattern dots;                           ///< none for PIV
   Particles particles;                       ///< of PIV alone
+  std::string flow_warning;                  ///< what had to be assumed of the file that moves them
   std::shared_ptr<MieScattering const> mie;  ///< of the particles; null: they are matt white spheres
   double photon_unit = 1;  ///< photons that light of 1 stands for: those of the brightest particle that pass the lens
   BuiltMedium medium;
-  double step = 0;          ///< [m]
-  double pupil_margin = 0;  ///< by which the pupil is enlarged so that bending loses no ray [m]
+  std::optional<BuiltMedium> second_medium;  ///< that PIV's second pulse sees instead
+  double step = 0;                           ///< [m]
+  double pupil_margin = 0;                   ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
 

@@ -26,9 +26,10 @@ enum class Precision { double_precision, single };
 
 /// How images and truth are made.
 enum class RenderMethod {
-  automatic,     ///< focused_dots where it holds, else rays
+  automatic,     ///< focused_dots where it holds, formula for particles that have no other light, else rays
   rays,          ///< ray by ray: any source, any camera
   focused_dots,  ///< from tables, for flat dots in focus of an ideal thin lens
+  formula,       ///< particles as ideal images, without rays
 };
 
 struct RenderSetup {

@@ -3,11 +3,49 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "render/base/units.h"
 
 namespace gladstone {
+namespace {
+
+constexpr double most_background = 0.8;  // of the full well
+constexpr long long largest_seed = std::numeric_limits<long long>::max();
+
+void read_pattern(SetupTable& noise, NoiseSetup& setup) {
+  setup.prnu = noise.number("prnu_percent", 0.0, Range::at_least(0.0, 30.0)) / 100;
+  setup.dsnu_e = noise.number("dsnu_e", 0.0, Range::at_least(0.0, 1e6));
+  setup.hot_pixel_share = noise.number("hot_pixel_share", 0.0, Range::at_least(0.0, 1.0));
+  setup.hot_pixel_e = noise.number("hot_pixel_e", 0.25 * setup.full_well_e, Range::at_least(0.0, 1e9));
+  setup.pattern_seed = static_cast<std::uint64_t>(noise.integer("pattern_seed", 1, 0, largest_seed));
+}
+
+BackgroundSetup read_background(SetupTable table, double full_well_e) {
+  BackgroundSetup setup;
+  setup.level_e = table.number("level_e", 0.0, Range::at_least(0.0, 1e9));
+  auto const gradient = table.numbers("gradient_e", {0, 0}, 2, {-1e9, 1e9});
+  if (gradient.size() == 2) setup.gradient_e = {gradient[0], gradient[1]};
+  if (table.has("glare_file")) {
+    setup.glare_file = table.required_path("glare_file");
+    if (std::error_code error; !setup.glare_file.empty() && !std::filesystem::exists(setup.glare_file, error)) {
+      table.problem("glare_file",
+                    "there is no file " + setup.glare_file + "; relative names start at the setup file's folder");
+    }
+    setup.glare_e = table.number("glare_e", 0.1 * full_well_e, Range::positive(1e9));
+  } else {
+    table.refuse("glare_e", "is how bright the picture of a glare_file is; add that, or remove this");
+  }
+  if (setup.most_e() > most_background * full_well_e) {
+    table.problem("level_e", fmt::format("and what comes on top of it fill a pixel with {:.6g} electrons ({:.6g} at "
+                                         "most, {} of camera.noise.full_well_e: little else would be seen); lower it",
+                                         setup.most_e(), most_background * full_well_e, most_background));
+  }
+  return setup;
+}
+
+}  // namespace
 
 CameraSetup read_camera_setup(SetupTable table) {
   CameraSetup setup;
@@ -53,8 +91,10 @@ CameraSetup read_camera_setup(SetupTable table) {
     Range efficiency = Range::positive(1.0);
     setup.noise.quantum_efficiency = noise.number("quantum_efficiency", 0.6, efficiency);
     setup.noise.shot_noise = noise.boolean("shot_noise", true);
-    setup.noise.seed = static_cast<std::uint64_t>(noise.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
+    setup.noise.seed = static_cast<std::uint64_t>(noise.integer("seed", 1, 0, largest_seed));
+    read_pattern(noise, setup.noise);
   }
+  setup.background = read_background(table.table("background"), setup.noise.full_well_e);
   return setup;
 }
 

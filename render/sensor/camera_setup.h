@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "render/base/setup_table.h"
 #include "render/sensor/posed_sensor.h"
@@ -17,6 +19,27 @@ struct NoiseSetup {
   double quantum_efficiency = 0.6;  ///< electrons per photon
   bool shot_noise = true;
   std::uint64_t seed = 1;
+  // what differs from pixel to pixel and is the same in all frames (EMVA Standard 1288, 2021, chapter 4)
+  double prnu = 0;             ///< photo response non-uniformity: standard deviation of the gain over its mean [1]
+  double dsnu_e = 0;           ///< dark signal non-uniformity: standard deviation of the black level [e]
+  double hot_pixel_share = 0;  ///< of all pixels [1]
+  double hot_pixel_e = 0;      ///< mean charge of a hot pixel a frame, exponentially distributed [e]
+  std::uint64_t pattern_seed = 1;
+
+  bool patterned() const { return prnu > 0 || dsnu_e > 0 || hot_pixel_share > 0; }
+};
+
+/// Table [camera.background]: light that is none of the sources', the same in all frames.
+struct BackgroundSetup {
+  double level_e = 0;      ///< electrons in the picture's middle
+  Vec2d gradient_e{};      ///< by how much they grow from the first column to the last, and from the first row [e]
+  std::string glare_file;  ///< a picture, stretched over the sensor; empty: none
+  double glare_e = 0;      ///< electrons at its brightest
+
+  /// Electrons that no pixel has more of.
+  double most_e() const {
+    return level_e + (std::abs(gradient_e.x) + std::abs(gradient_e.y)) / 2 + (glare_file.empty() ? 0 : glare_e);
+  }
 };
 
 /// Table [camera] of a setup, in SI.
@@ -30,8 +53,9 @@ struct CameraSetup {
   /// dimmer peaks); a number does not.
   std::optional<double> exposure_e;
   bool absolute_exposure = false;  ///< electrons follow from the light's photons, instead
-  double offset_dn = 0;  ///< black level
+  double offset_dn = 0;            ///< black level
   NoiseSetup noise;
+  BackgroundSetup background;
   Vec2d tilt{};              ///< of the sensor about its x, then its turned y, through the axis point [rad]
   bool scheimpflug = false;  ///< tilted so that the plane in focus is sharp all over, instead of `tilt`
   BrownDistortion<double> distortion;

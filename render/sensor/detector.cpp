@@ -4,12 +4,37 @@
 #include <atomic>
 #include <cmath>
 
+#include "render/base/error.h"
+#include "render/base/image_file.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
 namespace {
 
 double full_scale_of(CameraSetup const& camera) { return std::pow(2.0, camera.bit_depth) - 1; }
+
+/// A picture stretched over a sensor, linearly between the centres of its pixels, and scaled to a brightest of `most`.
+Image<double> stretched(std::string const& path, int columns, int rows, double most) {
+  Image<double> const picture = read_image(path);
+  double const brightest = *std::max_element(picture.begin(), picture.end());
+  if (count_not_finite(picture) > 0 || *std::min_element(picture.begin(), picture.end()) < 0 || !(brightest > 0)) {
+    throw DataError(path, "is no picture of light (it is black, or holds pixels below zero or nan); use another");
+  }
+  Image<double> image(columns, rows);
+  auto const place = [](int at, int count, int of) { return std::clamp((at + 0.5) * of / count - 0.5, 0.0, of - 1.0); };
+  for (int row = 0; row < rows; ++row) {
+    double const v = place(row, rows, picture.rows());
+    int const j = static_cast<int>(v), below = std::min(j + 1, picture.rows() - 1);
+    for (int column = 0; column < columns; ++column) {
+      double const u = place(column, columns, picture.columns());
+      int const i = static_cast<int>(u), right = std::min(i + 1, picture.columns() - 1);
+      double const upper = picture(i, j) + (u - i) * (picture(right, j) - picture(i, j));
+      double const lower = picture(i, below) + (u - i) * (picture(right, below) - picture(i, below));
+      image(column, row) = most / brightest * (upper + (v - j) * (lower - upper));
+    }
+  }
+  return image;
+}
 
 }  // namespace
 
@@ -25,12 +50,32 @@ Detector::Detector(CameraSetup const& camera, double electrons_fully_lit) {
   pixel_.dark_current_e = noise.dark_current_e;
   pixel_.read_noise_e = noise.read_noise_e;
   pixel_.seed = noise.seed;
+  pixel_.patterned = noise.patterned();
+  pixel_.prnu = noise.prnu;
+  pixel_.dsnu_e = noise.dsnu_e;
+  pixel_.hot_pixel_share = noise.hot_pixel_share;
+  pixel_.hot_pixel_e = noise.hot_pixel_e;
+  pixel_.pattern_seed = noise.pattern_seed;
+  BackgroundSetup const& background = camera.background;
+  if (background.most_e() > 0) {
+    pixel_.columns = camera.columns;
+    pixel_.rows = camera.rows;
+    pixel_.background_e = background.level_e;
+    pixel_.across_e = background.gradient_e.x;
+    pixel_.down_e = background.gradient_e.y;
+  }
+  if (!background.glare_file.empty()) {
+    glare_ = std::make_shared<Image<double> const>(
+        stretched(background.glare_file, camera.columns, camera.rows, background.glare_e));
+    pixel_.glare_e = glare_->data();
+  }
 }
 
 double Detector::auto_exposure(CameraSetup const& camera, double brightest_light) {
   double const full_scale = full_scale_of(camera);
   if (!(brightest_light > 0)) return camera.noise.full_well_e;
-  return (0.9 * full_scale - camera.offset_dn) / full_scale * camera.noise.full_well_e / brightest_light;
+  double const room_e = (0.9 * full_scale - camera.offset_dn) / full_scale * camera.noise.full_well_e;
+  return std::max(room_e - camera.background.most_e(), 0.05 * camera.noise.full_well_e) / brightest_light;
 }
 
 Image<double> Detector::ideal(Image<double> const& light) const {
@@ -41,6 +86,7 @@ Image<double> Detector::ideal(Image<double> const& light) const {
 
 Recording Detector::record(Image<double> const& light, RandomStream stream) const {
   Recording recording{Image<std::uint16_t>(light.columns(), light.rows()), 0};
+  GLADSTONE_EXPECTS(!glare_ || glare_->size() == light.size());
   std::atomic<std::size_t> saturated{0};
   parallel_chunks(light.size(), 4096, [&](std::size_t begin, std::size_t end) {
     std::size_t clipped = 0;

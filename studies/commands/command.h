@@ -52,6 +52,7 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_validate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_views(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_report(CLI::App& app, GlobalOptions const& options);

@@ -22,12 +22,18 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     std::vector<std::string> inputs, overrides;
     std::string output, config;
+    bool ensemble = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("input", arguments->inputs,
-                 "A case folder, two images (reference and flow), or one image file of these two pages")
+  app.add_option(
+         "input", arguments->inputs,
+         "A case folder, two images (reference and flow), or one image file of these two pages; with --ensemble "
+         "any number of pairs")
       ->required()
-      ->expected(1, 2);
+      ->expected(-1);
+  app.add_flag("--ensemble", arguments->ensemble,
+               "The images are pairs of one displacement, reference and flow in turn: their correlation planes are "
+               "averaged (on the CPU)");
   app.add_option("-o,--output", arguments->output, "Vectors to write: .h5 or .csv; default CASE/vectors.h5");
   app.add_option("--config", arguments->config,
                  "TOML file with a table [correlate], which may be a whole setup; default: the case's own");
@@ -35,6 +41,17 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       ->expected(1)
       ->take_all();
   return [arguments, &options] {
+    if (arguments->ensemble && options.device == "cuda")
+      throw DeviceError("--device cuda: ensembles are correlated on the CPU alone; use --device auto");
+    std::size_t const given = arguments->inputs.size();
+    if (arguments->ensemble && given % 2 != 0)
+      throw DataError("correlate", fmt::format("--ensemble got {} images (reference and flow in turn make an even "
+                                               "number); give pairs",
+                                               given));
+    if (!arguments->ensemble && given > 2)
+      throw DataError("correlate", fmt::format("got {} images (a measurement takes a reference and a flow frame); give "
+                                               "two, or --ensemble for pairs of one displacement",
+                                               given));
     Device const device = options.open_device();
     std::string const& output = arguments->output;
     if (!output.empty() && !output.ends_with(".h5") && !output.ends_with(".csv")) {
@@ -62,10 +79,18 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       if (output.empty()) throw OutputError("correlate", "images need -o FILE.h5 or FILE.csv");
     }
     if (!config.empty()) inputs.push_back(config);
+    std::vector<std::string> const& prepared_by = other.settings.preparation.files;
+    inputs.insert(inputs.end(), prepared_by.begin(), prepared_by.end());
     refuse_inputs_as_outputs({written}, inputs);
     OutputFile const tried(written);
     if (is_case) {
       measurement = correlate_case(arguments->inputs[0], written, configured ? &other : nullptr, device);
+    } else if (arguments->ensemble) {
+      SourceFiles sources;
+      add_preparation(other.settings, sources);
+      measurement = correlate_ensemble_files(arguments->inputs, other.settings, sources);
+      write_vectors(written, measurement.field,
+                    {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     } else {
       SourceFiles sources;
       bool const one_file = arguments->inputs.size() == 1;
@@ -74,9 +99,10 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       auto const [reference, flow] =
           one_file ? read_frames(inputs[0], sources)
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
+      add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
       write_vectors(written, measurement.field,
-                    {"gladstone vectors", 1, other.resolved, 0, device.name(), std::move(sources)});
+                    {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }
     long long counts[4] = {};
     for (VectorStatus status : measurement.field.status) ++counts[static_cast<int>(status)];
@@ -89,11 +115,11 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
                    written, field.size());
     }
-    nlohmann::json const json{{"vectors", field.size()}, {"file", written},
-                              {"valid", counts[0]},      {"replaced", counts[1]},
-                              {"masked", counts[2]},     {"invalid", counts[3]},
-                              {"ambiguous", ambiguous},  {"warnings", field.warnings},
-                              {"device", device.name()}, {"seconds_correlate", measurement.seconds}};
+    nlohmann::json const json{{"vectors", field.size()},      {"file", written},
+                              {"valid", counts[0]},           {"replaced", counts[1]},
+                              {"masked", counts[2]},          {"invalid", counts[3]},
+                              {"ambiguous", ambiguous},       {"warnings", field.warnings},
+                              {"device", measurement.device}, {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),
                  fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, field.size(), counts[1],
                              counts[3], measurement.seconds));

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/error.h"
+#include "render/base/fields/field_file.h"
 #include "render/base/image_file.h"
-#include "render/medium/density_field.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
 #include "studies/commands/info_lens.h"

@@ -39,7 +39,7 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   std::string const electronics =
       fmt::format("bits {}, exposure {}, full well {}", loaded.setup.camera.bit_depth,
                   loaded.setup.camera.exposure_e.value_or(0), loaded.setup.camera.noise.full_well_e);
-  for (char const* key : {"noise", "bit_depth", "exposure", "offset_dn"}) remove(camera, key);
+  for (char const* key : {"noise", "background", "bit_depth", "exposure", "offset_dn"}) remove(camera, key);
   std::optional<std::uint64_t> const rays = loaded.setup.render.rays_per_dot;
   remove(table_of(setup, "render"), "rays_per_dot");
   remove(setup, "correlate");

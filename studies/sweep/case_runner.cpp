@@ -274,7 +274,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   if (!folder) return;
   folder->fill([&](std::string const& place) {
     write_kept_results(place, measured.field, std::move(comparison),
-                       {"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, device_.name()});
+                       {"gladstone vectors", 1, loaded.document.resolved(), loaded.setup.render.seed, measured.device});
   });
   folder->commit();
 }

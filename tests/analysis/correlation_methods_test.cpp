@@ -57,9 +57,7 @@ TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
     for (int i = 40; i < 75; ++i) holed.flow(i, j) = std::numeric_limits<double>::quiet_NaN();
   for (ParticlePair const* images : {&pair, static_cast<ParticlePair const*>(&holed)})
     for (char const* weighting : {"gaussian", "uniform"})
-      for (int const window : {8, 12, 20, 22, 32, 64}) {
-        // Gaussian windows wrap at their rim, over other lengths where twice the window has another factor than 2, 3, 5
-        if (window == 22 && std::string(weighting) == "gaussian") continue;
+      for (int const window : {8, 12, 20, 22, 32, 46, 64}) {
         CorrelationSettings fast = one_pass("scc", weighting), slow = one_pass("opencv", weighting);
         fast.window_px = slow.window_px = {window};
         DisplacementField const a = make_correlator(fast)->correlate(images->reference, images->flow);

@@ -19,9 +19,9 @@ struct Room {
 };
 
 Names const render = {"render/base", "render/light", "render/medium", "render/optics", "render/sensor", "render/scene"};
-Names const renderers = {"render/rays", "render/focused_dots"};
-Names const analysis = {"analysis/vectors", "analysis/correlation", "analysis/errors", "analysis/calibration",
-                        "analysis/uncertainty"};
+Names const renderers = {"render/rays", "render/focused_dots", "render/ideal_images"};
+Names const analysis = {"analysis/vectors",     "analysis/correlation", "analysis/errors",
+                        "analysis/calibration", "analysis/uncertainty", "analysis/preparation"};
 Names const cuda = {"cuda/device", "cuda/rays", "cuda/focused_dots", "cuda/correlation"};
 
 Names operator+(Names a, Names const& b) {
@@ -33,17 +33,22 @@ Names operator+(Names a, Names const& b) {
 /// files, POSIX.
 std::vector<Room> const& table() {
   static std::vector<Room> const rooms = {
-      {"render/base", {}, {"Eigen", "x86 intrinsics"}, {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "fmt"}},
+      {"render/base",
+       {},
+       {"Eigen", "x86 intrinsics"},
+       {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "zlib", "fmt"}},
       {"render/image_codecs", {"render/base"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"render/medium", {"render/base"}, {"Eigen"}, {"fmt", "zlib"}},
+      {"render/medium", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/optics", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/sensor", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/scene", render, {"Eigen"}, {"Ceres", "fmt"}},
       {"render/rays", render, {"Eigen"}, {"fmt"}},
       {"render/focused_dots", render, {"Eigen"}, {"fmt"}},
+      {"render/ideal_images", render, {"Eigen"}, {"fmt"}},
       {"analysis/vectors", {"render/base"}, {"Eigen"}, {"fmt"}},
-      {"analysis/correlation", {"render/base"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
+      {"analysis/preparation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
+      {"analysis/correlation", {"render/base", "analysis/preparation"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
       {"analysis/uncertainty", {"render/base", "analysis/correlation"}, {"Eigen"}, {"fmt"}},
       {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
       {"analysis/calibration", {"render/base"}, {"Eigen"}, {"OpenCV", "Ceres", "fmt"}},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -43,6 +44,23 @@ inline double largest_difference(std::vector<Vec2d> const& a, std::vector<Vec2d>
 
 inline bool same_bits(Image<double> const& a, Image<double> const& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin());
+}
+
+/// A volume of 12 x 14 x 10 nodes, 1.5 mm apart.
+inline FieldSetup volume_file() {
+  FieldSetup field;
+  field.kind = FieldKind::file;
+  field.file = testing::TempDir() + "gladstone_cuda_volume.nrrd";
+  field.where = "test";
+  field.spacing = Vec3d{1.5e-3, 1.5e-3, 1.5e-3};
+  std::ofstream file(field.file, std::ios::binary);
+  file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
+  for (int i = 0; i < 12 * 14 * 10; ++i) {
+    auto const number =
+        static_cast<float>(1.2 + 0.05 * std::sin(0.7 * (i % 12) + 0.4 * (i / 12 % 14) + 0.5 * (i / 168)));
+    file.write(reinterpret_cast<char const*>(&number), sizeof number);
+  }
+  return field;
 }
 
 /// The renderers of a method on either device, and how far their images may differ [levels of 16 bits].

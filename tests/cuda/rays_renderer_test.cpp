@@ -10,18 +10,22 @@
 #include "render/rays/ray_planning.h"
 #include "render/scene/build_camera.h"
 #include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/optics/prescription_texts.h"
 
 namespace gladstone {
 namespace {
 
-/// Table 1's bench with a lens of data/lenses in place of its own.
-void put_lens(BosSetup& setup, std::string const& name) {
+/// Table 1's bench with a lens in place of its own, by the name of its file.
+void put_lens_of(BosSetup& setup, std::string const& path) {
   LensOptions options;
   options.f_number = setup.lens.f_number = 8;
   setup.lens.prescription = std::make_shared<Lens const>(
-      build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/" + name + ".toml"),
-                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
+      build_lens(read_prescription(path), GlassCatalogue::shipped(), setup.medium.wavelength, options));
   setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
+}
+/// The same with a lens of data/lenses.
+void put_lens(BosSetup& setup, std::string const& name) {
+  put_lens_of(setup, std::string(GLADSTONE_DATA_DIR) + "/lenses/" + name + ".toml");
 }
 
 /// A scene of any camera, with 36 dots about the middle of its picture.
@@ -64,6 +68,49 @@ TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
   expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
     setup.camera.tilt = {0.03, -0.05};
     setup.camera.distortion = {-0.1, 0.02, 1e-3, -2e-3};
+  }));
+}
+
+// A conic, an even asphere, a weak cylinder, an obscured plate and two flat mirrors in one lens, its glass reflecting.
+TEST_F(CudaRaysTest, SurfacesOfEveryShape) {
+  std::string const path = file_of("every_shape.toml", R"(schema = 1
+f_number = 8.0
+[[surface]]
+radius_mm = 80.0
+conic = -0.6
+thickness_mm = 6.0
+glass = "N-BK7"
+stop = true
+[[surface]]
+radius_mm = -120.0
+asphere_mm = [0.0, 1e-7, -1e-11]
+thickness_mm = 5.0
+[[surface]]
+radius_mm = 3000.0
+shape = "cylinder"
+thickness_mm = 3.0
+glass = "N-SF5"
+[[surface]]
+thickness_mm = 30.0
+[[surface]]
+glass = "mirror"
+thickness_mm = -10.0
+[[surface]]
+glass = "mirror"
+thickness_mm = 10.0
+)");
+  expect_as_on_cpu(seen_through(300, [&](BosSetup& setup) {
+    put_lens_of(setup, path);
+    setup.lens.transmittance = Transmittance::surfaces;
+  }));
+}
+
+TEST_F(CudaRaysTest, CamerasThatLookFromAside) {
+  expect_as_on_cpu(seen_through(300, [](BosSetup& setup) {
+    // 0.2 rad about y through the origin: the camera stands aside and looks there
+    Pose<double> const turned = Pose<double>{}.turned({0, 0.2, 0});
+    setup.pose = turned.moved({0, 0, setup.z_a});
+    setup.camera.tilt = {0.01, 0.02};
   }));
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "tests/cuda/cuda_renderer_fixture.h"
@@ -32,23 +31,6 @@ TYPED_TEST(ByBothMethods, PlumeBlobAndShock) {
     field.shock_thickness = 1e-3;
     this->expect_as_on_cpu(this->scene_of(field, 64));
   }
-}
-
-/// A volume of 12 x 14 x 10 nodes, 1.5 mm apart.
-FieldSetup volume_file() {
-  FieldSetup field;
-  field.kind = FieldKind::file;
-  field.file = testing::TempDir() + "gladstone_cuda_volume.nrrd";
-  field.where = "test";
-  field.spacing = Vec3d{1.5e-3, 1.5e-3, 1.5e-3};
-  std::ofstream file(field.file, std::ios::binary);
-  file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 12 14 10\nendian: little\nencoding: raw\n\n";
-  for (int i = 0; i < 12 * 14 * 10; ++i) {
-    auto const number =
-        static_cast<float>(1.2 + 0.05 * std::sin(0.7 * (i % 12) + 0.4 * (i / 12 % 14) + 0.5 * (i / 168)));
-    file.write(reinterpret_cast<char const*>(&number), sizeof number);
-  }
-  return field;
 }
 
 TYPED_TEST(ByBothMethods, VolumesSplineAndLinear) {

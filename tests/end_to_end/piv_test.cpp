@@ -182,6 +182,162 @@ TEST_F(Piv, AStudyVariesTheTimeBetweenPulses) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
 }
 
+// A velocity of a file, u = 14.12857 m/s (1 + y / 60 mm), which splines reproduce: 2.3 px (1 + y / 60 mm) of motion.
+TEST_F(Piv, MovesParticlesByTheVelocityOfAFile) {
+  constexpr std::size_t across = 15, deep = 3;
+  std::vector<double> values;
+  for (std::size_t node = 0; node < across * across * deep; ++node) {
+    double const y = static_cast<double>(node / across % across) - 7;
+    values.insert(values.end(), {14.12857 * (1 + y / 60), 0.0, 0.0});
+  }
+  Hdf5Writer file(in("velocity.h5").string(), {"test", 1, "", 0, "cpu"});
+  file.write("Velocity_0001", std::span<double const>(values), {deep, across, across, 3}, "m/s", "velocity",
+             "z, y, x, component");
+  file.close();
+  std::string const by_file = with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]",
+                                   "kind = \"file\"\nfile = \"velocity.h5\"\nspacing_mm = [1, 1, 1]");
+  auto const errors = errors_of(by_file);
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
+  EXPECT_LT(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 1e-4);
+  auto const truth = dataset("case/truth.h5", "/particles/displacement_px");
+  auto const place = dataset("case/truth.h5", "/particles/position_m");
+  for (std::size_t i = 0; i < truth.size() / 2; ++i) {
+    if (std::isnan(truth[2 * i])) continue;
+    double const expected = 2.3 * (1 + place[3 * i + 1] / 60e-3) * 750e-3 / (750e-3 - place[3 * i + 2]);
+    EXPECT_NEAR(truth[2 * i], expected, 1e-3);
+  }
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  EXPECT_THAT(summary["warnings"].dump(), testing::Not(testing::HasSubstr("beyond the velocity field")));
+  // the file that a case was made from is known by what it holds
+  EXPECT_THAT(Hdf5Reader(in("case/truth.h5").string()).attribute("inputs_sha256"), testing::HasSubstr("velocity.h5"));
+  std::string const short_of_it = with(by_file, "spacing_mm = [1, 1, 1]", "spacing_mm = [0.8, 1, 1]");
+  expect_setup_refused(short_of_it, {"setup.toml:" + place_of(short_of_it, "file = \"velocity.h5\""),
+                                     "ends inside the particles' volume"});
+}
+
+// Gas and particles through the front of a normal shock of Mach 1.5 in the middle of the view: behind it they move by
+// u_2 / u_1 = 1 / 1.862 of what they do before (NACA 1135: 2.4 M^2 / (0.4 M^2 + 2)). u_1 = 1.5 * 343.2 m/s. Particles
+// that take part in both are left out: those within 0.3 mm of the front.
+TEST_F(Piv, MovesParticlesThroughAShock) {
+  std::string const shock = with(
+      with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]\ndt_us = 10.0", "kind = \"normal_shock\"\ndt_us = 0.25"),
+      "[particles]",
+      "[render]\nrays_per_dot = 64\n[medium]\nambient_density_kg_m3 = 1.0\n[medium.field]\nkind = "
+      "\"normal_shock\"\nmach = "
+      "1.5\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 0.3\n[particles]");
+  auto const errors = errors_of(shock);
+  EXPECT_LT(errors["budget"]["closure_px"].get<double>(), 1e-9);
+  EXPECT_GT(errors["budget"]["terms"]["refraction"]["rms_px"].get<double>(), 0);
+  auto const moved = dataset("case/truth.h5", "/particles/displacement_ambient_px");
+  auto const place = dataset("case/truth.h5", "/particles/position_m");
+  std::size_t const count = moved.size() / 2;
+  double const px_per_m = 105.0 / 645 / 10e-6, before = 1.5 * std::sqrt(1.4 * 287.05287 * 293.15) * 0.25e-6;
+  double upstream = 0, downstream = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    double const x = place[3 * i], z = place[3 * i + 2];
+    if (std::isnan(moved[2 * i]) || std::abs(x) < 0.3e-3) continue;
+    double const expected = before * px_per_m * (x < 0 ? 1 : 1 / 1.862068966) * 0.75 / (0.75 - z);
+    EXPECT_NEAR(moved[2 * i], expected, 2e-3) << x;
+    (x < 0 ? upstream : downstream) += 1;
+  }
+  // a hundred particles in each half and more, of which the one behind the front has 1.86 times as many
+  EXPECT_NEAR(downstream / upstream, 1.86, 4 * 1.86 * std::sqrt(1 / upstream + 1 / downstream));
+}
+
+// The second pulse sees another medium: what is at rest seems to move by what a gradient of 100 kg/m^4 in 40 mm does, g
+// l^2 / 2 for a particle a way l = 20 mm before the face.
+TEST_F(Piv, SeesAMediumThatChanges) {
+  std::string const changing =
+      with(with(piv_setup, "velocity_m_s = [14.12857, 0.0, 0.0]", "velocity_m_s = [0, 0, 0]"), "[particles]",
+           "[render]\nrays_per_dot = 64\n[medium]\nthickness_mm = 40.0\n[medium.second_field]\nkind = "
+           "\"uniform_gradient\"\ngradient_kg_m4 = [100.0, 0.0, 0.0]\n[particles]");
+  auto const errors = errors_of(changing);
+  auto const moved = dataset("case/truth.h5", "/particles/displacement_px");
+  auto const place = dataset("case/truth.h5", "/particles/position_m");
+  for (std::size_t i = 0; i < moved.size() / 2; ++i) {
+    if (std::isnan(moved[2 * i])) continue;
+    double const way = 20e-3 - place[3 * i + 2], px_per_m = 105.0 / 645 / 10e-6 * 0.75 / (0.75 - place[3 * i + 2]);
+    EXPECT_NEAR(moved[2 * i], -2.26e-4 * 100 * way * way / 2 * px_per_m, 2e-3);
+  }
+  EXPECT_NEAR(errors["budget"]["terms"]["refraction"]["bias_u_px"].get<double>(), -2.26e-4 * 100 * 4e-4 / 2 * 16279,
+              2e-3);
+  EXPECT_EQ(errors["budget"]["terms"]["projection"]["rms_px"].get<double>(), 0);
+}
+
+// Ideal images, without rays: 2.3 px again, and what made them is written down.
+TEST_F(Piv, DrawsIdealImages) {
+  std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
+  auto const errors = errors_of(ideal);
+  EXPECT_LT(errors["ray_truth"]["rms_px"].get<double>(), 0.02);
+  auto const summary = nlohmann::json::parse(read("case/summary.json"));
+  EXPECT_EQ(summary["method"], "formula");
+  EXPECT_EQ(summary["rays"]["traced"], 0);
+  EXPECT_GT(summary["particles"]["largest_blur_px"].get<double>(), 0);
+  EXPECT_EQ(Hdf5Reader(in("case/truth.h5").string()).attribute("method"), "formula");
+  render("again", {}, "case/setup.toml");
+  EXPECT_EQ(nlohmann::json::parse(read("again/summary.json"))["flow_sha256"], summary["flow_sha256"]);
+  // other light may be drawn so, too; what has no rays has none
+  std::string const lambert = std::string(piv_setup) + "[render]\nmethod = \"formula\"\n";
+  write("lambert.toml", lambert);
+  render("lambert", {}, "lambert.toml");
+  std::string const by_rays = ideal + "[render]\nmethod = \"rays\"\n";
+  expect_setup_refused(by_rays, {"setup.toml:" + place_of(by_rays, "method = \"rays\""), "which has no rays"});
+  std::string const tilted =
+      with(ideal, "pixel_pitch_um = 10.0\n", "pixel_pitch_um = 10.0\nsensor.tilt_deg = [5, 0]\n");
+  expect_setup_refused(tilted, {"setup.toml:" + place_of(tilted, "scattering = \"gaussian\""), "do not hold here"});
+  expect_setup_refused(with(lambert, "f_number = 22.0", "f_number = 22.0\npsf = \"airy\""), {"method", "not Gaussian"});
+}
+
+// Background, glare, fixed pattern and hot pixels are in the pictures and not in truth; what they cost vectors is
+// noise.
+TEST_F(Piv, PicturesHaveABackground) {
+  std::string const ideal = with(piv_setup, "scattering = \"lambert\"", "scattering = \"gaussian\"");
+  auto const clean = errors_of(ideal);
+  std::string const spoilt = with(
+      ideal, "pixel_pitch_um = 10.0\n",
+      "pixel_pitch_um = 10.0\nbit_depth = 12\n[camera.background]\nlevel_e = 500\ngradient_e = [300, 0]\nglare_file = "
+      "\"case/reference.tif\"\nglare_e = 400\n[camera.noise]\nprnu_percent = 1.0\ndsnu_e = 20\nhot_pixel_share = "
+      "0.001\n");
+  write("spoilt.toml", spoilt);
+  render("spoilt", {}, "spoilt.toml");
+  succeed({"correlate", "spoilt", "--quiet"});
+  auto const errors = json_of({"compare", "spoilt", "--quiet", "--no-figures"});
+  EXPECT_EQ(errors["budget"]["terms"]["estimator"], clean["budget"]["terms"]["estimator"]);
+  EXPECT_GT(errors["budget"]["terms"]["noise"]["rms_px"].get<double>(),
+            2 * clean["budget"]["terms"]["noise"]["rms_px"].get<double>());
+  EXPECT_EQ(dataset("spoilt/truth.h5", "/particles/displacement_px").size(),
+            dataset("case/truth.h5", "/particles/displacement_px").size());
+  Image<double> const picture = read_image(in("spoilt/reference.tif").string());
+  EXPECT_GT(*std::min_element(picture.begin(), picture.end()), 0);
+  render("again", {}, "spoilt/setup.toml");
+  EXPECT_EQ(nlohmann::json::parse(read("again/summary.json"))["flow_sha256"],
+            nlohmann::json::parse(read("spoilt/summary.json"))["flow_sha256"]);
+}
+
+// A plenoptic picture's views, and one focused anew, lie beside its case; other cases hold none.
+TEST_F(Piv, ExtractsViewsOfAPlenopticPicture) {
+  std::string const plenoptic =
+      with(with(with(piv_setup, "pixel_pitch_um = 10.0\n",
+                     "pixel_pitch_um = 5.0\n[camera.lenslets]\npitch_um = 65\nfocal_length_um = 280\n"),
+                "f_number = 22.0", "f_number = 4.0"),
+           "[correlate]", "[render]\nrays_per_dot = 256\n[correlate]");
+  write("setup.toml", plenoptic);
+  render("case");
+  auto const json = json_of({"views", "case", "--refocus", "3", "--quiet"});
+  EXPECT_EQ(json["views"].size(), 21u);
+  EXPECT_NEAR(json["lenslet_pictures_px"].get<double>(), 12.04, 0.01);
+  EXPECT_EQ(names("case/views"), (std::vector<std::string>{"flow", "flow_refocused.tif", "reference",
+                                                           "reference_refocused.tif", "views.json"}));
+  EXPECT_EQ(names("case/views/flow").size(), 21u);
+  // 128 px of 5 um show 9 lenslets of 65 um
+  EXPECT_EQ(read_image(in("case/views/flow/view_02_02.tif").string()).columns(), 9);
+  EXPECT_THAT(succeed({"views", "case", "--views", "3", "-o", "three"}), testing::HasSubstr("9 views of 9 x 9 px"));
+  write("plain.toml", piv_setup);
+  render("plain", {}, "plain.toml");
+  expect_refused({"views", "plain"}, 2, {"plain/setup.toml", "no [camera.lenslets]"});
+  expect_refused({"views", "case", "--refocus", "700"}, 2, {"--refocus", "within the focal length"});
+}
+
 TEST_F(Piv, RefusesMoreParticlesThanMemoryHolds) {
   std::string const absurd = with(piv_setup, "per_pixel = 0.05", "number = 3.9e9");
   expect_setup_refused(absurd, {"setup.toml:" + place_of(absurd, "number = 3.9e9"), "GB of memory"});

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "render/medium/density_field.h"
+#include "render/base/fields/field_file.h"
 
 namespace gladstone::fuzz {
 
 /// Opens a field and reads its planes in two parts, as far as a small machine would hold them.
-inline void read_field(std::string const& path) {
-  auto const source = open_field(path, "");
+inline void read_field(std::string const& path, int values_a_point = 1) {
+  auto const source = open_field(path, "", values_a_point);
   source->significant_bits();
   std::array<int, 3> const nodes = source->grid().nodes;
-  double const plane = static_cast<double>(nodes[0]) * nodes[1];
+  double const plane = static_cast<double>(values_a_point) * nodes[0] * nodes[1];
   constexpr double most = 1 << 20;
   if (plane > most) return;
   int const planes = static_cast<int>(std::min<double>(nodes[2], most / plane));

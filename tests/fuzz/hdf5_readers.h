@@ -11,6 +11,7 @@ namespace gladstone::fuzz {
 /// Gives an HDF5 file to everybody who reads one.
 inline void read_hdf5(std::string_view input, std::string const& path) {
   read(input, [&] { read_field(path); });
+  read(input, [&] { read_field(path, 3); });
   read(input, [&] { read_vectors(path); });
   read(input, [&] { read_truth(path); });
   read(input, [&] { read_field_map(path); });

@@ -113,6 +113,70 @@ TEST(LaggingParticle, SpiralsOutOfARotation) {
   EXPECT_NEAR(length(v({r, 0, 0}) - Vec3d{tau * w * w * r, w * r, 0}), 0, 1e-6 * w * r);
 }
 
+/// The flow through the front of a normal shock of Mach 2 that leans by 30 degrees, in air of 300 K.
+FlowSetup shock_flow() {
+  SetupDocument document =
+      SetupDocument::from_text("kind = \"normal_shock\"\nupstream_temperature_k = 300", "flow.toml");
+  return read_flow_setup(document.root(), ShockPlane{2, 8.0 / 3, 1e-3, 30 * unit::degree});
+}
+
+// Mach 2 at 300 K: u_1 = 2 sqrt(1.4 * 287.05287 * 300) = 694.4 m/s, u_2 = 3/8 of it (NACA 1135, eq. 94: 6 M^2 / (M^2 +
+// 5) = 8/3). A particle that crosses the front goes x(t) = u_2 t + (u_1 - u_2) tau (1 - exp(-t / tau)) behind it.
+TEST(NormalShockFlow, SlowsParticlesDownExponentially) {
+  FlowSetup const flow = shock_flow();
+  double const u1 = 2 * std::sqrt(1.4 * 287.05287 * 300), u2 = u1 * 3 / 8, tau = 3e-6;
+  Vec3d const normal{std::cos(pi / 6), 0, 0.5}, front{1e-3, 0, 0};
+  EXPECT_LT(distance(flow.flow(front - 1e-4 * normal), u1 * normal), 1e-9);
+  EXPECT_LT(distance(flow.flow(front + 1e-4 * normal), u2 * normal), 1e-9);
+  for (double const lag : {0.0, tau}) {
+    ParticleVelocity const v{flow.flow, lag, 1e-8};
+    ASSERT_TRUE(v.exact());
+    double const before = 2e-6;
+    for (double const t : {1e-7, 1e-6, 5e-6, 40e-6}) {
+      double const s = u2 * t + (u1 - u2) * lag * (lag > 0 ? 1 - std::exp(-t / lag) : 0.0);
+      Vec3d const start = front - u1 * before * normal + Vec3d{0, 3e-3, 0};
+      Vec3d const end = moved(v, start, before + t, 1);
+      EXPECT_LT(distance(end, front + s * normal + Vec3d{0, 3e-3, 0}), 1e-15) << t << ' ' << lag;
+      EXPECT_LT(distance(moved(v, end, -before - t, 1), start), 1e-13);  // and back: exp(t / tau) of rounding
+    }
+  }
+}
+
+// Continuity of the particles: as many as cross a plane before the front cross any plane behind it, n v = n_1 u_1. v is
+// a difference of places over 1 ns, good to v' / 2 of it, 3e-4.
+TEST(NormalShockFlow, CrowdsParticlesAsContinuitySays) {
+  FlowSetup const flow = shock_flow();
+  auto const held = flow.flow.kind.visit([](auto const& one) {
+    NormalShockFlow found;
+    if constexpr (requires { one.fastest(); }) found = one;
+    return found;
+  });
+  double const u1 = length(held.fastest()), tau = 3e-6;
+  for (double const x : {-1e-3, 1.1e-3, 2e-3, 4e-3, 30e-3}) {
+    Vec3d const p{x, 0, 0};
+    double const v = distance(held.moved(p, 1e-9, tau), p) / 1e-9;
+    EXPECT_NEAR(held.crowding(p, tau) * v, u1, 5e-4 * u1) << x;
+  }
+  EXPECT_NEAR(held.crowding({30e-3, 0, 0}, 0), 8.0 / 3, 1e-12);
+  // a volume halved by the front, which leans: the mean of both densities
+  EXPECT_NEAR(held.mean_crowding({4e-3, 1e-3, 2e-3}, {1e-3, 0, 0}, 0), (1 + 8.0 / 3) / 2, 1e-9);
+}
+
+TEST(NormalShockFlow, SharesTheFrontOfTheMedium) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT([] { flow_of("normal_shock", ""); },
+              ThrowsMessage<SetupError>(HasSubstr("set medium.field.kind = \"normal_shock\"")));
+  EXPECT_THAT(
+      [] {
+        SetupDocument document =
+            SetupDocument::from_text("kind = \"normal_shock\"\nvelocity_m_s = [1, 2, 0]", "flow.toml");
+        read_flow_setup(document.root(), ShockPlane{2, 8.0 / 3, 0, 0});
+        document.finish();
+      },
+      ThrowsMessage<SetupError>(HasSubstr("across the shock's front")));
+}
+
 TEST(FlowSetup, RefusesWhatMovesNothing) {
   using testing::HasSubstr;
   using testing::ThrowsMessage;

@@ -63,6 +63,51 @@ TEST(PivSetup, RefusesWhatGivesNoPicture) {
               told("in the particles' volume"));
 }
 
+TEST(PivSetup, RefusesVelocitiesThatEndInsideTheVolume) {
+  std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/appended_raw.vti";
+  auto const flow = [&file](std::string const& keys) { return "kind = \"file\"\nfile = \"" + file + "\"\n" + keys; };
+  // 4 x 3 x 2 nodes; Z = +-1 mm
+  std::string const spacing = "spacing_mm = [4, 6, 2]\n",
+                    volume = "volume_mm = [12, 12, 2]\nscattering = \"lambert\"\n";
+  EXPECT_NO_THROW(read_setup_text(piv_text(volume, "", flow(spacing))));
+  EXPECT_THAT(refused_piv(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\n"))),
+              told("reaches from X = -5.85 to 5.85 mm, and ends inside the particles' volume, -6 to 6 mm"));
+  EXPECT_NO_THROW(
+      read_setup_text(piv_text(volume, "", flow("spacing_mm = [3.9, 6, 2]\nperiodic = [true, false, false]\n"))));
+  EXPECT_THAT(refused_piv(piv_text(volume, "", flow(spacing + "center_mm = [0, 0, 1]\n"))), told("from Z = 0 to 2 mm"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\nfile = \"nowhere.h5\"\n")), told("there is no file"));
+  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"file\"\n")), told("file"));
+}
+
+// Particles that come in from beyond the field, 60 m/s times 5 us on either side of 12 mm, are told.
+TEST(PivSetup, WarnsOfParticlesBeyondTheVelocityField) {
+  std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/appended_raw.vti";
+  gladstone::Setup const setup =
+      read_setup_text(piv_text("volume_mm = [12, 12, 2]\nscattering = \"lambert\"\nnumber = 300\n", "",
+                               "kind = \"file\"\nfile = \"" + file + "\"\nspacing_mm = [4, 6, 2]\nscale = 0.5\n"))
+          .setup;
+  auto const warnings = warnings_of_particles(build_scene(setup));
+  EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("beyond the velocity field")));
+}
+
+TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
+  std::string const second =
+      "[medium.second_field]\nkind = \"gaussian_plume\"\namplitude_kg_m3 = -0.4\nradius_mm = 4\n";
+  gladstone::Setup const setup = read_setup_text(piv_text("", "", "", second)).setup;
+  EXPECT_EQ(setup.medium.field.kind, FieldKind::none);
+  ASSERT_TRUE(setup.medium.second_field);
+  EXPECT_EQ(setup.medium.second_field->kind, FieldKind::gaussian_plume);
+  EXPECT_DOUBLE_EQ(setup.medium.thickness, 28e-3);  // seven radii
+  EXPECT_TRUE(build_scene(setup).second_medium);
+  EXPECT_THAT(refused_piv(second), told("remove it, or change experiment"));
+  EXPECT_THAT(refused_piv(piv_text(
+                  "", "", "", "[medium.second_field]\nkind = \"sinusoid\"\namplitude_kg_m3 = 5\nwavelength_mm = 3\n")),
+              told("makes the density negative"));
+  std::string const shock = "kind = \"normal_shock\"\nmach = 2\nupstream_density_kg_m3 = 1\nshock_thickness_mm = 1\n";
+  EXPECT_THAT(refused_piv(piv_text("", "", "kind = \"normal_shock\"\n", "[medium.field]\n" + shock + second)),
+              told("which is steady"));
+}
+
 // An absurd number of particles is told with the memory that it would take, before any is.
 TEST(PivSetup, CountsTheMemoryOfParticles) {
   gladstone::Setup const setup =

@@ -6,6 +6,7 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/fourier_plan.h"
 #include "analysis/correlation/known_tiles.h"
+#include "analysis/correlation/lane_fourier.h"
 #include "analysis/correlation/window_peak.h"
 #include "render/base/contracts.h"
 #include "render/base/parallel.h"
@@ -21,8 +22,14 @@ class PairwiseCorrelation {
  public:
   PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
                       KnownTiles const& tiles)
-      : job_(job), pair_(job.pair), grid_(job.grid), x_(x), y_(y), tiles_(tiles), plan_(make_fourier_plan(x.size)) {
-    std::size_t const values = static_cast<std::size_t>(x.size) * x.size;
+      : job_(job),
+        pair_(job.pair),
+        grid_(job.grid),
+        x_(x),
+        y_(y),
+        tiles_(tiles),
+        plan_(make_fourier_plan(lane_fourier_size(x.size))) {
+    std::size_t const values = static_cast<std::size_t>(plan_->size()) * plan_->size();
     pixels_.resize(values);
     window_.resize(values);
     spectrum_[0].resize(values);
@@ -49,7 +56,7 @@ class PairwiseCorrelation {
   /// Fills window_ and returns the factor that makes the plane a correlation coefficient; 0 where there is nothing
   /// to correlate.
   double load(std::size_t index, WindowCorrelation& result) {
-    int const size = x_.size;
+    int const size = x_.size, pitch = plan_->size();
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
     WindowView<float> view{};
@@ -79,13 +86,12 @@ class PairwiseCorrelation {
     }
     float const mean_reference = sums.reference / sums.weight, mean_flow = sums.flow / sums.weight;
     float* out = reinterpret_cast<float*>(pixels_.data());
-    std::fill(out, out + 2 * static_cast<std::size_t>(view.begin_y) * size, 0.0f);
-    std::fill(out + 2 * static_cast<std::size_t>(view.end_y) * size, out + 2 * pixels_.size(), 0.0f);
+    std::fill(out, out + 2 * pixels_.size(), 0.0f);
     WindowEnergy<float> energy;
     for (int j = view.begin_y; j < view.end_y; ++j)
-      energy += load_row(view, j, mean_reference, mean_flow, out + 2 * static_cast<std::size_t>(j) * size);
+      energy += load_row(view, j, mean_reference, mean_flow, out + 2 * static_cast<std::size_t>(j) * pitch);
     std::copy(pixels_.begin(), pixels_.end(), window_.begin());
-    double const scale = plane_scale(energy, pair_.contrast, grid_.window_px, size);
+    double const scale = plane_scale(energy, pair_.contrast, grid_.window_px, pitch);
     if (scale == 0.0) result.outcome = WindowCorrelation::Outcome::no_signal;
     return scale;
   }
@@ -93,7 +99,7 @@ class PairwiseCorrelation {
   /// Writes the cross spectra of both windows, C0 + i C1, to window_. An absent window has scale 0 and a finite
   /// spectrum left over from before.
   void join(double const* scale) {
-    int const size = x_.size;
+    int const size = plan_->size();
     double const scale0 = scale[0], scale1 = scale[1];
     for (int j = 0; j <= size / 2; ++j) {
       // the rows j = 0 and size/2 are their own mirrors: each column is then written twice, with equal values
@@ -121,7 +127,7 @@ class PairwiseCorrelation {
   void pick(std::size_t index, double const* values, WindowCorrelation& result) const {
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
     int const row = static_cast<int>(index / static_cast<std::size_t>(grid_.columns));
-    PlaneView<double> const plane{values, x_.size, 2};
+    PlaneView<double> const plane{values, plan_->size(), 2};
     PeakList<double> const found = find_peaks(plane, job_.search_radius_px);
     if (found.count == 0) {
       result.outcome = WindowCorrelation::Outcome::no_peak;
@@ -152,8 +158,9 @@ class PairwiseCorrelation {
 
 }  // namespace
 
-/// The same planes as scc by OpenCV's transforms in double precision over squares of twice the window, one pair of
-/// windows after the other: slow, and what the fast methods are compared with.
+/// The same planes as scc by OpenCV's transforms in double precision over squares of twice the window (or the next
+/// length that scc has: Gaussian windows wrap at their rim, and do so alike), one pair of windows after the other:
+/// slow, and what the fast methods are compared with.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) {
   InterrogationGrid const& grid = job.grid;
   int const radius = job.search_radius_px;

@@ -1,0 +1,40 @@
+#include <cmath>
+
+#include "analysis/preparation/frame_changes.h"
+#include "render/base/vec.h"
+
+namespace gladstone {
+namespace {
+
+/// Whether a point lies inside a polygon: a ray to the right crosses its sides an odd number of times.
+bool is_inside(std::vector<Vec2d> const& corners, Vec2d p) {
+  bool inside = false;
+  for (std::size_t k = 0, before = corners.size() - 1; k < corners.size(); before = k++) {
+    Vec2d const a = corners[before], b = corners[k];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
+
+FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
+  constexpr std::size_t fewest = 3, most = 10000;
+  std::vector<double> const x = table.number_list("x_px", {}, fewest, most);
+  std::vector<double> const y = table.number_list("y_px", {}, fewest, most);
+  for (char const* key : {"x_px", "y_px"})
+    if (!table.has(key)) table.problem(key, "is missing (a polygon needs its corners); give three or more numbers");
+  if (!x.empty() && !y.empty() && x.size() != y.size())
+    table.problem("y_px", "has another number of corners than x_px (each corner has both); give as many");
+  std::vector<Vec2d> corners;
+  for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) corners.push_back({x[k], y[k]});
+  return [corners](PreparedFrames& frames) {
+    for (int j = 0; j < frames.known.rows(); ++j)
+      for (int i = 0; i < frames.known.columns(); ++i)
+        if (!corners.empty() && is_inside(corners, {static_cast<double>(i), static_cast<double>(j)}))
+          frames.known(i, j) = 0.0;
+  };
+}
+
+}  // namespace gladstone

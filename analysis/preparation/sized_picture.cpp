@@ -1,0 +1,19 @@
+#include "analysis/preparation/sized_picture.h"
+
+#include <fmt/format.h>
+
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+
+namespace gladstone {
+
+Image<double> read_sized_picture(std::string const& file, Image<double> const& frame) {
+  Image<double> picture = read_image(file);
+  if (picture.columns() != frame.columns() || picture.rows() != frame.rows())
+    throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (pixel by pixel they belong "
+                                      "together); give a picture of that size",
+                                      picture.columns(), picture.rows(), frame.columns(), frame.rows()));
+  return picture;
+}
+
+}  // namespace gladstone

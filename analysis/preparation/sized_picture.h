@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "render/base/image.h"
+
+namespace gladstone {
+
+/// Reads a picture that is to have the frames' size. @throws DataError where it cannot be read, or has another
+Image<double> read_sized_picture(std::string const& file, Image<double> const& frame);
+
+}  // namespace gladstone

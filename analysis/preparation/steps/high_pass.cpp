@@ -1,0 +1,24 @@
+#include <opencv2/imgproc.hpp>
+
+#include "analysis/preparation/frame_changes.h"
+#include "analysis/preparation/grey_levels.h"
+
+namespace gladstone {
+
+FrameChange read_high_pass(SetupTable& table, FramePreparation&) {
+  double const sigma_px = table.number("sigma_px", 10.0, Range::positive(512.0));
+  return [sigma_px](PreparedFrames& frames) {
+    // over known pixels alone: their sum over the sum of their weights
+    cv::Mat1d weight;
+    cv::GaussianBlur(view_of<cv::Mat1d>(frames.known), weight, {}, sigma_px);
+    for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
+      cv::Mat1d sum, average;
+      cv::GaussianBlur(levels.mul(known), sum, {}, sigma_px);
+      cv::divide(sum, weight, average);
+      levels -= average;
+      levels.setTo(0.0, known < 0.5);
+    });
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,26 @@
+#include <algorithm>
+#include <opencv2/core.hpp>
+
+#include "analysis/preparation/frame_changes.h"
+#include "analysis/preparation/grey_levels.h"
+
+namespace gladstone {
+
+FrameChange read_intensity_cap(SetupTable& table, FramePreparation&) {
+  double const deviations = table.number("deviations", 2.0, Range::positive());
+  return [deviations](PreparedFrames& frames) {
+    for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
+      std::vector<double> values;
+      for (int j = 0; j < levels.rows; ++j)
+        for (int i = 0; i < levels.cols; ++i)
+          if (known(j, i) != 0.0) values.push_back(levels(j, i));
+      auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      cv::Scalar mean, deviation;
+      cv::meanStdDev(levels, mean, deviation, known > 0.5);
+      cv::min(levels, *middle + deviations * deviation[0], levels);
+    });
+  };
+}
+
+}  // namespace gladstone

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "cuda/device/device_images.cuh"
+#include "render/scene/spot.h"
+
+/// Light of single rays, laid down by a warp each.
+namespace gladstone::cuda {
+
+inline constexpr int warp_size = 32;
+inline constexpr unsigned int whole_warp = 0xffffffffu;
+
+/// Lays down one ray's spot by a warp.
+__device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units, int frame,
+                                     DeviceImages const& images) {
+  if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return;
+  int const half = spot.half_width(), width = 2 * half + 1;
+  int const column = static_cast<int>(floor(p.x + 0.5)) - half, row = static_cast<int>(floor(p.y + 0.5)) - half;
+  auto const gaussian = [&](double place, int pixel) {
+    double const left = (pixel - 0.5 - place) / spot.gaussian.sigma;
+    return GaussianSpot<double>::edge_value(left + 1 / spot.gaussian.sigma) - GaussianSpot<double>::edge_value(left);
+  };
+  for (int k = threadIdx.x % warp_size; k < width * width; k += warp_size) {
+    int const i = k % width, j = k / width;
+    double share = 1;
+    if (spot.model == SpotModel::airy) {
+      share = spot.airy.share(p.x - (column + half), p.y - (row + half), j, i);
+    } else if (spot.model != SpotModel::none) {
+      share = gaussian(p.x, column + i) * gaussian(p.y, row + j);
+    }
+    add_light(images, static_cast<Frame>(frame), column + i, row + j, whole_units(units * share));
+  }
+}
+
+/// Lays down, one after the other, the spots of those of a warp's rays that nothing else took.
+/// @tparam Launch has spot, sign and images
+template <class Launch>
+__device__ void lay_down_spots(Launch const& launch, bool mine, RayHit<double> const& hit, int frame) {
+  for (unsigned int rest = __ballot_sync(whole_warp, mine); rest != 0; rest &= rest - 1) {
+    int const lane = __ffs(static_cast<int>(rest)) - 1;
+    Vec2d const p{__shfl_sync(whole_warp, hit.pixel.x, lane), __shfl_sync(whole_warp, hit.pixel.y, lane)};
+    double const weight = __shfl_sync(whole_warp, hit.weight, lane);
+    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, frame, launch.images);
+  }
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,189 @@
+#include "cuda/device/block_sum.cuh"
+#include "cuda/device/launch.h"
+#include "cuda/rays/hit_window.cuh"
+#include "cuda/rays/spot_patch.cuh"
+
+namespace gladstone::cuda {
+namespace {
+
+constexpr int most_threads = source_threads;
+
+/// What a block has of a particle at a pulse.
+struct BlockShare {
+  std::uint64_t particle;  ///< of the batch
+  int pulse;
+  std::uint64_t first, last;  ///< of its rays
+  Vec2d origin;
+};
+
+/// Traces the rays of a block's share. Seen rays are counted and lay down light; the sums are of seen and ambient.
+template <class Medium>
+__device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
+                            PulseAim const& aim, BlockShare const& share, HitWindow const& window,
+                            SpotPatch const& patch, unsigned int* counts, RaySums& sums, double& bend2) {
+  bool const lit = launch.images.light[0] != nullptr;
+  auto const& particles = launch.pulses[share.pulse];
+  auto const enter = [&share](RayHit<double> const& hit, CentroidSum<double>& sum) {
+    if (hit.weight != 0) sum.add(hit.pixel - share.origin, hit.weight, reaches_sensor_plane(hit.status));
+  };
+  // whole warps go round, for what they lay down together
+  for (std::uint64_t of_block = share.first; of_block < share.last; of_block += blockDim.x) {
+    std::uint64_t const j = of_block + threadIdx.x;
+    RayHit<double> seen;
+    bool alone = false;  // whether neither window nor patch takes its light
+    if (j < share.last) {
+      Vec2d const at = place_of_ray(launch.choice, launch.first + share.particle, j);
+      AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, share.particle, at);
+      seen = trace_ray(camera, medium, launch.tracing, aimed.ray, aimed.weight);
+      RayHit<double> ambient = seen;
+      if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
+        AimedRay<double> const straight = aimed_ray(launch, particles, aim.ambient, share.particle, at);
+        ambient = trace_ray(camera, NoMedium<double>{}, launch.tracing, straight.ray, straight.weight);
+        if (seen.status <= RayStatus::vignetted && ambient.status <= RayStatus::vignetted) {
+          Vec2d const bend = seen.at_lens - ambient.at_lens;
+          bend2 = fmax(bend2, dot(bend, bend));
+        }
+      }
+      enter(seen, sums.hits[0]);
+      enter(ambient, sums.hits[1]);
+      atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(seen.status), 1u);
+      alone = lit && seen.weight != 0 && !window.take(seen.pixel, seen.weight);
+    }
+    if (patch.light) {
+      alone =
+          !patch.take(launch.spot, seen.pixel, alone ? launch.sign * seen.weight * launch.images.units_per_weight : 0);
+    }
+    if (lit) lay_down_spots(launch, alone, seen, share.pulse);
+  }
+}
+
+template <class Medium>
+__global__ void __launch_bounds__(most_threads, 3)
+    trace_particles_kernel(ParticlesLaunch const __grid_constant__ launch, Medium const __grid_constant__ medium,
+                           AimState const state, PulseAim const* const aims, Vec2d const* const origins,
+                           std::uint32_t const* const listed, std::uint64_t const count, ParticlesTraced const traced) {
+  extern __shared__ __align__(16) unsigned char dynamic[];
+  __shared__ unsigned int counts[frame_count * ray_status_count];
+  SharedParts const parts(dynamic, launch, blockDim.x);
+  if (threadIdx.x < frame_count * ray_status_count) counts[threadIdx.x] = 0;
+  parts.fill(launch, blockDim.x);
+  __syncthreads();
+  CameraView<double> camera = launch.camera;
+  camera.elements = parts.elements;
+  HitSplineView spline = launch.spline;
+  spline.share = parts.share;
+  std::uint64_t const shares = launch.shares();
+  unsigned int const scramblings = launch.scramblings();
+  for (std::uint64_t item = blockIdx.x; item < count * shares; item += gridDim.x) {
+    std::uint64_t const at = listed ? listed[item / shares] : item / shares, part = item % shares;
+    PulseAim const& aim = aims[at];
+    if (aim.state != state) continue;
+    std::uint64_t const first = part * ParticlesLaunch::most_rays_of_block;
+    BlockShare const share{at / frame_count, static_cast<int>(at % frame_count), first,
+                           min(launch.rays, first + ParticlesLaunch::most_rays_of_block), origins[at / frame_count]};
+    HitWindow window;
+    SpotPatch patch;
+    if (parts.nodes != nullptr && aim.window_px > 0) {
+      window = {parts.nodes,
+                aim.window_px * spline.per_px,
+                spline.per_px,
+                aim.left,
+                aim.top,
+                HitWindow::units_per_weight(aim.most_weight, min(launch.rays, ParticlesLaunch::most_rays_of_block)),
+                aim.most_weight};
+      window.clear();
+    } else if (launch.patch_px > 0 && aim.window_px > 0) {
+      patch = SpotPatch(dynamic + SharedParts::bytes(launch, blockDim.x), aim);
+      patch.clear();
+    }
+    __syncthreads();
+    RaySums sums;
+    double bend2 = 0;
+    trace_share(launch, camera, medium, aim, share, window, patch, counts, sums, bend2);
+    if (bend2 > 0 && state == AimState::wide) {
+      atomicMax(reinterpret_cast<unsigned long long*>(traced.bend2 + at),
+                static_cast<unsigned long long>(__double_as_longlong(bend2)));
+    }
+    __syncthreads();
+    block_sums(sums, parts.sums, scramblings);
+    if (threadIdx.x < scramblings) {
+      traced.sums[(at * shares + part) * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
+    }
+    __syncthreads();
+    if (window.nodes) window.flush(spline, parts.rows_seen, launch.images, share.pulse, launch.sign);
+    if (patch.light) patch.flush(launch.images, share.pulse);
+  }
+  __syncthreads();
+  if (threadIdx.x < frame_count * ray_status_count && counts[threadIdx.x] > 0) {
+    auto const more = static_cast<long long>(counts[threadIdx.x]);
+    // numbers wrap around where they are taken back
+    atomicAdd(traced.ends + threadIdx.x, static_cast<unsigned long long>(launch.sign < 0 ? -more : more));
+  }
+}
+
+constexpr int seeing_threads = 64;
+
+__global__ void __launch_bounds__(seeing_threads)
+    see_particles_kernel(ParticlesLaunch const __grid_constant__ launch, PulseAim const* const aims,
+                         Vec2d const* const origins, RaySums const* const sums, std::uint64_t const count,
+                         DotTruth* const truth, DotTruth* const ambient) {
+  std::uint64_t const i = std::uint64_t{blockIdx.x} * seeing_threads + threadIdx.x;
+  if (i >= count) return;
+  RaySums through_medium[most_scramblings], without[most_scramblings];
+  int const scramblings = launch.scramblings();
+  for (int pulse = 0; pulse < frame_count; ++pulse) {
+    std::uint64_t const at = frame_count * i + pulse;
+    AimState const state = aims[at].state;
+    if (state != AimState::filled && state != AimState::wide) continue;
+    for (std::uint64_t share = 0; share < launch.shares(); ++share) {
+      for (int k = 0; k < scramblings; ++k) {
+        RaySums const& here = sums[(at * launch.shares() + share) * scramblings + k];
+        through_medium[k].hits[pulse] += here.hits[0];
+        if (ambient) without[k].hits[pulse] += here.hits[1];
+      }
+    }
+  }
+  truth[i] = source_truth(through_medium, scramblings, origins[i]);
+  if (ambient) ambient[i] = source_truth(without, scramblings, origins[i]);
+}
+
+}  // namespace
+
+int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double> const& medium) {
+  std::size_t const there = std::visit(
+      [](auto const& held) { return most_shared_bytes(trace_particles_kernel<std::remove_cvref_t<decltype(held)>>); },
+      medium);
+  constexpr std::size_t most_bytes = 64 * 1024;
+  constexpr int most_nodes = 88;
+  if (!launch.spline.share || there < most_bytes) return 0;
+  ParticlesLaunch probe = launch;
+  for (probe.most_window_px = most_nodes / launch.spline.per_px; probe.most_window_px > 0; --probe.most_window_px) {
+    if (SharedParts::bytes(probe, most_threads) <= most_bytes) break;
+  }
+  return probe.most_window_px;
+}
+
+void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
+                     PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+                     ParticlesTraced const& traced) {
+  std::visit(
+      [&](auto const& held) {
+        auto* const kernel = trace_particles_kernel<std::remove_cvref_t<decltype(held)>>;
+        int const threads = launch.threads();
+        std::size_t const shared = SharedParts::bytes(launch, threads) + SpotPatch::bytes(launch.patch_px);
+        allow_shared_bytes(kernel, shared);
+        kernel<<<blocks_for(kernel, threads, shared, count * launch.shares()), threads, shared>>>(
+            launch, held, state, aims, origins, listed, count, traced);
+        check_launch("trace_particles");
+      },
+      medium);
+}
+
+void see_particles(ParticlesLaunch const& launch, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
+                   std::uint64_t count, DotTruth* truth, DotTruth* ambient) {
+  auto const blocks = static_cast<unsigned int>((count + seeing_threads - 1) / seeing_threads);
+  see_particles_kernel<<<blocks, seeing_threads>>>(launch, aims, origins, sums, count, truth, ambient);
+  check_launch("see_particles");
+}
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,43 @@
+#include "render/ideal_images/ideal_images.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gladstone {
+
+Vec2d IdealImages::project(Vec3d place) const {
+  CameraSetup const& camera = scene_->setup.camera;
+  double const scale = scene_->imaging.image_distance / (scene_->setup.z_a - place.z) / camera.pixel_pitch;
+  return {0.5 * (camera.columns - 1) + scale * place.x, 0.5 * (camera.rows - 1) - scale * place.y};
+}
+
+// The image of a point at the distance Z - z from the lens, in front of the plane in focus at Z by z, is a disc of
+// diameter M D |z| / (Z - z) on the sensor (exact for a thin lens; Olsen & Adrian 2000).
+double IdealImages::largest_blur_px(Particles const& particles) const {
+  double most = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    for (int pulse = 0; pulse < 2; ++pulse) {
+      double const z = particles.place[pulse][i].z;
+      if (particles.photons[pulse][i] > 0) most = std::max(most, std::abs(z) / (scene_->setup.z_a - z));
+    }
+  }
+  ImagingGeometry const& imaging = scene_->imaging;
+  return imaging.magnification * imaging.entrance_pupil * most / scene_->setup.camera.pixel_pitch;
+}
+
+std::string reason_against_ideal_images(Setup const& setup) {
+  if (!setup.piv) return "only particles have ideal images";
+  if (setup.medium.field.kind != FieldKind::none || setup.medium.second_field) return "a medium bends rays";
+  if (!setup.on_bench()) return "the camera is no ideal thin lens on the Z axis with nothing before it";
+  if (setup.lens.focus != Focus::target) return "the lens is not focused on the sheet";
+  if (!std::isfinite(setup.lens.f_number)) return "the lens has no stop, and so no diffraction";
+  if (setup.lens.spot == SpotModel::none || setup.lens.spot == SpotModel::airy) return "the spot is not Gaussian";
+  return "";
+}
+
+std::optional<IdealImages> ideal_images(Scene const& scene) {
+  if (!reason_against_ideal_images(scene.setup).empty()) return std::nullopt;
+  return IdealImages(scene);
+}
+
+}  // namespace gladstone

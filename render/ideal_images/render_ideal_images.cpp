@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/base/parallel.h"
+#include "render/ideal_images/ideal_images.h"
+#include "render/scene/particle_scene.h"
+
+namespace gladstone {
+namespace {
+
+constexpr int frames = 2;
+constexpr int band_rows = 64;  // of a picture that one thread draws at a time
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A particle's image: where, and how much light.
+struct Spot {
+  Vec2d at;          ///< [px]
+  double light = 0;  ///< in units of scene.photon_unit
+};
+
+/// The numbers of the spots that reach into every band of a picture's rows, in rising order: each band's sums have one
+/// order, whoever draws it.
+class Bands {
+ public:
+  Bands(std::vector<Spot> const& spots, int rows, int half)
+      : begin_(static_cast<std::size_t>((rows + band_rows - 1) / band_rows) + 1) {
+    auto const each = [&](auto const& enter) {
+      for (std::size_t i = 0; i < spots.size(); ++i) {
+        if (!(spots[i].light > 0)) continue;
+        double const first = std::floor(spots[i].at.y + 0.5) - half, last = first + 2 * half;
+        if (last < 0 || first > rows - 1) continue;
+        int const from = static_cast<int>(std::max(first, 0.0)) / band_rows;
+        int const to = static_cast<int>(std::min(last, rows - 1.0)) / band_rows;
+        for (int band = from; band <= to; ++band) enter(static_cast<std::size_t>(band), i);
+      }
+    };
+    each([this](std::size_t band, std::size_t) { ++begin_[band + 1]; });
+    for (std::size_t band = 1; band < begin_.size(); ++band) begin_[band] += begin_[band - 1];
+    listed_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    each([&](std::size_t band, std::size_t spot) { listed_[next[band]++] = static_cast<std::uint32_t>(spot); });
+  }
+  std::size_t count() const { return begin_.size() - 1; }
+  std::uint32_t const* begin(std::size_t band) const { return listed_.data() + begin_[band]; }
+  std::uint32_t const* end(std::size_t band) const { return listed_.data() + begin_[band + 1]; }
+
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<std::uint32_t> listed_;
+};
+
+/// Adds the spots of a band to its rows.
+void draw_band(std::vector<Spot> const& spots, Bands const& bands, std::size_t band, GaussianSpot<double> const& shape,
+               Image<double>& image) {
+  int const half = shape.half_width(), width = 2 * half + 1;
+  int const top = static_cast<int>(band) * band_rows, bottom = std::min(top + band_rows, image.rows());
+  std::vector<double> across(static_cast<std::size_t>(width)), down(across.size());
+  for (std::uint32_t const* spot = bands.begin(band); spot != bands.end(band); ++spot) {
+    Spot const& one = spots[*spot];
+    if (!(std::abs(one.at.x) < 1e8)) continue;
+    Footprint const print = shape.footprint(one.at);
+    int const left = std::max(0, print.column), right = std::min(image.columns(), print.column + width);
+    if (left >= right) continue;
+    shape.shares(one.at.x, print.column, width, across.data());
+    shape.shares(one.at.y, print.row, width, down.data());
+    double const* const from = across.data() + (left - print.column);
+    for (int row = std::max(top, print.row); row < std::min(bottom, print.row + width); ++row) {
+      double const light = one.light * down[static_cast<std::size_t>(row - print.row)];
+      double* const to = &image(left, row);
+      for (int i = 0; i < right - left; ++i) to[i] += light * from[i];
+    }
+  }
+}
+
+Image<double> draw(std::vector<Spot> const& spots, Scene const& scene) {
+  CameraSetup const& camera = scene.setup.camera;
+  GaussianSpot<double> const shape{scene.spot_sigma_px()};
+  Image<double> image(camera.columns, camera.rows);
+  Bands const bands(spots, camera.rows, shape.half_width());
+  parallel_for(bands.count(), [&](std::size_t band) { draw_band(spots, bands, band, shape, image); });
+  return image;
+}
+
+/// Truth of particles whose images are these, with light in photons.
+GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, frames> const& spots) {
+  GroundTruth truth;
+  truth.resize(particles.size());
+  truth.position_m = particles.place[0];
+  truth.particles.second_m = particles.place[1];
+  truth.particles.diameter_m = particles.diameter;
+  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px})
+    theory->assign(truth.size(), {nan, nan});
+  parallel_chunks(truth.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Spot const &first = spots[0][i], &second = spots[1][i];
+      bool const both = first.light > 0 && second.light > 0;
+      truth.reference_px[i] = first.light > 0 ? first.at : Vec2d{nan, nan};
+      truth.displacement_px[i] = both ? second.at - first.at : Vec2d{nan, nan};
+      truth.displacement_error_px[i] = both ? Vec2d{} : Vec2d{nan, nan};
+      truth.displacement_std_px[i] = second.light > 0 ? Vec2d{} : Vec2d{nan, nan};
+      truth.flux[i] = {first.light, second.light};
+    }
+  });
+  truth.particles.reference_ambient_px = truth.reference_px;
+  truth.particles.displacement_ambient_px = truth.displacement_px;
+  return truth;
+}
+
+}  // namespace
+
+Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
+                              RenderImages images) {
+  Scene const& scene = ideal.scene();
+  LightThroughLens const through_lens(scene, light);
+  std::array<std::vector<Spot>, frames> spots;
+  for (std::size_t pulse = 0; pulse < frames; ++pulse) {
+    spots[pulse].resize(particles.size());
+    parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        double const photons = particles.photons[pulse][i];
+        if (!(photons > 0)) continue;
+        Vec3d const place = particles.place[pulse][i];
+        spots[pulse][i] = {ideal.project(place), photons * through_lens(place, i, static_cast<int>(pulse))};
+      }
+    });
+  }
+  Rendering rendering;
+  rendering.table = TableState::by_rays;
+  rendering.method = RenderMethod::formula;
+  rendering.truth = truth_of(particles, spots);
+  if (images == RenderImages::no) return rendering;
+  for (auto& frame : spots) {
+    for (Spot& spot : frame) spot.light /= scene.photon_unit;
+  }
+  rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
+  if (images == RenderImages::kept) {
+    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+    rendering.light = {};
+  }
+  return rendering;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "render/base/setup_table.h"
+
+namespace gladstone {
+
+/// The key `file` of a table: the name of a file that is there.
+inline std::string existing_file(SetupTable& table) {
+  std::string const file = table.required_path("file");
+  if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {
+    table.problem("file", "there is no file " + file + "; relative names start at the setup file's folder");
+  }
+  return file;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <limits>
+
+#include "render/light/sources.h"
+#include "render/scene/truth_error.h"
+
+namespace gladstone {
+
+/// The truth of a source from the sums over its scramblings. @param scramblings 0: NaN, no ray of it gets through
+GLADSTONE_HD inline DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin) {
+  using std::sqrt;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  DotTruth truth;
+  truth.origin = origin;
+  truth.error = {nan, nan};
+  RaySums all;
+  for (int i = 0; i < scramblings; ++i) all += of_scramblings[i];
+  for (int frame = 0; frame < frame_count; ++frame) truth.hits[frame] = all.hits[frame];
+  if (scramblings > 1) {
+    Vec2d const squares = truth_errors(of_scramblings, scramblings, all).rays2;
+    truth.error = {sqrt(squares.x), sqrt(squares.y)};
+  }
+  return truth;
+}
+
+/// What a camera sees of one particle.
+struct ParticleSeen {
+  DotTruth truth;    ///< first pulse and second, through the medium
+  DotTruth ambient;  ///< the same without it
+};
+
+}  // namespace gladstone

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/base/units.h"
+#include "render/scene/build_camera.h"
+#include "render/scene/setup_checks.h"
+
+/// What stands where between the dots and the lens: nothing may stand within another.
+namespace gladstone {
+namespace {
+
+constexpr double touching = 1e-9;  // [m] faces may touch
+
+/// Along Z, of a medium whose ends the setup tells (those of a volume stand in its file).
+struct MediumEnds {
+  double first, last;  ///< [m]
+};
+std::optional<MediumEnds> medium_ends(Setup const& setup) {
+  FieldKind const kind = setup.medium.field.kind;
+  if (kind == FieldKind::none || (kind == FieldKind::file && !setup.medium.field.extrude)) return std::nullopt;
+  double const half = setup.medium.thickness / 2, centre = setup.medium.field.center.z;
+  return MediumEnds{centre - half, centre + half};
+}
+
+/// Where light meets the camera: the first vertex of its lens, or its principal plane where it has no surfaces.
+Vec3d front_of(Setup const& setup) { return setup.camera_pose().point_outwards({0, 0, paraxial_camera(setup).front}); }
+
+/// The camera's axis, by its way from the lens' front, negative before it [m].
+struct CameraAxis {
+  Vec3d front, along;
+
+  double meets(Vec3d point, Vec3d normal) const { return dot(point - front, normal) / dot(along, normal); }
+  double meets_plane(double z) const { return meets({0, 0, z}, {0, 0, 1}); }
+};
+
+/// One of the things that light meets, and where along the camera's axis.
+struct OnTheWay {
+  std::string name;
+  double enters, leaves;  ///< [m]
+  bool window;
+};
+
+}  // namespace
+
+void cross_check_geometry(Setup const& setup, SetupTable geometry) {
+  std::optional<MediumEnds> const medium = medium_ends(setup);
+  if (!medium) return;
+  double const mm = unit::millimetre;
+  if (!setup.piv && -setup.z_d > medium->first) {
+    geometry.problem("z_d_mm",
+                     fmt::format("the dots lie {} the medium, which begins {:.6g} mm from its mid-plane; increase "
+                                 "z_d_mm beyond {:.6g} or make the medium thinner{}",
+                                 -setup.z_d < medium->last ? "inside" : "in front of", setup.medium.thickness / 2 / mm,
+                                 -medium->first / mm, metres_hint(setup.z_d)));
+  }
+  if (double const front = front_of(setup).z; front < medium->last) {
+    bool const by_vertex = geometry.has("z_front_mm");
+    geometry.problem(
+        by_vertex ? "z_front_mm" : "z_a_mm",
+        fmt::format("the lens lies inside the medium, which ends {:.6g} mm from its mid-plane{}; increase "
+                    "{} or make the medium thinner{}",
+                    setup.medium.thickness / 2 / mm,
+                    setup.lens.prescription ? fmt::format(" (its first vertex lies at Z = {:.6g} mm)", front / mm) : "",
+                    by_vertex ? "z_front_mm" : "z_a_mm", metres_hint(setup.z_a)));
+  }
+}
+
+void cross_check_windows(Setup const& setup, SetupTable root) {
+  if (setup.windows.empty()) return;
+  CameraAxis const axis{front_of(setup), setup.camera_pose().z};
+  double const infinite = std::numeric_limits<double>::infinity();
+  std::vector<OnTheWay> way;  // in the order light is to meet them
+  if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), false});
+  for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
+    for (std::size_t i = 0; i < setup.windows.size(); ++i) {
+      WindowSetup const& window = setup.windows[i];
+      if (window.side != side) continue;
+      Pose<double> const middle = window.pose();
+      Vec3d const half = 0.5 * window.thickness * middle.z;
+      way.push_back(
+          {fmt::format("window {} (side = \"{}\", Z = {:.6g} mm)", i + 1,
+                       side == WindowSide::target ? "target" : "camera", window.position.z / unit::millimetre),
+           axis.meets(middle.origin - half, middle.z), axis.meets(middle.origin + half, middle.z), true});
+    }
+    if (auto const medium = medium_ends(setup); medium && side == WindowSide::target) {
+      way.push_back({"the medium", axis.meets_plane(medium->first), axis.meets_plane(medium->last), false});
+    }
+  }
+  way.push_back({"the lens", 0, infinite, false});
+  OnTheWay const* last = &way.front();  // what reaches furthest so far
+  for (OnTheWay const& next : way) {
+    if (&next != last && next.enters < last->leaves - touching && (next.window || last->window)) {
+      root.problem("window", fmt::format("light is to meet {} and then {}, but along the camera's axis the one begins "
+                                         "{:.6g} mm before the other ends; move one of them, or say the other side",
+                                         last->name, next.name, (last->leaves - next.enters) / unit::millimetre));
+    }
+    if (next.leaves > last->leaves) last = &next;
+  }
+}
+
+}  // namespace gladstone

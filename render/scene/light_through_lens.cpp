@@ -1,0 +1,39 @@
+#include <cmath>
+
+#include "render/base/units.h"
+#include "render/light/lambert_sphere.h"
+#include "render/scene/particle_scene.h"
+
+namespace gladstone {
+
+LightThroughLens::LightThroughLens(Scene const& scene, ParticleLight light)
+    : scene_(scene), light_(light), sheet_(laser_sheet<double>(scene.setup.piv->laser)) {
+  if (scene.mie) mie_ = scene.mie->view<double>();
+}
+
+double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t particle, int pulse) const {
+  if (light_ == ParticleLight::equal) return 1;
+  if (scene_.setup.piv->particles.scattering == ParticleScattering::gaussian) {
+    double const d = scene_.particles.diameter[particle];
+    return d * d / 16;  // of its disc, over all directions
+  }
+  LightWave<double> const wave = sheet_.wave(place, pulse);
+  if (scene_.mie) return mie_.cross_section(particle, direction, wave);
+  return LambertSpheres<double>{scene_.particles.diameter.data()}.cross_section(particle, direction, wave);
+}
+
+double LightThroughLens::operator()(Vec3d place, std::size_t particle, int pulse) const {
+  Vec3d const way = scene_.camera.aim_plane.origin - place;
+  double const far = length(way), pupil = scene_.imaging.entrance_pupil;
+  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // chief rays are worth a square metre
+  double const facing = std::abs(dot(scene_.camera.aim_plane.z, way)) / far;
+  return cross_section(place, way / far, particle, pulse) * area * facing / (far * far);
+}
+
+double photons_through_lens(Scene const& scene, std::size_t particle, int pulse) {
+  LightThroughLens const through_lens(scene);
+  Particles const& particles = scene.particles;
+  return particles.photons[pulse][particle] * through_lens(particles.place[pulse][particle], particle, pulse);
+}
+
+}  // namespace gladstone

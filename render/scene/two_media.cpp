@@ -1,0 +1,99 @@
+#include "render/scene/two_media.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t sampled = 256;  // particles whose scatter is measured
+constexpr std::size_t keys = 4;       // that it is measured over
+
+/// Some of many particles, spread evenly over the list, and the scene whose particles they are.
+Particles some_of(Particles const& all) {
+  std::size_t const count = std::min(all.size(), sampled);
+  Particles some = all;
+  for (std::size_t i = 0; i < count; ++i) some.copy(i * all.size() / count, i);
+  some.resize(count);
+  return some;
+}
+
+/// Displacements, from the first medium's first pulse to the second one's second.
+std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& second) {
+  std::vector<Vec2d> found(first.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i] = second.reference_px[i] + second.displacement_px[i] - first.reference_px[i];
+  }
+  return found;
+}
+
+/// Standard error of a displacement, rms over some particles and components; NaN: unknown. What particles scatter does
+/// not matter to it, so that their numbers need not be those that the scattering knows.
+double standard_error(Renderer& renderer, Scene const& scene, Particles const& particles) {
+  Particles const some = some_of(particles);
+  std::array<std::vector<Vec2d>, keys> found;
+  for (std::size_t key = 0; key < keys; ++key) {
+    Scene first = scene;
+    first.setup.render.seed += 7919 * (key + 1);
+    Scene second = at_second_pulse(first);
+    first.second_medium.reset();
+    auto const trace = [&](Scene& one) {
+      return renderer.render_particles(one, some, ParticleLight::equal, RenderImages::no).truth;
+    };
+    found[key] = displacements(trace(first), trace(second));
+  }
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    Vec2d mean{};
+    for (auto const& one : found) mean += one[i] / static_cast<double>(keys);
+    if (!std::isfinite(mean.x)) continue;
+    for (auto const& one : found) sum += dot(one[i] - mean, one[i] - mean);
+    count += 2.0 * (keys - 1);
+  }
+  return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+Scene at_second_pulse(Scene const& scene) {
+  GLADSTONE_EXPECTS(scene.second_medium);
+  Scene second = scene;
+  second.medium = *scene.second_medium;
+  second.second_medium.reset();
+  second.setup.medium.field = *scene.setup.medium.second_field;
+  second.setup.medium.second_field.reset();
+  return second;
+}
+
+Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const& particles, ParticleLight light,
+                              RenderImages images) {
+  RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
+  Scene first = scene, second = at_second_pulse(scene);
+  first.second_medium.reset();
+  Rendering all = renderer.render_particles(first, particles, light, lit);
+  Rendering const later = renderer.render_particles(second, particles, light, lit);
+  GroundTruth& truth = all.truth;
+  truth.displacement_px = displacements(truth, later.truth);
+  truth.displacement_std_px = later.truth.displacement_std_px;
+  double const error = lit == RenderImages::no ? 0 : standard_error(renderer, scene, particles);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    truth.flux[i].y = later.truth.flux[i].y;
+    truth.rays[i][1] = later.truth.rays[i][1];
+    truth.displacement_error_px[i] = {error, error};
+  }
+  all.statuses[1] = later.statuses[1];
+  all.rays += later.rays;
+  all.light.flow = later.light.flow;
+  if (images == RenderImages::kept) {
+    all.kept = std::make_shared<HostLight const>(std::move(all.light));
+    all.light = {};
+  }
+  scene.pupil_margin = std::max(first.pupil_margin, second.pupil_margin);
+  return all;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,120 @@
+#include "analysis/correlation/ensemble.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/correlation/correlator.h"
+#include "render/base/error.h"
+#include "tests/analysis/support/particle_pair.h"
+
+namespace gladstone {
+namespace {
+
+constexpr Vec2d ensemble_shift{2.3, -1.6};
+
+PairSequence sequence_of(std::size_t pairs, testing::ParticleSettings const& settings) {
+  return {pairs, [settings](std::size_t k) {
+            testing::ParticleSettings one = settings;
+            one.seed = settings.seed + k;
+            testing::ParticlePair pair = testing::render_particle_pair(one, [](Vec2d) { return ensemble_shift; });
+            return HostFrames(std::move(pair.reference), std::move(pair.flow));
+          }};
+}
+
+struct EnsembleErrors {
+  double gross = 0.0;  ///< part of the vectors that are off by more than 1 px
+  double rms = 0.0;    ///< of the others, per component [px]
+};
+
+EnsembleErrors errors_of(DisplacementField const& field) {
+  EnsembleErrors errors;
+  double good = 0.0;
+  for (Vec2d const& d : field.raw_px) {
+    Vec2d const error = d - ensemble_shift;
+    if (!(length(error) < 1.0)) {
+      errors.gross += 1.0 / static_cast<double>(field.size());
+      continue;
+    }
+    errors.rms += 0.5 * dot(error, error);
+    good += 1.0;
+  }
+  errors.rms = std::sqrt(errors.rms / good);
+  return errors;
+}
+
+CorrelationSettings settings_of(std::vector<int> const& windows) {
+  CorrelationSettings settings;
+  settings.window_px = windows;
+  settings.overlap = 0.5;
+  return settings;
+}
+
+// The mean of one plane is that plane.
+TEST(Ensemble, OfOnePairIsThePair) {
+  CorrelationSettings const settings = settings_of({32, 16});
+  PairSequence const one = sequence_of(1, {.noise = 0.02});
+  HostFrames const frames = one.frames(0);
+  DisplacementField const alone = make_correlator(settings)->correlate(frames.reference(), frames.flow());
+  DisplacementField const together = correlate_ensemble(one, settings);
+  ASSERT_EQ(alone.size(), together.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(alone.raw_px[i].x, together.raw_px[i].x);
+    EXPECT_EQ(alone.status[i], together.status[i]);
+  }
+}
+
+// Two particles in a window of 16 px and noise of a tenth of their light: windows of single pairs are gross errors by
+// the dozen. The mean of n planes has the peak of one and chance peaks lower by the root of n. Errors of the others
+// come from independent particles and noise: lower by that root, too, a quarter of 16 pairs, if not by as much as 1.5
+// more for what they share, the three-point fit's own error.
+TEST(Ensemble, FindsWhatNoSinglePairShows) {
+  testing::ParticleSettings const seeding{.particles_per_px = 2.0 / 256.0, .noise = 0.1, .seed = 11};
+  CorrelationSettings const settings = settings_of({16});
+  EnsembleErrors const alone = errors_of(correlate_ensemble(sequence_of(1, seeding), settings));
+  EnsembleErrors const together = errors_of(correlate_ensemble(sequence_of(16, seeding), settings));
+  EXPECT_GT(alone.gross, 0.1);
+  EXPECT_LT(together.gross, 0.005);
+  EXPECT_LT(together.rms, 1.5 * alone.rms / 4.0);
+}
+
+TEST(Ensemble, OfSeveralPassesFollowsTheFrames) {
+  for (char const* method : {"scc", "rpc", "zncc"}) {
+    CorrelationSettings settings = settings_of({32, 16});
+    settings.method = method;
+    EnsembleErrors const errors =
+        errors_of(correlate_ensemble(sequence_of(6, {.particles_per_px = 3.0 / 256.0, .noise = 0.05}), settings));
+    EXPECT_EQ(errors.gross, 0.0) << method;
+    EXPECT_LT(errors.rms, 0.04) << method;
+  }
+}
+
+// A window that is unknown in one pair counts in the others.
+TEST(Ensemble, TakesWhatEachPairHas) {
+  PairSequence const whole = sequence_of(4, {});
+  PairSequence const holed{4, [&](std::size_t k) {
+                             HostFrames const frames = whole.frames(k);
+                             Image<double> reference = frames.reference();
+                             if (k % 2 == 1)
+                               for (int j = 0; j < 80; ++j)
+                                 for (int i = 0; i < 80; ++i) reference(i, j) = std::nan("");
+                             return HostFrames(std::move(reference), frames.flow());
+                           }};
+  DisplacementField const field = correlate_ensemble(holed, settings_of({32}));
+  EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::valid),
+            static_cast<std::ptrdiff_t>(field.size()));
+  EXPECT_EQ(errors_of(field).gross, 0.0);
+}
+
+TEST(Ensemble, RefusesWhatIsOfSinglePairs) {
+  CorrelationSettings settings = settings_of({32});
+  settings.method = "opencv";
+  EXPECT_THROW(correlate_ensemble(sequence_of(2, {}), settings), DataError);
+  settings.method = "scc";
+  settings.uncertainty = "image_matching";
+  EXPECT_THROW(correlate_ensemble(sequence_of(2, {}), settings), DataError);
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,270 @@
+#include "analysis/preparation/frame_preparation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+
+#include "analysis/correlation/correlator.h"
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+#include "render/base/units.h"
+#include "tests/analysis/support/particle_pair.h"
+
+namespace gladstone {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+FramePreparation preparation_of(std::string const& tables) {
+  SetupDocument document = SetupDocument::from_text(tables, "case.toml", ::testing::TempDir());
+  SetupTable correlate = document.root().table("correlate");
+  FramePreparation preparation = read_frame_preparation(correlate);
+  document.finish();
+  return preparation;
+}
+
+HostFrames prepared(Image<double> const& reference, Image<double> const& flow, std::string const& tables) {
+  return prepare_frames(HostFrames(reference, flow), preparation_of(tables));
+}
+
+Image<double> picture_of(int side, std::function<double(int, int)> const& level) {
+  Image<double> picture(side, side);
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) picture(i, j) = level(i, j);
+  return picture;
+}
+
+std::vector<std::string> problems_of(std::string const& tables) {
+  try {
+    preparation_of(tables);
+  } catch (SetupError const& error) {
+    std::vector<std::string> texts;
+    for (SetupProblem const& problem : error.problems()) texts.push_back(problem.where + ": " + problem.message);
+    return texts;
+  }
+  return {};
+}
+
+// A rectangle between pixel centres holds a number of them that can be counted; a triangle of corners (0, 0), (40, 0),
+// (0, 40), moved by less than a pixel, those with i + j < 40.
+TEST(PolygonMask, LeavesOutThePixelsInside) {
+  Image<double> const frame(64, 64, 5.0);
+  HostFrames const box = prepared(frame, frame,
+                                  "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [9.5, 19.5, 19.5, 9.5]\n"
+                                  "y_px = [4.5, 4.5, 14.5, 14.5]\n");
+  HostFrames const corner = prepared(frame, frame,
+                                     "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [-0.3, 39.7, -0.3]\n"
+                                     "y_px = [-0.3, -0.3, 39.7]\n");
+  for (int j = 0; j < 64; ++j)
+    for (int i = 0; i < 64; ++i) {
+      EXPECT_EQ(std::isnan(box.reference()(i, j)), i >= 10 && i < 20 && j >= 5 && j < 15) << i << ' ' << j;
+      EXPECT_EQ(std::isnan(corner.flow()(i, j)), i + j < 40) << i << ' ' << j;
+    }
+  EXPECT_DOUBLE_EQ(known_part(box), 1.0 - 100.0 / 4096.0);
+}
+
+TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
+  std::string const file = ::testing::TempDir() + "gladstone_mask.tif";
+  Image<std::uint16_t> mask(32, 32, 255);
+  for (int j = 0; j < 32; ++j) mask(7, j) = 0;
+  write_tiff(file, mask, {});
+  std::string const table = "[[correlate.mask]]\nkind = \"image\"\nfile = \"gladstone_mask.tif\"\n";
+  EXPECT_THAT(preparation_of(table).files, ElementsAre(file));
+  Image<double> const frame(32, 32, 5.0);
+  HostFrames const frames = prepared(frame, frame, table);
+  for (int i = 0; i < 32; ++i) EXPECT_EQ(std::isnan(frames.flow()(i, 3)), i == 7);
+  Image<double> const other(30, 32, 5.0);
+  EXPECT_THROW(prepared(other, other, table), DataError);
+  std::filesystem::remove(file);
+}
+
+// What is bright in one frame is left out of both; what was unknown stays so.
+TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
+  Image<double> reference(32, 32, 10.0), flow = reference;
+  reference(3, 4) = 200.0;
+  flow(20, 21) = 201.0;
+  flow(9, 9) = std::numeric_limits<double>::quiet_NaN();
+  HostFrames const frames = prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nabove_dn = 199.5\n");
+  EXPECT_TRUE(std::isnan(frames.flow()(3, 4)) && std::isnan(frames.reference()(20, 21)));
+  EXPECT_TRUE(std::isnan(frames.reference()(9, 9)));
+  EXPECT_DOUBLE_EQ(known_part(frames), 1.0 - 3.0 / 1024.0);
+  EXPECT_DOUBLE_EQ(known_part(prepared(reference, flow, "[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 500\n")),
+                   0.0);
+}
+
+// A wave of length L passes a Gaussian average of sigma by exp(-2 pi^2 sigma^2/L^2), and the rest is left. OpenCV's
+// kernel is cut at four sigma, exp(-8) = 3e-4, and sampled.
+TEST(HighPass, LeavesOfAWaveWhatTheGaussianTakes) {
+  for (double const length : {16.0, 64.0}) {
+    Image<double> const wave =
+        picture_of(128, [&](int i, int) { return 100.0 + 50.0 * std::sin(2.0 * pi * i / length); });
+    HostFrames const frames = prepared(wave, wave, "[[correlate.preprocess]]\nkind = \"high_pass\"\nsigma_px = 6\n");
+    double const left = 1.0 - std::exp(-2.0 * pi * pi * 36.0 / (length * length));
+    for (int i = 40; i < 88; ++i)
+      EXPECT_NEAR(frames.reference()(i, 60), left * 50.0 * std::sin(2.0 * pi * i / length), 0.1) << length;
+  }
+}
+
+// Light beneath a mask reaches nothing: a level field is level up to the mask's edge.
+TEST(HighPass, LooksAtKnownPixelsAlone) {
+  Image<double> const frame = picture_of(64, [](int i, int) { return i < 20 ? 4000.0 : 100.0; });
+  HostFrames const frames = prepared(frame, frame,
+                                     "[[correlate.mask]]\nkind = \"intensity\"\nabove_dn = 1000\n"
+                                     "[[correlate.preprocess]]\nkind = \"high_pass\"\n");
+  EXPECT_TRUE(std::isnan(frames.reference()(19, 5)));
+  for (int i = 20; i < 64; ++i) EXPECT_NEAR(frames.reference()(i, 5), 0.0, 1e-9);
+}
+
+// One bright pixel of n: mean h/n, variance h^2 (n - 1)/n^2, median 0.
+TEST(IntensityCap, IsTheMedianAndSomeDeviations) {
+  Image<double> frame(20, 20, 0.0);
+  frame(5, 6) = 1000.0;
+  HostFrames const frames =
+      prepared(frame, frame, "[[correlate.preprocess]]\nkind = \"intensity_cap\"\ndeviations = 3\n");
+  EXPECT_NEAR(frames.flow()(5, 6), 3.0 * 1000.0 * std::sqrt(399.0) / 400.0, 1e-9);
+  EXPECT_EQ(frames.flow()(0, 0), 0.0);
+}
+
+// Illumination as a gain and an offset drops out of both, up to the 16 bits that CLAHE works in.
+TEST(LocalContrast, DoesNotDependOnTheLight) {
+  testing::ParticlePair const pair =
+      testing::render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
+  Image<double> bright = pair.flow;
+  for (double& level : bright) level = 7.0 * level + 30.0;
+  for (auto const& [kind, tolerance] : {std::pair("min_max", 1e-12), std::pair("clahe", 700.0)}) {
+    HostFrames const frames =
+        prepared(pair.flow, bright, std::string("[[correlate.preprocess]]\nkind = \"") + kind + "\"\n");
+    for (int j = 0; j < 128; ++j)
+      for (int i = 0; i < 128; ++i)
+        EXPECT_NEAR(frames.reference()(i, j), frames.flow()(i, j), tolerance) << kind << i << ' ' << j;
+  }
+}
+
+double contrast_of(Image<double> const& frame, int first, int end) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (int j = 0; j < frame.rows(); ++j)
+    for (int i = first; i < end; ++i) {
+      sum += frame(i, j);
+      squares += frame(i, j) * frame(i, j);
+      count += 1.0;
+    }
+  return std::sqrt(squares / count - sum * sum / (count * count));
+}
+
+// A half with an eighth of the other's light: afterwards its contrast is at least twice that part of the other's.
+TEST(LocalContrast, BringsUpWhatIsFaint) {
+  testing::ParticlePair pair =
+      testing::render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
+  for (int j = 0; j < 128; ++j)
+    for (int i = 64; i < 128; ++i) pair.flow(i, j) /= 8.0;
+  for (char const* settings :
+       {"kind = \"min_max\"\nleast_contrast = 0.01", "kind = \"clahe\"\ntile_px = 32\nclip_limit = 20"}) {
+    HostFrames const frames =
+        prepared(pair.flow, pair.flow, std::string("[[correlate.preprocess]]\n") + settings + '\n');
+    EXPECT_GT(contrast_of(frames.flow(), 76, 128), 0.25 * contrast_of(frames.flow(), 0, 52)) << settings;
+  }
+}
+
+// Dots that move over a pattern that stands still and is brighter: without a background windows find the pattern, with
+// it the dots. The smallest level of a sequence is the pattern alone where no dot is always.
+TEST(Background, TakesOffWhatStandsStill) {
+  auto const moved = [](std::uint64_t seed, Vec2d by) {
+    return testing::render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = seed}, [by](Vec2d) { return by; });
+  };
+  testing::ParticlePair const still = testing::render_particle_pair({.seed = 99}, [](Vec2d) { return Vec2d{}; });
+  std::string const folder = ::testing::TempDir();
+  std::string list;
+  Image<double> first[2];
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    testing::ParticlePair const dots = moved(seed, {2.0, -1.0});
+    std::string const names[2] = {"gladstone_a" + std::to_string(seed) + ".tif",
+                                  "gladstone_b" + std::to_string(seed) + ".tif"};
+    for (int k = 0; k < 2; ++k) {
+      Image<std::uint16_t> levels(256, 256);
+      for (std::size_t i = 0; i < levels.size(); ++i)
+        levels.data()[i] = static_cast<std::uint16_t>(
+            std::lround((k == 0 ? dots.reference : dots.flow).data()[i] + 4.0 * still.reference.data()[i]));
+      write_tiff(folder + names[k], levels, {});
+      if (seed == 1) first[k] = read_image(folder + names[k]);
+    }
+    list += (list.empty() ? "" : ", ") + ("{ reference = \"" + names[0] + "\", flow = \"" + names[1] + "\" }");
+  }
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  auto const median_u = [&](FramePair const& frames) {
+    DisplacementField const field = make_correlator(settings)->correlate_pair(frames);
+    std::vector<double> u;
+    for (Vec2d const& d : field.displacement_px) u.push_back(d.x);
+    std::nth_element(u.begin(), u.begin() + static_cast<std::ptrdiff_t>(u.size() / 2), u.end());
+    return u[u.size() / 2];
+  };
+  EXPECT_NEAR(median_u(HostFrames(first[0], first[1])), 0.0, 0.1);
+  for (char const* subtract : {"minimum", "mean"}) {
+    std::string const table = std::string("[[correlate.preprocess]]\nkind = \"background\"\nsubtract = \"") + subtract +
+                              "\"\nframe = [" + list + "]\n";
+    EXPECT_NEAR(median_u(prepared(first[0], first[1], table)), 2.0, 0.05) << subtract;
+  }
+  for (int seed = 1; seed <= 6; ++seed)
+    for (char const* frame : {"a", "b"})
+      std::filesystem::remove(folder + "gladstone_" + frame + std::to_string(seed) + ".tif");
+}
+
+// Windows that are masked by half or more have no vector, and the others the vectors of the frames as they are.
+TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
+  testing::ParticlePair const pair = testing::render_particle_pair({}, [](Vec2d) { return Vec2d{1.3, -0.4}; });
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  settings.weighting = "uniform";
+  DisplacementField const all = make_correlator(settings)->correlate(pair.reference, pair.flow);
+  DisplacementField const some = make_correlator(settings)->correlate_pair(
+      prepared(pair.reference, pair.flow,
+               "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [-1, 99.5, 99.5, -1]\ny_px = [-1, -1, 300, 300]\n"));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    double const left = all.position_px[i].x - 15.5, share = std::clamp((100.0 - left) / 32.0, 0.0, 1.0);
+    EXPECT_EQ(some.status[i] == VectorStatus::masked, share > 0.5) << left;
+    // float sums about another level
+    if (share == 0.0) {
+      EXPECT_LT(length(some.raw_px[i] - all.raw_px[i]), 1e-4);
+    }
+  }
+}
+
+TEST(FramePreparation, SaysWhereItsSettingsAreWrong) {
+  EXPECT_THAT(problems_of("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [0, 1, 2]\ny_px = [0, 1, 2, 3]\n"),
+              ElementsAre(HasSubstr("case.toml:4:1: ")));
+  EXPECT_THAT(problems_of("[[correlate.mask]]\nkind = \"polygn\"\n"), ElementsAre(HasSubstr("case.toml:2:1: ")));
+  EXPECT_THAT(problems_of("[[correlate.mask]]\nx_px = [0, 1, 2]\ny_px = [0, 1, 2]\n"),
+              ElementsAre(HasSubstr("is missing")));
+  EXPECT_THAT(problems_of("[[correlate.mask]]\nkind = \"intensity\"\n"), ElementsAre(HasSubstr("above_dn, below_dn")));
+  EXPECT_THAT(problems_of("[[correlate.mask]]\nkind = \"image\"\n"), ElementsAre(HasSubstr("is missing")));
+  EXPECT_THAT(problems_of("[[correlate.preprocess]]\nkind = \"background\"\n"), ElementsAre(HasSubstr("is missing")));
+  EXPECT_THAT(problems_of("[[correlate.preprocess]]\nkind = \"high_pass\"\nsigma_px = 0\n"),
+              ElementsAre(HasSubstr("case.toml:3:1: ")));
+}
+
+// What vectors.h5 keeps of its settings is the text with all defaults: it is to mean the same again.
+TEST(FramePreparation, ReadsBackWhatItUnderstood) {
+  auto const resolved = [](std::string const& text) {
+    SetupDocument document = SetupDocument::from_text(text, "case.toml", "/frames");
+    SetupTable correlate = document.root().table("correlate");
+    EXPECT_EQ(read_frame_preparation(correlate).files.size(), 5u);
+    document.finish();
+    return document.resolved();
+  };
+  std::string const once = resolved(
+      "[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2, 3]\ny_px = [1, 5, 1]\n"
+      "[[correlate.mask]]\nkind = \"image\"\nfile = \"mask.tif\"\n"
+      "[[correlate.preprocess]]\nkind = \"background\"\n"
+      "frame = [{ reference = \"a.tif\", flow = \"b.tif\" }, { reference = \"c.tif\", flow = \"d.tif\" }]\n"
+      "[[correlate.preprocess]]\nkind = \"min_max\"\n");
+  EXPECT_THAT(once, HasSubstr("/frames/d.tif"));
+  EXPECT_EQ(resolved(once), once);
+}
+
+}  // namespace
+}  // namespace gladstone

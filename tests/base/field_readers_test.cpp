@@ -1,0 +1,594 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+#include "render/base/error.h"
+#include "render/base/fields/field_file.h"
+#include "render/base/hdf5_file.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// A folder of its own for each test.
+class FieldFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("field_") + info->test_suite_name() + info->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in_folder(std::string const& name) const { return (folder_ / name).string(); }
+  fs::path folder_;
+};
+
+std::vector<double> read_all(FieldSource& source) {
+  std::vector<double> values(source.grid().size());
+  source.read_planes(0, source.grid().nodes[2], values);
+  return values;
+}
+
+/// Value 100 z + 10 y + x at node (x, y, z), so that every mix-up of axes shows.
+std::vector<double> numbered(int nx, int ny, int nz) {
+  std::vector<double> values;
+  for (int z = 0; z < nz; ++z) {
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) values.push_back(100.0 * z + 10.0 * y + x);
+    }
+  }
+  return values;
+}
+
+auto refused(std::string const& file, std::string const& why) {
+  return ThrowsMessage<DataError>(AllOf(HasSubstr(file), HasSubstr(why)));
+}
+
+class JhtdbField : public FieldFiles {
+ protected:
+  using Shape = std::vector<std::size_t>;
+
+  /// One dataset after the other, closed at the end.
+  struct Dataset {
+    std::string name;
+    Shape shape;
+    std::vector<double> values;
+  };
+  std::string write(std::vector<Dataset> const& datasets) {
+    std::string const path = in_folder("cutout.h5");
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    for (auto const& dataset : datasets) {
+      writer.write(dataset.name, dataset.values, dataset.shape, "1", "test", "z, y, x");
+    }
+    writer.close();
+    return path;
+  }
+  static Dataset density(int nx = 4, int ny = 3, int nz = 2) {
+    return {"Density_0001", Shape{std::size_t(nz), std::size_t(ny), std::size_t(nx), 1}, numbered(nx, ny, nz)};
+  }
+  /// first + i step, rounded to float as in a cut-out.
+  static Dataset axis(std::string const& name, int nodes, double first, double step) {
+    Dataset dataset{name, {std::size_t(nodes)}, {}};
+    for (int i = 0; i < nodes; ++i) dataset.values.push_back(static_cast<float>(first + i * step));
+    return dataset;
+  }
+};
+
+TEST_F(JhtdbField, LayoutWithCoordinatesGivesGridAndValues) {
+  auto const source = open_field(
+      write({density(), axis("xcoor", 4, 1.0, 0.5), axis("ycoor", 3, -2.0, 0.25), axis("zcoor", 2, 0.0, 2.0)}), "");
+  EXPECT_EQ(source->name(), "Density_0001");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  // these steps and origins are exact in binary
+  EXPECT_EQ(source->grid().spacing.x, 0.5);
+  EXPECT_EQ(source->grid().spacing.y, 0.25);
+  EXPECT_EQ(source->grid().spacing.z, 2.0);
+  EXPECT_EQ(source->grid().origin.x, 1.0);
+  EXPECT_EQ(source->grid().origin.y, -2.0);
+  EXPECT_EQ(source->grid().origin.z, 0.0);
+  auto const expected = numbered(4, 3, 2);
+  auto const values = read_all(*source);
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(values[i], expected[i]);
+  std::vector<double> plane(12);
+  source->read_planes(1, 1, plane);
+  EXPECT_EQ(plane[1 + 4 * 2], 121.0f);  // x = 1, y = 2 of z = 1
+}
+
+/// A cut-out whose x and y axes name these units.
+TEST_F(JhtdbField, UnitsAreThoseOfTheAttributes) {
+  auto const with_units = [&](std::string const& x_unit, std::string const& y_unit) {
+    std::string const path = in_folder("units.h5");
+    Hdf5Writer writer(path, {"test", 1, "", 0, "cpu"});
+    Dataset const values = density(4, 3, 1);
+    writer.write(values.name, values.values, values.shape, "kg m-3", "test", "z, y, x");
+    writer.write("xcoor", axis("xcoor", 4, 0, 0.5).values, {4}, x_unit, "test", "node");
+    writer.write("ycoor", axis("ycoor", 3, 0, 0.5).values, {3}, y_unit, "test", "node");
+    writer.write("zcoor", axis("zcoor", 1, 0, 0.5).values, {1}, "1", "test", "node");  // a plane has no spacing along z
+    writer.close();
+    return path;
+  };
+  auto const source = open_field(with_units("m", "m"), "Density_0001");
+  EXPECT_TRUE(source->units().spaced);
+  EXPECT_EQ(source->units().length, "m");
+  EXPECT_EQ(source->units().values, "kg m-3");
+  EXPECT_THAT([&] { open_field(with_units("m", "mm"), "Density_0001"); },
+              refused("ycoor", "is in \"mm\" where \"xcoor\" is in \"m\""));
+  EXPECT_FALSE(open_field(write({density()}), "")->units().spaced);
+}
+
+TEST_F(JhtdbField, LayoutWithoutCoordinatesHasUnitSpacing) {
+  // the older client's file: a field beside the numbers of the request
+  auto const source = open_field(
+      write({{"p00000", {2, 3, 4, 1}, numbered(4, 3, 2)}, {"_size", {4}, {1, 4, 3, 2}}, {"_start", {4}, {0, 0, 0, 0}}}),
+      "");
+  EXPECT_EQ(source->name(), "p00000");
+  EXPECT_EQ(source->grid().spacing.y, 1.0);
+  EXPECT_EQ(source->grid().origin.z, 0.0);
+  EXPECT_EQ(read_all(*source)[1 + 4 * (2 + 3 * 1)], 121.0f);
+}
+
+TEST_F(JhtdbField, PlainRankThreeIsRead) {
+  auto const source = open_field(write({{"rho", {2, 3, 4}, numbered(4, 3, 2)}}), "rho");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+  EXPECT_EQ(read_all(*source)[23], 123.0f);
+}
+
+TEST_F(JhtdbField, RealCutOutIsRead) {
+  std::string const folder = GLADSTONE_DATA_DIR "/fields/";
+  for (auto const* name : {"hbdt512_kepeak_slice.h5", "hbdt512_late_slice.h5"}) {
+    auto const source = open_field(folder + name, "");
+    EXPECT_EQ(source->significant_bits(), 24) << "the database's cut-outs are floats";
+    EXPECT_EQ(source->name(), "Density_0001");
+    EXPECT_THAT(source->grid().nodes, ElementsAre(512, 512, 1));
+    // a periodic box of 2 pi in 512 nodes; coordinates rounded to float
+    EXPECT_NEAR(source->grid().spacing.x * 512, 2.0 * M_PI, 1e-5);
+    EXPECT_NEAR(source->grid().spacing.y, source->grid().spacing.x, 1e-8);
+    auto const values = read_all(*source);
+    // two fluids of densities 1 and 1.05/0.95 = 1.105 (Atwood number 0.05) mix: half and half in the box, about so in
+    // a plane of it, and beyond the two only by the overshoot of a spectral simulation
+    EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0) / 262144.0, 1.0526, 0.01);
+    EXPECT_GT(*std::min_element(values.begin(), values.end()), 0.99f);
+    EXPECT_LT(*std::max_element(values.begin(), values.end()), 1.115f);
+  }
+}
+
+TEST_F(JhtdbField, FloatCoordinatesOfAFineGridAreUniform) {
+  // 2 pi / 4096 is 0.0015; a float near 2 pi is good to 2.4e-7, 1.6e-4 of a step: more than the tolerance of 1e-4
+  int const nodes = 4096;
+  double const step = 2.0 * M_PI / nodes;
+  auto const source = open_field(write({density(nodes, 1, 1), axis("xcoor", nodes, 0.0, step)}), "");
+  EXPECT_NEAR(source->grid().spacing.x, step, 2.4e-7 / (nodes - 1));
+}
+
+TEST_F(JhtdbField, NonUniformAxisIsRefusedWithItsNameAndPlace) {
+  auto stretched = axis("ycoor", 3, 0.0, 1.0);
+  stretched.values[1] = 1.001;
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), stretched}), "");
+      },
+      refused("cutout.h5", "dataset \"ycoor\": the axis is not uniform: node 1 lies at 1.001 where 1 is expected"));
+  stretched.values[1] = 1.00005;  // half the tolerance of 1e-4 of a step
+  EXPECT_NO_THROW(open_field(write({density(), stretched}), ""));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), axis("xcoor", 4, 3.0, -1.0)}), "");
+      },
+      refused("xcoor", "coordinates do not ascend (from 3 to 0)"));
+  auto broken = axis("xcoor", 4, 0.0, 1.0);
+  broken.values[2] = std::nan("");
+  EXPECT_THAT([&] { open_field(write({density(), broken}), ""); }, refused("xcoor", "not uniform"));
+}
+
+TEST_F(JhtdbField, CoordinatesThatDoNotFitAreRefused) {
+  EXPECT_THAT(
+      [&] {
+        open_field(write({density(), axis("zcoor", 3, 0.0, 1.0)}), "");
+      },
+      refused("cutout.h5", "dataset \"zcoor\" has 3 coordinates for the 2 nodes of \"Density_0001\""));
+}
+
+TEST_F(JhtdbField, HolesAreCountedOverTheWholeField) {
+  auto field = density(4, 3, 5);
+  field.values[7] = field.values[30] = field.values[59] = -999.9;
+  auto const source = open_field(write({field}), "");
+  std::vector<double> plane(12);
+  EXPECT_NO_THROW(source->read_planes(1, 1, plane));  // nodes 12 to 23 are sound
+  EXPECT_THAT([&] { source->read_planes(0, 1, plane); },
+              refused("cutout.h5", "dataset \"Density_0001\": 3 of 60 points are holes (-999.9"));
+}
+
+TEST_F(JhtdbField, NanAndInfinityAreRefused) {
+  auto field = density();
+  field.values[3] = std::nan("");
+  field.values[4] = std::numeric_limits<double>::infinity();
+  field.values[5] = 1e300;  // infinite as a float
+  auto const source = open_field(write({field}), "");
+  EXPECT_THAT([&] { read_all(*source); }, refused("Density_0001", "3 of 24 points are nan or infinite"));
+}
+
+// n of air differs from 1 by 2.7e-4: what a gradient is made of stands behind the seventh digit, where a float ends.
+TEST_F(FieldFiles, DoublesKeepAllTheirDigits) {
+  std::vector<double> const values{1 + 2.7e-4, 1 + 2.7e-4 + 1e-12, 0.1, -1.0 / 3};
+  std::string const h5 = in_folder("n.h5");
+  Hdf5Writer writer(h5, {"test", 1, "", 0, "cpu"});
+  writer.write("n", values, {1, 2, 2}, "1", "test", "z, y, x");
+  writer.close();
+  std::string const nrrd = in_folder("n.nrrd");
+  std::ofstream(nrrd, std::ios::binary)
+      << "NRRD0004\ntype: double\ndimension: 2\nsizes: 2 2\nendian: little\nencoding: raw\n\n"
+      << std::string(reinterpret_cast<char const*>(values.data()), sizeof(double) * values.size());
+  for (auto const& path : {h5, nrrd}) {
+    auto const source = open_field(path, "");
+    EXPECT_EQ(read_all(*source), values) << path;
+    EXPECT_EQ(source->significant_bits(), 53) << path;
+  }
+}
+
+TEST_F(JhtdbField, WrongRankNamesTheShape) {
+  auto const plane = Dataset{"plane", {3, 4}, numbered(4, 3, 1)};
+  EXPECT_THAT([&] { open_field(write({plane}), "plane"); },
+              refused("cutout.h5", "dataset \"plane\" of shape [3, 4] has rank 2"));
+  auto const velocity = Dataset{"Velocity_0001", {1, 1, 2, 3}, {1, 2, 3, 4, 5, 6}};
+  EXPECT_THAT([&] { open_field(write({velocity}), "Velocity_0001"); },
+              refused("cutout.h5", "dataset \"Velocity_0001\" of shape [1, 1, 2, 3] holds 3 values a point"));
+  EXPECT_THAT(
+      [&] {
+        open_field(write({velocity, plane}), "");
+      },
+      refused("cutout.h5",
+              "has no scalar field, [nz, ny, nx] or [nz, ny, nx, 1]; it has \"Velocity_0001\" [1, 1, "
+              "2, 3], \"plane\" [3, 4]"));
+}
+
+TEST_F(JhtdbField, SeveralFieldsAskForAName) {
+  auto second = density();
+  second.name = "Density_0002";
+  std::string const path = write({density(), second});
+  EXPECT_THAT(
+      [&] { open_field(path, ""); },
+      refused("cutout.h5", "has several fields; say which with dataset = \"Density_0001\" or \"Density_0002\""));
+  EXPECT_THAT([&] { open_field(path, "Density_001"); },
+              refused("cutout.h5", "has no dataset \"Density_001\"; did you mean \"Density_0001\"?"));
+}
+
+TEST_F(FieldFiles, UnknownFormatsAndMissingFilesAreNamed) {
+  EXPECT_THAT([&] { open_field(in_folder("absent.h5"), ""); }, refused("absent.h5", "does not exist"));
+  std::ofstream(in_folder("field.vtk")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("field.vtk"), ""); },
+              refused("field.vtk", "known are .h5, .hdf5, .vti, .nrrd, .nhdr"));
+  std::ofstream(in_folder("text.H5")) << "x";
+  EXPECT_THAT([&] { open_field(in_folder("text.H5"), ""); }, refused("text.H5", "is not an HDF5 file"));
+  EXPECT_THAT([&] { open_field(folder_.string(), ""); }, refused("", "is a folder"));
+}
+
+class NrrdField : public FieldFiles {
+ protected:
+  static std::string header(std::string const& fields) { return "NRRD0005\n# a comment\nnote:=ignored\n" + fields; }
+
+  /// The numbers in a stored type, in the byte order asked for.
+  template <class Stored>
+  static std::string bytes(std::vector<double> const& values, bool big_endian = false) {
+    std::string text;
+    for (double const value : values) {
+      auto const stored = static_cast<Stored>(value);
+      char raw[sizeof(Stored)];
+      std::memcpy(raw, &stored, sizeof(Stored));
+      if (big_endian == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof(Stored));
+      text.append(raw, sizeof(Stored));
+    }
+    return text;
+  }
+
+  std::string write(std::string const& name, std::string const& content) const {
+    std::ofstream(in_folder(name), std::ios::binary) << content;
+    return in_folder(name);
+  }
+
+  std::string gzipped(std::string const& content) const {
+    std::string const path = in_folder("scratch.gz");
+    gzFile const file = gzopen(path.c_str(), "wb");
+    gzwrite(file, content.data(), static_cast<unsigned>(content.size()));
+    gzclose(file);
+    std::ifstream stored(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stored), {}};
+  }
+
+  void expect_numbered(std::string const& path) const {
+    SCOPED_TRACE(path);
+    auto const source = open_field(path, "");
+    ASSERT_THAT(source->grid().nodes, ElementsAre(4, 3, 2));
+    auto const expected = numbered(4, 3, 2);
+    auto const values = read_all(*source);
+    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], expected[i]);
+  }
+};
+
+constexpr char grid_432[] = "dimension: 3\nsizes: 4 3 2\n";
+
+TEST_F(NrrdField, EveryTypeAndByteOrderIsRead) {
+  auto const values = numbered(4, 3, 2);  // up to 123: fits every type
+  auto const check = [&](std::string const& type, std::string const& little, std::string const& big) {
+    for (bool const is_big : {false, true}) {
+      std::string const fields = "type: " + type + "\nencoding: raw\nendian: " + (is_big ? "big" : "little") + "\n";
+      expect_numbered(write("field.nrrd", header(grid_432 + fields) + "\n" + (is_big ? big : little)));
+    }
+  };
+  check("float", bytes<float>(values), bytes<float>(values, true));
+  check("double", bytes<double>(values), bytes<double>(values, true));
+  check("int8", bytes<std::int8_t>(values), bytes<std::int8_t>(values, true));
+  check("uchar", bytes<std::uint8_t>(values), bytes<std::uint8_t>(values, true));
+  check("short", bytes<std::int16_t>(values), bytes<std::int16_t>(values, true));
+  check("unsigned short", bytes<std::uint16_t>(values), bytes<std::uint16_t>(values, true));
+  check("int", bytes<std::int32_t>(values), bytes<std::int32_t>(values, true));
+  check("uint32", bytes<std::uint32_t>(values), bytes<std::uint32_t>(values, true));
+  check("long long", bytes<std::int64_t>(values), bytes<std::int64_t>(values, true));
+  check("uint64_t", bytes<std::uint64_t>(values), bytes<std::uint64_t>(values, true));
+}
+
+TEST_F(NrrdField, AttachedAndDetachedRawAndGzipAreRead) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  expect_numbered(write("a.nrrd", header(type + "encoding: raw\n") + "\n" + data));
+  expect_numbered(write("b.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data)));
+  fs::create_directory(folder_ / "sub");
+  write("sub/data.raw", data);
+  expect_numbered(write("c.nhdr", header(type + "encoding: raw\ndata file: sub/data.raw\n")));
+  write("data.raw.gz", gzipped(data));
+  expect_numbered(write("d.nhdr", header(type + "encoding: gz\r\ndatafile: data.raw.gz\r\n")));
+}
+
+TEST_F(NrrdField, SkippedLinesAndBytesAreLeftOut) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  std::string const raw = type + "encoding: raw\ndata file: data\n";
+  write("data", "line one\nline two\nabc" + data + "trailing");
+  expect_numbered(write("a.nhdr", header(raw + "line skip: 2\nbyte skip: 3\n")));
+  write("data", "whatever stands before" + data);
+  expect_numbered(write("b.nhdr", header(raw + "byte skip: -1\n")));
+  write("data", "line\n" + gzipped("abc" + data));
+  expect_numbered(write("c.nhdr", header(type + "encoding: gzip\ndata file: data\nlineskip: 1\nbyteskip: 3\n")));
+}
+
+TEST_F(NrrdField, CompressedPlanesComeInAnyOrder) {
+  std::string const content = header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" +
+                              gzipped(bytes<float>(numbered(4, 3, 2)));
+  auto const source = open_field(write("a.nrrd", content), "");
+  std::vector<double> plane(12);
+  for (int const z : {1, 0, 1, 1, 0}) {
+    source->read_planes(z, 1, plane);
+    EXPECT_EQ(plane[5], 100.0f * static_cast<float>(z) + 11.0f);
+  }
+}
+
+TEST_F(NrrdField, SpacingAndOriginComeFromEitherSpelling) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const directions = open_field(
+      write("a.nrrd", header(std::string(grid_432) +
+                             "content: rho\nspace dimension: 3\nspace directions: (0.5,0,0) (0,0.25,0) (0, 0, 2)"
+                             "\nspace origin: (1,-2,3)\n" +
+                             rest)),
+      "");
+  EXPECT_EQ(directions->name(), "rho");
+  EXPECT_EQ(directions->grid().spacing.x, 0.5);
+  EXPECT_EQ(directions->grid().spacing.y, 0.25);
+  EXPECT_EQ(directions->grid().spacing.z, 2.0);
+  EXPECT_EQ(directions->grid().origin.x, 1.0);
+  EXPECT_EQ(directions->grid().origin.y, -2.0);
+  EXPECT_EQ(directions->grid().origin.z, 3.0);
+  auto const spacings =
+      open_field(write("b.nrrd", header(std::string(grid_432) + "spacings: 0.1 0.2 nan\n" + rest)), "");
+  EXPECT_EQ(spacings->name(), "b.nrrd");
+  EXPECT_EQ(spacings->grid().spacing.y, 0.2);
+  EXPECT_EQ(spacings->grid().spacing.z, 1.0);
+  EXPECT_EQ(spacings->grid().origin.x, 0.0);
+}
+
+TEST_F(NrrdField, UnitsAreThoseOfTheHeader) {
+  std::string const rest = "type: uint8\nencoding: raw\n\n" + std::string(24, '\1');
+  auto const units = [&](std::string const& lines) {
+    return open_field(write("a.nrrd", header(std::string(grid_432) + lines + rest)), "")->units();
+  };
+  EXPECT_FALSE(units("").spaced);
+  EXPECT_EQ(units("spacings: 1 1 1\n").length, "");
+  EXPECT_EQ(units("spacings: 1 1 1\nunits: \"m\" \"m\" \"m\"\nsample units: \"kg/m^3\"\n").length, "m");
+  EXPECT_EQ(units("spacings: 1 1 1\nsample units: \"kg/m^3\"\n").values, "kg/m^3");
+  EXPECT_EQ(units("space dimension: 3\nspace units: \"um\" \"um\" \"um\"\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n")
+                .length,
+            "um");
+  EXPECT_THAT([&] { units("spacings: 1 1 1\nunits: \"m\" \"mm\" \"m\"\n"); },
+              refused("a.nrrd", "one unit for all axes"));
+}
+
+TEST_F(NrrdField, TwoDimensionsAreOnePlane) {
+  auto const source = open_field(
+      write("a.nrrd",
+            header("dimension: 2\nsizes: 4 3\nspacings: 0.5 0.5\ntype: float\nendian: little\nencoding: raw\n\n") +
+                bytes<float>(numbered(4, 3, 1))),
+      "");
+  EXPECT_THAT(source->grid().nodes, ElementsAre(4, 3, 1));
+  EXPECT_EQ(read_all(*source)[4 * 2 + 1], 21.0f);
+}
+
+TEST_F(NrrdField, TruncatedDataSayHowMuchIsThere) {
+  std::string const data = bytes<float>(numbered(4, 3, 2));  // 96 bytes
+  std::string const type = std::string(grid_432) + "type: float\nendian: little\n";
+  auto const message = "is cut short: 50 bytes of data are there and 96 are needed (sizes 4 x 3 x 2, 4 bytes a value)";
+  std::string const raw = write("raw.nrrd", header(type + "encoding: raw\n") + "\n" + data.substr(0, 50));
+  EXPECT_THAT([&] { open_field(raw, ""); }, refused("raw.nrrd", message));
+  // compressed: the stream is whole but too short ...
+  std::string const few = write("few.nrrd", header(type + "encoding: gzip\n") + "\n" + gzipped(data.substr(0, 50)));
+  EXPECT_THAT([&] { read_all(*open_field(few, "")); }, refused("few.nrrd", message));
+  // ... or itself cut
+  std::string const stream = gzipped(data);
+  std::string const cut =
+      write("cut.nrrd", header(type + "encoding: gzip\n") + "\n" + stream.substr(0, stream.size() - 20));
+  EXPECT_THAT([&] { read_all(*open_field(cut, "")); }, refused("cut.nrrd", "96 are needed"));
+  std::string const none = write("none.nrrd", header(type + "encoding: raw\n"));
+  EXPECT_THAT([&] { open_field(none, ""); }, refused("none.nrrd", "has no data"));
+}
+
+TEST_F(NrrdField, DamagedCompressedDataAreNoticed) {
+  std::string stream = gzipped(bytes<float>(numbered(4, 3, 2)));
+  stream[stream.size() - 6] ^= 0x55;  // in the checksum
+  std::string const path = write(
+      "bad.nrrd", header(std::string(grid_432) + "type: float\nendian: little\nencoding: gzip\n") + "\n" + stream);
+  EXPECT_THAT([&] { read_all(*open_field(path, "")); }, refused("bad.nrrd", "is damaged"));
+  std::string const plain = write(
+      "plain.nrrd", header(std::string(grid_432) + "type: uint8\nencoding: gzip\n") + "\n" + std::string(24, 'x'));
+  EXPECT_THAT([&] { read_all(*open_field(plain, "")); }, refused("plain.nrrd", "is said to be gzip, and is not"));
+}
+
+TEST_F(NrrdField, NanAndHolesAreRefused) {
+  auto values = numbered(4, 3, 2);
+  values[20] = std::nan("");
+  values[3] = -999.9;
+  std::string const path = write("a.nrrd", header(std::string(grid_432) + "type: float\nendian: big\nencoding: raw\n") +
+                                               "\n" + bytes<float>(values, true));
+  EXPECT_THAT([&] { read_all(*open_field(path, "")); },
+              refused("a.nrrd",
+                      "1 of 24 points are holes (-999.9, the database's mark for missing data), 1 of 24 points are "
+                      "nan or infinite"));
+}
+
+TEST_F(NrrdField, WhatIsNotReadIsRefusedByName) {
+  auto const refuses = [&](std::string const& fields, std::string const& why) {
+    std::string const path = write("a.nrrd", header(fields) + "\n" + std::string(24, '\1'));
+    EXPECT_THAT([&] { open_field(path, ""); }, refused("a.nrrd", why)) << fields;
+  };
+  std::string const type = "type: uint8\n", raw = "encoding: raw\n", grid = grid_432;
+  for (std::string const encoding : {"ascii", "hex", "bzip2"}) {
+    refuses(grid + type + "encoding: " + encoding + '\n', "\"encoding: " + encoding + "\" is not read here");
+  }
+  refuses(grid + type + raw + "data file: LIST\n", "names several files");
+  refuses(grid + type + raw + "data file: slice%03d.raw 1 9 1\n", "names several files");
+  refuses(grid + type + raw + "space directions: (1,0.1,0) (0,1,0) (0,0,1)\n", "is oblique");
+  refuses(grid + type + raw + "space directions: (1,0,0) (0,-1,0) (0,0,1)\n", "runs backwards");
+  refuses(grid + type + raw + "space directions: none (0,1,0) (0,0,1)\n", "must be vectors");
+  refuses(grid + type + raw + "spacings: 1 1\n", "must be 3 numbers");
+  refuses(grid + type + raw + "spacings: 1 0 1\n", "positive spacings");
+  refuses(grid + type + raw + "axis mins: 0 0 0\n", "write spacings instead");
+  refuses(grid + "type: block\n" + raw, "is no type of numbers");
+  refuses(grid + "type: float\n" + raw, "\"endian\" must be little or big");
+  refuses("dimension: 4\nsizes: 3 4 3 2\n" + type + raw, "\"dimension: 4\" must be 2 or 3");
+  refuses("dimension: 3\nsizes: 4 -3 2\n" + type + raw, "must be positive");
+  refuses("dimension: 3\nsizes: 3000000000 3 2\n" + type + raw, "is larger than any field");
+  refuses("dimension: 3\nsizes: 99999999999999999999 3 2\n" + type + raw,
+          "must be whole numbers, of 18 digits at most");
+  refuses(type + raw + "dimension: 3\n", "\"sizes\" is missing");
+  refuses(grid + type, "\"encoding\" is missing");
+  refuses("no colon here\n", "is no NRRD field");
+  std::string const foreign = write("b.nrrd", "PNG\n");
+  EXPECT_THAT([&] { open_field(foreign, ""); }, refused("b.nrrd", "is not a NRRD file"));
+  std::string const absent = write("c.nhdr", header(grid + type + raw + "data file: absent.raw\n"));
+  EXPECT_THAT([&] { open_field(absent, ""); }, refused("absent.raw", "does not exist"));
+  EXPECT_THAT([&] { open_field(absent, "Density_0001"); }, refused("c.nhdr", "leave dataset = \"Density_0001\" out"));
+}
+
+// Cut-outs of the older client have the three components of a velocity side by side.
+TEST_F(JhtdbField, VelocityHasThreeValuesAPoint) {
+  std::vector<double> values;
+  for (double const value : numbered(4, 3, 2)) values.insert(values.end(), {value, -value, value + 0.5});
+  std::string const path = write({{"Velocity_0001", {2, 3, 4, 3}, values}, density()});
+  auto const source = open_field(path, "", 3);
+  EXPECT_EQ(source->name(), "Velocity_0001");
+  EXPECT_EQ(source->values(), 3);
+  std::vector<double> plane(36);
+  source->read_planes(1, 1, plane);
+  EXPECT_TRUE(std::equal(plane.begin(), plane.end(), values.begin() + 36));
+  EXPECT_THAT([&] { open_field(path, "Density_0001", 3); },
+              refused("cutout.h5", "holds 1 values a point; a velocity has shape [nz, ny, nx, 3]"));
+  EXPECT_THAT([&] { open_field(write({density()}), "", 3); }, refused("cutout.h5", "has no velocity, [nz, ny, nx, 3]"));
+}
+
+/// Files that VTK 9.7 has written, in each of its ways: a velocity (v, -v, v + 0.5) and a density v, v = 100 z + 10 y +
+/// x, on 4 x 3 x 2 nodes whose first is number 1 along x.
+std::string vtk_file(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vti_field/" + name;
+}
+
+TEST(VtiField, IsReadInEachOfVtksWays) {
+  auto const expected = numbered(4, 3, 2);
+  for (char const* const name : {"ascii.vti", "binary.vti", "binary_blocks.vti", "appended_base64.vti",
+                                 "appended_raw.vti", "appended_raw_big_endian.vti"}) {
+    auto const velocity = open_field(vtk_file(name), "", 3);
+    EXPECT_EQ(velocity->name(), "velocity");
+    EXPECT_THAT(velocity->grid().nodes, ElementsAre(4, 3, 2));
+    EXPECT_EQ(velocity->grid().spacing, (Vec3d{0.5, 0.25, 2}));
+    EXPECT_EQ(velocity->grid().origin, (Vec3d{1, -1, 3}));
+    EXPECT_EQ(velocity->significant_bits(), 24);
+    std::vector<double> values(3 * expected.size());
+    velocity->read_planes(0, 2, values);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_EQ(values[3 * i], expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 1], -expected[i]) << name;
+      EXPECT_EQ(values[3 * i + 2], expected[i] + 0.5) << name;
+    }
+    auto const density = open_field(vtk_file(name), "density");
+    EXPECT_EQ(read_all(*density), expected) << name;
+  }
+}
+
+class VtiFiles : public FieldFiles {
+ protected:
+  /// A file of this text, opened and read.
+  void read(std::string const& text, std::string const& dataset = "", int values = 1) {
+    std::ofstream(in_folder("field.vti")) << text;
+    auto const source = open_field(in_folder("field.vti"), dataset, values);
+    std::vector<double> all(source->grid().size() * static_cast<std::size_t>(values));
+    source->read_planes(0, source->grid().nodes[2], all);
+  }
+  static std::string image(std::string const& arrays, std::string const& grid = "WholeExtent=\"0 1 0 1 0 0\"") {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\"><ImageData " + grid +
+           "><Piece Extent=\"0 1 0 1 0 0\"><PointData>" + arrays + "</PointData></Piece></ImageData></VTKFile>";
+  }
+  static std::string array(std::string const& keys, std::string const& data) {
+    return "<DataArray type=\"Float32\" " + keys + ">" + data + "</DataArray>";
+  }
+};
+
+TEST_F(VtiFiles, RefusesWhatItCannotRead) {
+  auto const refuses = [this](std::string const& text, std::string const& why, std::string const& dataset = "") {
+    EXPECT_THAT(([&] { read(text, dataset); }), refused("field.vti", why)) << text;
+  };
+  std::string const good = array("Name=\"a\" format=\"ascii\"", "1 2 3 4");
+  EXPECT_NO_THROW(read(image(good)));
+  refuses("", "is no VTK image");
+  refuses("<VTKFile type=\"RectilinearGrid\">", "holds VTK's \"RectilinearGrid\"");
+  refuses(image(""), "has no scalar field among its PointData");
+  refuses(image(good), "has no scalar field \"b\" among its PointData, which are \"a\"", "b");
+  refuses(image(good + array("Name=\"b\"", "1 2 3 4")), "say which with dataset = \"a\" or \"b\"");
+  refuses(image(array("Name=\"a\" NumberOfComponents=\"2\"", "1 2")), "holds 2 values a point where 1 are", "a");
+  refuses(image(good, "WholeExtent=\"0 2 0 1 0 0\""), "is in several pieces");
+  refuses(image(good, "WholeExtent=\"0 1 0 1\""), "is not 6 numbers");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Spacing=\"1 0 1\""), "has no usable grid");
+  refuses(image(good, "WholeExtent=\"0 1 0 1 0 0\" Direction=\"0 1 0 1 0 0 0 0 1\""), "has turned axes");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 3")), "3 of 4 numbers are there");
+  refuses(image(array("Name=\"a\" format=\"ascii\"", "1 2 nan 3")), "1 of 4 points are nan");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "AAAA")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "EAAAAAAAAAAAAAAA?AAAAAAAAAA=")), "holds other characters");
+  refuses(image(array("Name=\"a\" format=\"binary\"", "DAAAAAAAAAAAAAAAAAAAAAAAAAA=")),
+          "its length is 12 where its grid needs 16");
+  refuses(image(array("Name=\"a\" format=\"appended\" offset=\"0\"", "")), "has no data");
+  refuses("<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\">", "compressed by \"vtkLZ4DataCompressor\"");
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,240 @@
+#include <cmath>
+#include <limits>
+
+#include "cuda/device/device_memory.h"
+#include "render/base/units.h"
+#include "render/rays/ray_planning.h"
+#include "tests/cuda/cuda_renderer_fixture.h"
+#include "tests/scene/real_lens_setups.h"
+
+namespace gladstone {
+namespace {
+
+/// PIV through the lens of Table 1 at f/8, 750 mm before a Gaussian sheet, with 40 droplets in view and about it that
+/// move along all three axes.
+BosSetup droplets_setup() {
+  BosSetup setup;
+  setup.camera.columns = setup.camera.rows = 96;
+  setup.lens.f_number = 8;
+  setup.z_d = 0;
+  setup.medium.field = {};
+  PivSetup piv;
+  piv.laser.thickness = 4e-3;
+  piv.laser.divergence = 5 * unit::degree;
+  piv.laser.tilt = {0.02, -0.01};
+  piv.laser.polarization = 0.4;
+  piv.particles.amount = 40;
+  piv.particles.volume = Vec3d{5e-3, 5e-3, 5e-3};
+  piv.particles.diameter.spread = DiameterSpread::lognormal;
+  piv.particles.diameter.width = 0.4;
+  piv.flow.flow.uniform = {20, 10, 60};
+  setup.piv = piv;
+  return setup;
+}
+
+class CudaParticlesTest : public OnBothDevices<RaysMethod> {
+ protected:
+  Rendering on_device(Scene& scene, ParticleLight light = ParticleLight::scattered,
+                      RenderImages images = RenderImages::yes) {
+    return renderer_->render_particles(scene, scene.particles, light, images);
+  }
+
+  /// As expect_as_on_cpu() of dots: places to 1e-9 px, photons to 1e-9 of themselves, counts exactly, images to a level
+  /// of 16 bits. @return the widest that any particle was aimed beyond the stop [m]
+  double expect_particles_as_on_cpu(Scene scene, ParticleLight light = ParticleLight::scattered,
+                                    RenderImages images = RenderImages::yes) {
+    Scene again = scene;
+    Rendering const cpu = on_cpu_.render_particles(scene, scene.particles, light, images),
+                    gpu = on_device(again, light, images);
+    GroundTruth const &a = cpu.truth, &b = gpu.truth;
+    EXPECT_EQ(a.size(), b.size());
+    if (a.size() != b.size()) return 0;
+    EXPECT_LT(largest_difference(a.reference_px, b.reference_px), 1e-9);
+    EXPECT_LT(largest_difference(a.displacement_px, b.displacement_px), 1e-9);
+    EXPECT_LT(largest_difference(a.displacement_error_px, b.displacement_error_px), 1e-9);
+    EXPECT_LT(largest_difference(a.displacement_std_px, b.displacement_std_px), 1e-6);
+    EXPECT_LT(largest_difference(a.particles.reference_ambient_px, b.particles.reference_ambient_px), 1e-9);
+    EXPECT_LT(largest_difference(a.particles.displacement_ambient_px, b.particles.displacement_ambient_px), 1e-9);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_LE(length(a.flux[i] - b.flux[i]), 1e-9 * length(a.flux[i])) << i;
+      EXPECT_EQ(std::isnan(a.displacement_px[i].x), std::isnan(b.displacement_px[i].x)) << i;
+      seen += std::isnan(a.displacement_px[i].x) ? 0 : 1;
+    }
+    EXPECT_GT(seen, 0u);
+    EXPECT_EQ(a.rays, b.rays);
+    EXPECT_EQ(a.rays_planned, b.rays_planned);
+    EXPECT_EQ(cpu.statuses, gpu.statuses);
+    EXPECT_EQ(cpu.rays, gpu.rays);
+    EXPECT_NEAR(scene.pupil_margin, again.pupil_margin, 1e-12);
+    if (images != RenderImages::no) {
+      double const level = grey_level(cpu.light.reference);
+      EXPECT_LT(largest_difference(cpu.light.reference, gpu.light.reference), level);
+      EXPECT_LT(largest_difference(cpu.light.flow, gpu.light.flow), level);
+    }
+    return again.pupil_margin;
+  }
+
+  Scene droplets(std::uint64_t rays, std::function<void(BosSetup&)> const& change = {}) {
+    BosSetup setup = droplets_setup();
+    if (change) change(setup);
+    Scene scene = build_scene(setup);
+    plan_step_by_rays(scene);
+    scene.rays_per_dot = rays;
+    return scene;
+  }
+};
+
+FieldSetup blob() {
+  FieldSetup field;
+  field.kind = FieldKind::gaussian_blob;
+  field.amplitude = -0.8;
+  field.radius = 5e-3;
+  return field;
+}
+
+// A warp gathers the spots of few rays, a block the hits of many; of more than 16384 rays several blocks do.
+TEST_F(CudaParticlesTest, FewRaysAndMany) {
+  for (std::uint64_t const rays : {1u, 6u, 32u, 100u, 300u, 40000u}) {
+    SCOPED_TRACE(rays);
+    expect_particles_as_on_cpu(droplets(rays));
+  }
+}
+
+TEST_F(CudaParticlesTest, EveryScattering) {
+  auto const lambert = [](BosSetup& setup) { setup.piv->particles.scattering = ParticleScattering::lambert; };
+  expect_particles_as_on_cpu(droplets(64, lambert));
+  expect_particles_as_on_cpu(droplets(64), ParticleLight::equal);
+  // drops of 30 um, whose light has 170 lobes over the half circle
+  expect_particles_as_on_cpu(droplets(400, [](BosSetup& setup) { setup.piv->particles.diameter.middle = 30e-6; }));
+}
+
+TEST_F(CudaParticlesTest, InsideEveryMedium) {
+  for (FieldSetup const& field :
+       {blob(), uniform_gradient(30, 10, 5), sinusoid(0.1, 6e-3), dns_plane("late"), volume_file()}) {
+    for (std::uint64_t const rays : {48u, 300u}) {
+      expect_particles_as_on_cpu(droplets(rays, [&](BosSetup& setup) {
+        setup.medium.field = field;
+        setup.medium.thickness = 20e-3;
+        setup.medium.faces = Faces::refract;
+      }));
+    }
+  }
+}
+
+TEST_F(CudaParticlesTest, ThroughLensesOfManySurfaces) {
+  for (std::string const name : {"double_gauss", "achromat"}) {
+    SCOPED_TRACE(name);
+    auto const change = [&](BosSetup& setup) { setup.lens = real_lens_setup(name, 96, setup.lens.f_number).lens; };
+    expect_particles_as_on_cpu(droplets(64, change));
+    expect_particles_as_on_cpu(droplets(400, change));
+  }
+}
+
+TEST_F(CudaParticlesTest, ThroughWindowsAndLensletsOnATiltedSensor) {
+  expect_particles_as_on_cpu(droplets(64, [](BosSetup& setup) {
+    WindowSetup window;
+    window.side = WindowSide::camera;
+    window.index = 1.5168;
+    window.thickness = 10e-3;
+    window.position = {0, 0, 0.1};
+    window.tilt = {0.05, -0.02};
+    setup.windows = {window};
+    setup.camera.tilt = {0.03, -0.05};
+  }));
+  expect_particles_as_on_cpu(droplets(300, [](BosSetup& setup) {
+    setup.lenslets = LensletSetup{83e-6, 900e-6, 900e-6, LensletLayout::square};
+  }));
+}
+
+// A wave so fine that what fills the stop has no smooth rim: rays go to a wider disc that the host aims them to, and
+// are taken back where they are bent beyond it.
+TEST_F(CudaParticlesTest, ThatDoNotFillTheStop) {
+  for (std::uint64_t const rays : {48u, 1500u}) {
+    double const margin = expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
+      setup.medium.field = sinusoid(0.6, 1.1e-3);
+      setup.medium.thickness = 20e-3;
+      setup.lens.f_number = 2.8;
+    }));
+    EXPECT_GT(margin, 0);
+  }
+}
+
+TEST_F(CudaParticlesTest, ThroughAPinhole) {
+  expect_particles_as_on_cpu(droplets(1, [](BosSetup& setup) {
+    setup.lens.f_number = std::numeric_limits<double>::infinity();
+    setup.lens.spot = SpotModel::none;
+    setup.medium.field = blob();
+    setup.medium.thickness = 20e-3;
+  }));
+}
+
+TEST_F(CudaParticlesTest, EverySpot) {
+  // a pixel wide, so that patches and windows hold much of it
+  for (std::uint64_t const rays : {48u, 300u}) {
+    expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
+      setup.camera.pixel_pitch = 4e-6;
+      setup.lens.f_number = 16;
+    }));
+  }
+  for (SpotModel const spot : {SpotModel::none, SpotModel::airy, SpotModel::gaussian}) {
+    for (std::uint64_t const rays : {48u, 300u}) {
+      expect_particles_as_on_cpu(droplets(rays, [&](BosSetup& setup) { setup.lens.spot = spot; }));
+    }
+  }
+}
+
+// Particles before and behind the plane in focus by more than the widest patch and window: what these do not take is
+// laid down ray by ray.
+TEST_F(CudaParticlesTest, FarOutOfFocus) {
+  for (std::uint64_t const rays : {100u, 2000u}) {
+    expect_particles_as_on_cpu(droplets(rays, [](BosSetup& setup) {
+      setup.lens.f_number = 2.8;
+      setup.piv->particles.volume = Vec3d{5e-3, 5e-3, 60e-3};
+      setup.piv->laser.thickness = 80e-3;
+    }));
+  }
+}
+
+TEST_F(CudaParticlesTest, TruthAlone) {
+  for (std::uint64_t const rays : {32u, 300u}) {
+    expect_particles_as_on_cpu(droplets(rays), ParticleLight::scattered, RenderImages::no);
+  }
+}
+
+// A particle's bits hang on nothing but itself, and two runs give the same.
+TEST_F(CudaParticlesTest, GiveTheSameBits) {
+  auto const change = [](BosSetup& setup) { setup.medium.field = blob(); };
+  Scene one = droplets(100, change), other = one, alone = one;
+  Rendering const first = on_device(one), second = on_device(other);
+  EXPECT_TRUE(same_bits(first.light.reference, second.light.reference));
+  EXPECT_TRUE(same_bits(first.light.flow, second.light.flow));
+  alone.particles.resize(1);
+  Rendering const of_one = on_device(alone);
+  for (std::size_t i = 0; i < first.truth.size(); ++i) {
+    EXPECT_EQ(first.truth.flux[i], second.truth.flux[i]);
+  }
+  EXPECT_EQ(first.truth.flux[0], of_one.truth.flux[0]);
+  EXPECT_EQ(first.truth.reference_px[0], of_one.truth.reference_px[0]);
+}
+
+// Many particles pass in batches of 256 MB; to these come two images of 96 x 96 px in fixed point and as light, and the
+// table of what they scatter, 3 kB for a droplet of its own diameter.
+TEST_F(CudaParticlesTest, ManyPassInBatches) {
+  Scene scene = droplets(32, [](BosSetup& setup) {
+    setup.piv->particles.amount = 250000;
+    setup.piv->particles.diameter.spread = DiameterSpread::one;
+  });
+  cuda::DeviceMemoryLimit const limit(cuda::DeviceMemoryLimit::none);
+  expect_particles_as_on_cpu(scene);
+  EXPECT_LT(limit.most_held(), std::size_t{270} << 20);
+}
+
+// A block without the memory for windows lays every ray down by itself, to the same images.
+TEST_F(CudaParticlesTest, LittleSharedMemoryGivesTheSame) {
+  cuda::SharedMemoryLimit const limit(20000);
+  expect_particles_as_on_cpu(droplets(300));
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,86 @@
+#include <cmath>
+
+#include "render/base/source_files.h"
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class MaskedFrames : public Workplace {
+ protected:
+  void SetUp() override {
+    Workplace::SetUp();
+    ASSERT_EQ(gladstone({"render", "setup.toml", "-o", "case"}).exit_code, 0);
+  }
+  Outcome correlate(std::string const& tables) const {
+    write("config.toml", "[correlate]\nwindow_px = [16]\n" + tables);
+    return gladstone({"correlate", "case", "--config", "config.toml", "-o", "v.h5", "--json"});
+  }
+};
+
+// 64 px, of which the left half is masked: windows of 16 px that lie in it by more than half have status 2.
+TEST_F(MaskedFrames, AreRecordedWithTheVectors) {
+  Image<std::uint16_t> mask(64, 64, 1);
+  for (int j = 0; j < 64; ++j) std::fill_n(mask.data() + std::ptrdiff_t{64} * j, 32, std::uint16_t{0});
+  write_tiff(in("mask.tif").string(), mask, {});
+  Outcome const outcome = correlate(
+      "[[correlate.mask]]\nkind = \"image\"\nfile = \"mask.tif\"\n"
+      "[[correlate.preprocess]]\nkind = \"intensity_cap\"\ndeviations = 4\n");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  Hdf5Reader const file(in("v.h5").string());
+  EXPECT_EQ(file.attribute("preparation_1_sha256"), pixel_sha256(in("mask.tif").string()));
+  EXPECT_THAT(file.attribute("setup"),
+              AllOf(HasSubstr("intensity_cap"), HasSubstr("deviations = 4"), HasSubstr("mask.tif")));
+  auto const x = file.read("/x_px"), status = file.read("/status");
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(status[i] == 2.0, x[i] + 0.5 < 32.0) << x[i];
+}
+
+TEST_F(MaskedFrames, WithNothingLeftAreNoMeasurement) {
+  Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 1e9\n");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the masks leave no pixel"));
+  auto const json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["masked"], json["vectors"]);
+}
+
+TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
+  EXPECT_THAT(correlate("[[correlate.mask]]\nkind = \"image\"\nfile = \"missing.tif\"\n").err,
+              HasSubstr("missing.tif"));
+  Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2]\ny_px = [1, 2]\n");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));
+}
+
+/// Pairs of one displacement.
+class Ensembles : public MaskedFrames {};
+
+// The same pair three times says what it says once; each of its frames is named by what it holds.
+TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
+  write("config.toml", "[correlate]\nwindow_px = [16]\n");
+  std::string const a = "case/reference.tif", b = "case/flow.tif";
+  ASSERT_EQ(gladstone({"correlate", a, b, "--config", "config.toml", "-o", "one.h5"}).exit_code, 0);
+  Outcome const outcome =
+      gladstone({"correlate", "--ensemble", a, b, a, b, a, b, "--config", "config.toml", "-o", "three.h5"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  Hdf5Reader const one(in("one.h5").string()), three(in("three.h5").string());
+  EXPECT_EQ(three.attribute("flow_3_sha256"), one.attribute("flow_sha256"));
+  auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
+  ASSERT_EQ(u.size(), mean.size());
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // sums and thirds in float
+}
+
+TEST_F(Ensembles, AreOfPairs) {
+  std::string const a = "case/reference.tif", b = "case/flow.tif";
+  Outcome const odd = gladstone({"correlate", "--ensemble", a, b, a, "-o", "v.h5"});
+  EXPECT_EQ(odd.exit_code, 2);
+  EXPECT_THAT(odd.err, HasSubstr("give pairs"));
+  Outcome const many = gladstone({"correlate", a, b, a, "-o", "v.h5"});
+  EXPECT_EQ(many.exit_code, 2);
+  EXPECT_THAT(many.err, HasSubstr("--ensemble"));
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end

@@ -1,0 +1,148 @@
+#include "studies/plenoptic_views.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/rays/ray_planning.h"
+#include "render/rays/rays_renderer.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double mm = 1e-3, um = 1e-6;
+constexpr double pitch = 60 * um;
+
+/// White spheres seen from 750 mm by 105 mm at f/4 through lenslets of 60 um, that show the stop 60 um wide (d D / z_i
+/// = 280 * 26.25 / 122.1), 12 pixels of 5 um.
+Setup plenoptic_setup(LensletLayout layout) {
+  Setup setup;
+  setup.camera.columns = setup.camera.rows = 600;
+  setup.camera.pixel_pitch = 5 * um;
+  setup.lens.f_number = 4;
+  setup.z_d = 0;
+  setup.lenslets = LensletSetup{pitch, 280 * um, 280 * um, layout};
+  PivSetup piv;
+  piv.laser.profile = SheetProfile::top_hat;
+  piv.laser.thickness = 200 * mm;
+  piv.particles.scattering = ParticleScattering::lambert;
+  piv.particles.amount = 10;
+  piv.particles.volume = Vec3d{4 * mm, 4 * mm, 1 * mm};
+  setup.piv = piv;
+  return setup;
+}
+
+/// The plenoptic picture of particles of equal light at these places.
+Image<double> picture(Setup const& setup, std::vector<Vec3d> const& places) {
+  Scene scene = build_scene(setup);
+  scene.particles.resize(places.size());
+  for (int pulse = 0; pulse < 2; ++pulse) {
+    scene.particles.place[pulse] = places;
+    scene.particles.photons[pulse].assign(places.size(), 1.0);
+  }
+  scene.particles.diameter.assign(places.size(), 1e-6);
+  scene.photon_unit = 1;
+  plan_step_by_rays(scene);
+  scene.rays_per_dot = 2048;
+  return RaysRenderer()
+      .render_particles(scene, scene.particles, ParticleLight::equal, RenderImages::yes)
+      .light.reference;
+}
+
+Vec2d centroid(Image<double> const& image) {
+  double sum = 0;
+  Vec2d first{};
+  for (int row = 0; row < image.rows(); ++row) {
+    for (int column = 0; column < image.columns(); ++column) {
+      sum += image(column, row);
+      first += image(column, row) * Vec2d{static_cast<double>(column), static_cast<double>(row)};
+    }
+  }
+  return first / sum;
+}
+
+/// `across` places in either direction about the axis at this depth, whose images are so many lenslets and a share of
+/// one apart: they fall on lenslets alike.
+std::vector<Vec3d> spread_at(double z, int across, int apart, LensletLayout layout) {
+  std::vector<Vec3d> places;
+  double const lenslet = pitch / (105.0 / 645) * (750 * mm - z) / (750 * mm);  // seen there
+  double const step = (apart + 1.0 / across) * lenslet;
+  double const row = layout == LensletLayout::hexagonal ? std::sqrt(0.75) : 1;  // of lenslets, over their pitch
+  for (int i = 0; i < across; ++i) {
+    for (int j = 0; j < across; ++j) places.push_back({(i - across / 2) * step, (j - across / 2) * row * step, z});
+  }
+  return places;
+}
+
+class Views : public testing::TestWithParam<LensletLayout> {};
+
+// The image of a point moves by (1 - z_i / v) s / pitch pixels from view to view, v where the lens images it: a pixel's
+// worth of the stop (a twelfth of it) beside s is what a view is known to. The mean over 11 x 11 points, whose images
+// fall on lenslets alike, knows it to half of an eleventh of a pixel.
+TEST_P(Views, ShowTheParallaxThatGeometrySays) {
+  gladstone::Setup const setup = plenoptic_setup(GetParam());
+  PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
+  EXPECT_NEAR(camera.picture_px(), 12.04, 0.01);
+  double const z_i = 1 / (1 / 0.105 - 1 / 0.75);
+  for (double const z : {25 * mm, 0.0, -30 * mm}) {
+    Image<double> const raw = picture(setup, spread_at(z, 11, 2, GetParam()));
+    PlenopticViews const views(camera, raw);
+    Vec2d const middle = centroid(views.view({}));
+    for (Vec2d const s : {Vec2d{8 * mm, 0}, Vec2d{-5 * mm, 6 * mm}, Vec2d{0, -9 * mm}}) {
+      double const v = 1 / (1 / 0.105 - 1 / (750 * mm - z));
+      Vec2d const moved = (1 - z_i / v) / pitch * Vec2d{-s.x, s.y};  // of the picture, turned round by the lens
+      Vec2d const seen = centroid(views.view(s)) - middle;
+      EXPECT_LT(length(seen - moved), 0.05 + 0.03 * length(moved)) << z << ' ' << s.x << ' ' << s.y;
+    }
+  }
+}
+
+// Points 60 mm in front of the plane in focus are spread over parallax * D = 6.2 lenslets, some 30 pixels of a picture
+// focused there; focused on them each is gathered into a few, and 20 mm before or behind them, where they are spread
+// over two lenslets, into more. The sum of squares over the squared sum is one over the pixels that a point has.
+TEST_P(Views, AreFocusedOnAnotherPlane) {
+  gladstone::Setup const setup = plenoptic_setup(GetParam());
+  PlenopticCamera const camera = PlenopticCamera::of(setup, "test");
+  Image<double> const raw = picture(setup, spread_at(60 * mm, 5, 5, GetParam()));
+  PlenopticViews const views(camera, raw);
+  std::vector<Vec2d> const stops = places_of_stop(camera.stop_diameter, 9);
+  auto const sharpness = [&](double z) {
+    Image<double> const image = views.refocused(stops, 750 * mm - z);
+    double sum = 0, squares = 0;
+    for (double const level : image) {
+      sum += level;
+      squares += level * level;
+    }
+    return squares / (sum * sum);
+  };
+  EXPECT_GT(sharpness(60 * mm), 3 * sharpness(0));
+  EXPECT_GT(sharpness(60 * mm), 1.1 * sharpness(40 * mm));
+  EXPECT_GT(sharpness(60 * mm), 1.1 * sharpness(80 * mm));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Views, testing::Values(LensletLayout::square, LensletLayout::hexagonal));
+
+TEST(PlenopticCamera, PlacesViewsEvenlyOverTheStop) {
+  std::vector<Vec2d> const places = places_of_stop(30 * mm, 3);
+  ASSERT_EQ(places.size(), 9u);  // the corners lie at sqrt(2) / 3 of the diameter, within half of it
+  EXPECT_NEAR(length(places.front() - Vec2d{-10 * mm, 10 * mm}), 0, 1e-12);
+  EXPECT_NEAR(length(places[4]), 0, 1e-12);
+  EXPECT_EQ(places_of_stop(30 * mm, 5).size(), 21u);  // of 25 the corners lie beyond
+}
+
+TEST(PlenopticCamera, HasLensletsAndAStop) {
+  gladstone::Setup setup = plenoptic_setup(LensletLayout::square);
+  setup.lens.f_number = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(PlenopticCamera::of(setup, "test"), DataError);
+  setup = plenoptic_setup(LensletLayout::square);
+  setup.lenslets.reset();
+  EXPECT_THAT(
+      [&] { PlenopticCamera::of(setup, "case/setup.toml"); },
+      testing::ThrowsMessage<DataError>(testing::HasSubstr("case/setup.toml: its camera has no [camera.lenslets]")));
+}
+
+}  // namespace
+}  // namespace gladstone
