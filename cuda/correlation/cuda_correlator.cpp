@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "analysis/correlation/lane_fourier.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/device_array.h"
@@ -135,7 +136,7 @@ class CorrelationPlan {
 
   Pass make_pass(int pass) const {
     InterrogationGrid const grid = schedule_.grid(pass, columns_, rows_);
-    int const ghosts = ghost_nodes(grid, columns_, rows_), size = 2 * grid.window_px;
+    int const ghosts = ghost_nodes(grid, columns_, rows_), size = lane_fourier_size(2 * grid.window_px);
     PredictorView const predictor{grid, ghosts, grid.columns + 2 * ghosts, grid.rows + 2 * ghosts, nullptr};
     return {grid,
             schedule_.search_radius_px(pass),

@@ -137,7 +137,7 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
   extern __shared__ Complex memory[];
   __shared__ double slots[32 * 4];
   __shared__ PeakList<float> found;
-  int const size = plan.size, pitch = plan.pitch(), thread = static_cast<int>(threadIdx.x);
+  int const side = job.x.size, size = plan.size, pitch = plan.pitch(), thread = static_cast<int>(threadIdx.x);
   Complex* const roots = memory;
   Complex* const lines = memory + size;
   Complex* const window = plan.window_in_shared ? lines + static_cast<long long>(plan.warps) * 2 * size
@@ -161,11 +161,14 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
       continue;
     }
     float const mean_a = static_cast<float>(sums[1] / sums[0]), mean_b = static_cast<float>(sums[2] / sums[0]);
+    for (int k = thread; size > side && k < size * size; k += static_cast<int>(blockDim.x))
+      window[static_cast<long long>(k / size) * pitch + k % size] = {0.0f, 0.0f};
+    __syncthreads();
     double energy[4] = {0.0, 0.0, 0.0, 0.0};
     for_each_pixel(job, column, row, [&](int j, int i, float a, float b, float weight) {
       Complex const z{weight * (a - mean_a), weight * (b - mean_b)};
       window[static_cast<long long>(j) * pitch + i] = z;
-      bool const core = i >= size / 4 && i < size - size / 4 && j >= size / 4 && j < size - size / 4;
+      bool const core = i >= side / 4 && i < side - side / 4 && j >= side / 4 && j < side - side / 4;
       energy[0] += static_cast<double>(z.re) * z.re;
       energy[1] += static_cast<double>(z.im) * z.im;
       energy[2] += core ? static_cast<double>(z.re) * z.re : 0.0;
