@@ -17,7 +17,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// A particle's image: where, and how much light.
 struct Spot {
   Vec2d at;          ///< [px]
-  double light = 0;  ///< in units of scene.photon_unit
+  double light = 0;  ///< in units of photon_unit()
 };
 
 /// The numbers of the spots that reach into every band of a picture's rows, in rising order: each band's sums have one
@@ -131,8 +131,9 @@ Rendering render_ideal_images(IdealImages const& ideal, Particles const& particl
   rendering.method = RenderMethod::formula;
   rendering.truth = truth_of(particles, spots);
   if (images == RenderImages::no) return rendering;
+  double const unit = photon_unit(scene, particles, light);
   for (auto& frame : spots) {
-    for (Spot& spot : frame) spot.light /= scene.photon_unit;
+    for (Spot& spot : frame) spot.light /= unit;
   }
   rendering.light = {draw(spots[0], scene), draw(spots[1], scene)};
   if (images == RenderImages::kept) {

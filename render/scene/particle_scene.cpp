@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
@@ -91,26 +90,6 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
   }
 }
 
-/// Photons through the lens from the particle that sends most.
-double brightest_photons(Scene const& scene) {
-  Particles const& particles = scene.particles;
-  LightThroughLens const through_lens(scene);
-  std::mutex merge;
-  double brightest = 0;
-  parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    double most = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      for (int pulse = 0; pulse < 2; ++pulse) {
-        double const photons = particles.photons[pulse][i];
-        if (photons > 0) most = std::max(most, photons * through_lens(particles.place[pulse][i], i, pulse));
-      }
-    }
-    std::lock_guard const lock(merge);
-    brightest = std::max(brightest, most);
-  });
-  return brightest;
-}
-
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -165,7 +144,7 @@ void add_particles(Scene& scene) {
                              sheet.wave(piv.laser.centre, 0)};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
-  double const brightest = brightest_photons(scene);
+  double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
   scene.photon_unit = brightest > 0 ? brightest : 1;
 }
 
