@@ -11,6 +11,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/rays/trace_particles.h"
+#include "render/scene/particle_scene.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -197,7 +198,8 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
-  LaunchesOnDevice const launches(scene, host, medium, frames ? &*frames : nullptr);
+  LaunchesOnDevice const launches(host, medium, frames ? &*frames : nullptr,
+                                  lit ? photon_unit(scene, particles, light) : 1);
   LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
   AnyScattering scattering;
   scattering.lambert.diameter = particles.diameter.data();

@@ -32,8 +32,8 @@ MieScatteringView<double> KeptScattering::view(std::uint64_t first) const {
   return view;
 }
 
-LaunchesOnDevice::LaunchesOnDevice(Scene const& scene, ParticleLaunch const& host, DeviceMedium<double> const& medium,
-                                   ImagePairOnDevice* images)
+LaunchesOnDevice::LaunchesOnDevice(ParticleLaunch const& host, DeviceMedium<double> const& medium,
+                                   ImagePairOnDevice* images, double photon_unit)
     : smooth_(host.smooth.camera.elements.data(), host.smooth.camera.elements.size(), "the camera"),
       sharp_(host.sharp.camera.elements.data(), host.sharp.camera.elements.size(), "the camera"),
       stop_(host.sharp.camera) {
@@ -45,7 +45,7 @@ LaunchesOnDevice::LaunchesOnDevice(Scene const& scene, ParticleLaunch const& hos
   launch_.rays = shared.rays;
   launch_.chief_rays = shared.camera.chief_rays_only();
   if (!images) return;
-  launch_.images = images->view(1 / (static_cast<double>(shared.rays) * scene.photon_unit));
+  launch_.images = images->view(1 / (static_cast<double>(shared.rays) * photon_unit));
   launch_.spot = shared.spot;
   if (shared.spot.model == SpotModel::airy) {
     airy_ = DeviceArray<double>(shared.spot.airy.shares, shared.spot.airy.count(), "the Airy table");

@@ -26,9 +26,9 @@ class KeptScattering {
 /// What all particles of a scene share, on the device.
 class LaunchesOnDevice {
  public:
-  /// @param images null: truth only
-  LaunchesOnDevice(Scene const& scene, ParticleLaunch const& host, DeviceMedium<double> const& medium,
-                   ImagePairOnDevice* images);
+  /// @param images null: truth only @param photon_unit that light of 1 stands for in them
+  LaunchesOnDevice(ParticleLaunch const& host, DeviceMedium<double> const& medium, ImagePairOnDevice* images,
+                   double photon_unit);
 
   StopView const& stop() const { return stop_; }
   std::size_t sums_a_pulse() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }

@@ -33,7 +33,7 @@ std::string reason_against_ideal_images(Setup const& setup);
 /// The one door to ideal images.
 std::optional<IdealImages> ideal_images(Scene const& scene);
 
-/// Images and truth of particles by formula, the scene's own or virtual ones: light in units of scene.photon_unit, that
+/// Images and truth of particles by formula, the scene's own or virtual ones: light in units of photon_unit(), that
 /// of a particle by what it sends to the lens' middle; truth without error. The same bits on any number of threads.
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images);

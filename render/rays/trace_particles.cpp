@@ -5,6 +5,7 @@
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/scene/particle_scene.h"
 #include "render/scene/spot.h"
 
 namespace gladstone {
@@ -53,6 +54,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
     targets[frame] = &frames[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
   double const photons_per_weight = 1 / static_cast<double>(rays);
+  double const light_per_weight = lit ? photons_per_weight / photon_unit(scene, particles, light) : 0;
   double margin = 0;
   std::mutex merge;
   Progress progress(lit ? "tracing particles" : "tracing truth", particles.size());
@@ -60,7 +62,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
     parallel_chunks(particles.size(), 32, [&](std::size_t begin, std::size_t end) {
       ParticleTracer tracer(launch, pulses, medium, lit);
       for (std::size_t i = begin; i < end; ++i) {
-        ParticleSeen const seen = tracer.trace(i, targets, photons_per_weight / scene.photon_unit);
+        ParticleSeen const seen = tracer.trace(i, targets, light_per_weight);
         set_particle(rendering.truth, i, seen, photons_per_weight);
       }
       progress.advance(end - begin);

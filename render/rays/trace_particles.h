@@ -29,7 +29,7 @@ Rendering empty_rendering(Particles const& particles, std::uint64_t rays);
 /// Enters what a camera sees of a particle. @param photons_per_weight of its rays
 void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, double photons_per_weight);
 
-/// Images and truth of particles, ray by ray. Light is in units of scene.photon_unit, truth's flux in photons.
+/// Images and truth of particles, ray by ray. Light is in units of photon_unit(), truth's flux in photons.
 Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images);
 
 }  // namespace gladstone

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <mutex>
 
+#include "render/base/parallel.h"
 #include "render/base/units.h"
 #include "render/light/lambert_sphere.h"
 #include "render/scene/particle_scene.h"
@@ -34,6 +37,30 @@ double photons_through_lens(Scene const& scene, std::size_t particle, int pulse)
   LightThroughLens const through_lens(scene);
   Particles const& particles = scene.particles;
   return particles.photons[pulse][particle] * through_lens(particles.place[pulse][particle], particle, pulse);
+}
+
+double brightest_photons(Scene const& scene, Particles const& particles, ParticleLight light) {
+  LightThroughLens const through_lens(scene, light);
+  std::mutex merge;
+  double brightest = 0;
+  parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int pulse = 0; pulse < 2; ++pulse) {
+        double const photons = particles.photons[pulse][i];
+        if (photons > 0) most = std::max(most, photons * through_lens(particles.place[pulse][i], i, pulse));
+      }
+    }
+    std::lock_guard const lock(merge);
+    brightest = std::max(brightest, most);
+  });
+  return brightest;
+}
+
+double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light) {
+  if (light == ParticleLight::scattered) return scene.photon_unit;
+  double const brightest = brightest_photons(scene, particles, light);
+  return brightest > 0 ? brightest : 1;
 }
 
 }  // namespace gladstone

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "render/base/parallel.h"
 #include "render/base/units.h"
@@ -15,8 +14,9 @@ namespace gladstone {
 namespace {
 
 constexpr double path_tolerance_px = 1e-5;
-constexpr double bending_margin = 0.02;  // by which media may turn light on its way to the lens [rad]
-constexpr double kept_pairs = 0.75;      // that lose little: Keane & Adrian's rule of a quarter
+constexpr double bending_margin = 0.02;       // by which media may turn light on its way to the lens [rad]
+constexpr double scattering_contrast = 1e-3;  // of the index: what seeds a gas has 0.3 and more
+constexpr double kept_pairs = 0.75;           // that lose little: Keane & Adrian's rule of a quarter
 
 /// Size of a pixel in the plane Z = 0 [m].
 double pixel_there(Setup const& setup) { return setup.camera.pixel_pitch / setup.imaging().magnification; }
@@ -91,24 +91,18 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
   }
 }
 
-/// Photons through the lens from the particle that sends most.
-double brightest_photons(Scene const& scene) {
-  Particles const& particles = scene.particles;
-  LightThroughLens const through_lens(scene);
-  std::mutex merge;
-  double brightest = 0;
-  parallel_chunks(particles.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    double most = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      for (int pulse = 0; pulse < 2; ++pulse) {
-        double const photons = particles.photons[pulse][i];
-        if (photons > 0) most = std::max(most, photons * through_lens(particles.place[pulse][i], i, pulse));
-      }
-    }
-    std::lock_guard const lock(merge);
-    brightest = std::max(brightest, most);
-  });
-  return brightest;
+/// Of particles whose own image is half as wide as spot or pixel and more: quadrature (Adrian & Yao 1985) makes that an
+/// eighth of the picture's width. Empty: there is none.
+std::string warning_of_wide_particles(Scene const& scene) {
+  std::vector<double> const& diameter = scene.particles.diameter;
+  if (diameter.empty()) return {};
+  double const widest = *std::max_element(diameter.begin(), diameter.end()), px = widest / pixel_there(scene.setup);
+  double const point_px = std::max(scene.setup.spot_diameter_px(), 1.0);
+  if (px <= 0.5 * point_px) return {};
+  return fmt::format(
+      "particles.diameter_um: the largest, {:.4g} um, has an image {:.2g} px wide, but is drawn as a point "
+      "({:.2g} px, of diffraction and pixel); use smaller ones",
+      widest / unit::micrometre, px, point_px);
 }
 
 }  // namespace
@@ -165,7 +159,7 @@ void add_particles(Scene& scene) {
                              sheet.wave(piv.laser.centre, 0)};
     scene.mie = std::make_shared<MieScattering const>(particles.diameter, setting, seen_angles(scene));
   }
-  double const brightest = brightest_photons(scene);
+  double const brightest = brightest_photons(scene, scene.particles, ParticleLight::scattered);
   scene.photon_unit = brightest > 0 ? brightest : 1;
 }
 
@@ -205,6 +199,7 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
+  if (std::string const wide = warning_of_wide_particles(scene); !wide.empty()) warnings.push_back(wide);
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
   if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
     warnings.push_back(
@@ -234,11 +229,11 @@ void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std:
   SetupTable particles = root.table("particles"), laser = root.table("laser");
   double const mm = unit::millimetre;
   if (piv.particles.scattering == ParticleScattering::mie &&
-      std::abs(piv.particles.index - setup.ambient_index()) < 1e-6) {
+      std::abs(piv.particles.index - setup.ambient_index()) < scattering_contrast) {
     particles.problem(particles.has("material") ? "material" : "index",
-                      fmt::format("is that of the surroundings, {:.6g} (such particles scatter no light); use another "
-                                  "substance",
-                                  setup.ambient_index()));
+                      fmt::format("differs by less than {:g} from that of the surroundings, {:.6g} (such particles "
+                                  "scatter next to no light); use another substance",
+                                  scattering_contrast, setup.ambient_index()));
   }
   if (std::abs(piv.laser.wavelength - setup.medium.wavelength) > 1e-6 * setup.medium.wavelength) {
     laser.problem("wavelength_nm",

@@ -40,6 +40,14 @@ class LightThroughLens {
 /// Photons that a particle sends through the lens at a pulse.
 double photons_through_lens(Scene const& scene, std::size_t particle, int pulse);
 
+/// Photons through the lens from the one of these particles that sends most; 0 where none is lit.
+double brightest_photons(Scene const& scene, Particles const& particles, ParticleLight light);
+
+/// Photons that light of 1 stands for in pictures of these particles: scene.photon_unit of what the laser lights. Equal
+/// light is brighter by what a sphere is smaller than a square metre, 1e12 and more, which the pictures' fixed point
+/// does not hold: it has a unit of its own, the brightest of these particles.
+double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light);
+
 /// What the warnings of a PIV case rest on.
 struct ParticleCensus {
   std::size_t lit[2] = {0, 0};  ///< particles in volume and sheet at either pulse

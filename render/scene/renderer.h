@@ -41,7 +41,8 @@ struct Rendering {
 /// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.
 enum class RenderImages { yes, no, kept };
 enum class RenderTheory { yes, no };
-/// Light of particles: as they scatter the laser's, or alike into all directions, for virtual ones.
+/// Light of particles: as they scatter the laser's, or alike into all directions, for virtual ones: a photon per
+/// steradian for each that lights a square metre.
 enum class ParticleLight { scattered, equal };
 
 /// Traces scenes, on whichever device.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -8,6 +9,7 @@
 #include "render/rays/ray_planning.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
+#include "render/scene/particle_scene.h"
 #include "render/scene/two_media.h"
 
 namespace gladstone {
@@ -106,6 +108,29 @@ TEST(Particles, FallOffAsCosCubed) {
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
   double const cosine = 0.75 / std::hypot(0.75, std::hypot(0.1, 0.05));
   EXPECT_NEAR(truth.flux[1].x / truth.flux[0].x, std::pow(cosine, 3), 2e-4);
+}
+
+// All light is in the picture, of white spheres and of equal sources alike, but for the tails that a spot is cut off
+// at: light of 1 is the brightest particle's, which the fixed point of pictures holds 5e5 times. Equal sources send
+// 1e12 times what a sphere of 1 um scatters; in units of that the sums would wrap around.
+TEST(Particles, LightThePictureByTheirFlux) {
+  std::vector<Vec3d> const places{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 3 * mm}, {2.5 * mm, -1 * mm, -2 * mm}};
+  for (std::uint64_t const rays : {64u, 300u}) {  // spot by spot, and gathered
+    Scene scene = scene_with_particles(piv_setup(), places, places, rays);
+    for (ParticleLight const light : {ParticleLight::scattered, ParticleLight::equal}) {
+      Rendering const rendering = render(scene, light, RenderImages::yes);
+      double flux = 0, most = 0;
+      for (Vec2d const photons : rendering.truth.flux) {
+        flux += photons.x;
+        most = std::max(most, photons.x);
+      }
+      double const unit = photon_unit(scene, scene.particles, light);
+      if (light == ParticleLight::equal) {
+        EXPECT_NEAR(unit, most, 1e-3 * most);  // cos over the lens' cone
+      }
+      EXPECT_NEAR(sum_of(rendering.light.reference) * unit, flux, 1e-5 * flux);
+    }
+  }
 }
 
 // Chief rays of a pinhole: column and row are z_i / p times X and -Y over the distance, for every place, out of the

@@ -52,7 +52,7 @@ TEST(PivSetup, RefusesWhatGivesNoPicture) {
   EXPECT_THAT(refused_piv(piv_text("diameter_um = { kind = \"normal\", mean_um = 1, std_um = 0.5 }\n")),
               told("a third"));
   EXPECT_THAT(refused_piv(piv_text("", "", "dt_us = 0\n")), told("dt_us = 0"));
-  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter no light"));
+  EXPECT_THAT(refused_piv(piv_text("index = [1.000277, 0]\n")), told("scatter next to no light"));
   EXPECT_THAT(refused_piv(piv_text("", "offset_mm = [0, 5]\n")), told("sheet of pulse 2 beside"));
   EXPECT_THAT(refused_piv(piv_text("number = 10\nper_pixel = 0.1\n")), told("stands beside number"));
   EXPECT_THAT(refused_piv(piv_text("viscosity_pa_s = 1e-5\n")), told("density_kg_m3"));
@@ -161,6 +161,25 @@ TEST(PivScene, WarnsOfPairsThatAreLost) {
   auto const unseen = warnings_of_particles(build_scene(aside));
   ASSERT_EQ(unseen.size(), 1u);
   EXPECT_THAT(unseen[0], testing::HasSubstr("images will be empty"));
+}
+
+// Rays go out from a particle's middle. 105 / 645 of 100 um are 1.6 px of 10 um, those of 1 um are not worth a word: at
+// f/11 the spot is 2.44 x 645 / 540 x 11 x 0.532 um, 1.7 px.
+TEST(PivScene, WarnsOfParticlesThatAreNoPoints) {
+  auto const warned = [](std::string const& diameter) {
+    std::string const keys = "number = 200\nvolume_mm = [4, 4, 2]\nscattering = \"lambert\"\ndiameter_um = ";
+    return warnings_of_particles(build_scene(read_setup_text(piv_text(keys + diameter + "\n")).setup));
+  };
+  EXPECT_THAT(warned("1.0"), testing::IsEmpty());
+  EXPECT_THAT(warned("100.0"),
+              testing::ElementsAre(testing::HasSubstr("the largest, 100 um, has an image 1.6 px wide")));
+}
+
+// An index of 1 differs from air's by 2.7e-4: light less than that of a droplet by the square of a thousandth.
+TEST(PivSetup, RefusesParticlesThatScatterNextToNothing) {
+  EXPECT_THAT(refused_piv(piv_text("index = [1.0, 0.0]\n")), told("scatter next to no light"));
+  EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.01, 0.0]\n")));
+  EXPECT_NO_THROW(read_setup_text(piv_text("index = [1.0, 0.5]\n")));
 }
 
 }  // namespace
