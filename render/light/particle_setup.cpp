@@ -5,9 +5,9 @@
 #include <array>
 #include <limits>
 
+#include "render/base/read_vector.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
-#include "render/light/flows/read_vector.h"
 #include "render/light/particle_material.h"
 
 namespace gladstone {

@@ -8,10 +8,10 @@
 #include "render/base/error.h"
 #include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
+#include "render/base/read_vector.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
 #include "render/light/flow.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 namespace {

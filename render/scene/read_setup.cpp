@@ -6,7 +6,6 @@
 
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
-#include "render/medium/analytic_fields.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
@@ -203,8 +202,9 @@ void read_calibration(Setup& setup, SetupTable root) {
 
 /// The front of a medium of kind normal_shock, for the flow.
 std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
-  if (field.kind != FieldKind::normal_shock) return std::nullopt;
-  return ShockPlane{field.mach, shock_density_ratio(field.mach, constant::gamma_air), field.position, field.tilt};
+  auto const* const shock = field.closed_form<NormalShock<double>>();
+  if (!shock) return std::nullopt;
+  return ShockPlane{shock->mach, shock_density_ratio(shock->mach, constant::gamma_air), shock->position, shock->tilt};
 }
 
 void read_piv(Setup& setup, SetupTable root) {

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "render/medium/analytic_fields.h"
+#include "render/medium/fields/slab.h"
 #include "render/medium/trace_medium.h"
 #include "render/optics/camera_element.h"
 #include "render/scene/ray_hit.h"

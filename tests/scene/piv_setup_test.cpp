@@ -96,7 +96,9 @@ TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
   gladstone::Setup const setup = read_setup_text(piv_text("", "", "", second)).setup;
   EXPECT_EQ(setup.medium.field.kind, FieldKind::none);
   ASSERT_TRUE(setup.medium.second_field);
-  EXPECT_EQ(setup.medium.second_field->kind, FieldKind::gaussian_plume);
+  auto const* const plume = setup.medium.second_field->closed_form<GaussianPlume<double>>();
+  ASSERT_TRUE(plume);
+  EXPECT_DOUBLE_EQ(plume->radius, 4e-3);
   EXPECT_DOUBLE_EQ(setup.medium.thickness, 28e-3);  // seven radii
   EXPECT_TRUE(build_scene(setup).second_medium);
   EXPECT_THAT(refused_piv(second), told("remove it, or change experiment"));

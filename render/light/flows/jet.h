@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "render/base/read_vector.h"
 #include "render/base/units.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "render/base/read_vector.h"
 #include "render/base/units.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 
