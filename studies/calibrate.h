@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,7 +48,7 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
 void draw_calibration(std::string const& path, Calibration const& calibration);
 
 /// One JSON object, and the same as a table.
-std::string calibration_json(Calibration const& calibration);
+nlohmann::ordered_json calibration_json(Calibration const& calibration);
 std::string calibration_table(Calibration const& calibration);
 
 }  // namespace gladstone

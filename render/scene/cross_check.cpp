@@ -24,17 +24,15 @@ bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero 
 
 /// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
 bool cross_check_camera(Setup const& setup, SetupTable root) {
-  std::string const lens = "lens: ";
   try {
     build_camera(setup);
     setup.target_extent();
     return true;
   } catch (DataError const& error) {
-    std::string const text = error.what();
-    if (text.starts_with(lens)) {
-      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", text.substr(lens.size()));
+    if (error.file() == "lens") {
+      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", error.message());
     } else {
-      camera_table(root).problem("pose", text.substr(text.find(' ') + 1));
+      camera_table(root).problem("pose", error.message());
     }
   }
   return false;

@@ -59,7 +59,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     for (std::size_t i = 0; i < folders.size(); ++i) {
       auto const& [name, folder] = folders[i];
       write_results(folder, calibrations[i], !arguments->no_figures);
-      cameras[name] = nlohmann::ordered_json::parse(calibration_json(calibrations[i]));
+      cameras[name] = calibration_json(calibrations[i]);
       if (!name.empty()) text += fmt::format("{}camera {}\n", i > 0 ? "\n\n" : "", name);
       text += calibration_table(calibrations[i]);
     }
