@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "render/base/contracts.h"
-#include "render/base/read_vector.h"
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
 
@@ -35,16 +35,17 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
     table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
   }
   field.dataset = table.text("dataset", "");
-  std::string const quantity = table.word("quantity", "density", {"density", "refractive_index", "refractivity"});
-  if (quantity == "refractive_index") field.quantity = FieldQuantity::refractive_index;
-  if (quantity == "refractivity") field.quantity = FieldQuantity::refractivity;
-  field.scale = table.number("scale", 1.0);
+  field.quantity = table.choice("quantity", field.quantity,
+                                {{"density", FieldQuantity::density},
+                                 {"refractive_index", FieldQuantity::refractive_index},
+                                 {"refractivity", FieldQuantity::refractivity}});
+  field.scale = table.number("scale", field.scale);
   if (field.scale == 0) table.problem("scale", "is zero (the field would vanish); use kind = \"none\" for that");
   if (table.has("spacing_mm")) {
-    field.spacing = read_vector(table, "spacing_mm", {1, 1, 1}, unit::millimetre, Range::positive());
+    field.spacing = table.quantities("spacing_mm", {1e-3, 1e-3, 1e-3}, unit::millimetre, Range::positive());
   }
-  field.center = read_vector(table, "center_mm", {}, unit::millimetre, Range::any());
-  field.extrude = table.boolean("extrude", false);
+  field.center = table.quantities("center_mm", field.center, unit::millimetre);
+  field.extrude = table.boolean("extrude", field.extrude);
   auto const periodic = table.booleans("periodic", {false, false, false}, 3);
   for (std::size_t axis = 0; axis < 3 && periodic.size() == 3; ++axis) field.periodic[axis] = periodic[axis];
 }
@@ -66,23 +67,22 @@ FieldSetup read_field(SetupTable table) {
 
 MediumSetup read_medium_setup(SetupTable table) {
   MediumSetup setup;
-  double const wavelength_nm = table.number("wavelength_nm", 532.0, {230.0, 1690.0, false, false});
-  setup.wavelength = wavelength_nm * unit::nanometre;
+  setup.wavelength = table.quantity("wavelength_nm", setup.wavelength, unit::nanometre, {230.0, 1690.0, false, false});
   auto const constant =
-      table.number_or_word("gladstone_dale", {2.26e-4, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
+      table.number_or_word("gladstone_dale", {setup.gladstone_dale, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
   if (constant.number) setup.gladstone_dale = *constant.number;
   if (constant.word == "ciddor") setup.gladstone_dale = gladstone_dale_ciddor(setup.wavelength);
   if (constant.word == "merzkirch") setup.gladstone_dale = gladstone_dale_merzkirch(setup.wavelength);
-  setup.ambient_density = table.number("ambient_density_kg_m3", 1.225, Range::at_least(0.0, 1e4));
+  setup.ambient_density = table.number("ambient_density_kg_m3", setup.ambient_density, Range::at_least(0.0, 1e4));
   auto const thickness_mm = table.number_or_auto("thickness_mm", Range::positive(1e6));
-  if (table.word("interpolation", "cubic_bspline", {"cubic_bspline", "trilinear"}) == "trilinear") {
-    setup.interpolation = FieldInterpolation::trilinear;
-  }
-  std::string const integrator = table.word("integrator", "rk4", {"rk4", "euler", "straight"});
-  if (integrator == "euler") setup.integrator = Integrator::euler;
-  if (integrator == "straight") setup.integrator = Integrator::straight;
+  setup.interpolation = table.choice(
+      "interpolation", setup.interpolation,
+      {{"cubic_bspline", FieldInterpolation::cubic_bspline}, {"trilinear", FieldInterpolation::trilinear}});
+  setup.integrator =
+      table.choice("integrator", setup.integrator,
+                   {{"rk4", Integrator::rk4}, {"euler", Integrator::euler}, {"straight", Integrator::straight}});
   setup.step_mm = table.number_or_auto("step_mm", Range::positive());
-  if (table.word("faces", "matched", {"matched", "refract"}) == "refract") setup.faces = Faces::refract;
+  setup.faces = table.choice("faces", setup.faces, {{"matched", Faces::matched}, {"refract", Faces::refract}});
   auto fields = table.tables("field");
   if (fields.size() > 1) {
     table.problem("field", "is an array of several fields, which is not available yet (one field a setup); keep one");

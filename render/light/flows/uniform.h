@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/base/read_vector.h"
+#include "render/base/setup_table.h"
 
 namespace gladstone {
 

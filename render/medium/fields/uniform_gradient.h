@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "render/base/read_vector.h"
+#include "render/base/setup_table.h"
 #include "render/medium/fields/slab.h"
 
 namespace gladstone {
@@ -20,7 +20,7 @@ struct UniformGradient : Slab<T> {
 
   static UniformGradient read(SetupTable& table) {
     UniformGradient field;
-    field.gradient = read_vector(table, "gradient_kg_m4", {10, 0, 0}, 1.0, Range::any());
+    field.gradient = table.quantities("gradient_kg_m4", {10, 0, 0}, 1.0);
     return field;
   }
   template <class U>
