@@ -22,7 +22,7 @@ struct CalibratedPlane {
   MiddleBy middle_by = MiddleBy::whole_grid;
 };
 
-/// A camera calibrated by the pictures of a CASE.
+/// A camera calibrated by pictures of dots.
 struct Calibration {
   int columns = 0, rows = 0;  ///< of the pictures
   std::vector<CalibratedPlane> planes;
@@ -40,6 +40,11 @@ struct Calibration {
 /// Detects the dots of all planes, puts them on the grid and fits both models. @throws DataError where the case is no
 /// calibration, a picture shows too few dots, or the planes are too few
 Calibration calibrate_case(std::string const& folder);
+
+/// The same by pictures from anywhere, one for each plane of a setup with experiment = "calibration": its [calibration]
+/// says what they show, its camera and lens about how. @throws DataError also where their number or size is not the
+/// setup's; SetupError
+Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures);
 
 /// Writes calibration.h5 (docs/file-formats.md).
 void write_calibration_file(std::string const& path, Calibration const& calibration);
