@@ -20,14 +20,14 @@ namespace {
 constexpr std::size_t least_dots = 12;  // on a plane
 
 /// How the setup's camera sees the grid of a plane.
-ExpectedView expected_view(Setup const& setup, double z, std::string const& folder) {
+ExpectedView expected_view(Setup const& setup, double z, std::string const& name) {
   Camera const camera = build_camera(plane_setup(setup, z));
   auto const middle = camera.project({0, 0, z});
   auto const seen = camera.see({}, Pose<double>{{0, 0, z}});
   if (!middle || !seen) {
-    throw DataError(folder, fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
-                                        "which tells the dots apart; check camera.pose and lens",
-                                        z / unit::millimetre));
+    throw DataError(name, fmt::format("the camera of its setup does not see the middle of the grid at Z = {:.6g} mm, "
+                                      "which tells the dots apart; check camera.pose and lens",
+                                      z / unit::millimetre));
   }
   return {*middle, setup.target.spacing * seen->by_x, setup.target.spacing * seen->by_y};
 }
@@ -53,14 +53,14 @@ CalibratedLens lens_of(Setup const& setup) {
   return lens;
 }
 
-/// Detects the dots of a plane and adds them to the points.
-void add_plane(Calibration& calibration, Setup const& setup, std::string const& folder, std::size_t plane) {
+/// Detects the dots of a plane's picture and adds them to the points.
+void add_plane(Calibration& calibration, Setup const& setup, std::string const& file, std::size_t plane) {
   CalibratedPlane added;
   added.z = setup.planes[plane];
-  added.file = (std::filesystem::path(folder) / case_file::plane(plane)).string();
+  added.file = file;
   ImageMetadata metadata;
   Image<double> const picture = read_image(added.file, &metadata);
-  std::string const name = std::filesystem::path(added.file).stem().string();
+  std::string const name = std::filesystem::path(case_file::plane(plane)).stem().string();
   calibration.sources.add(name, added.file, SourceFiles::Holds::pixels, pixel_sha256(picture, metadata.sample_bits));
   bool const first = calibration.planes.empty();
   if (!first && (picture.columns() != calibration.columns || picture.rows() != calibration.rows)) {
@@ -69,12 +69,18 @@ void add_plane(Calibration& calibration, Setup const& setup, std::string const& 
                                 "one camera",
                                 picture.columns(), picture.rows(), calibration.columns, calibration.rows));
   }
+  if (picture.columns() != setup.camera.columns || picture.rows() != setup.camera.rows) {
+    throw DataError(added.file,
+                    fmt::format("is {} x {} px where camera.pixels of the setup is [{}, {}]; give the "
+                                "camera's own pixels there",
+                                picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
+  }
   calibration.columns = picture.columns();
   calibration.rows = picture.rows();
   if (count_not_finite(picture) > 0) throw DataError(added.file, "has pixels that are nan or infinite; export it anew");
   std::vector<DetectedDot> const dots = detect_dots(picture);
   CalibrationGrid const grid = grid_of(setup);
-  AssignedDots const assigned = assign_to_grid(dots, grid, expected_view(setup, added.z, folder));
+  AssignedDots const assigned = assign_to_grid(dots, grid, expected_view(setup, added.z, added.file));
   added.found = dots.size();
   added.used = assigned.dots.size();
   added.middle_by = assigned.middle_by;
@@ -120,19 +126,15 @@ std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCam
 
 }  // namespace
 
-Calibration calibrate_case(std::string const& folder) {
-  require_case(folder);
-  std::string const setup_path = (std::filesystem::path(folder) / case_file::setup).string();
-  Calibration calibration;
-  calibration.sources.on_change("run gladstone calibrate " + folder + " again");
-  calibration.sources.add("", setup_path, SourceFiles::Holds::bytes);
-  CaseSetup loaded = load_case_setup(setup_path, {});
+namespace {
+
+/// Detects and fits. @param setup_path of a setup of a calibration, that `loaded` is @param name for messages
+Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, std::vector<std::string> const& pictures,
+                      std::string const& name) {
   Setup const& setup = loaded.setup;
-  if (!setup.calibration()) {
-    throw DataError(folder,
-                    "is a case of BOS, by which no camera is calibrated; render a setup with experiment = "
-                    "\"calibration\" and a table [calibration]");
-  }
+  Calibration calibration;
+  calibration.sources.on_change("run gladstone calibrate " + name + " again");
+  calibration.sources.add("", setup_path, SourceFiles::Holds::bytes);
   if (setup.planes.size() < 2) {
     throw DataError(setup_path,
                     "calibration.planes_mm names one plane (a camera's distance and its focal length cannot be told "
@@ -142,18 +144,54 @@ Calibration calibrate_case(std::string const& folder) {
   calibration.seed = setup.render.seed;
   calibration.points.dot_radius = setup.dot_diameter() / 2;
   calibration.points.lens = lens_of(setup);
-  for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) add_plane(calibration, setup, folder, plane);
+  for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) {
+    add_plane(calibration, setup, pictures[plane], plane);
+  }
   try {
     calibration.pinhole =
         fit_pinhole(calibration.points, {0.5 * (calibration.columns - 1), 0.5 * (calibration.rows - 1)});
     calibration.soloff = fit_soloff(calibration.points);
   } catch (std::invalid_argument const& reason) {
-    throw DataError(folder,
+    throw DataError(name,
                     fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", reason.what()));
   }
-  calibration.rendered =
-      rendered_camera((std::filesystem::path(folder) / case_file::truth).string(), calibration.pinhole.camera);
   return calibration;
+}
+
+}  // namespace
+
+Calibration calibrate_case(std::string const& folder) {
+  require_case(folder);
+  auto const in_folder = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
+  CaseSetup const loaded = load_case_setup(in_folder(case_file::setup), {});
+  if (!loaded.setup.calibration()) {
+    throw DataError(folder,
+                    "is a case of BOS, by which no camera is calibrated; render a setup with experiment = "
+                    "\"calibration\" and a table [calibration]");
+  }
+  std::vector<std::string> pictures;
+  for (std::size_t plane = 0; plane < loaded.setup.planes.size(); ++plane) {
+    pictures.push_back(in_folder(case_file::plane(plane)));
+  }
+  Calibration calibration = calibrate(loaded, in_folder(case_file::setup), pictures, folder);
+  calibration.rendered = rendered_camera(in_folder(case_file::truth), calibration.pinhole.camera);
+  return calibration;
+}
+
+Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures) {
+  CaseSetup const loaded = load_case_setup(setup, {});
+  if (!loaded.setup.calibration()) {
+    throw DataError(setup,
+                    "is no setup of a calibration; set experiment = \"calibration\" and say in [calibration] "
+                    "what the pictures show");
+  }
+  if (pictures.size() != loaded.setup.planes.size()) {
+    throw DataError(setup,
+                    fmt::format("calibration.planes_mm names {} planes where {} pictures are given; give one for "
+                                "each, in that order",
+                                loaded.setup.planes.size(), pictures.size()));
+  }
+  return calibrate(loaded, setup, pictures, setup);
 }
 
 }  // namespace gladstone

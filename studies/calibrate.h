@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ struct CalibratedPlane {
   MiddleBy middle_by = MiddleBy::whole_grid;
 };
 
-/// A camera calibrated by the pictures of a CASE.
+/// A camera calibrated by pictures of dots.
 struct Calibration {
   int columns = 0, rows = 0;  ///< of the pictures
   std::vector<CalibratedPlane> planes;
@@ -40,6 +41,11 @@ struct Calibration {
 /// calibration, a picture shows too few dots, or the planes are too few
 Calibration calibrate_case(std::string const& folder);
 
+/// The same by pictures from anywhere, one for each plane of a setup with experiment = "calibration": its [calibration]
+/// says what they show, its camera and lens about how. @throws DataError also where their number or size is not the
+/// setup's; SetupError
+Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures);
+
 /// Writes calibration.h5 (docs/file-formats.md).
 void write_calibration_file(std::string const& path, Calibration const& calibration);
 
@@ -47,7 +53,7 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
 void draw_calibration(std::string const& path, Calibration const& calibration);
 
 /// One JSON object, and the same as a table.
-std::string calibration_json(Calibration const& calibration);
+nlohmann::ordered_json calibration_json(Calibration const& calibration);
 std::string calibration_table(Calibration const& calibration);
 
 }  // namespace gladstone

@@ -147,7 +147,7 @@ nlohmann::json place_error_json(PlaceError const& error) {
 
 }  // namespace
 
-std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder) {
+nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder) {
   CameraSetup const& camera = loaded.setup.camera;
   std::string const resolved = loaded.document.resolved();
   auto const place = [&folder](std::string const& name) { return (std::filesystem::path(folder) / name).string(); };
@@ -184,18 +184,17 @@ std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rend
   origin.sources.add_known("inputs", nlohmann::json(loaded.input_hashes).dump());
   write_calibration_truth(place(case_file::truth), rendered, origin);
   OutputFile::write_text(place(case_file::setup), resolved);
-  nlohmann::json const summary{{"experiment", "calibration"},
-                               {"planes", planes},
-                               {"dots", dots},
-                               {"rays_per_dot", rendered.rays},
-                               {"exposure", rendered.exposure_e},
-                               {"method", to_string(RenderMethod::rays)},
-                               {"device", rendered.device},
-                               {"warnings", warnings},
-                               {"seconds_render", rendered.seconds}};
-  std::string const text = json_text(summary) + "\n";
-  OutputFile::write_text(place(case_file::summary), text);
-  return text;
+  nlohmann::json summary{{"experiment", "calibration"},
+                         {"planes", planes},
+                         {"dots", dots},
+                         {"rays_per_dot", rendered.rays},
+                         {"exposure", rendered.exposure_e},
+                         {"method", to_string(RenderMethod::rays)},
+                         {"device", rendered.device},
+                         {"warnings", warnings},
+                         {"seconds_render", rendered.seconds}};
+  OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
+  return summary;
 }
 
 }  // namespace gladstone

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,8 @@ struct RenderedCalibration {
 /// Renders the dots on every plane, ray by ray, through one and the same camera.
 RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer);
 
-/// Writes plane_000.tif, ..., truth.h5, setup.toml and summary.json into a folder. @return the text of summary.json
-std::string write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder);
+/// Writes plane_000.tif, ..., truth.h5, setup.toml and summary.json into a folder. @return what summary.json holds
+nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder);
 
 /// Writes truth.h5 of a calibration: /dots, /planes and, for an ideal thin lens, /pinhole (docs/file-formats.md).
 void write_calibration_truth(std::string const& path, RenderedCalibration const& rendered, FileOrigin const& origin);

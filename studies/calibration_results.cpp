@@ -8,7 +8,6 @@
 #include "render/base/units.h"
 #include "studies/calibrate.h"
 #include "studies/figures/gnuplot.h"
-#include "studies/json_text.h"
 
 namespace gladstone {
 namespace {
@@ -130,7 +129,7 @@ void draw_calibration(std::string const& path, Calibration const& calibration) {
   plot.write(path);
 }
 
-std::string calibration_json(Calibration const& calibration) {
+nlohmann::ordered_json calibration_json(Calibration const& calibration) {
   using nlohmann::ordered_json;
   ordered_json planes = ordered_json::array(), pinhole;
   for (CalibratedPlane const& plane : calibration.planes) {
@@ -149,15 +148,13 @@ std::string calibration_json(Calibration const& calibration) {
              {"unit", PinholeCamera::units[i]}};
     if (calibration.rendered) entry["rendered"] = calibration.rendered->value[i];
   }
-  ordered_json const json{
-      {"dots", calibration.points.size()},
-      {"planes", planes},
-      {"pinhole", {{"parameters", pinhole}, {"rms_px", fit.rms_px}, {"largest_px", largest(fit.residual_px)}}},
-      {"soloff",
-       {{"terms", calibration.soloff.polynomial.exponents.size()},
-        {"rms_px", calibration.soloff.rms_px},
-        {"largest_px", largest(calibration.soloff.residual_px)}}}};
-  return json_text(json) + "\n";
+  return {{"dots", calibration.points.size()},
+          {"planes", planes},
+          {"pinhole", {{"parameters", pinhole}, {"rms_px", fit.rms_px}, {"largest_px", largest(fit.residual_px)}}},
+          {"soloff",
+           {{"terms", calibration.soloff.polynomial.exponents.size()},
+            {"rms_px", calibration.soloff.rms_px},
+            {"largest_px", largest(calibration.soloff.residual_px)}}}};
 }
 
 std::string calibration_table(Calibration const& calibration) {

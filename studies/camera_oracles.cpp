@@ -36,9 +36,7 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
 /// A wave of density along X with a peak gradient of 10 kg/m^4 on the axis, seen from a point there by 2^15 rays.
 GroundTruth behind_wave(double wavelength, Renderer& renderer) {
   Setup setup = table_1();
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = wavelength;
-  setup.medium.field.amplitude = 10 * wavelength / (2 * pi);
+  setup.medium.field = Sinusoid<double>::wave(10 * wavelength / (2 * pi), wavelength);
   return truth_of(setup, {{0, 0}}, std::uint64_t{1} << 15, renderer);
 }
 
@@ -87,8 +85,7 @@ double off_axis_column_px(Renderer& renderer) {
 
 double uniform_density_px(Renderer& renderer) {
   Setup setup = table_1();
-  setup.medium.field.kind = FieldKind::uniform_gradient;
-  setup.medium.field.gradient = {};
+  setup.medium.field = UniformGradient<double>{};
   GroundTruth const truth = truth_of(setup, {{0, 0}, {0.01, -0.02}, {-0.015, 0.003}}, 256, renderer);
   double largest = 0;
   for (Vec2d d : truth.displacement_px) {
@@ -101,8 +98,7 @@ double uniform_density_px(Renderer& renderer) {
 double sensitivity_px(Renderer& renderer) {
   Setup setup = table_1();
   setup.lens.f_number = std::numeric_limits<double>::infinity();
-  setup.medium.field.kind = FieldKind::uniform_gradient;
-  setup.medium.field.gradient = {10, 0, 0};
+  setup.medium.field = UniformGradient<double>{{}, {10, 0, 0}};
   return -truth_of(setup, {{0, 0}}, 1, renderer).displacement_px[0].x / 10;
 }
 

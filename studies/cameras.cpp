@@ -98,10 +98,9 @@ void give_own_noise(SetupDocument& document, std::size_t index) {
   if (!noise || noise->kind != Kind::table || index == 0) return;
   SetupNode const* const seed = noise->find("seed");
   if (seed && (seed->kind != Kind::integer || seed->integer < 0)) return;  // the reader says what is wrong
-  SetupNode own;
-  own.kind = Kind::integer;
+  std::uint64_t const given = seed ? static_cast<std::uint64_t>(seed->integer) : 1;
+  SetupNode own = setup_integer(static_cast<long long>(repeat_seed(given, index) >> 1));
   if (seed) own.place = seed->place;
-  own.integer = static_cast<long long>(repeat_seed(seed ? static_cast<std::uint64_t>(seed->integer) : 1, index) >> 1);
   document.set({"camera", "noise", "seed"}, own);
 }
 

@@ -332,7 +332,7 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   return comparison;
 }
 
-std::string errors_json(Comparison const& comparison) {
+nlohmann::ordered_json errors_of(Comparison const& comparison) {
   nlohmann::ordered_json json;
   auto const summary = [&](std::vector<Vec2d> const& truth) {
     nlohmann::ordered_json measures;
@@ -387,8 +387,10 @@ std::string errors_json(Comparison const& comparison) {
     made_from["frames"] = comparison.verified ? "verified" : "unverified";
     json["made_from"] = made_from;
   }
-  return json_text(json) + "\n";
+  return json;
 }
+
+std::string errors_json(Comparison const& comparison) { return json_text(errors_of(comparison)) + "\n"; }
 
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
                                          std::string const& format) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,7 +91,9 @@ void name_sources(Comparison& comparison, ComparedFiles files);
 /// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
 
-/// errors.json: for each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
+/// For each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
+nlohmann::ordered_json errors_of(Comparison const& comparison);
+/// The same as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
 
 /// Draws displacement maps, histograms, error against gradient and the budget into a folder.

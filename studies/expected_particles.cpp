@@ -132,6 +132,12 @@ ExpectedParticles expected_particles(Setup const& setup) {
     double const blur = focused * scene.imaging.entrance_pupil * std::abs(z) / (focus + z) / pitch;
     return std::sqrt(geometric * geometric + expected.diffraction_px * expected.diffraction_px + blur * blur);
   };
+  auto const sheet_area_of_a_pixel = [&] {
+    Pose<double> const there{place, sheet.x, sheet.y, sheet.z};
+    auto const seen = setup.on_bench() ? std::nullopt : scene.camera.see({}, there);
+    double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;
+    return area > 0 ? 1 / area : std::pow(pitch / magnification, 2) / facing;
+  };
   double const half_sheet = piv.laser.thickness / 2 / facing;
   expected.image_diameter_px = blurred(0);
   expected.sheet_edge_diameter_px = std::max(blurred(half_sheet), blurred(-half_sheet));
@@ -142,7 +148,7 @@ ExpectedParticles expected_particles(Setup const& setup) {
   } else {
     Vec3d const v = *piv.particles.volume;
     double const in_sheet = particle_count(setup) / (v.x * v.y * v.z) * lit_thickness(piv, sheet);
-    expected.per_pixel = in_sheet * std::pow(pitch / magnification, 2) / facing;
+    expected.per_pixel = in_sheet * sheet_area_of_a_pixel();
   }
   expected.source_density = expected.per_pixel * pi / 4 * std::pow(expected.image_diameter_px, 2);
 

@@ -45,9 +45,9 @@ double rod_error(double step) {
   return exit_position(start, way).x - -0.425287303350492;
 }
 
-MediumSetup field_of(FieldKind kind, double thickness = 0.01) {
+MediumSetup setup_of(FieldSetup const& field, double thickness = 0.01) {
   MediumSetup setup;
-  setup.field.kind = kind;
+  setup.field = field;
   setup.thickness = thickness;
   return setup;
 }
@@ -68,8 +68,7 @@ double slope_behind(MediumSetup const& setup, double step, double x) {
 }
 
 double slab_displacement(double gradient, Faces faces) {
-  MediumSetup setup = field_of(FieldKind::uniform_gradient);
-  setup.field.gradient = {gradient, 0, 0};
+  MediumSetup setup = setup_of(UniformGradient<double>{{}, {gradient, 0, 0}});
   setup.faces = faces;
   Ray<double> const start = axial_ray(0);
   return apparent_ray(start, trace(setup, 1e-3, start)).position.x;
@@ -155,19 +154,13 @@ double spline_polynomial_error(Renderer&) {
 
 double plume_deflection(Renderer&) {
   double const a = 5e-3;
-  MediumSetup setup = field_of(FieldKind::gaussian_plume, 12 * a);
-  setup.field.amplitude = 1e-3;
-  setup.field.radius = a;
-  double const dn = setup.gladstone_dale * setup.field.amplitude / (1 + setup.ambient_refractivity());
+  MediumSetup const setup = setup_of(GaussianPlume<double>{{{}, 1e-3, a}}, 12 * a);
+  double const dn = setup.gladstone_dale * 1e-3 / (1 + setup.ambient_refractivity());
   return -slope_behind(setup, a / 20, a / std::sqrt(2.0)) / dn;
 }
 
 double tilted_shock_slope(Renderer&) {
-  MediumSetup setup = field_of(FieldKind::normal_shock, 0.02);
-  setup.field.mach = 2;
-  setup.field.upstream_density = 0.5;
-  setup.field.shock_thickness = 1e-3;
-  setup.field.tilt = 30 * unit::degree;
+  MediumSetup const setup = setup_of(NormalShock<double>::front(2, 0.5, 1e-3, 30 * unit::degree), 0.02);
   double const incidence = 60 * unit::degree;
   double const n1 = 1 + setup.gladstone_dale * 0.5, n2 = 1 + setup.gladstone_dale * 0.5 * 8 / 3;
   double const snell = std::tan(incidence - std::asin(n1 / n2 * std::sin(incidence)));

@@ -41,37 +41,41 @@ void SetupRendering::refuse_over_inputs(std::string const& folder) const {
   }
 }
 
-std::string SetupRendering::render(Renderer& renderer, std::string const& folder) {
+RenderedSetup SetupRendering::render(Renderer& renderer, std::string const& folder) {
   OutputFolder output(folder, case_content());
   BuiltMedium medium;
-  nlohmann::ordered_json cameras;
-  std::string summary;
+  RenderedSetup all;
   for (OneCamera& camera : cameras_) {
     bool const first = &camera == &cameras_.front();
     if (!camera.name.empty()) spdlog::info("camera {}", camera.name);
     KnownParts known;
     if (!first) known.medium = &medium;
-    summary = render_one(camera, renderer, known, medium, camera.name, output);
-    cameras[camera.name] = nlohmann::ordered_json::parse(summary);
+    RenderedCamera& told = all.cameras.emplace_back();
+    told.folder = camera.name.empty() ? folder : (fs::path(folder) / camera.name).string();
+    nlohmann::ordered_json summary = render_one(camera, renderer, known, medium, output, told);
+    if (cameras_.size() > 1) {
+      all.summary["cameras"][camera.name] = std::move(summary);
+    } else {
+      all.summary = std::move(summary);
+    }
   }
   if (cameras_.size() > 1) {
-    summary = json_text(nlohmann::ordered_json{{"cameras", cameras}}) + "\n";
     output.fill([&](std::string const& place) {
       OutputFile::write_text((fs::path(place) / case_file::setup).string(), written());
-      OutputFile::write_text((fs::path(place) / case_file::summary).string(), summary);
+      OutputFile::write_text((fs::path(place) / case_file::summary).string(), json_text(all.summary) + "\n");
     });
   }
   output.commit();
-  return summary;
+  return all;
 }
 
-std::string SetupRendering::render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known,
-                                       BuiltMedium& medium, std::string const& folder,
-                                       OutputFolder const& output) const {
-  std::string summary;
+nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known,
+                                                  BuiltMedium& medium, OutputFolder const& output,
+                                                  RenderedCamera& told) const {
+  nlohmann::ordered_json summary;
   auto const fill = [&](auto const& write) {
     output.fill([&](std::string const& place) {
-      fs::path const own = fs::path(place) / folder;
+      fs::path const own = fs::path(place) / camera.name;
       fs::create_directories(own);
       summary = write(own.string());
     });
@@ -80,12 +84,26 @@ std::string SetupRendering::render_one(OneCamera& camera, Renderer& renderer, Kn
     hash_inputs(camera.loaded);
     RenderedCalibration const rendered = render_planes(camera.loaded, renderer);
     fill([&](std::string const& place) { return write_calibration(camera.loaded, rendered, place); });
+    told.planes = rendered.planes.size();
+    for (RenderedPlane const& plane : rendered.planes) told.sources += plane.truth.size();
+    told.rays = rendered.rays;
+    told.seconds = rendered.seconds;
+    told.device = rendered.device;
     return summary;
   }
   FinishedCase const finished = finish_case(camera.loaded, renderer, known);
   fill([&](std::string const& place) {
-    return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
+    return nlohmann::ordered_json::parse(
+        write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place));
   });
+  Rendering const& rendering = *finished.rendered.rendering;
+  told.sources = rendering.truth.size();
+  told.particles = camera.loaded.setup.piv.has_value();
+  told.rays = finished.prepared.rays.rays;
+  told.step_mm = finished.prepared.step.step_mm;
+  told.magnification = finished.prepared.scene.imaging.magnification;
+  told.seconds = finished.rendered.seconds;
+  told.device = rendering.device.empty() ? renderer.device() : rendering.device;
   medium = finished.prepared.scene.medium;
   return summary;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +10,25 @@
 #include "studies/case.h"
 
 namespace gladstone {
+
+/// What a rendering tells of one camera's case in a line.
+struct RenderedCamera {
+  std::string folder;
+  std::size_t planes = 0;   ///< of a calibration
+  std::size_t sources = 0;  ///< of a calibration: of all planes
+  bool particles = false;
+  std::uint64_t rays = 0;               ///< a source
+  std::optional<double> step_mm;        ///< none: there was no medium to step through
+  std::optional<double> magnification;  ///< [1]; none: every plane has its own
+  double seconds = 0;
+  std::string device;
+};
+
+/// What is told of a setup that was rendered.
+struct RenderedSetup {
+  nlohmann::ordered_json summary;  ///< what summary.json holds
+  std::vector<RenderedCamera> cameras;
+};
 
 /// A setup of any experiment and any number of cameras, read and checked: what `gladstone render` does.
 class SetupRendering {
@@ -19,16 +41,16 @@ class SetupRendering {
 
   /// Renders into a CASE folder, all of it or nothing: one camera's case into the folder itself, those of several into
   /// folders of their names, beside the setup of all and a summary.json that has each one's.
-  /// @return the text of summary.json
-  std::string render(Renderer& renderer, std::string const& folder);
+  RenderedSetup render(Renderer& renderer, std::string const& folder);
 
  private:
   struct OneCamera {
     std::string name;  ///< empty: the only one
     CaseSetup loaded;
   };
-  std::string render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known, BuiltMedium& medium,
-                         std::string const& folder, class OutputFolder const& output) const;
+  /// Renders one camera's case into its place in a folder. @return what its summary.json holds
+  nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known, BuiltMedium& medium,
+                                    class OutputFolder const& output, RenderedCamera& told) const;
   /// The setup as it was written, with the absolute names of its files.
   std::string written() const;
 

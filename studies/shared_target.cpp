@@ -10,19 +10,7 @@
 namespace gladstone {
 namespace {
 
-SetupNode node(double number) {
-  SetupNode made;
-  made.kind = SetupNode::Kind::number;
-  made.number = number;
-  return made;
-}
-
-SetupNode node(Vec2d pair) {
-  SetupNode made;
-  made.kind = SetupNode::Kind::array;
-  made.elements = {node(pair.x), node(pair.y)};
-  return made;
-}
+SetupNode pair(Vec2d numbers) { return setup_array({setup_number(numbers.x), setup_number(numbers.y)}); }
 
 /// Width and height of a target about `middle` that covers every camera's own [mm].
 Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
@@ -40,7 +28,7 @@ Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
 void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
   // a density that gives the very same number, to the last dot
   double const density = first.dot_count() * 1024.0 * own.pixel_area() / (extent.x * extent.y);
-  document.set({"target", "dots_per_32px_window"}, node(density));
+  document.set({"target", "dots_per_32px_window"}, setup_number(density));
 }
 
 /// Dots of the first camera's size, in mm, for another one.
@@ -51,13 +39,13 @@ void share_diameter(SetupDocument& document, Setup const& first) {
     std::erase_if(without.members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
     document.set({"target"}, without);
   }
-  document.set({"target", "dot_diameter_mm"}, node(first.dot_diameter() / unit::millimetre));
+  document.set({"target", "dot_diameter_mm"}, setup_number(first.dot_diameter() / unit::millimetre));
 }
 
 /// As many particles for all cameras as the first one's picture asks for.
 void share_particles(std::vector<CameraCase>& cases, Setup const& first) {
   if (first.piv->particles.count != ParticleCount::per_pixel) return;
-  SetupNode const number = node(std::round(particle_count(first)));
+  SetupNode const number = setup_number(std::round(particle_count(first)));
   for (CameraCase& one : cases) {
     SetupNode particles = *one.document.find({"particles"});
     std::erase_if(particles.members, [](SetupMember const& member) { return member.key == "per_pixel"; });
@@ -86,8 +74,8 @@ void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read
   if (!first.target.extent_m) first.target.extent_m = extent_mm * unit::millimetre;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     SetupDocument& document = cases[i].document;
-    if (!read[i].target.extent_m) document.set({"target", "extent_mm"}, node(extent_mm));
-    if (!read[i].target.centre_m) document.set({"target", "center_mm"}, node(middle));
+    if (!read[i].target.extent_m) document.set({"target", "extent_mm"}, pair(extent_mm));
+    if (!read[i].target.centre_m) document.set({"target", "center_mm"}, pair(middle));
     if (kind == TargetKind::dots) share_dots(document, first, read[i], *first.target.extent_m);
   }
 }

@@ -20,37 +20,10 @@ template <class T>
 NoMedium<T> cast(NoMedium<double> const&) {
   return {};
 }
-template <class T>
-Slab<T> cast_slab(Slab<double> const& slab) {
-  return {static_cast<T>(slab.half_thickness), static_cast<T>(slab.gladstone_dale),
-          static_cast<T>(slab.ambient_density)};
-}
-template <class T>
-UniformGradient<T> cast(UniformGradient<double> const& m) {
-  return {cast_slab<T>(m), cast<T>(m.gradient)};
-}
-template <class T>
-Sinusoid<T> cast(Sinusoid<double> const& m) {
-  return {cast_slab<T>(m), static_cast<T>(m.amplitude), cast<T>(m.wavevector), static_cast<T>(m.phase)};
-}
-template <class T>
-GaussianPlume<T> cast(GaussianPlume<double> const& m) {
-  return {cast_slab<T>(m), static_cast<T>(m.amplitude), static_cast<T>(m.radius)};
-}
-template <class T>
-GaussianBlob<T> cast(GaussianBlob<double> const& m) {
-  return {cast_slab<T>(m), static_cast<T>(m.amplitude), static_cast<T>(m.radius)};
-}
-template <class T>
-NormalShock<T> cast(NormalShock<double> const& m) {
-  return {cast_slab<T>(m),
-          static_cast<T>(m.upstream),
-          static_cast<T>(m.jump),
-          static_cast<T>(m.thickness),
-          static_cast<T>(m.position),
-          static_cast<T>(m.normal_x),
-          static_cast<T>(m.normal_z)};
-}
+/// Of a field in closed form.
+template <class T, class Form>
+requires std::is_base_of_v<Slab<double>, Form>
+auto cast(Form const& form) { return form.template in_scalar<T>(); }
 
 /// A grid's view with coefficients that lie elsewhere, perhaps in another type.
 template <class T, class Stored, class From, class Basis, int Dimensions>

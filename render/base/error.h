@@ -39,7 +39,14 @@ class SetupError : public Error {
 /// A data file that is missing, broken or not what it should be; names the file and the dataset. Exit code 2.
 class DataError : public Error {
  public:
-  DataError(std::string const& file, std::string const& message) : Error(file + ": " + message) {}
+  DataError(std::string const& file, std::string const& message)
+      : Error(file + ": " + message), file_(file), message_(message) {}
+  /// The file, or the key of a setup, that is at fault, and what is wrong with it.
+  std::string const& file() const { return file_; }
+  std::string const& message() const { return message_; }
+
+ private:
+  std::string file_, message_;
 };
 
 /// A file that takes more memory than there is: another moment or machine has more. Exit code 2.

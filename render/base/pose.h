@@ -24,6 +24,15 @@ struct Pose {
   GLADSTONE_HD Ray<T> outwards(Ray<T> const& ray) const {
     return {point_outwards(ray.position), direction_outwards(ray.direction)};
   }
+  /// Where a ray, or what goes on from it either way, meets the plane of x and y, in the pose's own frame. @return
+  /// false where it runs along the plane
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
+    Ray<T> const local = inwards(ray);
+    if (local.direction.z == T(0)) return false;
+    T const way = -local.position.z / local.direction.z;
+    place = {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
+    return true;
+  }
 
   /// The same place in the frame that `outer` is given in, where this one is given in outer's.
   Pose within(Pose const& outer) const {

@@ -256,6 +256,34 @@ std::string toml_document(SetupNode const& node) {
   return text;
 }
 
+SetupNode setup_text(std::string text) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::text;
+  node.text = std::move(text);
+  return node;
+}
+
+SetupNode setup_number(double number) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::number;
+  node.number = number;
+  return node;
+}
+
+SetupNode setup_integer(long long integer) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::integer;
+  node.integer = integer;
+  return node;
+}
+
+SetupNode setup_array(std::vector<SetupNode> elements) {
+  SetupNode node;
+  node.kind = SetupNode::Kind::array;
+  node.elements = std::move(elements);
+  return node;
+}
+
 void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source) {
   node.place.source = source;
   for (auto& element : node.elements) set_source(element, source);

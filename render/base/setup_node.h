@@ -52,6 +52,12 @@ struct SetupMember {
   SetupNode value;
 };
 
+/// Values made by the program, which stand nowhere.
+SetupNode setup_text(std::string text);
+SetupNode setup_number(double number);
+SetupNode setup_integer(long long integer);
+SetupNode setup_array(std::vector<SetupNode> elements);
+
 /// Says of a value and of all below it that they came from another file.
 void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source);
 

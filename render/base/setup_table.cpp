@@ -10,6 +10,15 @@
 namespace gladstone {
 namespace {
 
+/// A default in SI as a setup writes it: to 12 digits, without what products with a unit leave of rounding.
+double in_unit(double si, double unit) {
+  double const value = si / unit;
+  if (value == 0 || !std::isfinite(value)) return value;
+  int const places = std::clamp(11 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 22);
+  double const scale = std::pow(10.0, places);
+  return std::round(value * scale) / scale;
+}
+
 using Kind = SetupNode::Kind;
 
 std::vector<std::string> below(std::vector<std::string> path, std::string const& key) {
@@ -218,6 +227,21 @@ double SetupTable::number(std::string const& key, double fallback, Range range) 
   double const value = optional_number(key, range).value_or(fallback);
   use(*state_, path_, key, toml_text(value));
   return value;
+}
+
+double SetupTable::quantity(std::string const& key, double fallback, double unit, Range range) {
+  return number(key, in_unit(fallback, unit), range) * unit;
+}
+
+Vec2d SetupTable::quantities(std::string const& key, Vec2d fallback, double unit, Range range) {
+  auto const v = numbers(key, {in_unit(fallback.x, unit), in_unit(fallback.y, unit)}, 2, range);
+  return v.size() == 2 ? Vec2d{v[0] * unit, v[1] * unit} : fallback;
+}
+
+Vec3d SetupTable::quantities(std::string const& key, Vec3d fallback, double unit, Range range) {
+  auto const v =
+      numbers(key, {in_unit(fallback.x, unit), in_unit(fallback.y, unit), in_unit(fallback.z, unit)}, 3, range);
+  return v.size() == 3 ? Vec3d{v[0] * unit, v[1] * unit, v[2] * unit} : fallback;
 }
 
 double SetupTable::required_number(std::string const& key, Range range) {

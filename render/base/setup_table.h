@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "render/base/error.h"
+#include "render/base/vec.h"
 
 namespace gladstone {
 
@@ -115,6 +117,11 @@ class SetupTable {
 
   double number(std::string const& key, double fallback, Range range = Range::any());
   double required_number(std::string const& key, Range range = Range::any());
+  /// The same in SI. @param fallback in SI, too; written out in the key's own unit @param unit the size of that in SI
+  /// @param range in the key's own unit
+  double quantity(std::string const& key, double fallback, double unit, Range range = Range::any());
+  Vec2d quantities(std::string const& key, Vec2d fallback, double unit, Range range = Range::any());
+  Vec3d quantities(std::string const& key, Vec3d fallback, double unit, Range range = Range::any());
   std::optional<double> optional_number(std::string const& key, Range range = Range::any());
   /// A number or the word "auto" (nothing is returned for "auto", which is also the default). Use resolve() later.
   std::optional<double> number_or_auto(std::string const& key, Range range = Range::any());
@@ -132,6 +139,21 @@ class SetupTable {
   std::string required_text(std::string const& key);
   /// One of a closed set of words; the problem lists them and names the nearest.
   std::string word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
+  /// The same for what the words stand for.
+  template <class Choice>
+  Choice choice(std::string const& key, Choice fallback, std::vector<std::pair<std::string, Choice>> const& choices) {
+    std::vector<std::string> words;
+    std::string chosen;
+    for (auto const& [name, value] : choices) {
+      words.push_back(name);
+      if (value == fallback) chosen = name;
+    }
+    chosen = word(key, chosen, words);
+    for (auto const& [name, value] : choices) {
+      if (name == chosen) return value;
+    }
+    return fallback;
+  }
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
   /// A file name, made absolute against the setup's folder.
   std::string required_path(std::string const& key);

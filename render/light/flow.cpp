@@ -34,7 +34,7 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
   std::string const word = table.kind_word("kind", UniformFlow::kind, kind_words(AllFlows{}));
   read_kind(AllFlows{}, word, table, setup);
   Vec3d const fallback = word == UniformFlow::kind ? Vec3d{10, 0, 0} : Vec3d{};
-  setup.flow.uniform = read_vector(table, "velocity_m_s", fallback, 1.0, {-1e9, 1e9});
+  setup.flow.uniform = table.quantities("velocity_m_s", fallback, 1.0, {-1e9, 1e9});
   if (shock && word == NormalShockFlow::kind) {
     Vec3d const normal{std::cos(shock->tilt), 0, std::sin(shock->tilt)};
     if (std::abs(dot(setup.flow.uniform, normal)) > 1e-9 * length(setup.flow.uniform)) {
@@ -44,7 +44,7 @@ FlowSetup read_flow_setup(SetupTable table, std::optional<ShockPlane> const& sho
           "give one along the front");
     }
   }
-  setup.dt = table.number("dt_us", 10.0, Range::positive(1e12)) * unit::microsecond;
+  setup.dt = table.quantity("dt_us", setup.dt, unit::microsecond, Range::positive(1e12));
   return setup;
 }
 

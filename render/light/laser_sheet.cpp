@@ -19,19 +19,13 @@ Vec3d read_unit_vector(SetupTable& table, std::string const& key, Vec3d fallback
   return normalized(vector);
 }
 
-/// Two numbers, one for either pulse.
-std::array<double, 2> read_pair(SetupTable& table, std::string const& key, Range range) {
-  auto const pair = table.numbers(key, {0, 0}, 2, range);
-  return pair.size() == 2 ? std::array{pair[0], pair[1]} : std::array{0.0, 0.0};
-}
-
 }  // namespace
 
 LaserSetup read_laser_setup(SetupTable table, double wavelength) {
   LaserSetup laser;
   laser.wavelength =
       table.number("wavelength_nm", wavelength / unit::nanometre, {100.0, 20000.0, false, false}) * unit::nanometre;
-  laser.pulse_energy = table.number("pulse_energy_mj", 50.0, Range::positive(1e9)) * 1e-3;
+  laser.pulse_energy = table.quantity("pulse_energy_mj", laser.pulse_energy, unit::millijoule, Range::positive(1e9));
   laser.direction = read_unit_vector(table, "direction", laser.direction);
   laser.normal = read_unit_vector(table, "normal", laser.normal);
   double const lean = dot(laser.direction, laser.normal);
@@ -46,17 +40,17 @@ LaserSetup read_laser_setup(SetupTable table, double wavelength) {
     laser.normal = other;
   }
   laser.normal = normalized(laser.normal - dot(laser.direction, laser.normal) * laser.direction);
-  auto const centre = table.numbers("center_mm", {0, 0, 0}, 3, {-1e9, 1e9});
-  if (centre.size() == 3) laser.centre = Vec3d{centre[0], centre[1], centre[2]} * unit::millimetre;
-  if (table.word("profile", "gaussian", {"gaussian", "top_hat"}) == "top_hat") laser.profile = SheetProfile::top_hat;
-  laser.thickness = table.number("thickness_mm", 1.0, Range::positive(1e6)) * unit::millimetre;
-  laser.height = table.number("height_mm", 40.0, Range::positive(1e6)) * unit::millimetre;
-  laser.divergence = table.number("divergence_deg", 0.0, {-120.0, 120.0}) * unit::degree;
-  laser.polarization = table.number("polarization_deg", 0.0, {-360.0, 360.0}) * unit::degree;
-  laser.offset = read_pair(table, "offset_mm", {-1e6, 1e6});
-  laser.tilt = read_pair(table, "tilt_deg", {-80.0, 80.0});
-  for (double& offset : laser.offset) offset *= unit::millimetre;
-  for (double& tilt : laser.tilt) tilt *= unit::degree;
+  laser.centre = table.quantities("center_mm", laser.centre, unit::millimetre, {-1e9, 1e9});
+  laser.profile = table.choice("profile", laser.profile,
+                               {{"gaussian", SheetProfile::gaussian}, {"top_hat", SheetProfile::top_hat}});
+  laser.thickness = table.quantity("thickness_mm", laser.thickness, unit::millimetre, Range::positive(1e6));
+  laser.height = table.quantity("height_mm", laser.height, unit::millimetre, Range::positive(1e6));
+  laser.divergence = table.quantity("divergence_deg", laser.divergence, unit::degree, {-120.0, 120.0});
+  laser.polarization = table.quantity("polarization_deg", laser.polarization, unit::degree, {-360.0, 360.0});
+  Vec2d const offset = table.quantities("offset_mm", Vec2d{}, unit::millimetre, {-1e6, 1e6});
+  Vec2d const tilt = table.quantities("tilt_deg", Vec2d{}, unit::degree, {-80.0, 80.0});
+  laser.offset = {offset.x, offset.y};
+  laser.tilt = {tilt.x, tilt.y};
   return laser;
 }
 

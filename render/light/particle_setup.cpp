@@ -5,9 +5,9 @@
 #include <array>
 #include <limits>
 
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
-#include "render/light/flows/read_vector.h"
 #include "render/light/particle_material.h"
 
 namespace gladstone {
@@ -27,7 +27,7 @@ void read_count(SetupTable& table, ParticleSetup& setup) {
     found = true;
   }
   if (chosen == "number") {
-    setup.amount = table.number("number", 20000, Range::at_least(1, most_particles));
+    setup.amount = table.number("number", setup.amount, Range::at_least(1, most_particles));
   } else if (chosen == "per_mm3") {
     setup.count = ParticleCount::per_mm3;
     setup.amount = table.number("per_mm3", 10, Range::positive(1e9));
@@ -44,18 +44,18 @@ DiameterSetup read_diameter(SetupTable& table) {
   DiameterSetup setup;
   Range const size = Range::positive(widest_um);
   if (!table.is_table("diameter_um")) {
-    setup.middle = table.number("diameter_um", 1.0, size) * unit::micrometre;
+    setup.middle = table.quantity("diameter_um", setup.middle, unit::micrometre, size);
     return setup;
   }
   SetupTable spread = table.table("diameter_um");
   std::string const kind = spread.kind_word("kind", "lognormal", {"lognormal", "normal", "table"});
   if (kind == "lognormal") {
     setup.spread = DiameterSpread::lognormal;
-    setup.middle = spread.number("median_um", 1.0, size) * unit::micrometre;
+    setup.middle = spread.quantity("median_um", setup.middle, unit::micrometre, size);
     setup.width = spread.number("sigma", 0.3, Range::at_least(0, 3));
   } else if (kind == "normal") {
     setup.spread = DiameterSpread::normal;
-    setup.middle = spread.number("mean_um", 1.0, size) * unit::micrometre;
+    setup.middle = spread.quantity("mean_um", setup.middle, unit::micrometre, size);
     setup.width = spread.number("std_um", 0.1, Range::at_least(0, widest_um)) * unit::micrometre;
     if (setup.width > setup.middle / 3) {
       spread.problem("std_um",
@@ -79,23 +79,25 @@ ParticleSetup read_particle_setup(SetupTable table, double wavelength) {
     auto const size = table.numbers("volume_mm", {40, 40, 3}, 3, Range::positive(1e6));
     setup.volume = size.size() == 3 ? Vec3d{size[0], size[1], size[2]} * unit::millimetre : Vec3d{1, 1, 1};
   }
-  setup.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e6, 1e6});
+  setup.center = table.quantities("center_mm", setup.center, unit::millimetre, {-1e6, 1e6});
   if (listed) {
     table.refuse("diameter_um", "stands beside file (which has a diameter for each particle); remove it");
   } else {
     setup.diameter = read_diameter(table);
   }
-  std::string const scattering = table.word("scattering", "mie", {"mie", "lambert", "gaussian"});
-  if (scattering == "lambert") setup.scattering = ParticleScattering::lambert;
-  if (scattering == "gaussian") setup.scattering = ParticleScattering::gaussian;
+  setup.scattering = table.choice("scattering", setup.scattering,
+                                  {{"mie", ParticleScattering::mie},
+                                   {"lambert", ParticleScattering::lambert},
+                                   {"gaussian", ParticleScattering::gaussian}});
   setup.index = read_particle_index(table, wavelength);
   if (table.has("density_kg_m3")) {
     setup.density = table.number("density_kg_m3", 1000.0, Range::positive(1e6));
-    setup.viscosity = table.number("viscosity_pa_s", 1.8e-5, Range::positive(1e6));
+    setup.viscosity = table.number("viscosity_pa_s", setup.viscosity, Range::positive(1e6));
   } else {
     table.refuse("viscosity_pa_s", "is of particles that lag (whose density_kg_m3 is given); add it, or remove this");
   }
-  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
+  setup.seed = static_cast<std::uint64_t>(
+      table.integer("seed", static_cast<long long>(setup.seed), 0, std::numeric_limits<long long>::max()));
   return setup;
 }
 

@@ -17,8 +17,9 @@ TargetSetup read_target_setup(SetupTable table) {
         table.number("dots_per_32px_window", setup.dots_per_32px_window, Range::positive(1024.0));
     if (kind == "grid") {
       setup.arrangement = DotArrangement::regular;
-    } else if (table.word("arrangement", "random", {"random", "regular"}) == "regular") {
-      setup.arrangement = DotArrangement::regular;
+    } else {
+      setup.arrangement = table.choice("arrangement", setup.arrangement,
+                                       {{"random", DotArrangement::random}, {"regular", DotArrangement::regular}});
     }
   } else {
     setup.file = table.required_path("file");
@@ -30,18 +31,18 @@ TargetSetup read_target_setup(SetupTable table) {
     if (table.has("dot_diameter_mm")) {
       if (table.has("dot_diameter_px")) {
         table.problem("dot_diameter_mm", "stands beside dot_diameter_px (one size is enough); remove one of them");
-        table.number("dot_diameter_px", 3.0);
+        table.number("dot_diameter_px", *setup.dot_diameter_px);
       }
       setup.dot_diameter_m = table.number("dot_diameter_mm", 0.0, Range::at_least(0.0)) * unit::millimetre;
       setup.dot_diameter_px.reset();
     } else {
-      setup.dot_diameter_px = table.number("dot_diameter_px", 3.0, Range::at_least(0.0, 1e4));
+      setup.dot_diameter_px = table.number("dot_diameter_px", *setup.dot_diameter_px, Range::at_least(0.0, 1e4));
     }
   }
   if (setup.kind == TargetKind::image) {
     table.refuse("polarity", "does not apply to a picture (its grey values are the radiance); remove it");
-  } else if (table.word("polarity", "bright", {"bright", "dark"}) == "dark") {
-    setup.polarity = Polarity::dark;
+  } else {
+    setup.polarity = table.choice("polarity", setup.polarity, {{"bright", Polarity::bright}, {"dark", Polarity::dark}});
   }
   if (table.has("extent_mm") && setup.kind != TargetKind::points) {
     auto const extent = table.numbers("extent_mm", {}, 2, Range::positive());
@@ -51,7 +52,8 @@ TargetSetup read_target_setup(SetupTable table) {
     auto const centre = table.numbers("center_mm", {}, 2, {-1e9, 1e9});
     if (centre.size() == 2) setup.centre_m = Vec2d{centre[0] * unit::millimetre, centre[1] * unit::millimetre};
   }
-  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 7, 0, std::numeric_limits<long long>::max()));
+  setup.seed = static_cast<std::uint64_t>(
+      table.integer("seed", static_cast<long long>(setup.seed), 0, std::numeric_limits<long long>::max()));
   return setup;
 }
 

@@ -8,10 +8,10 @@
 #include "render/base/error.h"
 #include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/light/existing_file.h"
 #include "render/light/flow.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 namespace {
@@ -80,8 +80,8 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
   file.where = table.where("file");
   file.dataset = table.text("dataset", "");
   file.scale = table.number("scale", 1.0, {-1e12, 1e12});
-  if (table.has("spacing_mm")) file.spacing = read_vector(table, "spacing_mm", {1, 1, 1}, mm, Range::positive(1e9));
-  file.center = read_vector(table, "center_mm", {}, mm, {-1e9, 1e9});
+  if (table.has("spacing_mm")) file.spacing = table.quantities("spacing_mm", {mm, mm, mm}, mm, Range::positive(1e9));
+  file.center = table.quantities("center_mm", file.center, mm, {-1e9, 1e9});
   file.extrude = table.boolean("extrude", false);
   auto const periodic = table.booleans("periodic", {false, false, false}, 3);
   for (std::size_t axis = 0; axis < 3 && periodic.size() == 3; ++axis) file.periodic[axis] = periodic[axis];

@@ -111,76 +111,21 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
   return built;
 }
 
-template <class Field>
-Field slab(MediumSetup const& setup) {
-  Field field;
-  field.half_thickness = setup.thickness / 2;
-  field.gladstone_dale = setup.gladstone_dale;
-  field.ambient_density = setup.ambient_density;
-  return field;
-}
-
-BuiltMedium build_analytic(MediumSetup const& setup) {
-  FieldSetup const& field = setup.field;
+/// A medium without a grid: none, or a field in closed form.
+BuiltMedium build_without_grid(MediumSetup const& setup) {
   BuiltMedium built;
   built.finest = setup.thickness;
-  switch (field.kind) {
-    case FieldKind::uniform_gradient: {
-      auto medium = slab<UniformGradient<double>>(setup);
-      medium.gradient = field.gradient;
-      built.view = medium;
-      built.steepest = setup.gladstone_dale * length(field.gradient);
-      break;
-    }
-    case FieldKind::sinusoid: {
-      auto medium = slab<Sinusoid<double>>(setup);
-      medium.amplitude = field.amplitude;
-      medium.wavevector = field.direction * (2 * pi / field.wavelength);
-      medium.phase = field.phase;
-      built.view = medium;
-      built.finest = field.wavelength / 4;
-      built.steepest = setup.gladstone_dale * std::abs(field.amplitude) * 2 * pi / field.wavelength;
-      break;
-    }
-    case FieldKind::gaussian_plume: {
-      auto medium = slab<GaussianPlume<double>>(setup);
-      medium.amplitude = field.amplitude;
-      medium.radius = field.radius;
-      built.view = medium;
-      built.finest = field.radius / 2;
-      break;
-    }
-    case FieldKind::gaussian_blob: {
-      auto medium = slab<GaussianBlob<double>>(setup);
-      medium.amplitude = field.amplitude;
-      medium.radius = field.radius;
-      built.view = medium;
-      built.finest = field.radius / 2;
-      break;
-    }
-    case FieldKind::normal_shock: {
-      auto medium = slab<NormalShock<double>>(setup);
-      medium.upstream = field.upstream_density;
-      medium.jump = field.upstream_density * (shock_density_ratio(field.mach, constant::gamma_air) - 1);
-      medium.thickness = field.shock_thickness;
-      medium.position = field.position;
-      medium.normal_x = std::cos(field.tilt);
-      medium.normal_z = std::sin(field.tilt);
-      built.view = medium;
-      built.finest = field.shock_thickness / 4;
-      built.steepest = setup.gladstone_dale * medium.jump / field.shock_thickness;
-      break;
-    }
-    case FieldKind::none:
-    case FieldKind::file:
-      break;
-  }
-  if (field.kind == FieldKind::gaussian_plume || field.kind == FieldKind::gaussian_blob) {
-    // largest slope of A exp(-r^2/a^2): sqrt(2/e) A / a
-    built.steepest = setup.gladstone_dale * std::abs(field.amplitude) * 0.85776388496 / field.radius;
+  if (setup.field.kind == FieldKind::closed_form) {
+    std::visit(
+        [&built](auto const& form) {
+          built.view = form;
+          built.finest = form.finest();
+          built.steepest = form.steepest();
+        },
+        closed_form_of(setup));
   }
   built.coarsest_step = std::min(built.finest, setup.thickness / 4);
-  built.owner = std::make_shared<FieldSetup const>(field);
+  built.owner = std::make_shared<FieldSetup const>(setup.field);
   return built;
 }
 
@@ -206,19 +151,19 @@ Bounds<double> file_bounds(MediumSetup const& setup) {
 }
 
 double steps_across(MediumSetup const& setup) {
-  if (setup.field.kind != FieldKind::file) return setup.thickness / build_analytic(setup).coarsest_step;
+  if (setup.field.kind != FieldKind::file) return setup.thickness / build_without_grid(setup).coarsest_step;
   RegularGrid const grid = world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset));
   double const depth = setup.field.extrude ? setup.thickness : grid.spacing.z * grid.nodes[2];
   return depth / (cells_a_step(setup) * finest_cell(setup.field, grid));
 }
 
 double finest_length(MediumSetup const& setup) {
-  if (setup.field.kind != FieldKind::file) return build_analytic(setup).finest;
+  if (setup.field.kind != FieldKind::file) return build_without_grid(setup).finest;
   return finest_cell(setup.field, world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset)));
 }
 
 BuiltMedium build_medium(MediumSetup const& setup) {
-  if (setup.field.kind != FieldKind::file) return build_analytic(setup);
+  if (setup.field.kind != FieldKind::file) return build_without_grid(setup);
   auto const source = open_field(setup.field.file, setup.field.dataset);
   RegularGrid const grid = world_grid(setup.field, *source);
   return setup.field.extrude ? build_grid<double, 2>(setup, grid, *source) : build_grid<float, 3>(setup, grid, *source);

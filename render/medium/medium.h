@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "render/medium/analytic_fields.h"
+#include "render/medium/closed_forms.h"
 #include "render/medium/refractive_index_volume.h"
 
 namespace gladstone {
@@ -16,10 +16,20 @@ using LinearPlane = GriddedIndex<T, double, Linear, 2>;
 template <class T>
 using LinearVolume = GriddedIndex<T, float, Linear, 3>;
 
-/// Every medium that a ray can cross, as views; the closed set from which launchers choose once per launch.
-/// A medium has bounds() [m] and sample(p) -> IndexSample. Adding one: its struct, and its name here.
+namespace detail {
+
+template <class T, class Forms>
+struct MediumOf;
+template <class T, class... Forms>
+struct MediumOf<T, std::variant<Forms...>> {
+  using Type = std::variant<NoMedium<T>, Forms..., SplinePlane<T>, SplineVolume<T>, LinearPlane<T>, LinearVolume<T>>;
+};
+
+}  // namespace detail
+
+/// Every medium that a ray can cross, as views: none, the fields in closed form, those on a grid; the closed set from
+/// which launchers choose once per launch. A medium has bounds() [m] and sample(p) -> IndexSample.
 template <class T>
-using Medium = std::variant<NoMedium<T>, UniformGradient<T>, Sinusoid<T>, GaussianPlume<T>, GaussianBlob<T>,
-                            NormalShock<T>, SplinePlane<T>, SplineVolume<T>, LinearPlane<T>, LinearVolume<T>>;
+using Medium = typename detail::MediumOf<T, ClosedForm<T>>::Type;
 
 }  // namespace gladstone

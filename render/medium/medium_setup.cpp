@@ -4,14 +4,28 @@
 #include <cmath>
 #include <filesystem>
 
+#include "render/base/contracts.h"
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
 
 namespace gladstone {
 namespace {
 
-Vec3d three(std::vector<double> const& values, double unit_size) {
-  return values.size() == 3 ? Vec3d{values[0], values[1], values[2]} * unit_size : Vec3d{};
+template <class... Forms>
+std::vector<std::string> kind_words(std::variant<Forms...> const*) {
+  std::vector<std::string> words{"none", "file"};
+  (words.emplace_back(Forms::kind), ...);
+  return words;
+}
+
+/// Reads the closed form of that name, if there is one.
+template <class... Forms>
+void read_form(std::string const& word, SetupTable& table, FieldSetup& field, std::variant<Forms...> const*) {
+  auto const read = [&]<class Form>(Form const*) {
+    if (word == Form::kind) field = Form::read(table);
+  };
+  (read(static_cast<Forms const*>(nullptr)), ...);
 }
 
 void read_file_field(SetupTable& table, FieldSetup& field) {
@@ -21,67 +35,30 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
     table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
   }
   field.dataset = table.text("dataset", "");
-  std::string const quantity = table.word("quantity", "density", {"density", "refractive_index", "refractivity"});
-  if (quantity == "refractive_index") field.quantity = FieldQuantity::refractive_index;
-  if (quantity == "refractivity") field.quantity = FieldQuantity::refractivity;
-  field.scale = table.number("scale", 1.0);
+  field.quantity = table.choice("quantity", field.quantity,
+                                {{"density", FieldQuantity::density},
+                                 {"refractive_index", FieldQuantity::refractive_index},
+                                 {"refractivity", FieldQuantity::refractivity}});
+  field.scale = table.number("scale", field.scale);
   if (field.scale == 0) table.problem("scale", "is zero (the field would vanish); use kind = \"none\" for that");
   if (table.has("spacing_mm")) {
-    field.spacing = three(table.numbers("spacing_mm", {1, 1, 1}, 3, Range::positive()), unit::millimetre);
+    field.spacing = table.quantities("spacing_mm", {1e-3, 1e-3, 1e-3}, unit::millimetre, Range::positive());
   }
-  field.center = three(table.numbers("center_mm", {0, 0, 0}, 3), unit::millimetre);
-  field.extrude = table.boolean("extrude", false);
+  field.center = table.quantities("center_mm", field.center, unit::millimetre);
+  field.extrude = table.boolean("extrude", field.extrude);
   auto const periodic = table.booleans("periodic", {false, false, false}, 3);
   for (std::size_t axis = 0; axis < 3 && periodic.size() == 3; ++axis) field.periodic[axis] = periodic[axis];
 }
 
-void read_gaussian(SetupTable& table, FieldSetup& field) {
-  field.amplitude = table.required_number("amplitude_kg_m3");
-  field.radius = table.required_number("radius_mm", Range::positive()) * unit::millimetre;
-}
-
-void read_sinusoid(SetupTable& table, FieldSetup& field) {
-  field.amplitude = table.required_number("amplitude_kg_m3");
-  field.wavelength = table.required_number("wavelength_mm", Range::positive()) * unit::millimetre;
-  auto const direction = table.numbers("direction", {1, 0}, 2);
-  if (direction.size() == 2) field.direction = {direction[0], direction[1]};
-  double const norm = length(field.direction);
-  if (norm == 0) {
-    table.problem("direction", "is zero (a wave needs a direction); use [1, 0] for a wave along X");
-  } else {
-    field.direction = field.direction / norm;
-  }
-  field.phase = table.number("phase_rad", 0.0);
-}
-
-void read_shock(SetupTable& table, FieldSetup& field) {
-  field.mach = table.required_number("mach", Range::at_least(1.0, 100.0));
-  field.upstream_density = table.required_number("upstream_density_kg_m3", Range::positive());
-  field.shock_thickness = table.required_number("shock_thickness_mm", Range::positive()) * unit::millimetre;
-  field.tilt = table.number("tilt_deg", 0.0, {-89.0, 89.0, false, false}) * unit::degree;
-  field.position = table.number("position_mm", 0.0) * unit::millimetre;
-}
-
 FieldSetup read_field(SetupTable table) {
+  constexpr ClosedForm<double> const* forms = nullptr;
   FieldSetup field;
-  std::string const kind = table.kind_word(
-      "kind", "none",
-      {"none", "file", "uniform_gradient", "sinusoid", "gaussian_plume", "gaussian_blob", "normal_shock"});
-  if (kind == "file") {
+  std::string const word = table.kind_word("kind", "none", kind_words(forms));
+  if (word == "file") {
     field.kind = FieldKind::file;
     read_file_field(table, field);
-  } else if (kind == "uniform_gradient") {
-    field.kind = FieldKind::uniform_gradient;
-    field.gradient = three(table.numbers("gradient_kg_m4", {10, 0, 0}, 3), 1.0);
-  } else if (kind == "sinusoid") {
-    field.kind = FieldKind::sinusoid;
-    read_sinusoid(table, field);
-  } else if (kind == "gaussian_plume" || kind == "gaussian_blob") {
-    field.kind = kind == "gaussian_plume" ? FieldKind::gaussian_plume : FieldKind::gaussian_blob;
-    read_gaussian(table, field);
-  } else if (kind == "normal_shock") {
-    field.kind = FieldKind::normal_shock;
-    read_shock(table, field);
+  } else {
+    read_form(word, table, field, forms);
   }
   return field;
 }
@@ -90,23 +67,22 @@ FieldSetup read_field(SetupTable table) {
 
 MediumSetup read_medium_setup(SetupTable table) {
   MediumSetup setup;
-  double const wavelength_nm = table.number("wavelength_nm", 532.0, {230.0, 1690.0, false, false});
-  setup.wavelength = wavelength_nm * unit::nanometre;
+  setup.wavelength = table.quantity("wavelength_nm", setup.wavelength, unit::nanometre, {230.0, 1690.0, false, false});
   auto const constant =
-      table.number_or_word("gladstone_dale", {2.26e-4, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
+      table.number_or_word("gladstone_dale", {setup.gladstone_dale, ""}, {"ciddor", "merzkirch"}, Range::positive(1.0));
   if (constant.number) setup.gladstone_dale = *constant.number;
   if (constant.word == "ciddor") setup.gladstone_dale = gladstone_dale_ciddor(setup.wavelength);
   if (constant.word == "merzkirch") setup.gladstone_dale = gladstone_dale_merzkirch(setup.wavelength);
-  setup.ambient_density = table.number("ambient_density_kg_m3", 1.225, Range::at_least(0.0, 1e4));
+  setup.ambient_density = table.number("ambient_density_kg_m3", setup.ambient_density, Range::at_least(0.0, 1e4));
   auto const thickness_mm = table.number_or_auto("thickness_mm", Range::positive(1e6));
-  if (table.word("interpolation", "cubic_bspline", {"cubic_bspline", "trilinear"}) == "trilinear") {
-    setup.interpolation = FieldInterpolation::trilinear;
-  }
-  std::string const integrator = table.word("integrator", "rk4", {"rk4", "euler", "straight"});
-  if (integrator == "euler") setup.integrator = Integrator::euler;
-  if (integrator == "straight") setup.integrator = Integrator::straight;
+  setup.interpolation = table.choice(
+      "interpolation", setup.interpolation,
+      {{"cubic_bspline", FieldInterpolation::cubic_bspline}, {"trilinear", FieldInterpolation::trilinear}});
+  setup.integrator =
+      table.choice("integrator", setup.integrator,
+                   {{"rk4", Integrator::rk4}, {"euler", Integrator::euler}, {"straight", Integrator::straight}});
   setup.step_mm = table.number_or_auto("step_mm", Range::positive());
-  if (table.word("faces", "matched", {"matched", "refract"}) == "refract") setup.faces = Faces::refract;
+  setup.faces = table.choice("faces", setup.faces, {{"matched", Faces::matched}, {"refract", Faces::refract}});
   auto fields = table.tables("field");
   if (fields.size() > 1) {
     table.problem("field", "is an array of several fields, which is not available yet (one field a setup); keep one");
@@ -126,6 +102,27 @@ MediumSetup at_second_pulse(MediumSetup const& setup) {
   return second;
 }
 
+ClosedForm<double> closed_form_of(MediumSetup const& setup) {
+  GLADSTONE_EXPECTS(setup.field.kind == FieldKind::closed_form);
+  ClosedForm<double> whole = setup.field.form;
+  std::visit(
+      [&setup](Slab<double>& slab) {
+        slab = {setup.thickness / 2, setup.gladstone_dale, setup.ambient_density};
+      },
+      whole);
+  return whole;
+}
+
+double radius_along_z(FieldSetup const& field) {
+  if (field.kind != FieldKind::closed_form) return 0;
+  return std::visit(
+      [](auto const& form) {
+        if constexpr (requires { form.radius_along_z(); }) return form.radius_along_z();
+        return 0.0;
+      },
+      field.form);
+}
+
 double automatic_thickness_mm(MediumSetup const& setup) {
   double const first = automatic_thickness_mm(setup.field);
   return setup.second_field ? std::max(first, automatic_thickness_mm(*setup.second_field)) : first;
@@ -134,12 +131,12 @@ double automatic_thickness_mm(MediumSetup const& setup) {
 double automatic_thickness_mm(FieldSetup const& field) {
   constexpr double radii = 7.0;
   // to a nanometre: radii were told in mm
-  double const wanted = std::round(radii * field.radius / unit::nanometre) * 1e-6;
-  return has_size_along_z(field.kind) ? std::max(10.0, wanted) : 10.0;
+  return std::max(10.0, std::round(radii * radius_along_z(field) / unit::nanometre) * 1e-6);
 }
 
 double cut_off_share(MediumSetup const& setup) {
-  return has_size_along_z(setup.field.kind) ? std::erfc(setup.thickness / 2 / setup.field.radius) : 0.0;
+  double const radius = radius_along_z(setup.field);
+  return radius > 0 ? std::erfc(setup.thickness / 2 / radius) : 0.0;
 }
 
 }  // namespace gladstone

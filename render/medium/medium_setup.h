@@ -3,24 +3,28 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 #include "render/base/setup_table.h"
 #include "render/base/vec.h"
+#include "render/medium/closed_forms.h"
 #include "render/medium/trace_medium.h"
 
 namespace gladstone {
 
-enum class FieldKind { none, file, uniform_gradient, sinusoid, gaussian_plume, gaussian_blob, normal_shock };
-/// Whether a field fades on its own along Z, so that a slab can be too thin for it.
-constexpr bool has_size_along_z(FieldKind kind) {
-  return kind == FieldKind::gaussian_plume || kind == FieldKind::gaussian_blob;
-}
+/// Where a density comes from: nowhere, a file, or one of the closed forms.
+enum class FieldKind { none, file, closed_form };
 
 enum class FieldQuantity { density, refractive_index, refractivity };
 enum class FieldInterpolation { cubic_bspline, trilinear };
 
 /// Table [medium.field] of a setup, in SI; only the members of its kind are read.
 struct FieldSetup {
+  FieldSetup() = default;
+  template <class Form>
+  requires std::is_constructible_v<ClosedForm<double>, Form> FieldSetup(Form const& closed_form)
+      : kind(FieldKind::closed_form), form(closed_form) {}
+
   FieldKind kind = FieldKind::none;
   // file
   std::string file;
@@ -32,18 +36,14 @@ struct FieldSetup {
   Vec3d center{};                ///< [m]
   bool extrude = false;
   std::array<bool, 3> periodic{false, false, false};
-  // analytic
-  double amplitude = 0;   ///< [kg/m^3]
-  double radius = 0;      ///< [m]
-  double wavelength = 0;  ///< of the sinusoid [m]
-  Vec2d direction{1, 0};
-  double phase = 0;  ///< [rad]
-  Vec3d gradient{};  ///< [kg/m^4]
-  double mach = 1;
-  double upstream_density = 0;  ///< [kg/m^3]
-  double shock_thickness = 0;   ///< [m]
-  double tilt = 0;              ///< [rad]
-  double position = 0;          ///< [m]
+  // closed form
+  ClosedForm<double> form;  ///< without its slab, which the medium gives: see closed_form_of
+
+  /// Its closed form of that type; null where it is another's, or none.
+  template <class Form>
+  Form const* closed_form() const {
+    return kind == FieldKind::closed_form ? std::get_if<Form>(&form) : nullptr;
+  }
 };
 
 /// Table [medium] of a setup, in SI.
@@ -65,8 +65,14 @@ struct MediumSetup {
 
 MediumSetup read_medium_setup(SetupTable table);
 
+/// The field in the slab of its medium. @pre setup.field.kind is closed_form
+ClosedForm<double> closed_form_of(MediumSetup const& setup);
+
 /// The medium that the second pulse sees. @pre setup.second_field
 MediumSetup at_second_pulse(MediumSetup const& setup);
+
+/// The radius of a field that fades on its own along Z, so that a slab can be too thin for it [m]; 0 for others.
+double radius_along_z(FieldSetup const& field);
 
 /// What medium.thickness_mm = "auto" stands for: 10 mm, and for a plume or a blob, whose displacement a slab about its
 /// middle cuts off by erfc(half thickness / radius), at least seven radii, which cut off 7e-7 of it [mm].

@@ -19,13 +19,7 @@ struct PosedStop {
   T edge{};    ///< width of the zone about the rim that quadrature smooths, see ApertureStop; 0: sharp
 
   /// Where a ray meets the stop's plane, in its own frame [m]. @return false where it runs along it
-  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
-    Ray<T> const local = pose.inwards(ray);
-    if (local.direction.z == T(0)) return false;
-    T const way = -local.position.z / local.direction.z;
-    place = {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
-    return true;
-  }
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
   /// Weighs a ray, which stays where it is: what limits light needs not stand in the order of the elements.
   /// @return vignetted outside the radius, whatever the rim leaves of it
@@ -48,9 +42,7 @@ struct PosedThinLens {
   Pose<T> pose;
   T focal_length{};  ///< [m]
 
-  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
-    return PosedStop<T>{pose, T(0), T(0)}.meet(ray, place);
-  }
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
   /// @return missed_lens for rays that do not run towards it; optical paths are undefined behind it
   GLADSTONE_HD RayStatus interact(Ray<T>& ray, RayAccount<T>&) const {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "render/base/error.h"
 #include "render/base/units.h"
@@ -64,6 +66,7 @@ class LensBuilder {
       before = after;
       if (last && (way != 0 || lens_.prescription.ends_at_image)) lens_.image_distance = way;
     }
+    note_described_glasses();
   }
 
   /// Finds the stop's radius and gives it to the stop.
@@ -179,13 +182,26 @@ class LensBuilder {
     if (auto const* const index = std::get_if<PrescribedMedium::Index>(&is)) return {index->n, 0};
     if (auto const* const described = std::get_if<PrescribedMedium::Described>(&is)) {
       Glass const glass = Glass::from_nd_vd(described->nd, described->vd);
-      lens_.warnings.push_back(
-          fmt::format("{}: glass {} is taken as n = A + B/lambda^2, good to about 1e-3 away from "
-                      "587.6 nm; name a glass of a catalogue for more",
-                      surface.where, glass.name));
+      if (described_where_.empty()) described_where_ = surface.where;
+      if (std::find(described_.begin(), described_.end(), glass.name) == described_.end()) {
+        described_.push_back(glass.name);
+      }
       return {glass.index(lens_.wavelength), 0};
     }
     return {};
+  }
+
+  /// Warns of the glasses that nd and Vd alone describe, all at once, at the first of them.
+  void note_described_glasses() {
+    if (described_.empty()) return;
+    bool const one = described_.size() == 1;
+    lens_.warnings.push_back(
+        fmt::format("{}: {} {} taken as n = A + B/lambda^2, good to about 1e-3 away from 587.6 nm; name {} of a "
+                    "catalogue for more",
+                    described_where_,
+                    one ? "glass " + described_.front()
+                        : fmt::format("{} glasses ({})", described_.size(), fmt::join(described_, "; ")),
+                    one ? "is" : "are", one ? "a glass" : "glasses"));
   }
 
   template <class Surface>
@@ -224,6 +240,8 @@ class LensBuilder {
   Lens& lens_;
   GlassCatalogue const& catalogue_;
   LensOptions const& options_;
+  std::vector<std::string> described_;  // glasses by nd and Vd alone
+  std::string described_where_;         // the first of them stands
 };
 
 /// Radius that the prescription itself opens the stop of placed surfaces to, paraxially [m]; empty: it cannot say.

@@ -19,8 +19,8 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
     table.refuse("focal_length_mm", "stands beside a prescription (which has its own); remove it");
   } else {
     table.refuse("file", "names a prescription (the model is a thin lens); use model = \"prescription\"");
-    setup.focal_length = table.number("focal_length_mm", 105.0, Range::positive(1e5)) * unit::millimetre;
-    setup.f_number = table.number("f_number", 11.0, aperture);
+    setup.focal_length = table.quantity("focal_length_mm", setup.focal_length, unit::millimetre, Range::positive(1e5));
+    setup.f_number = table.number("f_number", setup.f_number, aperture);
   }
   setup.glasses = table.path_list("glasses");
   if (table.has("focus_distance_mm")) {
@@ -33,15 +33,15 @@ LensSetup read_lens_setup(SetupTable table, std::string const& focus_on) {
   } else if (table.word("focus", focus_on, {focus_on, "medium"}) == "medium") {
     setup.focus = Focus::medium;
   }
-  std::string const passes = table.word("transmittance", "ideal", {"ideal", "surfaces", "glass"});
-  if (passes == "surfaces") setup.transmittance = Transmittance::surfaces;
-  if (passes == "glass") setup.transmittance = Transmittance::glass;
-  std::string const psf =
-      table.word("psf", "gaussian", {"gaussian", "airy", "gaussian_first_zero", "seed_eq8", "none"});
-  if (psf == "airy") setup.spot = SpotModel::airy;
-  if (psf == "gaussian_first_zero") setup.spot = SpotModel::gaussian_first_zero;
-  if (psf == "seed_eq8") setup.spot = SpotModel::seed_eq8;
-  if (psf == "none") setup.spot = SpotModel::none;
+  setup.transmittance = table.choice(
+      "transmittance", setup.transmittance,
+      {{"ideal", Transmittance::ideal}, {"surfaces", Transmittance::surfaces}, {"glass", Transmittance::glass}});
+  setup.spot = table.choice("psf", setup.spot,
+                            {{"gaussian", SpotModel::gaussian},
+                             {"airy", SpotModel::airy},
+                             {"gaussian_first_zero", SpotModel::gaussian_first_zero},
+                             {"seed_eq8", SpotModel::seed_eq8},
+                             {"none", SpotModel::none}});
   return setup;
 }
 

@@ -17,9 +17,8 @@ std::optional<LensletSetup> read_lenslets(SetupTable table) {
     setup.focal_length = table.required_number("focal_length_um", length) * unit::micrometre;
   }
   setup.to_sensor = table.number("distance_um", setup.focal_length / unit::micrometre, length) * unit::micrometre;
-  if (table.word("layout", "square", {"square", "hexagonal"}) == "hexagonal") {
-    setup.layout = LensletLayout::hexagonal;
-  }
+  setup.layout = table.choice("layout", setup.layout,
+                              {{"square", LensletLayout::square}, {"hexagonal", LensletLayout::hexagonal}});
   return setup;
 }
 

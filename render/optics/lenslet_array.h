@@ -22,13 +22,7 @@ struct LensletArray {
   T focal_length{};  ///< [m]
   LensletLayout layout = LensletLayout::square;
 
-  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
-    Ray<T> const local = pose.inwards(ray);
-    if (local.direction.z == T(0)) return false;
-    T const way = -local.position.z / local.direction.z;
-    place = {local.position.x + way * local.direction.x, local.position.y + way * local.direction.y};
-    return true;
-  }
+  GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const { return pose.meet(ray, place); }
 
   /// Where the axis of the lens that a place belongs to meets the plane [m].
   GLADSTONE_HD Vec2<T> axis_at(Vec2<T> place) const {

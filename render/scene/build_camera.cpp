@@ -124,18 +124,40 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
   return imaging;
 }
 
-Vec2d posed_extent(Setup const& setup) {
+namespace {
+
+/// Width and height about target_centre() of the dots that a rectangle of the picture shows [px, m].
+Vec2d seen_extent(Setup const& setup, Vec2d first, Vec2d last) {
   Camera const camera = build_camera(setup);
-  double const margin = setup.view_margin_px, right = setup.camera.columns + margin, low = setup.camera.rows + margin;
   Vec2d const centre = setup.target_centre();
   Vec2d half{};
-  for (Vec2d const corner : {Vec2d{-margin, -margin}, {right, -margin}, {-margin, low}, {right, low}}) {
+  for (Vec2d const corner : {first, Vec2d{last.x, first.y}, Vec2d{first.x, last.y}, last}) {
     Vec2d const off = seen_place(camera, setup, corner) - centre;
     half = {std::max(half.x, std::abs(off.x)), std::max(half.y, std::abs(off.y))};
   }
+  return 2.0 * half;
+}
+
+}  // namespace
+
+Vec2d posed_view(Setup const& setup) {
+  return seen_extent(setup, {-0.5, -0.5}, {setup.camera.columns - 0.5, setup.camera.rows - 0.5});
+}
+
+Vec2d posed_extent(Setup const& setup) {
+  double const margin = setup.view_margin_px;
+  Vec2d const seen =
+      seen_extent(setup, {-margin, -margin}, {setup.camera.columns + margin, setup.camera.rows + margin});
   // in whole micrometres, so that the resolved setup, which holds mm, gives the same dots to the last bit
-  auto const in_mm = [](double metres) { return std::ceil(2 * metres / unit::micrometre) * 1e-3; };
-  return Vec2d{in_mm(half.x), in_mm(half.y)} * unit::millimetre;
+  auto const in_mm = [](double metres) { return std::ceil(metres / unit::micrometre) * 1e-3; };
+  return Vec2d{in_mm(seen.x), in_mm(seen.y)} * unit::millimetre;
+}
+
+double posed_pixel_size(Setup const& setup) {
+  auto const seen = build_camera(setup).see(setup.target_centre(), Pose<double>{{0, 0, -setup.z_d}});
+  double const area = seen ? std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x) : 0;  // [px^2/m^2]
+  if (!(area > 0)) throw DataError("camera.pose", "sees nothing of the target's middle; turn the camera there");
+  return 1 / std::sqrt(area);
 }
 
 double posed_view_area(Setup const& setup) {

@@ -15,9 +15,13 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
 /// images Z = const through the point in focus sharply all over [rad].
 Vec2d sensor_tilt(Setup const& setup);
 
-/// Width and height about target_centre() of what a turned or tilted camera sees of the dots' plane, with the setup's
-/// margin all round [m].
+/// Width and height about target_centre() of what a turned or tilted camera sees of the dots' plane [m].
+Vec2d posed_view(Setup const& setup);
+/// The same with the setup's margin all round [m].
 Vec2d posed_extent(Setup const& setup);
+
+/// Setup::pixel_size() of a turned or tilted camera. @throws DataError where it sees nothing of the target's middle
+double posed_pixel_size(Setup const& setup);
 
 /// Area that a turned or tilted camera's picture takes on the dots' plane: of the polygon through several pixels of
 /// each of its edges [m^2].

@@ -61,7 +61,7 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
                                     "(which is to stand between all planes and the camera); move one",
                                     nearest / mm, window.position.z / mm));
   }
-  double const px = setup.camera.pixel_pitch / setup.imaging().magnification, diameter_px = setup.dot_diameter() / px;
+  double const px = setup.pixel_size(), diameter_px = setup.dot_diameter() / px;
   if (diameter_px < least_dot_px) {
     warnings.push_back(
         fmt::format("calibration.dot_diameter_mm: dots are {:.2f} px wide in the picture, which leaves "

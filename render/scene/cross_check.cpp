@@ -24,17 +24,15 @@ bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero 
 
 /// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
 bool cross_check_camera(Setup const& setup, SetupTable root) {
-  std::string const lens = "lens: ";
   try {
     build_camera(setup);
     setup.target_extent();
     return true;
   } catch (DataError const& error) {
-    std::string const text = error.what();
-    if (text.starts_with(lens)) {
-      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", text.substr(lens.size()));
+    if (error.file() == "lens") {
+      root.table("lens").problem(setup.lens.prescription ? "file" : "focus", error.message());
     } else {
-      camera_table(root).problem("pose", text.substr(text.find(' ') + 1));
+      camera_table(root).problem("pose", error.message());
     }
   }
   return false;
@@ -136,10 +134,9 @@ void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens
 void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), target = root.table("target");
-  double const magnification = setup.imaging().magnification;
-  double const px = setup.camera.pixel_pitch / magnification;
-  Vec2d const view{setup.camera.columns * px, setup.camera.rows * px};
-  Vec2d const needed = view + setup.beyond_view();
+  double const px = setup.pixel_size();
+  Vec2d view{setup.camera.columns * px, setup.camera.rows * px}, needed = view + setup.beyond_view();
+  if (setup.pose || setup.camera.tilted()) needed = view = posed_view(setup);
   if (setup.target.extent_m && (setup.target.extent_m->x < needed.x || setup.target.extent_m->y < needed.y)) {
     target.problem("extent_mm",
                    fmt::format("the field of view, {:.4g} x {:.4g} mm at the dots, is larger than the target, or lies "

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/medium/analytic_fields.h"
 #include "render/medium/field_volume.h"
 #include "render/scene/setup_checks.h"
 
@@ -27,65 +26,29 @@ Vec2d half_extent_at_medium(Setup const& setup) {
   return half;
 }
 
-/// Densities that a field takes where rays cross it [kg/m^3].
-struct DensityRange {
-  double lowest, highest;
+/// What messages tell of a field's densities.
+struct FieldDensities {
+  DensityRange range;
+  char const* key;     ///< that they follow from
+  bool endless_range;  ///< negative somewhere, whatever the field's strength
 };
 
-/// Of a field in closed form, or of the ambient where there is none.
-DensityRange density_range(Setup const& setup) {
-  FieldSetup const& field = setup.medium.field;
+/// Of a field in closed form; of the ambient where there is none.
+FieldDensities field_densities(Setup const& setup) {
   double const ambient = setup.medium.ambient_density;
-  switch (field.kind) {
-    case FieldKind::sinusoid:
-      return {ambient - std::abs(field.amplitude), ambient + std::abs(field.amplitude)};
-    case FieldKind::gaussian_plume:
-    case FieldKind::gaussian_blob:
-      return {ambient + std::min(field.amplitude, 0.0), ambient + std::max(field.amplitude, 0.0)};
-    case FieldKind::uniform_gradient: {
-      Vec2d const half = half_extent_at_medium(setup);
-      double const change = std::abs(field.gradient.x) * half.x + std::abs(field.gradient.y) * half.y +
-                            std::abs(field.gradient.z) * setup.medium.thickness / 2;
-      return {ambient - change, ambient + change};
-    }
-    case FieldKind::normal_shock:
-      return {field.upstream_density, field.upstream_density * shock_density_ratio(field.mach, constant::gamma_air)};
-    case FieldKind::none:
-    case FieldKind::file:
-      break;
-  }
-  return {ambient, ambient};
+  if (setup.medium.field.kind != FieldKind::closed_form) return {{ambient, ambient}, "kind", false};
+  return std::visit(
+      [&setup](auto const& form) -> FieldDensities {
+    return {form.densities(half_extent_at_medium(setup)), form.density_key, requires {form.endless_range; }
+};
+},
+      closed_form_of(setup.medium));
 }
 
-/// The key that a closed form's densities follow from.
-char const* density_key(FieldKind kind) {
-  switch (kind) {
-    case FieldKind::uniform_gradient:
-      return "gradient_kg_m4";
-    case FieldKind::normal_shock:
-      return "upstream_density_kg_m3";
-    default:
-      return "amplitude_kg_m3";
-  }
-}
-
-/// The key of the length on which a field changes.
+/// The key of the length on which a field changes. @pre there is a field
 std::string length_key(FieldSetup const& field) {
-  switch (field.kind) {
-    case FieldKind::sinusoid:
-      return "wavelength_mm";
-    case FieldKind::gaussian_plume:
-    case FieldKind::gaussian_blob:
-      return "radius_mm";
-    case FieldKind::normal_shock:
-      return "shock_thickness_mm";
-    case FieldKind::file:
-      return field.spacing ? "spacing_mm" : "file";
-    case FieldKind::none:
-    case FieldKind::uniform_gradient:
-      break;
-  }
-  return "kind";
+  if (field.kind == FieldKind::file) return field.spacing ? "spacing_mm" : "file";
+  return std::visit([](auto const& form) { return std::string(form.length_key); }, field.form);
 }
 
 }  // namespace
@@ -99,7 +62,7 @@ void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<st
         "medium.thickness_mm: {:.6g} mm{} cut {:.2g} % of the displacement off, since the field of {:.6g} mm radius "
         "goes on beyond them; {}",
         slab.thickness / mm, limited ? ", all that fits between the dots and the lens," : "", 100 * lost,
-        slab.field.radius / mm,
+        radius_along_z(slab.field) / mm,
         limited ? "increase geometry.z_d_mm or z_a_mm"
                 : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
   }
@@ -122,7 +85,6 @@ void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<st
 
 void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,
                          std::string const& of_field) {
-  FieldSetup const& field = setup.medium.field;
   double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
   if (!possible_refractivity(K * ambient)) {
     medium.problem(
@@ -131,8 +93,9 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
                     1 + K * ambient));
     return;
   }
-  auto const [lowest, highest] = density_range(setup);
-  char const* const key = density_key(field.kind);
+  FieldDensities const densities = field_densities(setup);
+  auto const [lowest, highest] = densities.range;
+  char const* const key = densities.key;
   if (!possible_refractivity(K * lowest) || !possible_refractivity(K * highest)) {
     medium.tables(of_field).front().problem(
         key, fmt::format("gives refractive indices from {:.6g} to {:.6g} where rays cross the field (no such medium); "
@@ -140,13 +103,13 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
                          1 + K * lowest, 1 + K * highest));
   } else if (lowest >= 0) {
     return;
-  } else if (field.kind == FieldKind::uniform_gradient) {
+  } else if (densities.endless_range) {
     Vec2d const half = half_extent_at_medium(setup);
     warnings.push_back(
-        fmt::format("medium.{}.gradient_kg_m4: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
+        fmt::format("medium.{}.{}: the density is negative, {:.4g} kg/m^3 at the lowest, over a part of "
                     "the {:.4g} x {:.4g} mm that rays cross (no gas has that); reduce the gradient or increase "
                     "medium.ambient_density_kg_m3",
-                    of_field, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
+                    of_field, key, lowest, 2 * half.x / unit::millimetre, 2 * half.y / unit::millimetre));
   } else {
     medium.tables(of_field).front().problem(
         key,
@@ -157,8 +120,7 @@ void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std:
 }
 
 void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field) {
-  FieldKind const kind = setup.medium.field.kind;
-  if (kind == FieldKind::none) return;
+  if (setup.medium.field.kind == FieldKind::none) return;
   double const thickness_mm = setup.medium.thickness / unit::millimetre;
   if (setup.medium.step_mm && thickness_mm > most_steps * *setup.medium.step_mm) {
     medium.problem("step_mm", fmt::format("is so short that a ray would need {:.3g} steps across the medium ({:.0g} at "

@@ -18,9 +18,6 @@ constexpr double bending_margin = 0.02;       // by which media may turn light o
 constexpr double scattering_contrast = 1e-3;  // of the index: what seeds a gas has 0.3 and more
 constexpr double kept_pairs = 0.75;           // that lose little: Keane & Adrian's rule of a quarter
 
-/// Size of a pixel in the plane Z = 0 [m].
-double pixel_there(Setup const& setup) { return setup.camera.pixel_pitch / setup.imaging().magnification; }
-
 /// Share of the particles' volume that the camera sees: of places that an additive recurrence spreads evenly over X and
 /// Y (Roberts 2018: powers of the real root of x^3 = x + 1), another one over Z.
 double seen_share(Setup const& setup) {
@@ -140,7 +137,7 @@ void add_particles(Scene& scene) {
   scene.flow_warning = load_flow(scene.setup.piv->flow);
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
-  double const tolerance = path_tolerance_px * pixel_there(scene.setup);
+  double const tolerance = path_tolerance_px * scene.setup.pixel_size();
   scene.particles = piv.particles.count == ParticleCount::file
                         ? read_particles(piv.particles, piv.flow, sheet, tolerance)
                         : seed_particles(piv.particles, particle_count(scene.setup), piv.flow, sheet, tolerance);
@@ -208,7 +205,7 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
                     outside, scene.particles.size()));
   }
   PathPlan const& path = scene.particles.path;
-  double const px = pixel_there(scene.setup);
+  double const px = scene.setup.pixel_size();
   if (path.error > path_tolerance_px * px) {
     warnings.push_back(
         fmt::format("flow: halving the {} steps of a particle's path changes where it ends by {:.2g} px "

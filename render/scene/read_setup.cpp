@@ -6,7 +6,6 @@
 
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
-#include "render/medium/analytic_fields.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
@@ -37,13 +36,17 @@ RenderSetup read_render_setup(SetupTable table) {
     setup.rays_per_dot = static_cast<std::uint64_t>(*rays);
     table.resolve("rays_per_dot", static_cast<long long>(*rays));
   }
-  if (table.word("sampling", "sobol", {"sobol", "random"}) == "random") setup.sampling = PupilSampling::random;
-  setup.seed = static_cast<std::uint64_t>(table.integer("seed", 1, 0, std::numeric_limits<long long>::max()));
-  if (table.word("precision", "double", {"double", "single"}) == "single") setup.precision = Precision::single;
-  std::string const method = table.word("method", "auto", {"auto", "rays", "focused_dots", "formula"});
-  if (method == "rays") setup.method = RenderMethod::rays;
-  if (method == "focused_dots") setup.method = RenderMethod::focused_dots;
-  if (method == "formula") setup.method = RenderMethod::formula;
+  setup.sampling =
+      table.choice("sampling", setup.sampling, {{"sobol", PupilSampling::sobol}, {"random", PupilSampling::random}});
+  setup.seed = static_cast<std::uint64_t>(
+      table.integer("seed", static_cast<long long>(setup.seed), 0, std::numeric_limits<long long>::max()));
+  setup.precision = table.choice("precision", setup.precision,
+                                 {{"double", Precision::double_precision}, {"single", Precision::single}});
+  setup.method = table.choice("method", setup.method,
+                              {{"auto", RenderMethod::automatic},
+                               {"rays", RenderMethod::rays},
+                               {"focused_dots", RenderMethod::focused_dots},
+                               {"formula", RenderMethod::formula}});
   return setup;
 }
 
@@ -65,21 +68,17 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
 /// Table [camera.pose]: where the camera stands and looks.
 std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!table.present()) return std::nullopt;
-  auto const vector = [&table](char const* key, std::vector<double> const& fallback, Range range) {
-    auto const v = table.numbers(key, fallback, 3, range);
-    return v.size() == 3 ? Vec3d{v[0], v[1], v[2]} : Vec3d{};
-  };
   Range const place{-1e9, 1e9};
   if (!table.has("position_mm")) table.problem("position_mm", "is missing (where the camera stands); add it");
   Pose<double> pose;
-  pose.origin = vector("position_mm", {0, 0, 750}, place) * unit::millimetre;
+  pose.origin = table.quantities("position_mm", {0, 0, 0.75}, unit::millimetre, place);
   if (table.has("rotation_deg")) {
     if (table.has("look_at_mm")) {
       table.problem("rotation_deg", "stands beside look_at_mm (one of them says where the camera looks); remove one");
     }
-    pose = pose.turned(vector("rotation_deg", {0, 0, 0}, {-360, 360}) * unit::degree);
+    pose = pose.turned(table.quantities("rotation_deg", Vec3d{}, unit::degree, {-360, 360}));
   } else {
-    Vec3d const towards = pose.origin - vector("look_at_mm", {0, 0, 0}, place) * unit::millimetre;
+    Vec3d const towards = pose.origin - table.quantities("look_at_mm", Vec3d{}, unit::millimetre, place);
     Vec3d const right = cross(Vec3d{0, 1, 0}, towards);
     if (!(length(right) > 1e-9 * length(towards)) || towards == Vec3d{}) {
       table.problem("look_at_mm",
@@ -124,7 +123,7 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   }
   if (thin) geometry.refuse("z_front_mm", "is of prescriptions (a thin lens has no first vertex); use z_a_mm");
   if (thin || !geometry.has("z_front_mm")) {
-    setup.z_a = geometry.number("z_a_mm", 750.0, Range::positive(1e9)) * unit::millimetre;
+    setup.z_a = geometry.quantity("z_a_mm", setup.z_a, unit::millimetre, Range::positive(1e9));
     return;
   }
   geometry.refuse("z_a_mm", "stands beside z_front_mm (one of them places the lens); remove one");
@@ -203,8 +202,9 @@ void read_calibration(Setup& setup, SetupTable root) {
 
 /// The front of a medium of kind normal_shock, for the flow.
 std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
-  if (field.kind != FieldKind::normal_shock) return std::nullopt;
-  return ShockPlane{field.mach, shock_density_ratio(field.mach, constant::gamma_air), field.position, field.tilt};
+  auto const* const shock = field.closed_form<NormalShock<double>>();
+  if (!shock) return std::nullopt;
+  return ShockPlane{shock->mach, shock_density_ratio(shock->mach, constant::gamma_air), shock->position, shock->tilt};
 }
 
 void read_piv(Setup& setup, SetupTable root) {
@@ -246,7 +246,7 @@ Setup read_setup(SetupTable root) {
                                   : "is of BOS (calibration.planes_mm places the dots); remove it");
     setup.z_d = 0;
   } else {
-    setup.z_d = geometry.number("z_d_mm", 250.0, Range::positive(1e9)) * unit::millimetre;
+    setup.z_d = geometry.quantity("z_d_mm", setup.z_d, unit::millimetre, Range::positive(1e9));
   }
   setup.medium = read_medium_setup(root.table("medium"));
   if (!piv && setup.medium.second_field) {

@@ -51,7 +51,13 @@ Vec2d Setup::beyond_view() const {
 
 double Setup::dot_diameter() const {
   if (target.dot_diameter_m) return *target.dot_diameter_m;
-  return target.dot_diameter_px.value_or(0.0) * camera.pixel_pitch / imaging().magnification;
+  double const diameter_px = target.dot_diameter_px.value_or(0.0);
+  if (pose || camera.tilted()) return diameter_px * pixel_size();
+  return diameter_px * camera.pixel_pitch / imaging().magnification;
+}
+
+double Setup::pixel_size() const {
+  return pose || camera.tilted() ? posed_pixel_size(*this) : camera.pixel_pitch / imaging().magnification;
 }
 
 double Setup::spot_scale_px() const {

@@ -93,7 +93,7 @@ struct Setup {
   double ambient_index() const { return 1 + medium.ambient_refractivity(); }
   /// Width and height of the target, about target_centre() [m].
   Vec2d target_extent() const;
-  /// Diameter of a dot on the target [m].
+  /// Diameter of a dot on the target [m]; from dot_diameter_px by pixel_size().
   double dot_diameter() const;
   /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays. Of a plenoptic
   /// camera that of a lenslet: its distance from the sensor over its pitch, times wavelength.
@@ -102,6 +102,9 @@ struct Setup {
   /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
   /// "seed_eq8" (pi times that, as the seed prints it); 0 without a spot.
   double spot_diameter_px() const;
+  /// Side of the square that is as large as what a pixel sees at the target's middle, by the chief rays there [m]: a
+  /// disc of that diameter has an image of a pixel's width, or, foreshortened, of the same area.
+  double pixel_size() const;
   /// Area of the target that a pixel sees [m^2]; of a turned or tilted camera the mean over its picture.
   double pixel_area() const;
   /// Number of dots on the target, for kind = "dots".

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "render/medium/analytic_fields.h"
+#include "render/medium/fields/slab.h"
 #include "render/medium/trace_medium.h"
 #include "render/optics/camera_element.h"
 #include "render/scene/ray_hit.h"
@@ -61,7 +61,7 @@ GLADSTONE_HD void finish_rays(CameraView<T> const& camera, Ray<T> (&ray)[N], Ray
                               RayStatus (&status)[N], RayHit<T> (&hit)[N]) {
   for (int i = 0; i < N; ++i) {
     hit[i] = {};
-    if (account[i].weight != T(0)) PosedStop<T>{camera.aim_plane, T(0), T(0)}.meet(ray[i], hit[i].at_lens);
+    if (account[i].weight != T(0)) camera.aim_plane.meet(ray[i], hit[i].at_lens);
   }
   carry(camera, camera.before_medium, camera.count, ray, account, status);
   for (int i = 0; i < N; ++i) {

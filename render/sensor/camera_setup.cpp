@@ -15,18 +15,18 @@ constexpr double most_background = 0.8;  // of the full well
 constexpr long long largest_seed = std::numeric_limits<long long>::max();
 
 void read_pattern(SetupTable& noise, NoiseSetup& setup) {
-  setup.prnu = noise.number("prnu_percent", 0.0, Range::at_least(0.0, 30.0)) / 100;
-  setup.dsnu_e = noise.number("dsnu_e", 0.0, Range::at_least(0.0, 1e6));
-  setup.hot_pixel_share = noise.number("hot_pixel_share", 0.0, Range::at_least(0.0, 1.0));
+  setup.prnu = noise.number("prnu_percent", 100 * setup.prnu, Range::at_least(0.0, 30.0)) / 100;
+  setup.dsnu_e = noise.number("dsnu_e", setup.dsnu_e, Range::at_least(0.0, 1e6));
+  setup.hot_pixel_share = noise.number("hot_pixel_share", setup.hot_pixel_share, Range::at_least(0.0, 1.0));
   setup.hot_pixel_e = noise.number("hot_pixel_e", 0.25 * setup.full_well_e, Range::at_least(0.0, 1e9));
-  setup.pattern_seed = static_cast<std::uint64_t>(noise.integer("pattern_seed", 1, 0, largest_seed));
+  setup.pattern_seed = static_cast<std::uint64_t>(
+      noise.integer("pattern_seed", static_cast<long long>(setup.pattern_seed), 0, largest_seed));
 }
 
 BackgroundSetup read_background(SetupTable table, double full_well_e) {
   BackgroundSetup setup;
-  setup.level_e = table.number("level_e", 0.0, Range::at_least(0.0, 1e9));
-  auto const gradient = table.numbers("gradient_e", {0, 0}, 2, {-1e9, 1e9});
-  if (gradient.size() == 2) setup.gradient_e = {gradient[0], gradient[1]};
+  setup.level_e = table.number("level_e", setup.level_e, Range::at_least(0.0, 1e9));
+  setup.gradient_e = table.quantities("gradient_e", setup.gradient_e, 1.0, {-1e9, 1e9});
   if (table.has("glare_file")) {
     setup.glare_file = table.required_path("glare_file");
     if (std::error_code error; !setup.glare_file.empty() && !std::filesystem::exists(setup.glare_file, error)) {
@@ -50,23 +50,22 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
 CameraSetup read_camera_setup(SetupTable table) {
   CameraSetup setup;
   if (table.has("name")) table.text("name", "");  // of its folder, where there are several
-  auto const pixels = table.integers("pixels", {512, 512}, 2, 2, 1, 1000000);
+  auto const pixels = table.integers("pixels", {setup.columns, setup.rows}, 2, 2, 1, 1000000);
   if (pixels.size() == 2) {
     setup.columns = static_cast<int>(pixels[0]);
     setup.rows = static_cast<int>(pixels[1]);
   }
-  setup.pixel_pitch = table.number("pixel_pitch_um", 10.0, Range::positive(1e4)) * unit::micrometre;
-  setup.bit_depth = static_cast<int>(table.integer("bit_depth", 16, 1, 16));
+  setup.pixel_pitch = table.quantity("pixel_pitch_um", setup.pixel_pitch, unit::micrometre, Range::positive(1e4));
+  setup.bit_depth = static_cast<int>(table.integer("bit_depth", setup.bit_depth, 1, 16));
   auto const exposure =
       table.number_or_word("exposure", {std::nullopt, "auto"}, {"auto", "absolute"}, Range::positive());
   setup.exposure_e = exposure.number;
   setup.absolute_exposure = exposure.word == "absolute";
   double const full_scale = std::pow(2.0, setup.bit_depth) - 1;
-  setup.offset_dn = table.number("offset_dn", 0.0, Range::at_least(0.0, 0.8 * full_scale));
+  setup.offset_dn = table.number("offset_dn", setup.offset_dn, Range::at_least(0.0, 0.8 * full_scale));
 
   if (SetupTable sensor = table.table("sensor"); sensor.present()) {
-    auto const tilt = sensor.numbers("tilt_deg", {0, 0}, 2, {-80, 80});
-    if (tilt.size() == 2) setup.tilt = Vec2d{tilt[0], tilt[1]} * unit::degree;
+    setup.tilt = sensor.quantities("tilt_deg", setup.tilt, unit::degree, {-80, 80});
     setup.scheimpflug = sensor.word("scheimpflug", "off", {"off", "auto"}) == "auto";
     if (setup.scheimpflug && sensor.has("tilt_deg") && !(setup.tilt == Vec2d{})) {
       sensor.problem("scheimpflug", "stands beside tilt_deg (one of them tilts the sensor); remove one");
@@ -78,8 +77,8 @@ CameraSetup read_camera_setup(SetupTable table) {
   SetupTable noise = table.table("noise");
   setup.noise.enabled = noise.present();
   if (setup.noise.enabled) {
-    setup.noise.full_well_e = noise.number("full_well_e", 30000.0, Range::at_least(1.0, 1e9));
-    setup.noise.read_noise_e = noise.number("read_noise_e", 3.0, Range::at_least(0.0, 1e6));
+    setup.noise.full_well_e = noise.number("full_well_e", setup.noise.full_well_e, Range::at_least(1.0, 1e9));
+    setup.noise.read_noise_e = noise.number("read_noise_e", setup.noise.read_noise_e, Range::at_least(0.0, 1e6));
     if (setup.noise.read_noise_e > setup.noise.full_well_e) {
       noise.problem("read_noise_e",
                     fmt::format("is more than the full well of {:.6g} electrons (nothing but noise would "
@@ -87,11 +86,12 @@ CameraSetup read_camera_setup(SetupTable table) {
                                 "electrons for most cameras",
                                 setup.noise.full_well_e));
     }
-    setup.noise.dark_current_e = noise.number("dark_current_e", 0.0, Range::at_least(0.0, 1e9));
+    setup.noise.dark_current_e = noise.number("dark_current_e", setup.noise.dark_current_e, Range::at_least(0.0, 1e9));
     Range efficiency = Range::positive(1.0);
-    setup.noise.quantum_efficiency = noise.number("quantum_efficiency", 0.6, efficiency);
-    setup.noise.shot_noise = noise.boolean("shot_noise", true);
-    setup.noise.seed = static_cast<std::uint64_t>(noise.integer("seed", 1, 0, largest_seed));
+    setup.noise.quantum_efficiency = noise.number("quantum_efficiency", setup.noise.quantum_efficiency, efficiency);
+    setup.noise.shot_noise = noise.boolean("shot_noise", setup.noise.shot_noise);
+    setup.noise.seed =
+        static_cast<std::uint64_t>(noise.integer("seed", static_cast<long long>(setup.noise.seed), 0, largest_seed));
     read_pattern(noise, setup.noise);
   }
   setup.background = read_background(table.table("background"), setup.noise.full_well_e);

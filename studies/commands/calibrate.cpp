@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "render/base/output_folder.h"
 #include "studies/cameras.h"
 #include "studies/case_files.h"
 #include "studies/commands/command.h"
@@ -44,13 +45,36 @@ void write_results(std::string const& folder, Calibration const& calibration, bo
 
 CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string folder;
+    std::string folder, output;
+    std::vector<std::string> pictures;
     bool no_figures = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  app.add_option("case", arguments->folder, "Case folder of a calibration, of one camera or several")->required();
+  app.add_option("case", arguments->folder,
+                 "Case folder of a calibration, of one camera or several; with --images its setup (TOML): "
+                 "[calibration] says what they show, camera and lens about how")
+      ->required();
+  auto* const images = app.add_option("--images", arguments->pictures,
+                                      "Your own pictures, one for each plane of calibration.planes_mm in that order");
+  auto* const output = app.add_option("-o,--output", arguments->output, "Folder to write into, with --images");
+  images->expected(-1)->needs(output);
+  output->needs(images);
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   return [arguments, &options] {
+    if (!arguments->pictures.empty()) {
+      std::string const& place = arguments->output;
+      std::vector<std::string> inputs = arguments->pictures;
+      inputs.push_back(arguments->folder);
+      refuse_inputs_as_outputs({(fs::path(place) / case_file::calibration).string(),
+                                (fs::path(place) / case_file::calibration_figure).string()},
+                               inputs);
+      OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
+      Calibration const calibration = calibrate_pictures(arguments->folder, arguments->pictures);
+      folder.fill([&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures); });
+      folder.commit();
+      print_result(options, json_text(calibration_json(calibration)), calibration_table(calibration));
+      return ok;
+    }
     auto const folders = camera_folders(arguments->folder);
     std::vector<Calibration> calibrations;
     for (auto const& [name, folder] : folders) calibrations.push_back(calibrate_case(folder));
@@ -59,7 +83,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     for (std::size_t i = 0; i < folders.size(); ++i) {
       auto const& [name, folder] = folders[i];
       write_results(folder, calibrations[i], !arguments->no_figures);
-      cameras[name] = nlohmann::ordered_json::parse(calibration_json(calibrations[i]));
+      cameras[name] = calibration_json(calibrations[i]);
       if (!name.empty()) text += fmt::format("{}camera {}\n", i > 0 ? "\n\n" : "", name);
       text += calibration_table(calibrations[i]);
     }

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "studies/commands/command.h"
+#include "studies/json_text.h"
 #include "studies/render_setup.h"
 
 namespace gladstone {
@@ -26,18 +25,13 @@ constexpr char const* example_setup =
   gradient_kg_m4 = [20.0, 10.0, 0.0])";
 
 /// A line on a camera's case.
-std::string in_words(std::string const& folder, nlohmann::ordered_json const& summary) {
-  std::string text = fmt::format("{}: ", folder);
-  if (summary.contains("planes")) text += fmt::format("{} planes, ", summary["planes"].size());
-  bool const piv = summary.value("experiment", "") == "piv";
-  text += fmt::format("{} {}, {} rays each, ", summary["dots"].get<long long>(), piv ? "particles" : "dots",
-                      summary["rays_per_dot"].get<long long>());
-  if (summary.contains("step_mm")) {
-    text += fmt::format("step {:.4g} mm, magnification {:.6g}, ", summary["step_mm"].get<double>(),
-                        summary["magnification"].get<double>());
-  }
-  return text +
-         fmt::format("{:.2f} s on {}", summary["seconds_render"].get<double>(), summary["device"].get<std::string>());
+std::string in_words(RenderedCamera const& camera) {
+  std::string text = fmt::format("{}: ", camera.folder);
+  if (camera.planes > 0) text += fmt::format("{} planes, ", camera.planes);
+  text += fmt::format("{} {}, {} rays each, ", camera.sources, camera.particles ? "particles" : "dots", camera.rays);
+  if (camera.step_mm) text += fmt::format("step {:.4g} mm, ", *camera.step_mm);
+  if (camera.magnification) text += fmt::format("magnification {:.6g}, ", *camera.magnification);
+  return text + fmt::format("{:.2f} s on {}", camera.seconds, camera.device);
 }
 
 }  // namespace
@@ -59,17 +53,10 @@ CommandBody attach_render(CLI::App& app, GlobalOptions const& options) {
     SetupRendering rendering(arguments->setup, arguments->overrides);
     rendering.refuse_over_inputs(arguments->folder);
     auto const renderer = options.open_device().renderer;
-    std::string const summary = rendering.render(*renderer, arguments->folder);
-    auto const json = nlohmann::ordered_json::parse(summary);
+    RenderedSetup const rendered = rendering.render(*renderer, arguments->folder);
     std::string text;
-    if (json.contains("cameras")) {
-      for (auto const& [name, one] : json["cameras"].items()) {
-        text += in_words((std::filesystem::path(arguments->folder) / name).string(), one) + '\n';
-      }
-    } else {
-      text = in_words(arguments->folder, json);
-    }
-    print_result(options, summary, text);
+    for (RenderedCamera const& camera : rendered.cameras) text += in_words(camera) + '\n';
+    print_result(options, json_text(rendered.summary), text);
     return ok;
   };
 }

@@ -14,24 +14,10 @@ namespace {
 
 constexpr std::array<char const*, 4> question_tables{"requirements", "limits", "inventory", "free"};
 
-SetupNode text_node(std::string const& text) {
-  SetupNode node;
-  node.kind = SetupNode::Kind::text;
-  node.text = text;
-  return node;
-}
-
-SetupNode number_node(double value) {
-  SetupNode node;
-  node.kind = SetupNode::Kind::number;
-  node.number = value;
-  return node;
-}
-
 SetupNode prescription_node(std::string const& file) {
   SetupNode lens;
-  lens.members.push_back({"model", text_node("prescription")});
-  lens.members.push_back({"file", text_node(file)});
+  lens.members.push_back({"model", setup_text("prescription")});
+  lens.members.push_back({"file", setup_text(file)});
   return lens;
 }
 
@@ -156,7 +142,7 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
     std::string const path = key.path;
     auto const dot = path.find('.');
     document.set({path.substr(0, dot), path.substr(dot + 1)},
-                 number_node(value[static_cast<std::size_t>(free.choice)] / key.unit));
+                 setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
   bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
                                         [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });

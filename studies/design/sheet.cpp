@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "render/base/contracts.h"
 #include "render/scene/field_map.h"
@@ -14,20 +15,15 @@ namespace {
 
 /// Largest gradient of density in the view, averaged over the thickness [kg/m^4].
 double largest_gradient(Setup const& setup) {
-  FieldSetup const& field = setup.medium.field;
-  switch (field.kind) {
-    case FieldKind::none:
-      return 0;
-    case FieldKind::uniform_gradient:
-      return std::hypot(field.gradient.x, field.gradient.y);
-    case FieldKind::sinusoid:
-      return std::abs(field.amplitude) * 2 * pi / field.wavelength;
-    case FieldKind::gaussian_plume:
-    case FieldKind::gaussian_blob:  // F29, at r = radius / sqrt(2)
-      return std::sqrt(2 * pi / std::exp(1.0)) * std::abs(field.amplitude) / setup.medium.thickness;
-    case FieldKind::file:
-    case FieldKind::normal_shock:
-      break;
+  if (setup.medium.field.kind == FieldKind::none) return 0;
+  if (setup.medium.field.kind == FieldKind::closed_form) {
+    auto const known = std::visit(
+        [](auto const& form) -> std::optional<double> {
+          if constexpr (requires { form.steepest_mean_density(); }) return form.steepest_mean_density();
+          return std::nullopt;
+        },
+        closed_form_of(setup.medium));
+    if (known) return *known;
   }
   double largest = 0;
   constexpr int spacing_px = 4;

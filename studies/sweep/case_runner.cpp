@@ -122,9 +122,9 @@ struct CaseRunner::Shared {
   Recent<PointTruth> truths{4};
 };
 
-std::vector<std::pair<std::string, double>> flat_measures(std::string const& errors_json) {
+std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors) {
   std::vector<std::pair<std::string, double>> measures;
-  flatten(nlohmann::ordered_json::parse(errors_json), "", measures);
+  flatten(errors, "", measures);
   return measures;
 }
 
@@ -248,8 +248,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   }
   Comparison comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
                                           {measured.field, loaded.correlate, false, "", name}, *truth, device_);
-  std::string const errors = errors_json(comparison);
-  result.measures = flat_measures(errors);
+  result.measures = flat_measures(errors_of(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",
                                summarize_errors(comparison.point.displacement_px, still, comparison.mask).rms_px);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,8 +42,8 @@ class CaseRunner {
   std::unique_ptr<Shared> shared_;
 };
 
-/// The numbers of an errors.json by their path ("budget.terms.cone.rms_px"), in its order; arrays and texts are left
-/// out, null is NaN.
-std::vector<std::pair<std::string, double>> flat_measures(std::string const& errors_json);
+/// The numbers of what errors.json holds by their path ("budget.terms.cone.rms_px"), in its order; arrays and texts are
+/// left out, null is NaN.
+std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors);
 
 }  // namespace gladstone

@@ -46,9 +46,7 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
                       std::uint64_t seed) {
   SetupDocument document = base.copy();
   for (std::size_t k = 0; k < values.size(); ++k) document.set(study.axes[k].path, values[k].node);
-  SetupNode number;
-  number.kind = SetupNode::Kind::integer;
-  number.integer = static_cast<long long>(seed);
+  SetupNode number = setup_integer(static_cast<long long>(seed));
   number.place = study.place;
   SetupNode const* const experiment = document.find({"experiment"});
   bool const piv = experiment && experiment->kind == SetupNode::Kind::text && experiment->text == "piv";

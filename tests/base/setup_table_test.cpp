@@ -55,6 +55,34 @@ periodic = [true, false, true]
   EXPECT_NO_THROW(setup.finish());
 }
 
+// 10e-6 / 1e-6 and 532e-9 / 1e-9 are not 10 and 532 in binary numbers; the setup says so all the same.
+TEST(SetupTable, QuantitiesAreInSiAndTheirDefaultsInTheKeysUnit) {
+  auto setup = document("given_mm = 2.5\n");
+  SetupTable root = setup.root();
+  EXPECT_EQ(root.quantity("given_mm", 1.0, 1e-3), 2.5 * 1e-3);
+  EXPECT_EQ(root.quantity("pitch_um", 10e-6, 1e-6), 10 * 1e-6);
+  EXPECT_EQ(root.quantity("wavelength_nm", 532e-9, 1e-9), 532 * 1e-9);
+  EXPECT_EQ(root.quantity("tilt_deg", 0.0, 0.017), 0.0);
+  EXPECT_EQ(root.quantity("distance_mm", 123456.789, 1e-3), 123456789 * 1e-3);
+  EXPECT_EQ(root.quantities("place_mm", Vec3d{0.75, -1e-9, 0}, 1e-3), (Vec3d{750 * 1e-3, -1e-6 * 1e-3, 0}));
+  std::string const resolved = setup.resolved();
+  for (char const* line : {"pitch_um = 10.0\n", "wavelength_nm = 532.0\n", "tilt_deg = 0.0\n",
+                           "distance_mm = 123456789.0\n", "place_mm = [750.0, -1e-06, 0.0]\n"}) {
+    EXPECT_THAT(resolved, HasSubstr(line));
+  }
+}
+
+TEST(SetupTable, ChoicesAreWhatTheWordsStandFor) {
+  auto setup = document("given = \"two\"\nwrong = \"three\"\n");
+  SetupTable root = setup.root();
+  std::vector<std::pair<std::string, int>> const numbers{{"one", 1}, {"two", 2}};
+  EXPECT_EQ(root.choice("given", 1, numbers), 2);
+  EXPECT_EQ(root.choice("absent", 1, numbers), 1);
+  EXPECT_EQ(root.choice("wrong", 1, numbers), 1);
+  EXPECT_THAT(setup.resolved(), HasSubstr("absent = \"one\"\n"));
+  EXPECT_THAT(problems(setup), ElementsAre(HasSubstr("wrong")));
+}
+
 TEST(SetupTable, AbsentTableGivesDefaults) {
   auto setup = document("");
   auto lens = setup.root().table("lens");

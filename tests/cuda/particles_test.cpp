@@ -85,13 +85,7 @@ class CudaParticlesTest : public OnBothDevices<RaysMethod> {
   }
 };
 
-FieldSetup blob() {
-  FieldSetup field;
-  field.kind = FieldKind::gaussian_blob;
-  field.amplitude = -0.8;
-  field.radius = 5e-3;
-  return field;
-}
+FieldSetup blob() { return GaussianBlob<double>{{{}, -0.8, 5e-3}}; }
 
 // A warp gathers the spots of few rays, a block the hits of many; of more than 16384 rays several blocks do.
 TEST_F(CudaParticlesTest, FewRaysAndMany) {

@@ -21,16 +21,9 @@ TYPED_TEST(ByBothMethods, DnsPlane) { this->expect_as_on_cpu(this->scene_of(dns_
 TYPED_TEST(ByBothMethods, FewRays) { this->expect_as_on_cpu(this->scene_of(dns_plane("late"), 7)); }
 
 TYPED_TEST(ByBothMethods, PlumeBlobAndShock) {
-  for (FieldKind const kind : {FieldKind::gaussian_plume, FieldKind::gaussian_blob, FieldKind::normal_shock}) {
-    FieldSetup field;
-    field.kind = kind;
-    field.amplitude = -0.2;
-    field.radius = 5e-3;
-    field.mach = 1.2;
-    field.upstream_density = 1.225;
-    field.shock_thickness = 1e-3;
-    this->expect_as_on_cpu(this->scene_of(field, 64));
-  }
+  this->expect_as_on_cpu(this->scene_of(GaussianPlume<double>{{{}, -0.2, 5e-3}}, 64));
+  this->expect_as_on_cpu(this->scene_of(GaussianBlob<double>{{{}, -0.2, 5e-3}}, 64));
+  this->expect_as_on_cpu(this->scene_of(NormalShock<double>::front(1.2, 1.225, 1e-3), 64));
 }
 
 TYPED_TEST(ByBothMethods, VolumesSplineAndLinear) {

@@ -249,5 +249,40 @@ TEST_F(Calibrations, OtherCommandsSayWhatTheCaseIs) {
   expect_refused({"compare", "case"}, 2, {"case: is a calibration"});
 }
 
+// Pictures from anywhere are calibrated as those of the case that they were copied from, by a setup that knows the
+// camera's place to a centimetre only: the middle of the grid is told by the grid itself.
+TEST_F(Calibrations, TakePicturesFromElsewhere) {
+  write("setup.toml", wide);
+  succeed({"render", "setup.toml", "-o", "case", "--quiet"});
+  std::vector<std::string> pictures;
+  for (std::string const index : {"0", "1", "2"}) {
+    fs::copy_file(in("case/plane_00" + index + ".tif"), in("shot" + index + ".tif"));
+    pictures.push_back("shot" + index + ".tif");
+  }
+  std::string roughly = wide;
+  roughly.replace(roughly.find("z_a_mm = 300.0"), 14, "z_a_mm = 310.0");
+  write("roughly.toml", roughly);
+  auto const with = [&pictures](std::vector<std::string> arguments, std::size_t count) {
+    arguments.emplace_back("--images");
+    arguments.insert(arguments.end(), pictures.begin(), pictures.begin() + static_cast<std::ptrdiff_t>(count));
+    return arguments;
+  };
+  auto const own = json_of(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3));
+  auto const cases = calibrate("case");
+  EXPECT_EQ(names("camera"), std::vector<std::string>{"calibration.h5"});
+  EXPECT_EQ(own["dots"], cases["dots"]);
+  EXPECT_EQ(own["planes"][2]["z_mm"], 20.0);
+  for (auto const& [name, parameter] : cases["pinhole"]["parameters"].items()) {
+    // both fits start and end alike; the light across the pupil is told from 10 mm farther: (R/z)^2 of 3 %
+    auto const& here = own["pinhole"]["parameters"][name];
+    EXPECT_NEAR(here["value"].get<double>(), parameter["value"].get<double>(),
+                3 * parameter["standard_error"].get<double>())
+        << name;
+    EXPECT_FALSE(here.contains("rendered"));
+  }
+  expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 2), 2,
+                 {"names 3 planes where 2 pictures are given"});
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end

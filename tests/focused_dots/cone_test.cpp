@@ -13,9 +13,7 @@ namespace {
 Setup sinusoid_setup(double wavelength, double peak_gradient) {
   auto setup = table1_setup(64);
   setup.target.dot_diameter_px = 0;
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = wavelength;
-  setup.medium.field.amplitude = peak_gradient * wavelength / (2 * pi);
+  setup.medium.field = Sinusoid<double>::wave(peak_gradient * wavelength / (2 * pi), wavelength);
   return setup;
 }
 

@@ -39,9 +39,7 @@ TEST(ChiefRays, DoNotAverage) {
   auto setup = table1_setup(64);
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   setup.target.dot_diameter_px = 0;
-  setup.medium.field.kind = FieldKind::sinusoid;
-  setup.medium.field.wavelength = 4e-3;
-  setup.medium.field.amplitude = 1e-3;
+  setup.medium.field = Sinusoid<double>::wave(1e-3, 4e-3);
   Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1);
   GroundTruth const truth = trace_truth(scene);
   EXPECT_NEAR(truth.displacement_px[0].x / truth.eq9_px[0].x, 1, 1e-4);

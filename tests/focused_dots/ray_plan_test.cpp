@@ -53,11 +53,7 @@ TEST(PlanStep, ResolvesCellsAndShocks) {
   EXPECT_LE(trilinear.step, 0.0625e-3 / 4);
 
   setup = table1_setup(64);
-  setup.medium.field.kind = FieldKind::normal_shock;
-  setup.medium.field.mach = 1.5;
-  setup.medium.field.upstream_density = 0.3;
-  setup.medium.field.shock_thickness = 0.4e-3;
-  setup.medium.field.tilt = 0.3;
+  setup.medium.field = NormalShock<double>::front(1.5, 0.3, 0.4e-3, 0.3);
   Scene shock = scene_with_dots(setup, {{20, 20}, {40, 45}}, 1);
   EXPECT_LE(shock.step, 0.4e-3 / 4);
 }

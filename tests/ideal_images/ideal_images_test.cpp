@@ -148,7 +148,7 @@ TEST(IdealImages, HaveOneDoor) {
     return reason_against_ideal_images(setup);
   };
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.piv.reset(); }), HasSubstr("only particles"));
-  EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.field.kind = FieldKind::sinusoid; }),
+  EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.field = Sinusoid<double>::wave(0.1, 4e-3); }),
               HasSubstr("medium bends rays"));
   EXPECT_THAT(reason([](gladstone::Setup& s) { s.medium.second_field = FieldSetup{}; }),
               HasSubstr("medium bends rays"));

@@ -27,6 +27,15 @@ std::string utf16(std::string const& text, bool little) {
   return bytes;
 }
 
+// Its six glasses, of which two are the same, are said in one breath.
+TEST(Prescription, GlassesByIndexAloneAreWarnedOfOnce) {
+  Lens const lens = build_lens(read_prescription(std::string(GLADSTONE_DATA_DIR) + "/lenses/wide_angle.toml"),
+                               GlassCatalogue::shipped(), spectral_line::d);
+  EXPECT_THAT(lens.warnings,
+              ElementsAre(AllOf(HasSubstr("wide_angle.toml:10:"), HasSubstr("5 glasses (nd 1.62374, Vd 47.00; "),
+                                HasSubstr("nd 1.58913, Vd 61.20) are taken as n = A + B/lambda^2"))));
+}
+
 // One lens in three formats is one lens: the biconvex singlet f = R / (2 (n - 1) - (n - 1)^2 t / (n R)).
 TEST(Prescription, OneLensInThreeFormatsIsOneLens) {
   double const n = GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd();

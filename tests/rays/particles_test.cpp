@@ -176,9 +176,8 @@ TEST(Particles, BesideTheSheetAreNotSeen) {
 TEST(Particles, InAnIndexGradientAreDisplaced) {
   gladstone::Setup setup = piv_setup();
   setup.medium.thickness = 40 * mm;
-  setup.medium.field.kind = FieldKind::uniform_gradient;
   double const g = 0.1;  // [1/m]
-  setup.medium.field.gradient = {g / setup.medium.gladstone_dale, 0, 0};
+  setup.medium.field = UniformGradient<double>{{}, {g / setup.medium.gladstone_dale, 0, 0}};
   std::vector<Vec3d> const first{{0, 0, -10 * mm}, {0, 0, 5 * mm}, {0, 0, 0}};
   std::vector<Vec3d> const second{{0, 0, -8 * mm}, {1 * mm, 0, 5 * mm}, {0, 0, 1 * mm}};
   Scene scene = scene_with_particles(setup, first, second, 512);
@@ -203,11 +202,9 @@ TEST(Particles, InAnIndexGradientAreDisplaced) {
 TEST(Particles, SeemToMoveWhereTheMediumChanges) {
   gladstone::Setup setup = piv_setup();
   setup.medium.thickness = 40 * mm;
-  setup.medium.field.kind = FieldKind::uniform_gradient;
-  setup.medium.second_field = setup.medium.field;
   double const g[2] = {0.1, -0.05};  // [1/m]
-  setup.medium.field.gradient = {g[0] / setup.medium.gladstone_dale, 0, 0};
-  setup.medium.second_field->gradient = {g[1] / setup.medium.gladstone_dale, 0, 0};
+  setup.medium.field = UniformGradient<double>{{}, {g[0] / setup.medium.gladstone_dale, 0, 0}};
+  setup.medium.second_field = UniformGradient<double>{{}, {g[1] / setup.medium.gladstone_dale, 0, 0}};
   std::vector<Vec3d> const places{{0, 0, -10 * mm}, {0, 0, 5 * mm}, {0, 0, 0}};
   Scene scene = scene_with_particles(setup, places, places, 512);
   RaysRenderer renderer;
@@ -290,9 +287,7 @@ TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   gladstone::Setup setup = piv_setup();
   setup.piv->particles.amount = 300;
   setup.piv->flow.flow.uniform = {30, 10, 20};
-  setup.medium.field.kind = FieldKind::gaussian_blob;
-  setup.medium.field.amplitude = -0.8;
-  setup.medium.field.radius = 5 * mm;
+  setup.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
   setup.medium.thickness = 40 * mm;
   auto const render_on = [&](int threads) {
     set_thread_count(threads);

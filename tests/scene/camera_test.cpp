@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "render/base/units.h"
 #include "render/scene/build_camera.h"
@@ -114,6 +115,53 @@ TEST(PosedCamera, ScheimpflugIsSharpAllOverThePlane) {
     without_tilt = std::max(without_tilt, blur(square, point));
   }
   EXPECT_GT(without_tilt, 0.3) << "[px], where the sensor is square to the axis";
+}
+
+/// Turned by 45 degrees about Y, 1 m from the dots that its axis meets; the sensor square to the axis, or in the image
+/// plane of the dots' plane.
+Setup at_45_degrees(bool scheimpflug) {
+  auto setup = table1_setup(512);
+  Vec3d const middle{0, 0, -setup.z_d}, along = normalized(Vec3d{1, 0, 1});
+  setup.pose = Pose<double>{middle + along, normalized(Vec3d{1, 0, -1}), {0, 1, 0}, along};
+  setup.z_a = setup.pose->origin.z / setup.pose->z.z;
+  setup.camera.scheimpflug = scheimpflug;
+  return setup;
+}
+
+/// Area of the picture that a disc of the target about its middle takes, as a polygon of 360 corners [px^2].
+double image_area(Setup const& setup, double diameter) {
+  Camera const camera = build_camera(setup);
+  Vec2d const middle = setup.target_centre();
+  std::vector<Vec2d> rim;
+  for (int k = 0; k < 360; ++k) {
+    double const angle = k * unit::degree;
+    rim.push_back(*camera.project(
+        {middle.x + diameter / 2 * std::cos(angle), middle.y + diameter / 2 * std::sin(angle), -setup.z_d}));
+  }
+  double twice = 0;
+  for (std::size_t k = 0; k < rim.size(); ++k) {
+    Vec2d const a = rim[k] - rim[0], b = rim[(k + 1) % rim.size()] - rim[0];
+    twice += a.x * b.y - a.y * b.x;
+  }
+  return std::abs(twice) / 2;
+}
+
+// About the axis M = f / (Z - f) across the tilt; along it M cos(45) on a sensor square to the axis, and that over
+// cos(phi), tan(phi) = M tan(45), on one in the image plane (Scheimpflug). A pixel's size is what the root of the
+// product makes of its pitch. The polygon is 5e-5 smaller than its circle.
+TEST(PosedCamera, SizesOfDotsInPixelsAreThoseOfTheirImages) {
+  for (bool const scheimpflug : {false, true}) {
+    auto setup = at_45_degrees(scheimpflug);
+    double const M = 105.0 / 895.0, phi = scheimpflug ? std::atan(M) : 0.0;
+    double const across = M, along = M * std::cos(45 * unit::degree) / std::cos(phi);
+    EXPECT_NEAR(setup.pixel_size() / (setup.camera.pixel_pitch / std::sqrt(across * along)), 1, 1e-6) << scheimpflug;
+    setup.target.dot_diameter_px = 4;
+    EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
+    EXPECT_EQ(2 * build_scene(setup).dots.half_size, setup.dot_diameter()) << scheimpflug;
+    // the same where the dots lie about another place
+    setup.target.centre_m = Vec2d{0.01, 0.005};
+    EXPECT_NEAR(image_area(setup, setup.dot_diameter()) / (pi * 4), 1, 1e-4) << scheimpflug;
+  }
 }
 
 // OpenCV's formula, on (x, y) / z_i with x right and y down.

@@ -96,7 +96,9 @@ TEST(PivSetup, KnowsWhatTheSecondPulseSees) {
   gladstone::Setup const setup = read_setup_text(piv_text("", "", "", second)).setup;
   EXPECT_EQ(setup.medium.field.kind, FieldKind::none);
   ASSERT_TRUE(setup.medium.second_field);
-  EXPECT_EQ(setup.medium.second_field->kind, FieldKind::gaussian_plume);
+  auto const* const plume = setup.medium.second_field->closed_form<GaussianPlume<double>>();
+  ASSERT_TRUE(plume);
+  EXPECT_DOUBLE_EQ(plume->radius, 4e-3);
   EXPECT_DOUBLE_EQ(setup.medium.thickness, 28e-3);  // seven radii
   EXPECT_TRUE(build_scene(setup).second_medium);
   EXPECT_THAT(refused_piv(second), told("remove it, or change experiment"));
@@ -128,6 +130,24 @@ TEST(PivSetup, SeedsByThePixel) {
   EXPECT_NEAR(particle_count(setup) / (409.6 * 64 / (side * side)), 1, 3e-3);
   gladstone::Setup const by_volume = read_setup_text(piv_text("per_mm3 = 12.5\nvolume_mm = [8, 8, 2]\n")).setup;
   EXPECT_NEAR(particle_count(by_volume), 1600, 1e-9);
+}
+
+// The same seen from 45 degrees: columns, at slopes of up to t = 32 px / (z_i / pitch) to either side of the axis, meet
+// Z = 0 at x = Z sqrt(2) u / (1 - u), from the camera's axis, and rows there at heights of v Z / (1 - u), each to first
+// order in nothing: the quadrilateral's area is Z^2 sqrt(2) 4 t^2 / (1 - t^2)^2. With the sensor in the image plane of
+// Z = 0 (Scheimpflug) a pixel sees cos(phi) of that, tan(phi) = M, to second order in t = 0.004.
+TEST(PivSetup, SeedsByThePixelOfAPosedCamera) {
+  for (bool const scheimpflug : {false, true}) {
+    gladstone::Setup const setup =
+        read_setup_text(piv_text("per_pixel = 0.1\nvolume_mm = [10, 8, 0.001]\n", "", "",
+                                 "[camera.pose]\nposition_mm = [530.3300858899106, 0, 530.3300858899106]\n" +
+                                     std::string(scheimpflug ? "[camera.sensor]\nscheimpflug = \"auto\"\n" : "")))
+            .setup;
+    double const M = 105.0 / 645, t = 32 * 10e-3 / (M * 750);
+    double const area = 750.0 * 750 * std::sqrt(2.0) * 4 * t * t / std::pow(1 - t * t, 2) *
+                        (scheimpflug ? std::cos(std::atan(M)) : 1.0);
+    EXPECT_NEAR(particle_count(setup) / (409.6 * 80 / area), 1, 5e-3) << scheimpflug;
+  }
 }
 
 // Particles never enter the fast renderer of flat dots, whatever else its bench asks for is there.

@@ -21,20 +21,12 @@ inline Setup table1_setup(int pixels) {
 }
 
 inline FieldSetup uniform_gradient(double along_x, double along_y, double along_z = 0) {
-  FieldSetup field;
-  field.kind = FieldKind::uniform_gradient;
-  field.gradient = {along_x, along_y, along_z};
-  return field;
+  return UniformGradient<double>{{}, {along_x, along_y, along_z}};
 }
 
 /// rho = ambient + amplitude sin(2 pi d . x / wavelength) [kg/m^3, m]
 inline FieldSetup sinusoid(double amplitude, double wavelength, Vec2d direction = {1, 0}) {
-  FieldSetup field;
-  field.kind = FieldKind::sinusoid;
-  field.amplitude = amplitude;
-  field.wavelength = wavelength;
-  field.direction = direction;
-  return field;
+  return Sinusoid<double>::wave(amplitude, wavelength, direction);
 }
 
 /// The DNS plane of that name, as the demo maps it: 1.225 kg/m^3, 32 mm, periodic in x and y, stacked over the

@@ -130,7 +130,8 @@ TEST_F(CaseRunners, AnyErrorOfACaseIsItsResultButNotThatOfADevice) {
 }
 
 TEST_F(CaseRunners, FlatMeasuresAreTheNumbersByTheirPath) {
-  auto const measures = flat_measures(R"({"a": {"b": 1.5, "c": null, "d": [1, 2], "e": "text"}, "f": 3})");
+  nlohmann::ordered_json const errors{{"a", {{"b", 1.5}, {"c", nullptr}, {"d", {1, 2, 3}}, {"e", "text"}}}, {"f", 3}};
+  auto const measures = flat_measures(errors);
   ASSERT_EQ(measures.size(), 3u);
   EXPECT_EQ(measures[0].first, "a.b");
   EXPECT_TRUE(measures[1].second != measures[1].second);

@@ -33,13 +33,11 @@ Scene scene_of(Bench const& bench) {
   setup.lens.f_number = bench.f_number;
   setup.z_d = bench.z_d_mm * 1e-3;
   setup.target.dot_diameter_px = 0;
-  FieldSetup& field = setup.medium.field;
-  field.kind = FieldKind::sinusoid;
-  field.wavelength = wavelength;
-  double const k = 2 * pi / field.wavelength;
+  double const k = 2 * pi / wavelength;
   double const lever = setup.z_a * setup.z_d / setup.z_b();
-  field.amplitude =
-      strain * setup.ambient_index() / (lever * setup.medium.gladstone_dale * setup.medium.thickness * k * k);
+  setup.medium.field = Sinusoid<double>::wave(
+      strain * setup.ambient_index() / (lever * setup.medium.gladstone_dale * setup.medium.thickness * k * k),
+      wavelength);
   scene.imaging = setup.imaging();
   scene.medium = build_medium(setup.medium);
   // A square of points whose corners are seen at that angle; the spacing has nothing in common with the wave.
@@ -183,9 +181,10 @@ TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
       Scene scene = scene_of(bench);
       GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;
       auto const& setup = scene.setup;
-      double const k = 2 * pi / setup.medium.field.wavelength;
+      auto const& wave = *setup.medium.field.closed_form<Sinusoid<double>>();
+      double const k = wave.wavevector.x;
       double const eq9 = scene.imaging.magnification * setup.z_d * setup.medium.gladstone_dale *
-                         setup.medium.thickness * setup.medium.field.amplitude * k /
+                         setup.medium.thickness * wave.amplitude * k /
                          (setup.ambient_index() * setup.camera.pixel_pitch);
       std::vector<double> phase, displacement;
       for (std::size_t i = 0; i < truth.size(); ++i) {

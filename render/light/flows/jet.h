@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 
@@ -21,7 +21,7 @@ struct JetFlow {
     JetFlow flow;
     flow.peak = table.number("peak_m_s", 10.0, {-1e9, 1e9});
     flow.half_width = table.number("half_width_mm", 5.0, Range::positive(1e9)) * unit::millimetre;
-    flow.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e9, 1e9});
+    flow.center = table.quantities("center_mm", flow.center, unit::millimetre, {-1e9, 1e9});
     auto const along = table.numbers("direction", {1, 0}, 2, {-1e9, 1e9});
     Vec2d const given = along.size() == 2 ? Vec2d{along[0], along[1]} : Vec2d{1, 0};
     if (length(given) > 0) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "render/base/units.h"
-#include "render/light/flows/vortex_keys.h"
+#include "render/light/flows/plane_vortex.h"
 
 namespace gladstone {
 
@@ -9,16 +8,14 @@ namespace gladstone {
 struct RankineFlow {
   static constexpr char const* kind = "rankine";
 
-  VortexKeys keys;
+  PlaneVortex vortex;
 
-  static RankineFlow read(SetupTable& table) { return {VortexKeys::read(table)}; }
+  static RankineFlow read(SetupTable& table) { return {PlaneVortex::read(table)}; }
 
   template <class T>
   GLADSTONE_HD Vec3<T> operator()(Vec3<T> const& p) const {
-    T const x = p.x - T(keys.center.x), y = p.y - T(keys.center.y), r2 = x * x + y * y;
-    T const core2 = T(keys.core_radius * keys.core_radius);
-    T const rate = T(keys.circulation / (2 * pi)) / (r2 > core2 ? r2 : core2);
-    return {-rate * y, rate * x, T(0)};
+    return vortex.velocity(
+        p, [](T const& over_2pi, T const& r2, T const& core2) -> T { return over_2pi / (r2 > core2 ? r2 : core2); });
   }
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 
@@ -15,7 +15,7 @@ struct StagnationFlow {
   static StagnationFlow read(SetupTable& table) {
     StagnationFlow flow;
     flow.rate = table.number("rate_1_s", 1000.0, {-1e12, 1e12});
-    flow.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e9, 1e9});
+    flow.center = table.quantities("center_mm", flow.center, unit::millimetre, {-1e9, 1e9});
     return flow;
   }
 

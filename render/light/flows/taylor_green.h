@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "render/base/setup_table.h"
 #include "render/base/units.h"
-#include "render/light/flows/read_vector.h"
 
 namespace gladstone {
 
@@ -20,7 +20,7 @@ struct TaylorGreenFlow {
     TaylorGreenFlow flow;
     flow.amplitude = table.number("amplitude_m_s", 10.0, {-1e9, 1e9});
     flow.wave = 2 * pi / (table.number("wavelength_mm", 20.0, Range::positive(1e9)) * unit::millimetre);
-    flow.center = read_vector(table, "center_mm", {}, unit::millimetre, {-1e9, 1e9});
+    flow.center = table.quantities("center_mm", flow.center, unit::millimetre, {-1e9, 1e9});
     return flow;
   }
 

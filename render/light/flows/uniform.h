@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/light/flows/read_vector.h"
+#include "render/base/setup_table.h"
 
 namespace gladstone {
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "render/base/setup_table.h"
+#include "render/base/units.h"
+
+namespace gladstone {
+
+/// What vortices about an axis along Z share: their keys, and a velocity across the radius.
+struct PlaneVortex {
+  double circulation = 0.1;   ///< Gamma, counterclockwise as the camera sees it [m^2/s]
+  double core_radius = 5e-3;  ///< r_c [m]
+  Vec3d center{};             ///< [m]
+
+  static PlaneVortex read(SetupTable& table) {
+    PlaneVortex keys;
+    keys.circulation = table.number("circulation_m2_s", keys.circulation, {-1e9, 1e9});
+    keys.core_radius = table.quantity("core_radius_mm", keys.core_radius, unit::millimetre, Range::positive(1e9));
+    keys.center = table.quantities("center_mm", keys.center, unit::millimetre, {-1e9, 1e9});
+    return keys;
+  }
+
+  /// @param rate of turning, u_theta / r [1/s], as a function of Gamma / (2 pi) [m^2/s], r^2 and r_c^2 [m^2]
+  template <class T, class Rate>
+  GLADSTONE_HD Vec3<T> velocity(Vec3<T> const& p, Rate const& rate) const {
+    T const x = p.x - T(center.x), y = p.y - T(center.y);
+    T const turning = rate(T(circulation / (2 * pi)), x * x + y * y, T(core_radius * core_radius));
+    return {-turning * y, turning * x, T(0)};
+  }
+};
+
+}  // namespace gladstone

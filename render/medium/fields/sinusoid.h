@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cmath>
+
+#include "render/base/setup_table.h"
+#include "render/base/units.h"
+#include "render/medium/fields/slab.h"
+
+namespace gladstone {
+
+/// rho = rho_0 + A sin(k . x + phase), k in the x-y plane
+template <class T>
+struct Sinusoid : Slab<T> {
+  static constexpr char const* kind = "sinusoid";
+  static constexpr char const* density_key = "amplitude_kg_m3";
+  static constexpr char const* length_key = "wavelength_mm";
+
+  T amplitude{};         ///< A [kg/m^3]
+  Vec2<T> wavevector{};  ///< 2 pi d / wavelength [1/m]
+  T phase{};             ///< [rad]
+  T wavelength{};        ///< [m]
+
+  /// @param direction of unit length
+  static Sinusoid wave(T amplitude, T wavelength, Vec2<T> direction = {1, 0}, T phase = 0) {
+    return {{}, amplitude, direction * (2 * pi / wavelength), phase, wavelength};
+  }
+  static Sinusoid read(SetupTable& table) {
+    double const amplitude = table.required_number("amplitude_kg_m3");
+    double const wavelength = table.required_number("wavelength_mm", Range::positive()) * unit::millimetre;
+    auto const given = table.numbers("direction", {1, 0}, 2);
+    Vec2d direction{1, 0};
+    if (given.size() == 2) direction = {given[0], given[1]};
+    double const norm = length(direction);
+    if (norm == 0) {
+      table.problem("direction", "is zero (a wave needs a direction); use [1, 0] for a wave along X");
+    } else {
+      direction = direction / norm;
+    }
+    return wave(amplitude, wavelength, direction, table.number("phase_rad", 0.0));
+  }
+  template <class U>
+  Sinusoid<U> in_scalar() const {
+    return {
+        this->template slab_in_scalar<U>(), U(amplitude), {U(wavevector.x), U(wavevector.y)}, U(phase), U(wavelength)};
+  }
+
+  GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
+    using std::cos;
+    using std::sin;
+    T const angle = wavevector.x * p.x + wavevector.y * p.y + phase;
+    T const slope = amplitude * cos(angle);
+    return this->from_density(this->ambient_density + amplitude * sin(angle),
+                              {slope * wavevector.x, slope * wavevector.y, T(0)});
+  }
+
+  T finest() const { return wavelength / 4; }
+  T steepest() const { return this->gladstone_dale * std::abs(amplitude) * 2 * pi / wavelength; }
+  T steepest_mean_density() const { return std::abs(amplitude) * 2 * pi / wavelength; }
+  DensityRange densities(Vec2d) const {
+    return {this->ambient_density - std::abs(amplitude), this->ambient_density + std::abs(amplitude)};
+  }
+};
+
+}  // namespace gladstone

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "render/base/host_device.h"
+#include "render/base/in_scalar.h"
+#include "render/medium/index_sample.h"
+
+namespace gladstone {
+
+/// Densities that a field takes where rays cross it [kg/m^3].
+struct DensityRange {
+  double lowest, highest;
+};
+
+/// What every field in closed form shares: a slab of given thickness about the mid-plane, endless in x and y. The
+/// setup's medium gives these three; the field's own table gives the rest.
+template <class T>
+struct Slab {
+  T half_thickness{};   ///< [m]
+  T gladstone_dale{};   ///< K [m^3/kg]
+  T ambient_density{};  ///< rho_0 [kg/m^3]
+
+  GLADSTONE_HD Bounds<T> bounds() const {
+    T const u = T(unbounded);
+    return {{-u, -u, -half_thickness}, {u, u, half_thickness}};
+  }
+  /// n - 1 = K rho (Gladstone & Dale 1863; Rajendran et al. eq. 1) and its gradient.
+  GLADSTONE_HD IndexSample<T> from_density(T rho, Vec3<T> gradient) const {
+    return {gladstone_dale * rho, gladstone_dale * gradient};
+  }
+  template <class U>
+  Slab<U> slab_in_scalar() const {
+    return {U(half_thickness), U(gladstone_dale), U(ambient_density)};
+  }
+};
+
+/// No field: rays go straight.
+template <class T>
+struct NoMedium {
+  GLADSTONE_HD Bounds<T> bounds() const { return {{}, {}}; }
+  GLADSTONE_HD IndexSample<T> sample(Vec3<T>) const { return {T(0), {}}; }
+};
+
+}  // namespace gladstone
