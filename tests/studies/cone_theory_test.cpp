@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/focused_dots/dot_planning.h"
 #include "render/focused_dots/focused_dots_renderer.h"
+#include "render/rays/ray_planning.h"
 
 namespace gladstone {
 namespace {
@@ -49,7 +49,7 @@ Scene scene_of(Bench const& bench) {
     for (int i = 0; i <= side; ++i)
       scene.dots.centre.push_back({half * (2.0 * i / side - 1), half * (2.0 * j / side - 1)});
   }
-  use_step(scene, plan_step(focused_dots(scene).value()));
+  plan_step_by_rays(scene);
   scene.rays_per_dot = 1024;
   return scene;
 }
