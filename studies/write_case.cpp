@@ -255,10 +255,10 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
        {{"dots_by_table", accuracy.by_table},
         {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
         {"no_table_since", to_string(rendering.table)},
-        {"table_error", by_table ? nlohmann::json{{"truth_px", prepared.rays.truth_error_px},
-                                                  {"image_levels", prepared.rays.image_error_levels},
-                                                  {"bits", prepared.rays.bits}}
-                                 : nlohmann::json(nullptr)}}},
+        {"table_error", table_error ? nlohmann::json{{"truth_px", table_error->truth_error_px},
+                                                     {"image_levels", table_error->image_error_levels},
+                                                     {"bits", table_error->bits}}
+                                    : nlohmann::json(nullptr)}}},
       {"method", to_string(rendering.method)},
       {"device", device},
       {"precision", "double"},

@@ -27,8 +27,7 @@ struct Bench {
 
 /// Table 1 with this lens and distance, points for dots, and a wave of that strain.
 Scene scene_of(Bench const& bench) {
-  Scene scene;
-  Setup& setup = scene.setup;
+  gladstone::Setup setup;
   setup.lens.focal_length = bench.focal_length_mm * 1e-3;
   setup.lens.f_number = bench.f_number;
   setup.z_d = bench.z_d_mm * 1e-3;
@@ -40,8 +39,8 @@ Scene scene_of(Bench const& bench) {
   double const lever = setup.z_a * setup.z_d / setup.z_b();
   field.amplitude =
       strain * setup.ambient_index() / (lever * setup.medium.gladstone_dale * setup.medium.thickness * k * k);
-  scene.imaging = setup.imaging();
-  scene.medium = build_medium(setup.medium);
+  Scene scene = build_scene(setup);
+  scene.dots.centre.clear();
   // A square of points whose corners are seen at that angle; the spacing has nothing in common with the wave.
   double const half = setup.z_b() * std::tan(corner) / std::sqrt(2.0);
   constexpr int side = 10;
