@@ -29,7 +29,7 @@ unsigned z_order(Vec2d p) {
 /// @param radius of the cone, in those lengths @param times as many rings and directions
 void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
   int const rings = std::min(40, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
-  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
+  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 4)));
   for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
   GaussLegendre const nodes(rings);
   for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {

@@ -15,7 +15,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t measured_dots = 8;
-constexpr int traced_rays = 2048, tabled_rays = 16384;  ///< a scrambling
+constexpr int traced_rays = 2048, tabled_rays = 131072;  ///< a scrambling
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
