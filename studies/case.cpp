@@ -195,7 +195,9 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
-  if (!prepared.rays.converged) {
+  if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
+  bool const by_table = method_of(scene) == RenderMethod::focused_dots;
+  if (!by_table && !prepared.rays.converged) {
     warn(prepared.warnings,
          fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
                      "{:.2g} px, where {} and {} are asked (that would take some {:.2g} rays a dot and {:.0f} s of one "
@@ -225,7 +227,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  if (prepared.rays.rays_at_side_faces > 0) {
+  if (by_table && !loaded.setup.render.rays_per_dot) {  // every dot's are chosen by themselves
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

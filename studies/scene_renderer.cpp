@@ -5,9 +5,9 @@
 #include <iterator>
 #include <numeric>
 
-#include "render/base/contracts.h"
-#include "render/focused_dots/dot_planning.h"
+#include "render/base/error.h"
 #include "render/focused_dots/focused_dots_renderer.h"
+#include "render/focused_dots/table_error.h"
 #include "render/ideal_images/ideal_images.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
@@ -17,30 +17,25 @@
 namespace gladstone {
 namespace {
 
+/// @throws DataError where "focused_dots" is asked for, but the scene is not
 FocusedDots enter(Scene const& scene) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
-  GLADSTONE_EXPECTS(dots);
-  return *dots;
+  if (dots) return *dots;
+  throw DataError("render.method", "\"focused_dots\" does not hold here, since " +
+                                       std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
 }
 
-/// Some sources of a pattern.
+/// Some sources of a pattern: their random numbers stay theirs.
 DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& numbers) {
   DotPattern some;
   some.half_size = all.half_size;
   some.shape = all.shape;
   for (std::size_t const i : numbers) {
     some.centre.push_back(all.centre[i]);
+    some.number.push_back(all.number_of(i));
     if (!all.radiance.empty()) some.radiance.push_back(all.radiance[i]);
   }
   return some;
-}
-
-/// The numbers below `count` that a rising list leaves out.
-std::vector<std::size_t> others(std::vector<std::size_t> const& listed, std::size_t count) {
-  std::vector<std::size_t> all(count), rest;
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  std::set_difference(all.begin(), all.end(), listed.begin(), listed.end(), std::back_inserter(rest));
-  return rest;
 }
 
 /// A copy of a scene with other dots, so many rays each, bright.
@@ -52,8 +47,8 @@ Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
   return copy;
 }
 
-/// Enters what was found of some sources among all.
-void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers) {
+/// Enters what was found of some sources, bright ones, among all.
+void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, Polarity polarity) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     all.truth.copy(some.truth, i, numbers[i]);
   }
@@ -63,12 +58,10 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
       all.statuses[frame][status] += some.statuses[frame][status];
     }
   }
-  auto const add = [](Image<double>& to, Image<double> const& from) {
-    if (to.empty()) {
-      to = from;
-    } else {
-      std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
-    }
+  double const sign = polarity == Polarity::dark ? -1 : 1;  // dark dots are taken from white paper
+  auto const add = [sign](Image<double>& to, Image<double> const& from) {
+    std::transform(to.begin(), to.end(), from.begin(), to.begin(),
+                   [sign](double there, double light) { return there + sign * light; });
   };
   if (some.light.reference.empty()) return;
   add(all.light.reference, some.light.reference);
@@ -128,26 +121,20 @@ Rendering SceneRenderer::render(Scene& scene, DotPattern const& sources, RenderI
 
 Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources, RenderImages images,
                                         RenderTheory theory) {
-  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, sources);
-  if (at_faces.empty()) return focused_dots_->render(scene, sources, images, theory);
-  std::vector<std::size_t> const clear = others(at_faces, sources.centre.size());
+  enter(scene);
+  Rendering all = focused_dots_->render(scene, sources, images, theory);
+  if (all.left.empty()) return all;
+  std::vector<std::size_t> const left = all.left;
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  Rendering all;
-  all.truth.resize(sources.centre.size());
-  std::uint64_t const rays = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
-  Scene by_rays = with_dots(scene, some_of(sources, at_faces), rays);
-  merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), at_faces);
-  Scene fast = with_dots(scene, some_of(sources, clear), scene.rays_per_dot);
-  Rendering const of_clear = focused_dots_->render(fast, fast.dots, lit, theory);
-  merge(all, of_clear, clear);
-  all.table = clear.empty() ? TableState::by_rays : of_clear.table;
-  scene.pupil_margin = std::max(fast.pupil_margin, by_rays.pupil_margin);
-  if (lit == RenderImages::yes && scene.setup.target.polarity == Polarity::dark) {
-    Image<double> const white = white_light(scene);
-    for (Image<double>* frame : {&all.light.reference, &all.light.flow}) {
-      std::transform(white.begin(), white.end(), frame->begin(), frame->begin(), std::minus<>());
-    }
+  if (images == RenderImages::kept) all = focused_dots_->render(scene, sources, lit, theory);
+  Scene by_rays = with_dots(scene, some_of(sources, left), scene.rays_per_dot);
+  if (scene.rays_at_side_faces > 0) {
+    by_rays.rays_per_dot = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
+  } else if (!scene.setup.render.rays_per_dot) {
+    plan_rays_by_rays(by_rays);
   }
+  merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), left, scene.setup.target.polarity);
+  scene.pupil_margin = std::max(scene.pupil_margin, by_rays.pupil_margin);
   if (images == RenderImages::kept) {
     all.kept = std::make_shared<HostLight const>(std::move(all.light));
     all.light = {};
@@ -165,11 +152,27 @@ StepPlan plan_step_of(Scene& scene) {
     use_step(scene, plan);
     return plan;
   }
-  if (method_of(scene) != RenderMethod::focused_dots) return plan_step_by_rays(scene);
-  StepPlan const plan = plan_step(enter(scene));
-  use_step(scene, plan);
-  return plan;
+  return plan_step_by_rays(scene);
 }
+
+namespace {
+
+/// The rays of those dots that are left to the general renderer, as far as the field's side faces tell which.
+void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
+  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
+  if (at_faces.empty() || scene.setup.render.rays_per_dot) return;
+  Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
+  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
+  plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
+  plan.truth_error_px = std::max(plan.truth_error_px, at_side_faces.truth_error_px);
+  plan.image_error_levels = std::max(plan.image_error_levels, at_side_faces.image_error_levels);
+  plan.extrapolated = at_side_faces.extrapolated;
+  plan.converged = plan.converged && at_side_faces.converged;
+  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);
+  plan.seconds += at_side_faces.seconds;
+}
+
+}  // namespace
 
 RaysPlan plan_rays_of(Scene& scene) {
   if (scene.second_medium) {  // the more rays of both
@@ -186,24 +189,27 @@ RaysPlan plan_rays_of(Scene& scene) {
     return plan;
   }
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
-  std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
-  if (at_faces.empty() || scene.setup.render.rays_per_dot) {
-    RaysPlan const plan = plan_rays(enter(scene));
-    scene.rays_per_dot = plan.rays;
-    return plan;
+  constexpr std::uint64_t rivals = 4096;  // of a dot: fewer scatter by more than tables leave
+  RaysPlan plan = plan_rays(enter(scene));
+  auto const given = given_rays(scene.setup);
+  if (scene.setup.render.method == RenderMethod::automatic) {
+    plan.method = RenderMethod::focused_dots;
+    if (given && given->rays >= rivals) {
+      scene.rays_per_dot = given->rays;
+      plan = measure_table_error(enter(scene));
+      plan.method = RenderMethod::focused_dots;
+    }
+    if (plan.excess() > 1) {  // is the other way better?
+      Scene other = scene;
+      RaysPlan by_rays = plan_rays_by_rays(other);
+      if (given) by_rays = measure_rays_by_rays(other);
+      by_rays.method = RenderMethod::rays;
+      if (by_rays.excess() < plan.excess()) plan = by_rays;
+    }
+    scene.setup.render.method = plan.method;
   }
-  Scene const fast = with_dots(scene, some_of(scene.dots, others(at_faces, scene.dots.centre.size())), 1);
-  RaysPlan plan = plan_rays(enter(fast));
-  Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
-  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
-  plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
-  plan.truth_error_px = std::max(plan.truth_error_px, at_side_faces.truth_error_px);
-  plan.image_error_levels = std::max(plan.image_error_levels, at_side_faces.image_error_levels);
-  plan.extrapolated = plan.extrapolated || at_side_faces.extrapolated;
-  plan.converged = plan.converged && at_side_faces.converged;
-  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);
-  plan.seconds += at_side_faces.seconds;
   scene.rays_per_dot = plan.rays;
+  if (plan.method != RenderMethod::rays) plan_rays_at_side_faces(scene, plan);
   scene.rays_at_side_faces = plan.rays_at_side_faces;
   return plan;
 }

@@ -15,8 +15,8 @@ RenderMethod method_of(Scene const& scene);
 /// "rays" or "focused_dots", as files call it.
 char const* to_string(RenderMethod method);
 
-/// Renders every scene by its method, on one device. Of focused dots those at a side face of the medium, whose
-/// displacement jumps within their cones, go ray by ray all the same, and by a number of rays of their own.
+/// Renders every scene by its method, on one device. Dots that the fast renderer leaves, at a side face of the medium
+/// or where their rays get lost, go ray by ray all the same, and by a number of rays of their own.
 class SceneRenderer : public Renderer {
  public:
   /// @param focused_dots,rays the renderers of that device
@@ -35,6 +35,8 @@ class SceneRenderer : public Renderer {
 
 /// What plans a scene and maps its field, by its method.
 StepPlan plan_step_of(Scene& scene);
+/// With "auto" the method, too: the fast renderer where what its table leaves is within what "auto" asks of truth and
+/// images, or less than what the general renderer's rays would scatter by. Sets scene.setup.render.method then.
 RaysPlan plan_rays_of(Scene& scene);
 FieldMap field_of(Scene const& scene, int spacing_px);
 StrainMap strain_of(Scene const& scene);

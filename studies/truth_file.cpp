@@ -48,7 +48,7 @@ constexpr std::array<PairDataset, 8> pair_datasets{{
 }  // namespace
 
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
-                 FieldMap const& field, RenderMethod method, FileOrigin const& origin) {
+                 FieldMap const& field, RenderMethod method, RaysPlan const* table, FileOrigin const& origin) {
   Hdf5Writer file(path, origin);
   std::size_t const count = truth.size();
   std::vector<double> position;
@@ -97,6 +97,10 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
       "displacement = flow minus reference; column right and row down from 0 at the first pixel's centre; dots "
       "appear displaced against grad n");
   file.attribute("/", "method", to_string(method));
+  if (table) {
+    file.attribute("/dots", "table_truth_error_px", table->truth_error_px);
+    file.attribute("/dots", "table_image_error_levels", table->image_error_levels);
+  }
   file.attribute("/dots", "step_mm", scene.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);
   file.close();

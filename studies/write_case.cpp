@@ -11,6 +11,7 @@
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/units.h"
+#include "render/focused_dots/table_error.h"
 #include "render/sensor/detector.h"
 #include "studies/case.h"
 #include "studies/json_text.h"
@@ -51,6 +52,22 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
                   accuracy.largest_px, why, rays));
 }
 
+/// What the deflection table leaves of truth and images, measured where the plan has not; with a warning where it is
+/// more than is asked.
+RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan, std::vector<std::string>& warnings) {
+  bool const measured = plan.truth_error_px > 0 || plan.image_error_levels > 0;
+  RaysPlan const error = measured ? plan : measure_table_error(focused_dots(scene).value());
+  if (error.excess() > 1) {
+    warn(warnings,
+         fmt::format("what the table of deflections leaves: images are off by {:.2g} grey levels of {} bits, truth by "
+                     "{:.2g} px, where {} and {} are asked; render.method = \"rays\" leaves nothing, but takes many "
+                     "render.rays_per_dot to scatter less",
+                     error.image_error_levels, error.bits, error.truth_error_px, image_tolerance_levels,
+                     truth_tolerance_px));
+  }
+  return error;
+}
+
 /// Least, median and most of some numbers.
 nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
   if (numbers.empty()) return nullptr;
@@ -72,12 +89,6 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
   std::transform(levels.begin(), levels.end(), picture.begin(),
                  [](double level) { return static_cast<std::uint16_t>(level); });
   return picture;
-}
-
-/// The preview is the GPU's alone; the CPU gives better than was asked for.
-bool single_precision(Setup const& setup, Rendering const& rendering, Renderer const& renderer) {
-  return setup.render.precision == Precision::single && renderer.device() == "cuda" &&
-         rendering.method == RenderMethod::focused_dots;
 }
 
 /// What keeps pixels from saturation: what fills them is the light, the charge without light, or their noise.
@@ -149,29 +160,28 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
                        RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
   namespace fs = std::filesystem;
   std::vector<std::string> warnings = prepared.warnings;
-  if (single_precision(loaded.setup, *rendered.rendering, renderer)) {
-    warn(warnings,
-         "render.precision = \"single\" is a preview: displacements carry some 1e-5 px of rounding; use \"double\" for "
-         "truth");
-  } else if (loaded.setup.render.precision == Precision::single) {
-    warn(warnings, "render.precision = \"single\" is the GPU's preview: the CPU has rendered in double");
+  if (loaded.setup.render.precision == Precision::single) {
+    warn(warnings, "render.precision = \"single\" gains nothing any more: rendered in double");
   }
   Scene scene = prepared.scene;
   scene.pupil_margin = rendered.pupil_margin;
   Rendering const& rendering = *rendered.rendering;
   CameraSetup const& camera = scene.setup.camera;
+  bool const by_table = rendering.method == RenderMethod::focused_dots;
+  std::optional<RaysPlan> table_error;
+  if (by_table) table_error = error_of_table(scene, prepared.rays, warnings);
   std::string const device = rendering.device.empty() ? renderer.device() : rendering.device;
   auto const& [levels, saturated_reference, saturated_flow] = frames;
   // where the rays are planned again, they are planned for the same exposure
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if (prepared.rays.rays_at_side_faces > 0 && !camera.exposure_e) {
+  } else if (by_table && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   }
   // what "auto" takes for other scenes hangs on the device, and on what is compared
-  if (rendering.method == RenderMethod::focused_dots) {
+  if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }
   std::string const resolved = loaded.document.resolved();
@@ -198,7 +208,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
     write_particle_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, rendering.method, origin);
   } else {
     write_truth(place(case_file::truth), scene, rendering.truth, rendering.statuses, field_of(scene, map_spacing_px),
-                rendering.method, origin);
+                rendering.method, table_error ? &*table_error : nullptr, origin);
   }
   OutputFile::write_text(place(case_file::setup), resolved);
 
@@ -244,10 +254,14 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
       {"estimator",
        {{"dots_by_table", accuracy.by_table},
         {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
-        {"no_table_since", to_string(rendering.table)}}},
+        {"no_table_since", to_string(rendering.table)},
+        {"table_error", table_error ? nlohmann::json{{"truth_px", table_error->truth_error_px},
+                                                     {"image_levels", table_error->image_error_levels},
+                                                     {"bits", table_error->bits}}
+                                    : nlohmann::json(nullptr)}}},
       {"method", to_string(rendering.method)},
       {"device", device},
-      {"precision", single_precision(scene.setup, rendering, renderer) ? "single (preview)" : "double"},
+      {"precision", "double"},
       {"rays",
        {{"traced", rendering.rays},
         {"reference", status_counts(rendering.statuses, 0)},

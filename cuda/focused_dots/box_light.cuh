@@ -3,7 +3,7 @@
 #include "cuda/focused_dots/cone_light.cuh"
 
 /// Light of a dot whose displacements are sorted into squares (MomentImages), by a whole block: what
-/// DotExposure::deposit_wide does on the CPU.
+/// DotIntegrator::deposit_wide does on the CPU.
 namespace gladstone::cuda {
 
 /// What the block's threads have in common while they do.
@@ -26,23 +26,6 @@ struct ConePoints {
   unsigned short* order;  ///< [place][count]: by square
   int count;
 };
-
-/// Finds the squares that the cone's displacements span.
-__device__ inline void find_boxes(LightModel const& model, DotBoxes const& boxes, ConePoints const& points,
-                                  BoxState& state) {
-  BoxRange range;
-  for (int k = threadIdx.x; k < model.places.count * points.count; k += dot_threads) {
-    ConeLight const& light = points.light[k];
-    if (light.weight != 0) range.include(boxes.box_of(light.displacement));
-  }
-  if (threadIdx.x == 0) state.range = {};
-  __syncthreads();
-  atomicMin(&state.range.low.x, range.low.x);
-  atomicMin(&state.range.low.y, range.low.y);
-  atomicMax(&state.range.high.x, range.high.x);
-  atomicMax(&state.range.high.y, range.high.y);
-  __syncthreads();
-}
 
 /// Puts a place's points in the order of their squares, by a warp; within a square they stay in their order.
 /// @param ends receives where each square's points end
@@ -88,7 +71,7 @@ __device__ inline void sort_points(DotBoxes const& boxes, BoxRange const& range,
 }
 
 /// Lists the squares of a phase that light falls on, in any order.
-__device__ inline void list_boxes(LightModel const& model, DotBoxes const& boxes, int phase, BoxState& state) {
+__device__ inline void list_boxes(DotModel const& model, DotBoxes const& boxes, int phase, BoxState& state) {
   if (threadIdx.x == 0) state.listed = 0;
   __syncthreads();
   int const count = state.range.count();
@@ -106,7 +89,7 @@ __device__ inline void list_boxes(LightModel const& model, DotBoxes const& boxes
 
 /// Moments of some squares' displacements at each place of the source, eight lanes to a square and place.
 /// @param list of squares, `here` of them
-__device__ inline void sum_boxes(LightModel const& model, CorrectedCone const& cone, double const* without_medium,
+__device__ inline void sum_boxes(DotModel const& model, CorrectedCone const& cone, double const* without_medium,
                                  DotBoxes const& boxes, ConePoints const& points, unsigned short const* list, int here,
                                  BoxState& state) {
   constexpr int team = 8, teams = dot_threads / team;
@@ -180,27 +163,23 @@ __device__ inline void add_boxes(MomentImages const& of_moments, DotBoxes const&
   }
 }
 
-/// Lays down the light of a cone that integrate_cone() found sound and kept. @return false: its displacements span too
-/// many squares, and nothing was done
-__device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan, CorrectedCone const& cone,
-                                   ConeState const& cone_state, ConePoints const& points, BoxState& state, Patch& patch,
-                                   DeviceImages const& images) {
+/// Lays down the light of a wide cone, whose points integrate_cone() kept.
+__device__ inline void expose_boxes(DotModel const& model, DotCone const& dot, CorrectedCone const& cone,
+                                    ConeState const& cone_state, ConePoints const& points, BoxState& state,
+                                    Patch& patch, DeviceImages const& images) {
   MomentImages const& of_moments = model.moment_images;
   int const places = model.places.count;
-  DotBoxes boxes(of_moments.lattice, plan.origin + cone.origin(), 1);
-  find_boxes(model, boxes, points, state);
-  while (!state.range.few() && boxes.step < DotBoxes::most_step) {
-    __syncthreads();  // before the range is found anew
-    boxes = DotBoxes(of_moments.lattice, plan.origin + cone.origin(), 2 * boxes.step);
-    find_boxes(model, boxes, points, state);
-  }
-  if (!state.range.few()) return false;
+  Vec2d const origin = model.to_pixel(dot.centre) + dot.origin;
+  SpannedBoxes const spanned(of_moments.lattice, origin, dot.extent);
+  DotBoxes const& boxes = spanned.boxes;
+  if (threadIdx.x == 0) state.range = spanned.range;
+  __syncthreads();
   for (int place = threadIdx.x / warp_size; place < places; place += dot_warps) {
     sort_points(boxes, state.range, points.light + place * points.count, points.count,
                 points.order + place * points.count, state.ends[place]);
   }
-  patch.begin(plan.origin + cone.origin());
-  double const units = plan.expected_weight * images.units_per_weight;
+  patch.begin(origin);
+  double const units = dot.light * images.units_per_weight;
   for (int phase = 0; phase < of_moments.phases(); ++phase) {
     list_boxes(model, boxes, phase, state);
     for (int first = 0; first < state.listed; first += BoxState::group) {
@@ -221,7 +200,6 @@ __device__ inline bool expose_wide(LightModel const& model, DotPlan const& plan,
     __syncthreads();
   }
   patch.flush(images, Frame::flow);
-  return true;
 }
 
 }  // namespace gladstone::cuda

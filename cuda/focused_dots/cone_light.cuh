@@ -1,9 +1,9 @@
 #pragma once
 
+#include "cuda/focused_dots/dot_cones.h"
 #include "cuda/focused_dots/dot_patch.cuh"
-#include "render/focused_dots/dot_light.h"
 
-/// A dot's truth and light from the integral over its cone, by a whole block: what DotExposure does on the CPU.
+/// A dot's truth and light from the integral over its cone, by a whole block: what DotIntegrator does on the CPU.
 namespace gladstone::cuda {
 
 /// What the block's threads have in common while they work on a cone.
@@ -11,8 +11,19 @@ struct ConeState {
   DisplacementMoments moments[PlaceRule::most_places];
   double without_medium[PlaceRule::most_places];
   double rims[PlaceRule::most_places][ConeRule::most_directions];
-  bool simple, sound, narrow;  ///< the stop's edge; the moments; their spread
+  Extent extents[PlaceRule::most_places], extent;  ///< of displacements from places, and of all
+  bool simple, sound, narrow;                      ///< the stop's edge; the moments; their spread
 };
+
+inline __device__ CorrectedCone cone_of(DotModel const& model, DotCone const& dot) {
+  DeflectionTable const nothing;
+  return {dot.kind == DotKind::still ? nothing : model.table,
+          model.stop_radius,
+          model.distance(),
+          dot.centre,
+          dot.aim,
+          dot.check};
+}
 
 /// Sum over a warp's lanes, in one order; every lane gets it.
 __device__ inline double warp_sum(double value) {
@@ -33,28 +44,27 @@ __device__ inline bool find_rims(CorrectedCone const& cone, ConeRule const& rule
 }
 
 /// Moments of the whole cone at every place, and what they say of its light.
-/// @param kept [place][point] where its points are kept, or null @return state.sound
-__device__ inline bool integrate_cone(LightModel const& model, CorrectedCone const& cone, ConeState& state,
+/// @param kept [place][point] where its points are kept, or null
+__device__ inline void integrate_cone(DotModel const& model, CorrectedCone const& cone, ConeState& state,
                                       ConeLight* kept = nullptr) {
   int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
-  if (threadIdx.x == 0) {
-    state.simple = state.sound = state.narrow = true;
-  }
+  if (threadIdx.x == 0) state.simple = state.sound = state.narrow = true;
   __syncthreads();
   for (int place = warp; place < model.places.count; place += dot_warps) {
     if (!find_rims(cone, model.cone, model.offset(model.places.places[place]), state.rims[place])) state.simple = false;
   }
   __syncthreads();
-  int const count = model.cone_points(state.simple);
+  int const count = model.cone.points_of(state.simple);
   for (int place = warp; place < model.places.count; place += dot_warps) {
     Vec2d const offset = model.offset(model.places.places[place]);
     DisplacementMoments moments;
     double without_medium = 0;
+    Extent extent;
     for (int k = lane; k < count; k += warp_size) {
-      ConeLight const light = state.simple ? cone_light(cone, model.cone, k, offset, state.rims[place])
-                                           : smoothed_light(cone, model.cone, k, offset);
+      ConeLight const light = cone_light(cone, model.cone, k, offset, state.simple ? state.rims[place] : nullptr);
       if (kept) kept[place * count + k] = light;
       moments.add(light.weight, light.displacement);
+      if (light.weight != 0) extent.include(light.displacement);
       without_medium += light.without_medium;
     }
     without_medium = warp_sum(without_medium);
@@ -62,39 +72,51 @@ __device__ inline bool integrate_cone(LightModel const& model, CorrectedCone con
       double const sum = warp_sum(moments.of[i]);
       if (lane == 0) state.moments[place].of[i] = sum;
     }
+    for (int step = warp_size / 2; step > 0; step /= 2) {
+      extent.include(
+          {__shfl_xor_sync(whole_warp, extent.low.x, step), __shfl_xor_sync(whole_warp, extent.low.y, step)});
+      extent.include(
+          {__shfl_xor_sync(whole_warp, extent.high.x, step), __shfl_xor_sync(whole_warp, extent.high.y, step)});
+    }
     if (lane == 0) {
       state.without_medium[place] = without_medium;
+      state.extents[place] = extent;
       cone.finish(state.moments[place], without_medium);
       if (!isfinite(state.moments[place].square())) state.sound = false;
       if (!model.narrow(state.moments[place])) state.narrow = false;
     }
   }
   __syncthreads();
-  return state.sound;
+  if (threadIdx.x == 0) {
+    state.extent = state.extents[0];
+    for (int place = 1; place < model.places.count; ++place) {
+      state.extent.include(state.extents[place].low);
+      state.extent.include(state.extents[place].high);
+    }
+  }
+  __syncthreads();
 }
 
 /// Lays down the source's disc with the spots that the moments make of it. A warp takes some points of the source at a
 /// time: first its lanes work out all their pixels' edges, then the spots' factors, then a lane a pixel.
-/// @param scratch of the warps @param moved where the moments count from [px]
-__device__ inline void lay_down_narrow(LightModel const& model, DotPlan const& plan, MomentField const& field,
-                                       Vec2d moved, Patch const& patch, DeviceImages const& images,
-                                       SharesOfGroup* scratch) {
+/// @param origin image of its centre where the moments count from [px] @param scratch of the warps
+__device__ inline void lay_down_narrow(DotModel const& model, Vec2d origin, double light, MomentField const& field,
+                                       Patch const& patch, DeviceImages const& images, SharesOfGroup* scratch) {
   CubatureView const& source = model.source;
   using M = DisplacementMoments;
   using Spot = GaussianSpot<double>;
   constexpr int orders = M::order + 1, most_group = 4;
   int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
-  Spot const spot = model.spot.gaussian;
+  Spot const spot = model.spot;
   double const per_sigma = 1 / spot.sigma;
   int const width = 2 * spot.half_width() + 1, edges = width + 1;
   int const room_of_point = 2 * orders * edges + M::count;
   int const group = min(most_group, SharesOfGroup::room / room_of_point);
   double* const gathered = patch.of_warp(warp);
   auto const place = [&](int point) {
-    Deposit light = reference_light(model, source, plan, point);
-    light.at += moved;
-    if (!(fabs(light.at.x) < 1e8 && fabs(light.at.y) < 1e8)) light = {};
-    return light;
+    Deposit here = reference_light(model, origin, light, point);
+    if (!(fabs(here.at.x) < 1e8 && fabs(here.at.y) < 1e8)) here = {};
+    return here;
   };
   for (int first = warp * group; first < source.count; first += dot_warps * group) {
     int const here = min(group, source.count - first);
@@ -102,9 +124,9 @@ __device__ inline void lay_down_narrow(LightModel const& model, DotPlan const& p
     auto const factors = [&](int which) { return scratch[warp].of + which * room_of_point; };
     for (int row = lane / 8; row < 2 * here; row += warp_size / 8) {
       int const which = row / 2, axis = row % 2;
-      Deposit const light = place(first + which);
-      Footprint const reach = spot.footprint(light.at);
-      double const from = axis == 0 ? reach.column - light.at.x : reach.row - light.at.y;
+      Deposit const here_light = place(first + which);
+      Footprint const reach = spot.footprint(here_light.at);
+      double const from = axis == 0 ? reach.column - here_light.at.x : reach.row - here_light.at.y;
       double* const out = factors(which) + axis * orders * edges;
       for (int edge = lane % 8; edge < edges; edge += 8) {
         double const t = (from + edge - 0.5) * per_sigma;

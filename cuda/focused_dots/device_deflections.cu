@@ -14,7 +14,7 @@ constexpr int threads = 128;
 /// medium; then four for every node of the slopes'.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
-    deflect_kernel(SceneView<double> const __grid_constant__ open, Medium const __grid_constant__ medium,
+    deflect_kernel(BenchView const __grid_constant__ bench, Medium const __grid_constant__ medium,
                    DeflectionTable const __grid_constant__ plan, long long const first, KeptVector* const displacements,
                    KeptVector* const bends, KeptSlopes* const displacement_slopes, KeptSlopes* const bend_slopes) {
   long long const nodes = (plan.straight.size() + 3) / 4 * 4, all = nodes + 4 * plan.sloping.size();
@@ -22,11 +22,14 @@ __global__ void __launch_bounds__(threads, 3)
   bool const straight = i < nodes;
   long long const node = straight ? i : (i - nodes) / 4;
   SquareLattice const& lattice = straight ? plan.straight : plan.sloping;
-  Deflection here{};
+  Deflection found[1]{};
+  Deflection& here = found[0];
   int const side = static_cast<int>(i % 4);  // of a node's four, which lie side by side in a warp
   if (node < lattice.size()) {
-    Vec2d const q = lattice.node(static_cast<int>(node % lattice.columns), static_cast<int>(node / lattice.columns));
-    here = deflect(open, medium, plan.way, q, straight ? Vec2d{} : slope_pupil(plan, side));
+    Vec2d const q[1] = {
+        lattice.node(static_cast<int>(node % lattice.columns), static_cast<int>(node / lattice.columns))};
+    Vec2d const pupil[1] = {straight ? Vec2d{} : slope_pupil(plan, side)};
+    deflect_across(bench, medium, plan.way, q, pupil, found);
   }
   if (straight) {
     if (node < lattice.size()) {
@@ -55,7 +58,7 @@ __global__ void __launch_bounds__(threads, 3)
 DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan,
                                      DeviceMedium<double> const& medium) {
   if (!plan.wanted()) return;
-  SceneView<double> const open = dots.open_view();
+  BenchView const bench = dots.bench();
   auto const nodes = static_cast<std::size_t>(plan.table.straight.size());
   auto const slopes = static_cast<std::size_t>(plan.table.sloping.size());
   values_ = DeviceArray<std::byte>(plan.table.bytes(), "the deflection table");
@@ -72,7 +75,7 @@ DeviceDeflections::DeviceDeflections(FocusedDots const& dots, DeflectionPlan con
         for (std::size_t first = 0; first < all; first += most) {
           throw_if_interrupted();
           auto const blocks = static_cast<unsigned>(std::min(most, all - first));
-          kernel<<<blocks, threads>>>(open, held, plan.table, static_cast<long long>(first) * threads, displacements,
+          kernel<<<blocks, threads>>>(bench, held, plan.table, static_cast<long long>(first) * threads, displacements,
                                       bends, displacement_slopes, bend_slopes);
           check_launch("deflect");
           if (most < all) check(cudaDeviceSynchronize(), "a part of the deflection table");

@@ -1,5 +1,5 @@
 #include "cuda/device/cuda_error.h"
-#include "cuda/focused_dots/expose_dots.h"
+#include "cuda/focused_dots/dot_cones.h"
 
 namespace gladstone::cuda {
 namespace {
@@ -8,9 +8,9 @@ constexpr int threads = 128;
 
 /// A block works out all images of a phase and moment, a thread a pixel of them.
 __global__ void __launch_bounds__(threads)
-    make_moment_images_kernel(LightModel const __grid_constant__ model, double* const out) {
+    make_moment_images_kernel(DotModel const __grid_constant__ model, double* const out) {
   MomentImages const& images = model.moment_images;
-  GaussianSpot<double> const spot = model.spot.gaussian;
+  GaussianSpot<double> const spot = model.spot;
   int const phase = static_cast<int>(blockIdx.x), moment = static_cast<int>(blockIdx.y), width = images.width();
   int order = 0;
   while (moment >= DisplacementMoments::at(order, 0) + order + 1) ++order;
@@ -19,7 +19,7 @@ __global__ void __launch_bounds__(threads)
     int const column = pixel % width - images.half, row = pixel / width - images.half;
     double sum[PlaceRule::terms] = {};
     for (int i = 0; i < model.source.count; ++i) {
-      Vec2d const place = model.source.points[i], at = images.middle(phase) + model.image.half_size_px() * place;
+      Vec2d const place = model.source.points[i], at = images.middle(phase) + model.half_size_px() * place;
       Footprint const reach = spot.footprint(at);
       if (column < reach.column || column >= reach.column + reach.width) continue;
       if (row < reach.row || row >= reach.row + reach.width) continue;
@@ -40,7 +40,7 @@ __global__ void __launch_bounds__(threads)
 
 }  // namespace
 
-void make_moment_images(LightModel const& model, double* out) {
+void make_moment_images(DotModel const& model, double* out) {
   dim3 const blocks(static_cast<unsigned>(model.moment_images.phases()), DisplacementMoments::count);
   make_moment_images_kernel<<<blocks, threads>>>(model, out);
   check_launch("make_moment_images");

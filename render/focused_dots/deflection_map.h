@@ -9,17 +9,22 @@
 
 namespace gladstone {
 
-/// Where a scene's deflection table has its nodes. None where rays are not traced through a medium and a focused lens
-/// with a stop, where the field is too fine for the number of sources to pay for a table, or where somebody wants
-/// random rays as they are. It covers the scene's own dots and the sources, for any number of rays: virtual dots among
-/// the scene's own have the table of these.
+/// Whether a scene's dots may have a deflection table, as far as its field and its view tell: made, or why not.
+TableState table_state(Scene const& scene);
+
+/// Where a scene's deflection table has its nodes: at multiples of a spacing that hangs on the field, the view and the
+/// cone alone, as far as the cones of the scene's own dots and of the sources reach, but within the medium.
 struct DeflectionPlan {
-  DeflectionTable table;  ///< without its values; its way is 0 where cones are not integrated by a rule at all
+  /// Bends that a table has room for unless told otherwise, in radii of the stop.
+  static constexpr double usual_aim = 0.25;
+
+  DeflectionTable table;  ///< without its values
   TableState state = TableState::no_sources;
   bool wanted() const { return state == TableState::made; }
 
   DeflectionPlan() = default;
-  DeflectionPlan(FocusedDots const& dots, DotPattern const& sources);
+  /// @param farthest_aim point of the pupil, from its middle, that a dot's cone may lie about [m]
+  DeflectionPlan(FocusedDots const& dots, DotPattern const& sources, double farthest_aim);
   /// Whether the other plan's table is the same to the last bit: its nodes, its rays' way, and the medium, by its
   /// owner.
   bool same_table(DeflectionPlan const& other) const;
@@ -58,8 +63,8 @@ class KeptDeflections {
  public:
   /// The table of a scene; valid until the next call. @param more what a Map takes beside dots and plan
   template <class... More>
-  DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, More const&... more) {
-    DeflectionPlan plan(dots, sources);
+  DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, double farthest_aim, More const&... more) {
+    DeflectionPlan plan(dots, sources, farthest_aim);
     state_ = plan.state;
     if (!plan.wanted()) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {

@@ -1,33 +1,80 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include "render/focused_dots/trace_pair.h"
+#include "render/base/ray.h"
+#include "render/medium/trace_medium.h"
 
 namespace gladstone {
 
-/// What the medium does to a ray, as the camera sees it.
-struct Deflection {
-  Vec2d displacement;  ///< on the sensor [px]
-  Vec2d bend;          ///< on the lens plane [m]
+/// What a ray meets on a bench whose lens images the target sharply: wherever it passes the lens, it lands on the image
+/// of the point of the target that it seems to come from.
+struct BenchView {
+  double plane_z = 0, lens_z = 0;  ///< of the target and of the lens [m]
+  double px_per_metre = 0;         ///< of the target [px/m]
+  TracingOptions<double> tracing;
+
+  GLADSTONE_HD Ray<double> straight_ray(Vec2d from, Vec2d pupil) const {
+    return {{from.x, from.y, plane_z}, normalized(Vec3d{pupil.x - from.x, pupil.y - from.y, lens_z - plane_z})};
+  }
 };
 
-/// A square lattice of a plane, and cubic Lagrange polynomials through the sixteen nodes about a point of it (at its
-/// edges beside the point).
+/// What the medium does to a ray, as the camera sees it.
+struct Deflection {
+  Vec2d displacement;                   ///< on the sensor [px]
+  Vec2d bend;                           ///< on the lens plane [m]
+  RayStatus status = RayStatus::alive;  ///< or how it was lost on its way to the lens: NaN then
+};
+
+/// What the medium does to N rays, side by side. @param from on the target @param pupil of straight rays [m]
+template <int N, class Medium>
+GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d const (&from)[N], Vec2d const (&pupil)[N],
+                          Deflection (&out)[N]) {
+  Ray<double> start[N];
+  for (int i = 0; i < N; ++i) start[i] = bench.straight_ray(from[i], pupil[i]);
+  MediumPassage<double> way[N];
+  trace_medium(medium, bench.tracing, start, way);
+  for (int i = 0; i < N; ++i) {
+    out[i] = {};
+    if (way[i].status == RayStatus::alive && !way[i].crossed) continue;
+    Ray<double> const seen = apparent_ray(start[i], way[i]);
+    out[i].status = way[i].status != RayStatus::alive ? way[i].status
+                    : seen.direction.z > 0            ? RayStatus::alive
+                                                      : RayStatus::missed_lens;
+    if (out[i].status != RayStatus::alive) {
+      out[i].displacement.x = out[i].displacement.y = std::numeric_limits<double>::quiet_NaN();
+      out[i].bend = out[i].displacement;
+      continue;
+    }
+    Vec3d const moved = seen.position - start[i].position;
+    double const far = (bench.lens_z - bench.plane_z) / seen.direction.z;
+    out[i].displacement = bench.px_per_metre * Vec2d{moved.x, -moved.y};
+    out[i].bend = {seen.position.x + far * seen.direction.x - pupil[i].x,
+                   seen.position.y + far * seen.direction.y - pupil[i].y};
+  }
+}
+
+/// A square lattice of a plane whose nodes lie at multiples of its spacing, wherever it begins, and cubic Lagrange
+/// polynomials through the sixteen nodes about a point (at its edges beside the point): what it says of a point further
+/// inside hangs on nothing else.
 struct SquareLattice {
-  Vec2d first{};       ///< node (0, 0) [m]
-  double spacing = 1;  ///< [m]
+  Vec2<int> first{0, 0};  ///< multiples of the spacing at which node (0, 0) lies
+  double spacing = 1;     ///< [m]
   double per_metre = 1;
   int columns = 0;
   int rows = 0;
 
   GLADSTONE_HD long long size() const { return static_cast<long long>(columns) * rows; }
-  GLADSTONE_HD Vec2d node(int column, int row) const { return {first.x + column * spacing, first.y + row * spacing}; }
+  GLADSTONE_HD Vec2d node(int column, int row) const {
+    return {(first.x + column) * spacing, (first.y + row) * spacing};
+  }
   /// Whether it may be asked within `reach` of a point in either direction.
   GLADSTONE_HD bool covers(Vec2d middle, double reach) const {
-    return middle.x - reach >= first.x && middle.y - reach >= first.y &&
-           middle.x + reach <= first.x + (columns - 1) * spacing && middle.y + reach <= first.y + (rows - 1) * spacing;
+    return (middle.x - reach) * per_metre >= first.x && (middle.y - reach) * per_metre >= first.y &&
+           (middle.x + reach) * per_metre <= first.x + columns - 1 &&
+           (middle.y + reach) * per_metre <= first.y + rows - 1;
   }
 
   /// The nodes about a point and their weights along both axes.
@@ -36,12 +83,12 @@ struct SquareLattice {
     int columns;
     double x[4], y[4];
   };
-  /// @pre covers(q, 0)
+  /// A place beyond the lattice is extrapolated to.
   GLADSTONE_HD Stencil about(Vec2d q) const {
-    double const u = (q.x - first.x) * per_metre, v = (q.y - first.y) * per_metre;
-    int const column = inside(static_cast<int>(u), columns), row = inside(static_cast<int>(v), rows);
+    double const u = q.x * per_metre, v = q.y * per_metre;
+    int const column = inside(u, first.x, columns), row = inside(v, first.y, rows);
     Stencil stencil;
-    stencil.corner = static_cast<long long>(row - 1) * columns + (column - 1);
+    stencil.corner = static_cast<long long>(row - first.y - 1) * columns + (column - first.x - 1);
     stencil.columns = columns;
     weigh(u - column, stencil.x);
     weigh(v - row, stencil.y);
@@ -49,7 +96,12 @@ struct SquareLattice {
   }
 
  private:
-  GLADSTONE_HD static int inside(int i, int count) { return i < 1 ? 1 : (i > count - 3 ? count - 3 : i); }
+  /// The node before a place, in multiples of the spacing, that has one before it and two behind.
+  GLADSTONE_HD static int inside(double at, int first_node, int count) {
+    using std::floor;
+    int const low = first_node + 1, high = first_node + count - 3;
+    return at < low ? low : (at >= high ? high : static_cast<int>(floor(at)));
+  }
   /// Of the nodes -1, 0, 1, 2 at t (Abramowitz & Stegun 25.2.13).
   GLADSTONE_HD static void weigh(double t, double (&weights)[4]) {
     double const left = (1.0 / 6) * t * (t - 1), right = 0.5 * (t + 1) * (t - 2);
@@ -115,6 +167,8 @@ struct DeflectionTable {
   SquareLattice sloping;   ///< the slopes, which are corrections
   double way = 0;          ///< from the target to the mid-plane, as a share of the way to the lens [1]
   double pupil_step = 0;   ///< for the slopes' differences [m]
+  Vec2d low, high;         ///< side faces of the medium [m]
+  double face_ways[2]{};   ///< as `way`, of its faces across the axis
 
   /// [rows][columns] of the lattices, as in Deflection; NaN where a ray does not reach the lens; null: no table
   KeptVector const* displacements = nullptr;
@@ -128,11 +182,25 @@ struct DeflectionTable {
     return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(KeptVector) +
                 static_cast<std::size_t>(sloping.size()) * sizeof(KeptSlopes));
   }
-  /// Whether it holds all rays from within `half` of a point of the target to within `pupil` of the axis.
-  GLADSTONE_HD bool covers(Vec2d on_target, double half, double pupil) const {
-    Vec2d const middle = (1 - way) * on_target;
-    double const reach = (1 - way) * half + way * pupil;
+  /// Whether it holds all rays from within `half` of a point of the target to within `radius` of one of the pupil.
+  GLADSTONE_HD bool covers(Vec2d on_target, double half, Vec2d pupil, double radius) const {
+    Vec2d const middle = crossing(on_target, pupil);
+    double const reach = (1 - way) * half + way * radius;
     return exists() && straight.covers(middle, reach) && sloping.covers(middle, reach);
+  }
+  /// Whether no straight ray from within `half` of a point of the target to within `pupil` of the axis meets the
+  /// medium.
+  GLADSTONE_HD bool beside(Vec2d on_target, double half, double pupil) const {
+    bool left = true, right = true, below = true, above = true;
+    for (int face = 0; face < 2; ++face) {  // a cone is furthest out at one of its ends
+      double const share = face_ways[face], reach = (1 - share) * half + share * pupil;
+      Vec2d const middle = (1 - share) * on_target;
+      left = left && middle.x + reach < low.x;
+      right = right && middle.x - reach > high.x;
+      below = below && middle.y + reach < low.y;
+      above = above && middle.y - reach > high.y;
+    }
+    return left || right || below || above;
   }
   /// Where the straight ray from a point of the target to one of the pupil crosses the mid-plane [m].
   GLADSTONE_HD Vec2d crossing(Vec2d on_target, Vec2d pupil) const { return (1 - way) * on_target + way * pupil; }
@@ -146,17 +214,13 @@ struct DeflectionTable {
   }
 };
 
-/// What the medium does to the ray to a point of the pupil that crosses the mid-plane at q. NaN: it gets lost.
-/// @param open the scene without its stop
-template <class Medium>
-GLADSTONE_HD Deflection deflect(SceneView<double> const& open, Medium const& medium, double way, Vec2d q, Vec2d pupil) {
-  Vec2d const from = (q - way * pupil) / (1 - way);
-  Vec3d const start{from.x, from.y, open.sources.plane_z};
-  Ray<double> const ray{start, normalized(Vec3d{pupil.x - from.x, pupil.y - from.y, open.bundle.lens_z - start.z})};
-  RayHit<double> const reference = through_camera(open, ray, 1.0), flow = follow(open, medium, ray, 1.0);
-  double const undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!reaches_sensor_plane(flow.status)) return {{undefined, undefined}, {undefined, undefined}};
-  return {flow.pixel - reference.pixel, flow.at_lens - reference.at_lens};
+/// What the medium does to N rays that cross the mid-plane at given places.
+template <int N, class Medium>
+GLADSTONE_HD void deflect_across(BenchView const& bench, Medium const& medium, double way, Vec2d const (&crossing)[N],
+                                 Vec2d const (&pupil)[N], Deflection (&out)[N]) {
+  Vec2d from[N];
+  for (int i = 0; i < N; ++i) from[i] = (crossing[i] - way * pupil[i]) / (1 - way);
+  deflect(bench, medium, from, pupil, out);
 }
 
 /// Slopes of displacement and bend, by central differences of four rays.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,64 +10,63 @@
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/focused_dots/dot_exposure.h"
-#include "render/focused_dots/light_model.h"
-#include "render/focused_dots/trace_pair.h"
+#include "render/focused_dots/dot_integrator.h"
+#include "render/focused_dots/owned_dot_model.h"
+#include "render/scene/bend_limit.h"
 
 namespace gladstone {
 namespace {
 
-/// Eq. 9, its own-lever form and its average over disc and pupil, for one dot.
+/// Eq. 9, its own-lever form and its average over disc and stop, for one dot.
 template <class Medium>
-void record_theory(LightModel const& light, TheoryModel const& model, SceneView<double> const& view,
-                   Medium const& medium, std::size_t dot, std::uint64_t rays, GroundTruth& truth) {
-  ConeSum cone;
-  for (std::uint64_t ray = 0; ray < theory_rays(light, rays); ++ray) {
+void record_theory(DotModel const& model, TheoryModel const& theory, Medium const& medium, Vec2d centre,
+                   std::size_t dot, GroundTruth& truth) {
+  DotTheory found{integrate_chief(theory, model.bench, medium, centre), {}};
+  for (int ray = 0; ray < theory_rays(model); ++ray) {
     throw_if_interrupted();
-    add_straight_ray(light, model, view, medium, dot, ray, cone);
+    add_straight_ray(model, theory, medium, centre, ray, found.cone);
   }
-  set_theory(truth, dot, model, integrate_chief(model, view, medium, dot), cone);
+  set_theory(truth, dot, theory, found);
 }
 
 template <class Medium>
 TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium const& medium,
-                      DeflectionTable const& deflections, SpotView const* spot, RenderTheory theory) {
+                      DeflectionTable const& table, RenderImages images, RenderTheory theory) {
   Scene const& scene = dots.scene();
-  TracePair<double, Medium> const pair{dots.view(sources), medium};
+  bool const lit = images != RenderImages::no;
   std::size_t const count = sources.centre.size();
-  double const light_per_ray = dots.light_per_ray(sources);
   TracingPass pass(scene, sources);
-  std::optional<LightImage> images[frame_count];
+  std::optional<LightImage> frames[frame_count];
   LightImage* targets[frame_count] = {};
-  for (int frame = 0; spot && frame < frame_count; ++frame) {
-    targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
+  for (int frame = 0; lit && frame < frame_count; ++frame) {
+    targets[frame] = &frames[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  OwnedLightModel const light(dots, sources, spot, deflections);
+  OwnedDotModel const owned(dots, sources, table, lit);
   TheoryModel const theory_model = dots.theory_model();
   std::mutex merge;
-  Progress progress(spot ? "tracing rays" : "tracing truth", count);
+  Progress progress(lit ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 16, [&](std::size_t begin, std::size_t end) {
-    DotExposure exposure(light.model, spot != nullptr);
-    GroundTruth& truth = pass.rendering.truth;
+    DotIntegrator integrator(owned.model);
+    double farthest_aim = 0;
     for (std::size_t dot = begin; dot < end; ++dot) {
-      Vec2d const centre = sources.centre[dot];
-      exposure.begin(centre, sources.radiance_of(dot), targets, light_per_ray);
-      trace_dot(pair, dot, scene.rays_per_dot, exposure);
-      exposure.finish(truth, dot);
+      SeenDot const& seen = integrator.see(medium, sources.centre[dot], sources.radiance_of(dot));
+      farthest_aim = std::max(farthest_aim, seen.aim.farthest);
+      pass.enter(dot, seen.truth, seen.rays, seen.kind == DotKind::left);
+      if (lit && seen.kind != DotKind::left) integrator.lay_down(targets);
       if (theory == RenderTheory::yes) {
-        record_theory(light.model, theory_model, pair.scene, medium, dot, scene.rays_per_dot, truth);
+        record_theory(owned.model, theory_model, medium, sources.centre[dot], dot, pass.rendering.truth);
       }
     }
     progress.advance(end - begin);
     std::lock_guard const lock(merge);
-    pass.largest_bend = std::max(pass.largest_bend, exposure.largest_bend());
-    for (std::size_t frame = 0; frame < 2; ++frame) {
+    pass.farthest_aim = std::max(pass.farthest_aim, farthest_aim);
+    for (std::size_t frame = 0; frame < frame_count; ++frame) {
       for (std::size_t status = 0; status < ray_status_count; ++status) {
-        pass.rendering.statuses[frame][status] += exposure.statuses()[frame][status];
+        pass.rendering.statuses[frame][status] += integrator.statuses()[frame][status];
       }
     }
   });
-  if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
+  if (lit) pass.rendering.light = {frames[0]->to_light(), frames[1]->to_light()};
   return pass;
 }
 
@@ -86,17 +84,12 @@ void apply_polarity(Scene const& scene, LightPair& light) {
 
 Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, RenderImages images,
                                       RenderTheory theory) {
-  std::optional<FocusedDots> const dots = door_(scene);
+  std::optional<FocusedDots> const dots = focused_dots(scene);
   GLADSTONE_EXPECTS(dots);
-  std::optional<AiryTable> airy;
-  SpotView const spot = make_spot(scene, airy);
-  Rendering rendering = render_with_margin(scene, [&] {
-    DeflectionTable const deflections = deflections_.table(*dots, sources);
-    return std::visit(
-        [&](auto const& medium) {
-          return trace_all(*dots, sources, medium, deflections, images == RenderImages::no ? nullptr : &spot, theory);
-        },
-        scene.medium.view);
+  Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
+    DeflectionTable const table = deflections_.table(*dots, sources, farthest_aim);
+    return std::visit([&](auto const& medium) { return trace_all(*dots, sources, medium, table, images, theory); },
+                      scene.medium.view);
   });
   rendering.table = deflections_.state();
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
@@ -107,11 +100,13 @@ Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, R
   return rendering;
 }
 
-Rendering render_with_margin(Scene& scene, std::function<TracingPass()> const& trace) {
+Rendering render_within_table(Scene const& scene, std::function<TracingPass(double farthest_aim)> const& trace) {
+  double room = DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2;
   while (true) {
-    TracingPass pass = trace();
-    if (scene.chief_rays_only() || pass.largest_bend <= scene.pupil_margin) return std::move(pass.rendering);
-    scene.widen_pupil(1.02 * pass.largest_bend);
+    TracingPass pass = trace(room);
+    if (pass.farthest_aim <= room) return pass.finish();
+    refuse_bend_beyond_any_bench(pass.farthest_aim, scene.setup.z_b());
+    room = 1.5 * pass.farthest_aim;
   }
 }
 

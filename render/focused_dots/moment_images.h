@@ -80,22 +80,48 @@ struct DotBoxes {
   GLADSTONE_HD Vec2<int> square(Vec2<int> box) const { return first + step * box; }
 };
 
+/// What displacements spread over [px].
+struct Extent {
+  Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
+
+  GLADSTONE_HD void include(Vec2d d) {
+    low = {d.x < low.x ? d.x : low.x, d.y < low.y ? d.y : low.y};
+    high = {d.x > high.x ? d.x : high.x, d.y > high.y ? d.y : high.y};
+  }
+};
+
 /// The squares that a distribution of displacements spans.
 struct BoxRange {
+  static constexpr int most = 576;  ///< that it pays to go through one by one
   Vec2<int> low{0, 0}, high{0, 0};
 
-  static constexpr int most = 576;  ///< that it pays to go through one by one
-
-  GLADSTONE_HD void include(Vec2<int> box) {
-    low = {box.x < low.x ? box.x : low.x, box.y < low.y ? box.y : low.y};
-    high = {box.x > high.x ? box.x : high.x, box.y > high.y ? box.y : high.y};
-  }
   GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
   GLADSTONE_HD int rows() const { return high.y - low.y + 1; }
   GLADSTONE_HD int count() const { return columns() * rows(); }
-  GLADSTONE_HD bool few() const { return count() <= most; }
   GLADSTONE_HD int index(Vec2<int> box) const { return (box.y - low.y) * columns() + box.x - low.x; }
   GLADSTONE_HD Vec2<int> box(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
+};
+
+/// A dot's squares and which of them its displacements span: the smallest squares that are few.
+struct SpannedBoxes {
+  DotBoxes boxes;
+  BoxRange range;
+  bool few;
+
+  GLADSTONE_HD SpannedBoxes(BoxLattice const& lattice, Vec2d origin, Extent const& extent) : boxes(lattice, origin, 1) {
+    span(extent);
+    for (int step = 2; !few && step <= DotBoxes::most_step; step *= 2) {
+      boxes = DotBoxes(lattice, origin, step);
+      span(extent);
+    }
+  }
+
+ private:
+  GLADSTONE_HD void span(Extent const& extent) {
+    range.low = boxes.box_of(extent.low);
+    range.high = boxes.box_of(extent.high);
+    few = range.count() <= BoxRange::most;
+  }
 };
 
 /// Images of a source, one for each moment of its displacements within a square and each term of the place on the

@@ -26,6 +26,7 @@ struct SourcesView {
   T plane_z{};    ///< [m]
   T half_size{};  ///< radius of a disc, half the side of a square [m]
   SourceShape shape = SourceShape::disc;
+  std::uint64_t const* number = nullptr;  ///< that random numbers are keyed by; null: its place in the list
 };
 
 enum class PupilSampling : int { sobol, random };

@@ -186,6 +186,19 @@ StepPlan plan_step_by_rays(Scene& scene) {
   return plan;
 }
 
+RaysPlan measure_rays_by_rays(Scene const& scene) {
+  constexpr std::uint64_t most = 4096;
+  Scene fewer = scene;
+  fewer.rays_per_dot = std::min(scene.rays_per_dot, most);
+  RaysPlan plan = RayErrors(fewer).measure();
+  double const gain = std::sqrt(static_cast<double>(fewer.rays_per_dot) / static_cast<double>(scene.rays_per_dot));
+  plan.truth_error_px *= gain;
+  plan.image_error_levels *= gain;
+  plan.extrapolated = scene.rays_per_dot > most;
+  plan.rays = scene.rays_per_dot;
+  return plan;
+}
+
 RaysPlan plan_rays_by_rays(Scene& scene) {
   if (auto const given = given_rays(scene.setup)) {
     scene.rays_per_dot = given->rays;

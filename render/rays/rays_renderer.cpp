@@ -29,6 +29,7 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
   RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
+  bool const one_path = scene.chief_rays_only() && sources.half_size == 0;  // of all rays of a source
   double margin = 0;
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
@@ -37,6 +38,7 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
     GroundTruth& truth = pass.rendering.truth;
     for (std::size_t dot = begin; dot < end; ++dot) {
       truth.set_hits(dot, tracer.trace(dot, targets), light_per_weight);
+      if (one_path) truth.displacement_error_px[dot] = {};
       if (theory == RenderTheory::yes) model.record(launch, lambert, medium, dot, truth);
     }
     progress.advance(end - begin);

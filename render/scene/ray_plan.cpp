@@ -104,8 +104,7 @@ RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, dou
   std::vector<double> excess;  // errors over their tolerances, whichever is larger, from doubling to doubling
   for (scene.rays_per_dot = single_ray ? 1 : 32;; scene.rays_per_dot *= 2) {
     plan = measure();
-    excess.push_back(
-        std::max(plan.truth_error_px / truth_tolerance_px, plan.image_error_levels / image_tolerance_levels));
+    excess.push_back(plan.excess());
     plan.converged = excess.back() <= 1;
     progress.advance();
     if (plan.converged || scene.rays_per_dot >= std::min(most, most_measured)) break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,6 +28,7 @@ inline constexpr double rays_budget_s = 60;
 
 /// How the number of rays was chosen.
 struct RaysPlan {
+  RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
   std::uint64_t rays = 0;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
   double truth_error_px = 0;             ///< of displacements, rms over dots, components and scramblings
@@ -36,6 +38,11 @@ struct RaysPlan {
   bool converged = true;      ///< false: the largest number that is taken is not enough
   double rays_wanted = 0;     ///< that would be, as far as can be told
   double seconds = 0;         ///< of processor time that a rendering with `rays` will take, by rays_seconds()
+
+  /// Errors over their tolerances, whichever is larger.
+  double excess() const {
+    return std::max(truth_error_px / truth_tolerance_px, image_error_levels / image_tolerance_levels);
+  }
 };
 
 /// Processor time that a rendering of the scene takes for one ray of every dot [s]: a count of steps and of pixels lit

@@ -1,6 +1,7 @@
 #include "render/scene/renderer.h"
 
 #include "render/base/error.h"
+#include "render/scene/ray_hit.h"
 
 namespace gladstone {
 
@@ -12,18 +13,12 @@ char const* to_string(TableState state) {
       return "nothing bends rays";
     case TableState::no_sources:
       return "there are no dots";
-    case TableState::chief_rays:
-      return "chief rays alone are traced (lens.f_number = inf)";
-    case TableState::random_rays:
-      return "render.sampling = \"random\" takes rays as they are";
-    case TableState::out_of_focus:
-      return "the lens is not focused on the target";
     case TableState::by_rays:
       return "dots are rendered ray by ray (method = \"rays\")";
     case TableState::field_too_small:
       return "the field does not reach beyond the dots' cones of rays";
     case TableState::field_too_fine:
-      return "the field is so fine that a table for these few dots would take more rays than it saves";
+      return "the field is so fine beside the view that a table would take too many rays";
     case TableState::dots_too_wide:
       return "the dots are wide beside what the field changes on";
   }
@@ -39,9 +34,25 @@ TracingPass::TracingPass(Scene const& scene, DotPattern const& sources) {
   rendering.rays = 2 * static_cast<std::int64_t>(count * scene.rays_per_dot);
   rendering.truth.resize(count);
   rendering.truth.rays_planned.assign(count, static_cast<std::int64_t>(scene.rays_per_dot));
+  left_.resize(count);
   for (std::size_t dot = 0; dot < count; ++dot) {
     rendering.truth.position_m[dot] = {sources.centre[dot].x, sources.centre[dot].y, -scene.setup.z_d};
   }
+}
+
+void TracingPass::enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left) {
+  rendering.truth.set_hits(dot, left ? DotTruth{} : truth, 1);
+  rendering.truth.rays_planned[dot] = rays;
+  left_[dot] = left;
+}
+
+Rendering TracingPass::finish() {
+  rendering.rays = 0;
+  for (std::size_t dot = 0; dot < left_.size(); ++dot) {
+    rendering.rays += frame_count * rendering.truth.rays_planned[dot];
+    if (left_[dot]) rendering.left.push_back(dot);
+  }
+  return std::move(rendering);
 }
 
 }  // namespace gladstone

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "render/base/image.h"
 #include "render/scene/ground_truth.h"
@@ -15,11 +16,8 @@ enum class TableState {
   made,
   no_medium,        ///< nothing bends rays
   no_sources,       ///< there is nothing to see
-  chief_rays,       ///< a dot has no cone
-  random_rays,      ///< somebody wants them as they are
-  out_of_focus,     ///< a point's rays do not meet on the sensor
   field_too_small,  ///< it hardly reaches beyond the cones, if at all
-  field_too_fine,   ///< the table would take more rays than it saves
+  field_too_fine,   ///< the table would take too many rays
   by_rays,          ///< the general renderer knows none, nor does a formula
   dots_too_wide,    ///< their cones change too much from place to place of a dot
 };
@@ -33,6 +31,7 @@ struct Rendering {
   GroundTruth truth;
   StatusCounts statuses{};
   std::int64_t rays = 0;                      ///< traced, both frames
+  std::vector<std::size_t> left;              ///< sources that are another renderer's: without truth or light here
   TableState table = TableState::no_sources;  ///< whether truth had a deflection table
   RenderMethod method = RenderMethod::focused_dots;
   std::string device;  ///< that rendered it; empty: the renderer's own
@@ -51,8 +50,7 @@ class Renderer {
   virtual ~Renderer() = default;
   virtual std::string device() const = 0;
 
-  /// Traces `sources` (the scene's dots, or virtual ones) through a planned scene. Grows scene.pupil_margin and starts
-  /// again should a ray turn out to be bent further than planned.
+  /// Traces `sources` (the scene's dots, or virtual ones) through a planned scene.
   virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 
   /// Traces particles (the scene's own, or virtual ones) through a planned scene of PIV, the medium before both frames.
@@ -64,10 +62,18 @@ class Renderer {
 /// One try at tracing a scene.
 struct TracingPass {
   Rendering rendering;
-  double largest_bend = 0;  ///< furthest that the medium moved a ray on the lens plane [m]
+  double farthest_aim = 0;  ///< from the axis, that a dot was aimed at in the pupil [m]
 
-  /// Counts the rays and places the dots; the rest is for the device to fill in.
+  /// Places the dots, each with its number of rays; the rest is for the device to fill in.
   TracingPass(Scene const& scene, DotPattern const& sources);
+  /// Enters a dot that the renderer chose the rays of. Dots may be entered at the same time.
+  /// @param left to another renderer: not seen here
+  void enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left);
+  /// Counts the rays, and lists the dots that are left.
+  Rendering finish();
+
+ private:
+  std::vector<char> left_;
 };
 
 }  // namespace gladstone

@@ -5,12 +5,12 @@
 #include <span>
 #include <string>
 
-#include "render/focused_dots/dot_planning.h"
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/lens.h"
 #include "render/optics/paraxial.h"
 #include "render/optics/prescription.h"
+#include "render/rays/ray_planning.h"
 #include "render/scene/scene.h"
 
 namespace gladstone::bench {
@@ -19,8 +19,7 @@ namespace gladstone::bench {
 inline constexpr double volume_width = 32.7e-3;
 inline constexpr double ambient_refractivity = 2.26e-4 * 1.225;
 
-inline FocusedDots enter(Scene const& scene) { return focused_dots(scene).value(); }
-inline void plan_step(Scene& scene) { use_step(scene, plan_step(enter(scene))); }
+inline void plan_step(Scene& scene) { plan_step_by_rays(scene); }
 
 /// A seeded smooth refractivity that varies along all three axes, over five to ten cells of a 64^3 grid.
 inline double smooth_refractivity(Vec3d p, unsigned seed) {
@@ -42,7 +41,7 @@ inline Scene table1_scene(int per_side, std::uint64_t rays_per_dot, int pixels =
   setup.target.kind = TargetKind::dots;
   setup.target.dots_per_32px_window = per_side > 0 ? 1 : 20;
   Scene scene = build_scene(setup);
-  scene.rays_per_dot = rays_per_dot;
+  scene.setup.render.rays_per_dot = scene.rays_per_dot = rays_per_dot;
   if (per_side == 0) return scene;
   double const edge = 36.0, pitch = (setup.camera.columns - 1 - 2 * edge) / (per_side - 1);
   scene.dots.centre.clear();
@@ -136,6 +135,23 @@ inline Scene points_scene(Setup setup, double dots_per_window = 1) {
   scene.rays_per_dot = 10000;
   scene.step = setup.medium.thickness;
   return scene;
+}
+
+/// Some rays of a scene's dots to the pupil, straight.
+inline std::vector<Ray<double>> rays_of_dots(Scene const& scene, std::size_t every, int rays_a_dot) {
+  BenchView const bench = focused_dots(scene).value().bench();
+  BundleView<double> choice;
+  choice.scrambling_bits = scrambling_bits(static_cast<std::uint64_t>(rays_a_dot));
+  std::vector<Ray<double>> rays;
+  for (std::size_t dot = 0; dot < scene.dots.centre.size(); dot += every) {
+    Vec2d const centre = scene.dots.centre[dot];
+    for (int k = 0; k < rays_a_dot; ++k) {
+      auto const [place, at] = DotRay::choose(choice, scene.dots.shape, centre, k);
+      rays.push_back(
+          bench.straight_ray(centre + scene.dots.half_size * place, (scene.imaging.entrance_pupil / 2) * at));
+    }
+  }
+  return rays;
 }
 
 /// Rays of a rendering in one frame.

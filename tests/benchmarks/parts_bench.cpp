@@ -1,8 +1,10 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "render/rays/source_tracer.h"
 #include "render/scene/light_patch.h"
 #include "render/sensor/diffraction_spot.h"
 #include "tests/benchmarks/bench_scenes.h"
@@ -14,10 +16,12 @@ namespace {
 /// Sobol points, sines and a square root or two: a ray as it leaves its dot.
 void emit_rays(benchmark::State& state) {
   Scene const scene = table1_scene(8, 64);
-  SceneView<double> const view = enter(scene).view();
+  RaysLaunch const launch(scene, SpotView{});
+  LambertSources<double> const lambert{scene.dots.view(-scene.setup.z_d)};
+  AimedBundle<double> const bundle = launch.bundle(*launch.sight(lambert.middle(0)), lambert.reach(), 0);
   std::uint64_t ray = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(emit(view.sources, view.bundle, ray / 64 % view.sources.count, ray % 64));
+    benchmark::DoNotOptimize(aim_ray(lambert, bundle, ray / 64 % lambert.dots.count, ray % 64));
     ++ray;
   }
   state.counters["rays/s"] = benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
@@ -87,14 +91,12 @@ BENCHMARK(sample_plane);
 /// Rays through a 64^3 volume, nothing else.
 void trace_volume(benchmark::State& state) {
   Scene const scene = volume_scene(64, 32, 64);
-  SceneView<double> const view = enter(scene).view();
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
-  std::vector<Ray<double>> rays;
-  for (std::uint64_t dot = 0; dot < view.sources.count; dot += 7)
-    rays.push_back(emit(view.sources, view.bundle, dot, dot % 64).ray);
+  std::vector<Ray<double>> const rays = rays_of_dots(scene, 7, 1);
+  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
   std::size_t next = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(trace_medium(volume, view.tracing, rays[next]));
+    benchmark::DoNotOptimize(trace_medium(volume, tracing, rays[next]));
     next = next + 1 < rays.size() ? next + 1 : 0;
   }
   state.counters["steps/s"] =
@@ -106,18 +108,17 @@ BENCHMARK(trace_volume);
 template <int N>
 void trace_volume_together(benchmark::State& state) {
   Scene const scene = volume_scene(64, 32, 64);
-  SceneView<double> const view = enter(scene).view();
   auto const& volume = std::get<SplineVolume<double>>(scene.medium.view);
-  std::uint64_t bundle = 0;
+  std::vector<Ray<double>> const all = rays_of_dots(scene, 7, N);
+  TracingOptions<double> const tracing = focused_dots(scene).value().bench().tracing;
+  std::size_t bundle = 0;
   for (auto _ : state) {
     Ray<double> rays[N];
-    for (int i = 0; i < N; ++i) {
-      rays[i] = emit(view.sources, view.bundle, bundle % view.sources.count, static_cast<std::uint64_t>(i)).ray;
-    }
+    std::copy_n(all.data() + bundle, N, rays);
     MediumPassage<double> ways[N];
-    trace_medium(volume, view.tracing, rays, ways);
+    trace_medium(volume, tracing, rays, ways);
     benchmark::DoNotOptimize(ways);
-    bundle += 7;
+    bundle = bundle + 2 * N <= all.size() ? bundle + N : 0;
   }
   state.counters["steps/s"] =
       benchmark::Counter(63.0 * N * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);

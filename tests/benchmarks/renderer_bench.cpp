@@ -4,7 +4,7 @@
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
-#include "render/light/sources.h"
+#include "render/rays/rays_renderer.h"
 #include "tests/benchmarks/bench_scenes.h"
 #include "tests/benchmarks/plain_loop.h"
 
@@ -14,11 +14,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Seconds that images and truth of a scene take on that many threads; no theory.
+/// Seconds that images and truth of a scene take on that many threads, ray by ray; no theory.
 double seconds_to_render(Scene& scene, int threads, RenderImages images = RenderImages::yes) {
   set_thread_count(threads);
   auto const start = Clock::now();
-  Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, images, RenderTheory::no);
+  Rendering const rendering = RaysRenderer().render(scene, scene.dots, images, RenderTheory::no);
   double const taken = seconds_since(start);
   benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
   set_thread_count(0);
@@ -71,6 +71,19 @@ void render_plane(benchmark::State& state) {
 }
 BENCHMARK(render_plane)->ArgName("threads")->Arg(1)->Arg(2)->Apply(four_renderings);
 
+/// Focused dots by their table, made anew every time.
+void render_focused(benchmark::State& state) {
+  Progress::enable(false);
+  Scene scene = state.range(0) == 0 ? plane_scene(85, 32) : volume_scene(64, 85, 32);
+  for (auto _ : state) {
+    auto const start = Clock::now();
+    Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+    benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
+    state.SetIterationTime(seconds_since(start));
+  }
+}
+BENCHMARK(render_focused)->ArgName("volume")->Arg(0)->Arg(1)->Apply(four_renderings);
+
 void render_empty(benchmark::State& state) {
   Scene scene = table1_scene(85, rays_per_dot);
   plan_step(scene);
@@ -80,14 +93,9 @@ BENCHMARK(render_empty)->Apply(four_renderings);
 
 /// The rays of a scene where they enter the volume.
 std::vector<Ray<double>> entering_rays(Scene const& scene, SplineVolume<double> const& volume) {
-  SceneView<double> const view = enter(scene).view();
-  std::vector<Ray<double>> rays;
-  for (std::uint64_t dot = 0; dot < view.sources.count; ++dot) {
-    for (std::uint64_t ray = 0; ray < scene.rays_per_dot; ++ray) {
-      Ray<double> start = emit(view.sources, view.bundle, dot, ray).ray;
-      start.position += start.direction * ((volume.box.low.z - start.position.z) / start.direction.z);
-      rays.push_back(start);
-    }
+  std::vector<Ray<double>> rays = rays_of_dots(scene, 1, static_cast<int>(scene.rays_per_dot));
+  for (Ray<double>& start : rays) {
+    start.position += start.direction * ((volume.box.low.z - start.position.z) / start.direction.z);
   }
   return rays;
 }

@@ -11,9 +11,9 @@
 
 #include "analysis/correlation/correlator.h"
 #include "cuda/backend.h"
+#include "cuda/focused_dots/dot_cones.h"
 #include "render/base/error.h"
 #include "render/focused_dots/deflection_map.h"
-#include "render/focused_dots/ray_record.h"
 #include "tests/analysis/support/particle_pair.h"
 #include "tests/scene/small_scenes.h"
 
@@ -73,8 +73,8 @@ void expect_same(Rendering const& a, Rendering const& b) {
 }
 
 TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
-  constexpr std::uint64_t rays = 10000;
-  constexpr std::size_t dot_bytes = rays * sizeof(RayRecord<double>);
+  constexpr std::uint64_t rays = 64;
+  constexpr std::size_t dot_bytes = sizeof(DotCone);
   for (FieldSetup const& field : {dns_plane("kepeak"), volume()}) {
     Scene scene = scene_of(field, 6, rays);
     render(scene);  // puts the field on the device, where it stays
@@ -95,33 +95,15 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   }
 }
 
-TEST_F(SmallDevice, NamesTheSizesWhereOneDotsRaysDoNotFit) {
-  Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
-  std::string error;
-  {
-    DeviceMemoryLimit const limit(64 * mebibyte);
-    error = error_of([&] { render(scene); });
-    EXPECT_LT(limit.most_held(), 64 * mebibyte);
-  }
-  EXPECT_THAT(error, HasSubstr("out of device memory: the rays of a batch of dots needs " +
-                               std::to_string(sizeof(RayRecord<double>)) + " MiB, "));
-  EXPECT_THAT(error, HasSubstr(" of 64 MiB are free; use fewer rays, smaller images or volumes, or --device cpu"));
-  // the renderer is none the worse for it
-  EXPECT_EQ(render(scene).truth.size(), 1u);
-}
-
 // Light is gathered in squares of up to 56 x 56 px a warp where a block's shared memory has room for that; not on every
 // card. Sums are of whole numbers, so that a pixel's does not depend on what was gathered before it went to the image.
 TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
   gladstone::Setup setup = table1_setup(96);
   setup.target.dot_diameter_px = 30;
-  std::vector<Scene> scenes{scene_of(dns_plane("kepeak"), 8, 32)};  // by a table; the others by their rays
-  for (Focus const focus : {Focus::target, Focus::medium}) {
-    for (FieldSetup const& field : {FieldSetup{}, sinusoid(0.2, 4e-3)}) {
-      setup.lens.focus = focus;
-      setup.medium.field = field;
-      scenes.push_back(scene_with_dots(setup, lattice(96, 3, 33), 200));
-    }
+  std::vector<Scene> scenes{scene_of(dns_plane("kepeak"), 8, 32)};
+  for (FieldSetup const& field : {FieldSetup{}, uniform_gradient(20, -8)}) {
+    setup.medium.field = field;
+    scenes.push_back(scene_with_dots(setup, lattice(96, 3, 33), 200));
   }
   for (Scene& scene : scenes) {
     Rendering const expected = render(scene);
@@ -132,16 +114,17 @@ TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {
   }
 }
 
-// 64 dots pay for a table of the plane, four do not.
 TEST_F(SmallDevice, NamesTheSizeOfATableThatDoesNotFit) {
   Scene scene = scene_of(dns_plane("kepeak"), 8, 32), few = scene;
   few.dots.centre.resize(4);
-  DeflectionPlan const plan(on_bench(scene), scene.dots);
-  ASSERT_TRUE(plan.wanted());
-  ASSERT_FALSE(DeflectionPlan(on_bench(few), few.dots).wanted());
-  render(few);  // puts the field on the device, where it stays
+  FocusedDots const dots = focused_dots(scene).value();
+  double const usual_aim = DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2;
+  DeflectionPlan const plan(dots, scene.dots, usual_aim);
+  DeflectionPlan const of_few(focused_dots(few).value(), few.dots, usual_aim);
+  ASSERT_TRUE(plan.wanted() && of_few.wanted());
+  render(few);  // puts the field on the device, where it stays, and a table, which goes before the next one comes
   {
-    DeviceMemoryLimit const limit(plan.table.bytes() - 1);
+    DeviceMemoryLimit const limit(plan.table.bytes() - of_few.table.bytes() - 1);
     char size[32];
     std::snprintf(size, sizeof size, "%.3f", static_cast<double>(plan.table.bytes()) / 0x1p20);
     EXPECT_THAT(error_of([&] { render(scene); }),
@@ -159,7 +142,6 @@ TEST_F(SmallDevice, LaysDownWideConesInFewerBlocks) {
   gladstone::Setup setup = table1_setup(96);
   setup.medium.field = field;
   Scene scene = scene_with_dots(setup, lattice(96, 20, 4.3), 64);
-  ASSERT_TRUE(DeflectionPlan(on_bench(scene), scene.dots).wanted());
   render(scene);  // puts field and table on the device, where they stay
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
     DeviceMemoryLimit const limit(bytes);

@@ -38,8 +38,7 @@ TYPED_TEST(ByBothMethods, VolumesSplineAndLinear) {
   }
 }
 
-// The rays of a dot are traced in another order, a chunk of 16384 at a time.
-TEST_F(CudaRendererTest, MoreRaysThanAreOrderedTogether) {
+TEST_F(CudaRendererTest, ManyRaysOfFewDots) {
   Scene scene = scene_of(volume_file(), 20000);
   scene.dots.centre.resize(2);
   expect_as_on_cpu(scene);
@@ -124,34 +123,6 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
       ASSERT_GT(here.size(), 0u);
       EXPECT_EQ(largest_difference(here.displacement_px, there.displacement_px), 0);
     }
-  }
-}
-
-/// The preview: single precision keeps displacements to 1e-3 px and light to a 12-bit level.
-TEST_F(CudaRendererTest, SinglePrecisionIsAPreview) {
-  Scene scene = scene_of(dns_plane("late"), 256), preview = scene;
-  preview.setup.render.precision = Precision::single;
-  Rendering const exact = on_device(scene), rough = on_device(preview);
-  double const off = largest_difference(exact.truth.displacement_px, rough.truth.displacement_px);
-  EXPECT_LT(off, 1e-3);
-  EXPECT_GT(off, 1e-9);
-  EXPECT_LT(largest_difference(exact.light.flow, rough.light.flow), 16 * grey_level(exact.light.flow));
-}
-
-/// The same through volumes, whose polynomials are held in single precision too.
-TEST_F(CudaRendererTest, SinglePrecisionThroughVolumes) {
-  for (bool const spline : {true, false}) {
-    Scene scene = scene_of(volume_file(), 256, [&](BosSetup& setup) {
-      if (!spline) setup.medium.interpolation = FieldInterpolation::trilinear;
-    });
-    scene.pupil_margin *= 1.2;  // enough for both, so that they send the same rays
-    Scene preview = scene;
-    preview.setup.render.precision = Precision::single;
-    Rendering const exact = on_device(scene), rough = on_device(preview);
-    double const off = largest_difference(exact.truth.displacement_px, rough.truth.displacement_px);
-    EXPECT_LT(off, 1e-3);
-    EXPECT_GT(off, 1e-9);
-    EXPECT_LT(largest_difference(exact.truth.eq9_px, rough.truth.eq9_px), 1e-9);  // theory stays double
   }
 }
 

@@ -281,7 +281,7 @@ TEST_F(Variants, TruthThatIsNotKnownWellIsWarnedOf) {
 
 // The wider the pupil is made, the steeper are the rays, and the further the flow bends them.
 TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
-  for (std::string const steep : {"[5e4, 0, 0]", "[0, -1e5, 0]", "[3e5, 0, 0]"}) {
+  for (std::string const steep : {"[0, -1e5, 0]", "[3e5, 0, 0]"}) {
     std::string const method = steep[1] == '0' ? "rays" : "focused_dots";
     Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--set", "render.method=" + method,
                                        "--set", "medium.field.gradient_kg_m4=" + steep});
@@ -293,7 +293,7 @@ TEST_F(Variants, GradientsThatBendRaysPastAnyLensAreRefused) {
 
 TEST_F(Variants, ImpossibleGradientsAreSaidToHideTheDots) {
   Outcome const outcome =
-      gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[2e4, 0, 0]"});
+      gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.field.gradient_kg_m4=[5e4, 0, 0]"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, testing::HasSubstr("dots are not seen in one of the frames"));
   EXPECT_THAT(outcome.err, testing::HasSubstr("of a dot's 32 rays pass the stop"));

@@ -43,7 +43,7 @@ TEST(ChiefRays, DoNotAverage) {
   Scene scene = scene_with_dots(setup, {{31.5, 31.5}}, 1);
   GroundTruth const truth = trace_truth(scene);
   EXPECT_NEAR(truth.displacement_px[0].x / truth.eq9_px[0].x, 1, 1e-4);
-  EXPECT_NEAR(truth.displacement_std_px[0].x, 0, 1e-9);
+  EXPECT_NEAR(truth.displacement_std_px[0].x, 0, 1e-8);  // the root of what rounding leaves of squares
 }
 
 // Focused on the medium the dots are blurred into discs of diameter d_A |1 - z_i/z_i'| about their chief rays, which
@@ -55,7 +55,7 @@ TEST(Defocus, BlursByThePupilAndKeepsTheMagnification) {
   setup.lens.focus = Focus::medium;
   setup.target.dot_diameter_px = 0;
   auto const at = lattice(256, 3, 80);
-  Scene scene = scene_with_dots(setup, at, 1 << 12);
+  Scene scene = scene_with_dots(setup, at, 1 << 14);
   double const sensor = 0.105 * 0.75 / (0.75 - 0.105), sharp = 0.105 / 0.895;
   EXPECT_NEAR(scene.imaging.magnification, sensor, 1e-15);
   double const diameter = 0.105 / 11 * (sensor / sharp - 1) / 10e-6;

@@ -28,6 +28,9 @@ TEST(FocusedDots, AreNothingButFlatDotsInFocusOfAThinLens) {
   EXPECT_TRUE(refused([](auto& s) { s.camera.distortion.k1 = 1e-3; }));
   EXPECT_TRUE(refused([](auto& s) { s.lens.f_number = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([](auto& s) { s.lens.focus = Focus::medium; }));
+  EXPECT_TRUE(refused([](auto& s) { s.lens.spot = SpotModel::airy; }));
+  EXPECT_TRUE(refused([](auto& s) { s.lens.spot = SpotModel::none; }));
+  EXPECT_TRUE(refused([](auto& s) { s.render.sampling = PupilSampling::random; }));
 }
 
 // A table has at most 1e8 rays, of 20 bytes each: 2 GB beside what the picture takes.
@@ -45,7 +48,7 @@ TEST(Memory, OfATableIsKnownFromItsSetup) {
     auto setup = table1_setup(256);
     setup.medium.field = field;
     Scene const scene = build_scene(setup);
-    DeflectionPlan const plan(on_bench(scene), scene.dots);
+    DeflectionPlan const plan(focused_dots(scene).value(), scene.dots, 0);
     ASSERT_TRUE(plan.wanted());
     EXPECT_NEAR(table_bytes_needed(setup) / static_cast<double>(plan.table.bytes()), 1, 0.1);
   }

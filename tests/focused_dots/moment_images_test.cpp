@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "render/focused_dots/dot_model.h"
 #include "render/focused_dots/dot_patch.h"
-#include "render/focused_dots/light_model.h"
+#include "render/scene/source_cubature.h"
 
 namespace gladstone {
 namespace {
@@ -66,9 +67,9 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
   SpotView spot;
   spot.model = SpotModel::gaussian;
   spot.gaussian.sigma = sigma;
-  LightModel model;
-  model.spot = spot;
-  model.image.source_half = half_px > 0 ? 1e-3 : 0;
+  DotModel model;
+  model.spot = spot.gaussian;
+  model.source_half = half_px > 0 ? 1e-3 : 0;
   double const side = model.most_box_side();
   int const terms = half_px > 0 ? PlaceRule::terms : 1;
   MomentImages images = MomentImages::plan(half_px, spot.gaussian, side, terms);

@@ -140,7 +140,8 @@ Scene dns_scene(std::string const& instant, int dots, double dot_px, std::uint64
 /// that their rays are dealt to has 2^13 points.
 double straight_ray_error(std::string const& instant, double dot_px) {
   Scene scene = dns_scene(instant, 40, dot_px, 1 << 15);
-  GroundTruth const truth = trace_truth(scene, RenderTheory::no);
+  GroundTruth const truth =
+      RaysRenderer().render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;  // nothing but rays
   PeriodicPlane const plane(scene.setup.medium.field);
   RmsRatio ratio;
   for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "render/focused_dots/dot_planning.h"
+#include "render/rays/ray_planning.h"
 #include "studies/ray_file.h"
 #include "tests/fuzz/input.h"
 
@@ -29,7 +29,7 @@ dots_per_32px_window = 1.0
 )",
                                                     "setup.toml");
   Scene scene = build_scene(read_setup(document.root()));
-  use_step(scene, plan_step(focused_dots(scene).value()));
+  plan_step_by_rays(scene);
   return scene;
 }
 

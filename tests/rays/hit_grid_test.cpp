@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "render/base/random.h"
-#include "render/focused_dots/dot_exposure.h"
+#include "render/scene/light_patch.h"
 
 namespace gladstone {
 namespace {

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "render/focused_dots/dot_planning.h"
 #include "render/focused_dots/focused_dots_renderer.h"
+#include "render/rays/ray_planning.h"
+#include "render/rays/rays_renderer.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
@@ -43,23 +44,9 @@ inline FieldSetup dns_plane(std::string const& instant) {
   return field;
 }
 
-/// Any scene on the bench, in focus or not.
-inline FocusedDots on_bench(Scene const& scene) { return bench_rays(scene).value(); }
+inline StepPlan plan_step(Scene& scene) { return plan_step_by_rays(scene); }
 
-/// Plans and renderings by the fast renderer; scenes that have no tables it traces ray by ray.
-inline StepPlan plan_step(Scene& scene) {
-  StepPlan const plan = plan_step(on_bench(scene));
-  use_step(scene, plan);
-  return plan;
-}
-inline RaysPlan plan_rays(Scene& scene) {
-  RaysPlan const plan = plan_rays(on_bench(scene));
-  scene.rays_per_dot = plan.rays;
-  return plan;
-}
-inline RaysPlan measure_rays(Scene const& scene) { return measure_rays(on_bench(scene)); }
-
-/// A scene with dots at given places of the reference picture [px], its step and margin planned.
+/// A scene with dots at given places of the reference picture [px], its step and margin planned, its rays given.
 inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px, std::uint64_t rays) {
   Setup bare = setup;
   bare.target.dots_per_32px_window = 1;
@@ -70,15 +57,21 @@ inline Scene scene_with_dots(Setup const& setup, std::vector<Vec2d> const& at_px
   scene.dots.centre.clear();
   for (Vec2d const p : at_px) scene.dots.centre.push_back(scene.to_target(p));
   plan_step(scene);
-  scene.rays_per_dot = rays;
+  scene.setup.render.rays_per_dot = scene.rays_per_dot = rays;
   return scene;
 }
 
-inline Rendering render_all(Scene& scene) {
-  return FocusedDotsRenderer(bench_rays).render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
+/// By the fast renderer, or by the general one what it does not take, or not all of.
+inline Rendering render_either(Scene& scene, RenderImages images, RenderTheory theory) {
+  if (focused_dots(scene)) {
+    Rendering rendering = FocusedDotsRenderer().render(scene, scene.dots, images, theory);
+    if (rendering.left.empty()) return rendering;
+  }
+  return RaysRenderer().render(scene, scene.dots, images, theory);
 }
+inline Rendering render_all(Scene& scene) { return render_either(scene, RenderImages::yes, RenderTheory::yes); }
 inline GroundTruth trace_truth(Scene& scene, RenderTheory theory = RenderTheory::yes) {
-  return FocusedDotsRenderer(bench_rays).render(scene, scene.dots, RenderImages::no, theory).truth;
+  return render_either(scene, RenderImages::no, theory).truth;
 }
 
 /// A lattice of points, `pitch` apart, in the middle of a square picture.

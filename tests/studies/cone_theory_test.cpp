@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "render/base/units.h"
-#include "render/focused_dots/dot_planning.h"
 #include "render/focused_dots/focused_dots_renderer.h"
+#include "render/rays/ray_planning.h"
 
 namespace gladstone {
 namespace {
@@ -27,8 +27,7 @@ struct Bench {
 
 /// Table 1 with this lens and distance, points for dots, and a wave of that strain.
 Scene scene_of(Bench const& bench) {
-  Scene scene;
-  Setup& setup = scene.setup;
+  gladstone::Setup setup;
   setup.lens.focal_length = bench.focal_length_mm * 1e-3;
   setup.lens.f_number = bench.f_number;
   setup.z_d = bench.z_d_mm * 1e-3;
@@ -38,8 +37,8 @@ Scene scene_of(Bench const& bench) {
   setup.medium.field = Sinusoid<double>::wave(
       strain * setup.ambient_index() / (lever * setup.medium.gladstone_dale * setup.medium.thickness * k * k),
       wavelength);
-  scene.imaging = setup.imaging();
-  scene.medium = build_medium(setup.medium);
+  Scene scene = build_scene(setup);
+  scene.dots.centre.clear();
   // A square of points whose corners are seen at that angle; the spacing has nothing in common with the wave.
   double const half = setup.z_b() * std::tan(corner) / std::sqrt(2.0);
   constexpr int side = 10;
@@ -47,7 +46,7 @@ Scene scene_of(Bench const& bench) {
     for (int i = 0; i <= side; ++i)
       scene.dots.centre.push_back({half * (2.0 * i / side - 1), half * (2.0 * j / side - 1)});
   }
-  use_step(scene, plan_step(focused_dots(scene).value()));
+  plan_step_by_rays(scene);
   scene.rays_per_dot = 1024;
   return scene;
 }

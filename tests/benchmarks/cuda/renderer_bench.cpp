@@ -16,19 +16,19 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Renders again and again, scene in memory to image in memory; a ray goes through both frames.
-void report(benchmark::State& state, Scene& scene, RenderImages images = RenderImages::yes) {
+void report(benchmark::State& state, Scene& scene, std::unique_ptr<Renderer> (*make)() = cuda::make_renderer) {
   Progress::enable(false);
   if (!cuda::device_state().usable) {
     state.SkipWithError(cuda::device_state().text.c_str());
     return;
   }
-  auto const renderer = cuda::make_renderer();
-  for (int warm = 0; warm < 2; ++warm) renderer->render(scene, scene.dots, images, RenderTheory::no);
+  auto const renderer = make();
+  for (int warm = 0; warm < 2; ++warm) renderer->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
   std::vector<double> seconds;
   for (auto _ : state) {
     scene.step = std::nextafter(scene.step, 1.0);  // no table of the last round's serves again
     auto const start = Clock::now();
-    Rendering const rendering = renderer->render(scene, scene.dots, images, RenderTheory::no);
+    Rendering const rendering = renderer->render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
     benchmark::DoNotOptimize(rendering.truth.displacement_px.data());
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
     state.SetIterationTime(seconds.back());
@@ -39,16 +39,17 @@ void report(benchmark::State& state, Scene& scene, RenderImages images = RenderI
   state.counters["Grays/s"] = 1e-9 * rays_of(scene) / median;
 }
 
-/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot alone: how far
-/// the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to 90 %], both rms.
+/// Renders a part of a scene's dots as the whole would be and, with half its step, by 65,536 rays a dot of the general
+/// renderer: how far the two are apart in truth [px] and in the images' lit pixels [grey levels of 12 bits, exposed to
+/// 90 %], both rms.
 void report_accuracy(benchmark::State& state, Scene scene) {
-  constexpr std::size_t parts = 128;  // too few for a table
+  constexpr std::size_t parts = 128;
   Progress::enable(false);
   if (!cuda::device_state().usable) {
     state.SkipWithError(cuda::device_state().text.c_str());
     return;
   }
-  auto const renderer = cuda::make_renderer();
+  auto const renderer = cuda::make_renderer(), by_rays = cuda::make_rays_renderer();
   Scene few = scene;
   few.rays_per_dot = 65536;
   few.step /= 2;
@@ -58,7 +59,7 @@ void report_accuracy(benchmark::State& state, Scene scene) {
   }
   for (auto _ : state) {
     Rendering const found = renderer->render(scene, few.dots, RenderImages::yes, RenderTheory::no);
-    Rendering const exact = renderer->render(few, few.dots, RenderImages::yes, RenderTheory::no);
+    Rendering const exact = by_rays->render(few, few.dots, RenderImages::yes, RenderTheory::no);
     double square = 0;
     for (std::size_t i = 0; i < parts; ++i) {
       Vec2d const off = found.truth.displacement_px[i] - exact.truth.displacement_px[i];
@@ -74,7 +75,7 @@ void case_p(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
   report(state, scene);
 }
-BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->Arg(10000)->UseManualTime()->Iterations(7)->Unit(
+BENCHMARK(case_p)->ArgName("rays")->Arg(16)->Arg(32)->Arg(128)->UseManualTime()->Iterations(7)->Unit(
     benchmark::kMillisecond);
 
 /// The same to accuracy: the step that plan_step chooses of two cells and less, and rays for half a grey level of 12
@@ -103,34 +104,14 @@ void case_p_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_p_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-void case_p_truth(benchmark::State& state) {
+/// Case P ray by ray: the general renderer lays down the light of every ray.
+void case_p_by_rays(benchmark::State& state) {
   Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
-  report(state, scene, RenderImages::no);
+  report(state, scene, cuda::make_rays_renderer);
 }
-BENCHMARK(case_p_truth)
+BENCHMARK(case_p_by_rays)
     ->ArgName("rays")
     ->Arg(128)
-    ->Arg(10000)
-    ->UseManualTime()
-    ->Iterations(5)
-    ->Unit(benchmark::kMillisecond);
-
-/// Case P, the preview.
-void case_p_single(benchmark::State& state) {
-  Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)));
-  scene.setup.render.precision = Precision::single;
-  report(state, scene);
-}
-BENCHMARK(case_p_single)->ArgName("rays")->Arg(10000)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
-
-/// Case P, the preview on trilinear interpolation.
-void case_p_single_trilinear(benchmark::State& state) {
-  Scene scene = volume_scene(64, 85, static_cast<std::uint64_t>(state.range(0)), Interpolate::linear);
-  scene.setup.render.precision = Precision::single;
-  report(state, scene);
-}
-BENCHMARK(case_p_single_trilinear)
-    ->ArgName("rays")
     ->Arg(10000)
     ->UseManualTime()
     ->Iterations(5)
@@ -149,13 +130,13 @@ void case_t_accuracy(benchmark::State& state) {
 }
 BENCHMARK(case_t_accuracy)->ArgName("rays")->Arg(16)->Arg(32)->Iterations(1);
 
-/// 1e9 rays with no field: 100,000 sources of 10,000 rays.
-void no_field(benchmark::State& state) {
+/// 1e9 rays with no field, ray by ray: 100,000 sources of 10,000 rays.
+void no_field_by_rays(benchmark::State& state) {
   Scene scene = table1_scene(316, 10000, 1024);
   plan_step(scene);
-  report(state, scene);
+  report(state, scene, cuda::make_rays_renderer);
 }
-BENCHMARK(no_field)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
+BENCHMARK(no_field_by_rays)->UseManualTime()->Iterations(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace gladstone::bench

@@ -1,4 +1,4 @@
-#include "render/focused_dots/light_model.h"
+#include "render/focused_dots/owned_dot_model.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,6 +11,9 @@
 namespace gladstone {
 
 namespace {
+
+constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more tell no more of the table
+constexpr std::uint64_t most_chosen_rays = 256;                    ///< of a dot, by "auto"
 
 /// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
 /// other, or side by side on a device, then lies together in memory.
@@ -26,7 +29,7 @@ unsigned z_order(Vec2d p) {
 /// @param radius of the cone, in those lengths @param times as many rings and directions
 void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
   int const rings = std::min(40, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
-  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 3)));
+  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 4)));
   for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
   GaussLegendre const nodes(rings);
   for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
@@ -74,72 +77,57 @@ PlaceRule make_place_rule(bool extended, SourceShape shape) {
   return rule;
 }
 
-CubatureView view_of(SourceCubature const& rule) {
-  return {rule.points.data(), rule.weights.data(), static_cast<int>(rule.points.size())};
+/// Light of a white dot on the axis [fully lit px]; a point sends as much as a disc of one square pixel.
+double light_of_dot(double half_size_px, SourceShape shape) {
+  if (half_size_px == 0) return 1;
+  return (shape == SourceShape::disc ? pi : 4) * half_size_px * half_size_px;
 }
 
 }  // namespace
 
-OwnedLightModel::OwnedLightModel(FocusedDots const& dots, DotPattern const& sources, SpotView const* spot,
-                                 DeflectionTable const& table, MomentImagesBy by)
-    : pupil{{{{0, 0}}, {1.0}},
-            SourceCubature::disc(1, 3, 3),
-            SourceCubature::radon(),
-            SourceCubature::disc(3, 9, 9),
-            SourceCubature::disc(5, 15, 15)} {
+OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources, DeflectionTable const& table,
+                             bool with_images, MomentImagesBy by) {
   Scene const& scene = dots.scene();
-  CameraSetup const& camera = scene.setup.camera;
-  bool const has_stop = !scene.chief_rays_only();
-  double const stop_radius = scene.imaging.entrance_pupil / 2;
-  TargetImage& image = model.image;
-  image.axis_px = scene.to_pixel({});
-  image.px_per_metre = scene.imaging.magnification / camera.pixel_pitch;
-  image.source_half = sources.half_size;
-  image.has_stop = has_stop;
-  if (has_stop) {
-    image.stop = dots.aperture_stop();
-    image.stop_radius = stop_radius;
-  }
-  double const share = has_stop ? stop_radius / scene.pupil_radius() : 1.0;
-  model.expected_weight = static_cast<double>(scene.rays_per_dot) * share * share;
-  model.mean_pupil2 = 0.5 * stop_radius * stop_radius;
-  model.distance = scene.setup.z_a + scene.setup.z_d;
-  model.sent_radius = scene.pupil_radius();
-  model.scramblings = 1 << scrambling_bits(scene.rays_per_dot);
+  model.axis_px = scene.to_pixel({});
+  model.columns = scene.setup.camera.columns;
+  model.rows = scene.setup.camera.rows;
+  model.source_half = sources.half_size;
+  model.stop_radius = scene.imaging.entrance_pupil / 2;
+  model.bench = dots.bench();
+  model.spot.sigma = scene.spot_sigma_px();
+  double const half_px = model.half_size_px();
+  model.dot_light = light_of_dot(half_px, sources.shape);
   model.table = table;
-  if (table.way > 0) {
-    // a closed form's finest length is no cell but the whole of a wave's slope; and many rays leave time for a rule
-    // that leaves as little as they do
-    bool const fine = scene.medium.grid.nodes[0] <= 1 || scene.rays_per_dot >= 4096;
-    make_cone_rule(table.way * stop_radius / scene.medium.finest, fine ? 2 : 1, cone_points, cone_directions);
-    int const scattered = std::max(1024, 2 * static_cast<int>(cone_points.size()));
-    cone_scattered = scattered_points(scattered);
-    model.cone = {cone_points.data(),
-                  cone_directions.data(),
-                  static_cast<int>(cone_points.size()),
-                  static_cast<int>(cone_directions.size()),
-                  fine,
-                  cone_scattered.data(),
-                  scattered,
-                  Scene::stop_edge(scattered)};
-    model.places = make_place_rule(sources.half_size > 0, sources.shape);
-  }
-  if (!spot) return;
-  model.spot = *spot;
-  model.controlled = spot->model != SpotModel::none && scene.setup.lens.focus == Focus::target;
-  double const spot_px =
-      spot->model == SpotModel::airy ? SpotSize{scene.spot_scale_px()}.matched_sigma() : spot->gaussian.sigma;
-  source = SourceCubature::make(sources.shape, image.half_size_px(), spot_px);
-  model.source = view_of(source);
-  for (int rule = 0; rule < pupil_rules; ++rule) model.pupil[rule] = view_of(pupil[rule]);
-  if (table.way > 0 && model.by_moments()) {
-    MomentImages& images = model.moment_images;
-    images = MomentImages::plan(image.half_size_px(), spot->gaussian, model.most_box_side(),
-                                sources.half_size > 0 ? PlaceRule::terms : 1);
-    if (by == MomentImagesBy::host && images.exist()) {
-      moment_images = make_moment_images(images, source.points, source.weights, image.half_size_px(), spot->gaussian);
-      images.values = moment_images.data();
-    }
+  // a closed form's finest length is no cell but the whole of a wave's slope
+  model.cone.fine = scene.medium.grid.nodes[0] <= 1;
+  double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
+  make_cone_rule(radius, model.cone.fine ? 2 : 1, cone_points, cone_directions);
+  model.cone.points = cone_points.data();
+  model.cone.directions = cone_directions.data();
+  model.cone.count = static_cast<int>(cone_points.size());
+  model.cone.direction_count = static_cast<int>(cone_directions.size());
+  model.cone.scattered_count = std::max(1024, 2 * model.cone.count);
+  cone_scattered = scattered_points(model.cone.scattered_count);
+  model.cone.scattered = cone_scattered.data();
+  model.cone.smoothing = Scene::stop_edge(model.cone.scattered_count);
+  model.places = make_place_rule(sources.half_size > 0, sources.shape);
+
+  bool const given = scene.setup.render.rays_per_dot.has_value();
+  std::uint64_t const asked = std::min(scene.rays_per_dot, most_given_rays);
+  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;  // a warp's
+  model.choice.seed = scene.setup.render.seed;
+  model.choice.scrambling_bits = scrambling_bits(wanted);
+  model.shape = sources.shape;
+  model.fewest_rays = static_cast<int>(wanted);
+  model.most_rays = static_cast<int>(given ? wanted : std::max(wanted, most_chosen_rays));
+
+  source = SourceCubature::make(sources.shape, half_px, model.spot.sigma);
+  model.source = {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())};
+  MomentImages& images = model.moment_images;
+  images = MomentImages::plan(half_px, model.spot, model.most_box_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
+  if (with_images && table.exists() && by == MomentImagesBy::host && images.exist()) {
+    moment_images = make_moment_images(images, source.points, source.weights, half_px, model.spot);
+    images.values = moment_images.data();
   }
 }
 

@@ -1,0 +1,182 @@
+#include "render/focused_dots/table_error.h"
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "render/base/parallel.h"
+#include "render/base/random.h"
+#include "render/focused_dots/deflection_map.h"
+#include "render/focused_dots/dot_integrator.h"
+#include "render/focused_dots/owned_dot_model.h"
+#include "render/scene/ray_scatter.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t measured_dots = 8;
+constexpr int traced_rays = 2048, tabled_rays = 131072;  ///< a scrambling
+
+/// One dot of a scene by itself, in a window of pixels about it.
+class LoneDot {
+ public:
+  LoneDot(Scene const& scene, std::size_t dot, int side)
+      : radiance_(scene.dots.radiance_of(dot)), scene_(alone(scene, dot)) {
+    FocusedDots const dots = focused_dots(scene_).value();
+    Vec2d const centre = scene_.dots.centre[0];
+    double room = DeflectionPlan::usual_aim * scene_.imaging.entrance_pupil / 2;
+    do {
+      table_ = std::make_unique<DeflectionMap>(dots, DeflectionPlan(dots, scene_.dots, room));
+      owned_ = std::make_unique<OwnedDotModel>(dots, scene_.dots, table_->table(), true);
+      aim_ = aim_dot(owned_->model, centre);
+      room *= 2;
+    } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene_.setup.z_b());
+    // pixels are counted from the window's corner
+    Vec2d const at = owned_->model.to_pixel(centre);
+    owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
+    integrator_ = std::make_unique<DotIntegrator>(owned_->model);
+    std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, radiance_); }, scene_.medium.view);
+    if (left()) return;
+    LightImage frames[frame_count] = {{side, side}, {side, side}};
+    LightImage* const images[frame_count] = {&frames[0], &frames[1]};
+    integrator_->lay_down(images);
+    for (LightImage const& frame : frames) append(as_seen_.light, frame.to_light());
+    for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
+      LightImage beside(side, side);
+      Sampled& off = off_[scrambling];
+      off.light.resize(as_seen_.light.size());  // nothing in the reference frame
+      if (seen_.kind == DotKind::still) continue;
+      std::visit([&](auto const& medium) { off.displacement = trace(medium, scrambling, beside); }, scene_.medium.view);
+      Image<double> const light = beside.to_light();
+      for (std::size_t i = light.size(); i < off.light.size(); ++i) {
+        off.light[i] = light.data()[i - light.size()] - as_seen_.light[i];
+      }
+    }
+  }
+
+  bool left() const { return seen_.kind == DotKind::left; }
+
+  /// One of the four samples of Scatter: the dot as it is seen, and `share` times what some rays find beside it.
+  Sampled sample(int scrambling, double share) const {
+    Sampled sampled = as_seen_;
+    Sampled const& off = off_[scrambling];
+    sampled.displacement = share * off.displacement;
+    for (std::size_t i = 0; i < off.light.size(); ++i) sampled.light[i] += share * off.light[i];
+    return sampled;
+  }
+
+ private:
+  static Scene alone(Scene const& scene, std::size_t dot) {
+    Scene copy = scene;
+    copy.dots.centre = {scene.dots.centre[dot]};
+    copy.dots.radiance.clear();
+    return copy;
+  }
+
+  static void append(std::vector<double>& to, Image<double> const& light) {
+    to.insert(to.end(), light.begin(), light.end());
+  }
+
+  /// By what truth [px] and the light in the flow would be more by rays of another choice alone. Many rays are told by
+  /// the table where they land, and some of them, traced, by what they land beside that.
+  template <class Medium>
+  Vec2d trace(Medium const& medium, int scrambling, LightImage& image) {
+    DotModel const& model = owned_->model;
+    CorrectedCone const cone = integrator_->cone();
+    SpotView spot;
+    spot.model = SpotModel::gaussian;
+    spot.gaussian = model.spot;
+    LightPatch patch(spot);
+    BundleView<double> choice;
+    choice.seed = repeat_seed(scene_.setup.render.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
+    constexpr double wide = CorrectedCone::reach;
+    struct Sum {
+      Vec2d first{};
+      double count = 0;
+      Vec2d mean() const { return first / count; }
+    };
+    Sum tabled, also_tabled, traced;
+    for (int ray = 0; ray < tabled_rays; ++ray) {
+      throw_if_interrupted();
+      auto const [place, at] = DotRay::choose(choice, model.shape, seen_.centre, ray);
+      Vec2d const from_aim = (wide * model.stop_radius) * at, offset = model.offset(place);
+      Vec2d const on_dot = model.half_size_px() * place;
+      auto const enter = [&](Vec2d moved, Vec2d arrival, double sign, int rays, Sum& sum) {
+        if (!(length(arrival) <= model.stop_radius)) return;
+        sum.first += on_dot + moved;
+        sum.count += 1;
+        patch.deposit(seen_.truth.origin + on_dot + moved, sign * wide * wide / rays * seen_.light, &image, 1);
+      };
+      Vec2d const moved = cone.origin() + cone.displacement(offset, from_aim), arrival = cone.arrival(offset, from_aim);
+      enter(moved, arrival, 1, tabled_rays, tabled);
+      if (ray >= traced_rays) continue;
+      Vec2d const pupil = cone.pupil(from_aim);
+      Deflection found[1];
+      deflect(model.bench, medium, {seen_.centre + offset}, {pupil}, found);
+      enter(moved, arrival, -1, traced_rays, also_tabled);
+      enter(found[0].displacement, pupil + found[0].bend, 1, traced_rays, traced);
+    }
+    patch.flush(&image, 1);
+    Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
+    return tabled.mean() + traced.mean() - also_tabled.mean() - told;
+  }
+
+  double radiance_;
+  Scene scene_;
+  std::unique_ptr<DeflectionMap> table_;
+  std::unique_ptr<OwnedDotModel> owned_;
+  std::unique_ptr<DotIntegrator> integrator_;
+  DotAim aim_;
+  SeenDot seen_;
+  Sampled as_seen_, off_[plan_scramblings];
+};
+
+}  // namespace
+
+RaysPlan measure_table_error(FocusedDots const& dots) {
+  Scene const& scene = dots.scene();
+  RaysPlan plan;
+  plan.rays = scene.rays_per_dot;
+  std::vector<std::size_t> const in_view = dots_in_view(scene);
+  GreyLevels const levels(scene.setup.camera, in_view.size());
+  plan.bits = levels.bits;
+  std::vector<std::size_t> const sample = choose_sample(in_view, measured_dots);
+  double const px = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
+  int const side = 2 * GaussianSpot<double>{scene.spot_sigma_px()}.half_width() + 49 +
+                   static_cast<int>(std::min(2 * scene.dots.half_size * px, 100.0));
+  std::vector<std::unique_ptr<LoneDot>> lone(sample.size());
+  parallel_for(sample.size(), [&](std::size_t i) { lone[i] = std::make_unique<LoneDot>(scene, sample[i], side); });
+  std::erase_if(lone, [](auto const& dot) { return dot->left(); });
+  if (lone.empty()) return plan;
+  std::vector<std::size_t> places(lone.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  // Four samples that lie s (e + noise) to either side in turn have the variance 4 s^2 e^2 / 3 + s^2 noise^2, with this
+  // s e^2 and noise; four to one side that of the noise alone.
+  double const share = std::sqrt(0.75);
+  auto const scatter_of = [&](double odd) {
+    return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
+      return lone[dot]->sample(scrambling, scrambling % 2 == 0 ? share : odd);
+    });
+  };
+  Scatter off = scatter_of(-share);
+  Scatter const noise = scatter_of(share);
+  off.light_variance = std::max(0.0, off.light_variance - noise.light_variance);
+  plan.truth_error_px = std::sqrt(std::max(0.0, mean_variance(off.displacements) - mean_variance(noise.displacements)));
+  plan.image_error_levels = levels.error(off);
+  return plan;
+}
+
+RaysPlan plan_rays(FocusedDots const& dots) {
+  if (auto const given = given_rays(dots.scene().setup)) return *given;
+  Scene searched = dots.scene();  // at one number of rays after the other
+  FocusedDots const here = focused_dots(searched).value();
+  for (searched.rays_per_dot = 32;; searched.rays_per_dot *= 4) {
+    RaysPlan plan = measure_table_error(here);
+    plan.converged = plan.excess() <= 1;
+    plan.rays_wanted = static_cast<double>(plan.rays);
+    plan.seconds = rays_seconds(searched) * static_cast<double>(plan.rays);
+    if (plan.converged || searched.rays_per_dot >= 512) return plan;
+  }
+}
+
+}  // namespace gladstone

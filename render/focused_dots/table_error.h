@@ -1,0 +1,21 @@
+#pragma once
+
+#include "render/focused_dots/focused_dots.h"
+#include "render/scene/ray_plan.h"
+
+/// What a deflection table leaves of truth and images, and how many rays a dot take to correct it. The scene stays as
+/// it is.
+namespace gladstone {
+
+/// Errors of truth and images at the scene's present number of rays, measured: up to 12 dots spread over the target,
+/// each by a table of its own, which is the scene's where it lies, are set beside 65,536 rays of another choice each,
+/// of which a quarter is traced and tells what the table is off by for all. What those scatter by is taken off. Dots
+/// that the table does not cover do not count.
+RaysPlan measure_table_error(FocusedDots const& dots);
+
+/// The rays that every dot takes to correct the table: a given number, else 32, or 128 or 512 where truth is off by
+/// more than 1e-3 px rms otherwise or images by more than half a grey level; and what it is off by then. Dots that
+/// still scatter take up to 256 (DotModel). `converged` tells whether that is enough.
+RaysPlan plan_rays(FocusedDots const& dots);
+
+}  // namespace gladstone
