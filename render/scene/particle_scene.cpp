@@ -93,7 +93,7 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
 std::string warning_of_wide_particles(Scene const& scene) {
   std::vector<double> const& diameter = scene.particles.diameter;
   if (diameter.empty()) return {};
-  double const widest = *std::max_element(diameter.begin(), diameter.end()), px = widest / pixel_there(scene.setup);
+  double const widest = *std::max_element(diameter.begin(), diameter.end()), px = widest / scene.setup.pixel_size();
   double const point_px = std::max(scene.setup.spot_diameter_px(), 1.0);
   if (px <= 0.5 * point_px) return {};
   return fmt::format(
