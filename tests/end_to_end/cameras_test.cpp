@@ -100,10 +100,11 @@ TEST_F(Cameras, SeeDotsOfAFileInOneSize) {
     auto const at = setup.find(key);
     return at == std::string::npos ? 0.0 : std::stod(setup.substr(at + key.size()));
   };
-  // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um
-  double const z_b = 1000 / std::cos(std::atan(132.3 / 750));
-  EXPECT_NEAR(diameter_mm("left"), 0.03 * (z_b - 105) / 105, 1e-9);
-  EXPECT_NEAR(diameter_mm("right"), 0.03 * (z_b - 105) / 105, 1e-9);
+  // M = f / (Z_B - f), Z_B = 1015.4 mm, pixels of 10 um, which a target that leans away by 10 degrees stretches one way
+  double const cosine = std::cos(std::atan(132.3 / 750)), z_b = 1000 / cosine;
+  double const expected = 0.03 * (z_b - 105) / 105 / std::sqrt(cosine);
+  EXPECT_NEAR(diameter_mm("left"), expected, 1e-9);
+  EXPECT_NEAR(diameter_mm("right"), expected, 1e-9);
 }
 
 TEST_F(Cameras, EachCaseIsACaseLikeAnyOther) {
