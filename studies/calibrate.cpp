@@ -155,6 +155,12 @@ Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, st
     throw DataError(name,
                     fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", reason.what()));
   }
+  // planes in the wrong order fit a camera that looks at them from behind just as well
+  if (calibration.pinhole.camera.value.back() <= 0) {
+    throw DataError(name,
+                    "fits a camera with the dots behind it only; give the pictures in the order of "
+                    "calibration.planes_mm, which Z, towards the camera, counts");
+  }
   return calibration;
 }
 

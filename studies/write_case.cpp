@@ -55,7 +55,8 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
 /// What the deflection table leaves of truth and images, measured where the plan has not; with a warning where it is
 /// more than is asked.
 RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan, std::vector<std::string>& warnings) {
-  bool const measured = plan.truth_error_px > 0 || plan.image_error_levels > 0;
+  // with dots at side faces the plan's errors are also those of their rays
+  bool const measured = plan.rays_at_side_faces == 0 && (plan.truth_error_px > 0 || plan.image_error_levels > 0);
   RaysPlan const error = measured ? plan : measure_table_error(focused_dots(scene).value());
   if (error.excess() > 1) {
     warn(warnings,

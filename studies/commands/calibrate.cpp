@@ -29,13 +29,14 @@ std::vector<std::pair<std::string, std::string>> camera_folders(std::string cons
   return folders;
 }
 
-void write_results(std::string const& folder, Calibration const& calibration, bool figures) {
+/// @param shown of the files' folder in messages
+void write_results(std::string const& folder, Calibration const& calibration, bool figures, std::string const& shown) {
   write_calibration_file((fs::path(folder) / case_file::calibration).string(), calibration);
   if (!figures) return;
   std::string const figure = (fs::path(folder) / case_file::calibration_figure).string();
   try {
     draw_calibration(figure, calibration);
-    spdlog::info("drew {}", figure);
+    spdlog::info("drew {}", (fs::path(shown) / case_file::calibration_figure).string());
   } catch (GnuplotMissing const& missing) {
     spdlog::warn("{}", missing.what());
   }
@@ -70,7 +71,8 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
                                inputs);
       OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
       Calibration const calibration = calibrate_pictures(arguments->folder, arguments->pictures);
-      folder.fill([&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures); });
+      folder.fill(
+          [&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures, place); });
       folder.commit();
       print_result(options, json_text(calibration_json(calibration)), calibration_table(calibration));
       return ok;
@@ -82,7 +84,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     std::string text;
     for (std::size_t i = 0; i < folders.size(); ++i) {
       auto const& [name, folder] = folders[i];
-      write_results(folder, calibrations[i], !arguments->no_figures);
+      write_results(folder, calibrations[i], !arguments->no_figures, folder);
       cameras[name] = calibration_json(calibrations[i]);
       if (!name.empty()) text += fmt::format("{}camera {}\n", i > 0 ? "\n\n" : "", name);
       text += calibration_table(calibrations[i]);

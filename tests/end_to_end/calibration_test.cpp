@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/calibration/pinhole_fit.h"
@@ -282,6 +283,9 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   }
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 2), 2,
                  {"names 3 planes where 2 pictures are given"});
+  std::reverse(pictures.begin(), pictures.end());
+  expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 3), 2,
+                 {"roughly.toml: fits a camera with the dots behind it only", "in the order of calibration.planes_mm"});
 }
 
 }  // namespace
