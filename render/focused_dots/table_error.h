@@ -7,10 +7,10 @@
 /// it is.
 namespace gladstone {
 
-/// Errors of truth and images at the scene's present number of rays, measured: up to 12 dots spread over the target,
-/// each by a table of its own, which is the scene's where it lies, are set beside 65,536 rays of another choice each,
-/// of which a quarter is traced and tells what the table is off by for all. What those scatter by is taken off. Dots
-/// that the table does not cover do not count.
+/// Errors of truth and images at the scene's present number of rays, measured: eight dots spread over the target, each
+/// by a table of its own, which is the scene's where it lies, are set beside four times 131,072 rays of another choice
+/// each; the table tells where these go, and 2048 of each are traced and tell what it is off by for all. What those
+/// scatter by is taken off. Dots that the table does not cover do not count.
 RaysPlan measure_table_error(FocusedDots const& dots);
 
 /// The rays that every dot takes to correct the table: a given number, else 32, or 128 or 512 where truth is off by
