@@ -95,6 +95,15 @@ TEST_F(SmallDevice, RendersTheSameBitsInSmallerBatches) {
   }
 }
 
+// Rays leave nothing behind but sums, a DotCone a dot: a million of one dot do with what its images and the points of a
+// few cones take, where records of 64 bytes each would not.
+TEST_F(SmallDevice, TracesAMillionRaysOfADotInTheMemoryOfAFew) {
+  Scene scene = scene_of(uniform_gradient(20, -8), 1, mebibyte);
+  DeviceMemoryLimit const limit(64 * mebibyte);
+  EXPECT_EQ(render(scene).truth.size(), 1u);
+  EXPECT_LT(limit.most_held(), 64 * mebibyte);
+}
+
 // Light is gathered in squares of up to 56 x 56 px a warp where a block's shared memory has room for that; not on every
 // card. Sums are of whole numbers, so that a pixel's does not depend on what was gathered before it went to the image.
 TEST_F(SmallDevice, GathersTheSameLightWithLessSharedMemory) {

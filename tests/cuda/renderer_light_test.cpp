@@ -109,7 +109,7 @@ TEST_F(CudaLightTest, SourcesWithoutRadiance) {
   }
 }
 
-// Spots of 21 and 43 px, the latter the widest that moments are laid down for.
+// Spots of 23 and 43 px, the latter the widest that moments are laid down for.
 TEST_F(CudaLightTest, WideSpots) {
   struct Case {
     double f_number;

@@ -126,6 +126,19 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
   }
 }
 
+// A preview had 1e-3 px and a 12-bit level to itself; single precision is rendered in double, to the same bits, truth,
+// theory and light.
+TEST_F(CudaRendererTest, SinglePrecisionIsRenderedInDouble) {
+  for (FieldSetup const& field : {dns_plane("late"), volume_file()}) {
+    Scene scene = scene_of(field, 256), asked = scene;
+    asked.setup.render.precision = Precision::single;
+    Rendering const exact = on_device(scene), found = on_device(asked);
+    EXPECT_EQ(exact.truth.displacement_px, found.truth.displacement_px);
+    EXPECT_EQ(exact.truth.eq9_px, found.truth.eq9_px);
+    EXPECT_TRUE(same_bits(exact.light.flow, found.light.flow));
+  }
+}
+
 TEST_F(CudaRendererTest, NothingToTraceIsNoError) {
   Scene scene = scene_of({}, 16);
   scene.dots.centre.clear();
