@@ -25,14 +25,13 @@ FocusedDots enter(Scene const& scene) {
                                        std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
 }
 
-/// Some sources of a pattern: their random numbers stay theirs.
+/// Some sources of a pattern.
 DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& numbers) {
   DotPattern some;
   some.half_size = all.half_size;
   some.shape = all.shape;
   for (std::size_t const i : numbers) {
     some.centre.push_back(all.centre[i]);
-    some.number.push_back(all.number_of(i));
     if (!all.radiance.empty()) some.radiance.push_back(all.radiance[i]);
   }
   return some;

@@ -36,15 +36,13 @@ class LaunchOnDevice {
         source_px_(pattern_.reach() / std::sqrt(host.point_area)),
         elements_(host.camera.elements.data(), host.camera.elements.size(), "the camera"),
         centres_(pattern.centre.data(), pattern.centre.size(), "the sources"),
-        radiances_(pattern.radiance.data(), pattern.radiance.size(), "the sources"),
-        numbers_(pattern.number.data(), pattern.number.size(), "the sources") {
+        radiances_(pattern.radiance.data(), pattern.radiance.size(), "the sources") {
     launch_.camera = host.camera.view();
     launch_.camera.elements = elements_.data();
     launch_.tracing = host.tracing;
     launch_.sources = pattern_;
     launch_.sources.dots.centre = centres_.data();
     launch_.sources.dots.radiance = radiances_.data();
-    if (!pattern.number.empty()) launch_.sources.dots.number = numbers_.data();
     launch_.choice = host.choice;
     launch_.rays = host.rays;
     if (!images) return;
@@ -115,7 +113,6 @@ class LaunchOnDevice {
   DeviceArray<CameraElement<double>> elements_;
   DeviceArray<Vec2d> centres_;
   DeviceArray<double> radiances_;
-  DeviceArray<std::uint64_t> numbers_;
   DeviceArray<double> airy_, share_;
   SourcesLaunch launch_;
 };

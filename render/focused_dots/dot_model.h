@@ -156,14 +156,6 @@ struct CheckedRay {
   RayStatus status[frame_count];  ///< where it ends in either frame
 };
 
-/// What a dot's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene.
-GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
-  using std::floor;
-  auto const nanometres = [](double at) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(floor(1e9 * at + 0.5)));
-  };
-  return random_bits(nanometres(centre.x), RandomStream::pupil, nanometres(centre.y), 0);
-}
 /// Where ray k of a dot starts, from its centre in units of its half size, and its point of a stop of radius one.
 struct DotRay {
   Vec2d place, at;

@@ -15,13 +15,10 @@ struct DotPattern {
   std::vector<double> radiance;  ///< empty: all one
   double half_size = 0;          ///< radius of the dots, or half the side of a picture's pixels [m]
   SourceShape shape = SourceShape::disc;
-  std::vector<std::uint64_t> number;  ///< that random numbers are keyed by; empty: their places in the list
 
-  std::uint64_t number_of(std::size_t dot) const { return number.empty() ? dot : number[dot]; }
   double radiance_of(std::size_t dot) const { return radiance.empty() ? 1.0 : radiance[dot]; }
   SourcesView<double> view(double plane_z) const {
-    return {centre.data(), radiance.empty() ? nullptr : radiance.data(), centre.size(), plane_z, half_size,
-            shape,         number.empty() ? nullptr : number.data()};
+    return {centre.data(), radiance.empty() ? nullptr : radiance.data(), centre.size(), plane_z, half_size, shape};
   }
 };
 

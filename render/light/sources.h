@@ -26,8 +26,16 @@ struct SourcesView {
   T plane_z{};    ///< [m]
   T half_size{};  ///< radius of a disc, half the side of a square [m]
   SourceShape shape = SourceShape::disc;
-  std::uint64_t const* number = nullptr;  ///< that random numbers are keyed by; null: its place in the list
 };
+
+/// What a source's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene.
+GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
+  using std::floor;
+  auto const nanometres = [](double at) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(floor(1e9 * at + 0.5)));
+  };
+  return random_bits(nanometres(centre.x), RandomStream::pupil, nanometres(centre.y), 0);
+}
 
 enum class PupilSampling : int { sobol, random };
 

@@ -7,7 +7,7 @@
 namespace gladstone {
 
 /// Flat Lambertian sources of a target, as the general renderer takes sources: points in space with an intensity by
-/// direction. Every kind has place(), point(), intensity(), number(), middle(), reach(), area(); another is another
+/// direction. Every kind has place(), point(), intensity(), key(), middle(), reach(), area(); another is another
 /// such struct.
 template <class T>
 struct LambertSources {
@@ -29,7 +29,7 @@ struct LambertSources {
     return (dots.radiance ? dots.radiance[i] : T(1)) * (direction.z > T(0) ? direction.z : T(0));
   }
   /// That its random numbers are keyed by.
-  GLADSTONE_HD std::uint64_t number(std::uint64_t i) const { return dots.number ? dots.number[i] : i; }
+  GLADSTONE_HD std::uint64_t key(std::uint64_t i) const { return key_of({dots.centre[i].x, dots.centre[i].y}); }
   GLADSTONE_HD Vec3<T> middle(std::uint64_t i) const { return {dots.centre[i].x, dots.centre[i].y, dots.plane_z}; }
   /// Furthest that a point lies from the middle [m].
   GLADSTONE_HD T reach() const {
@@ -83,7 +83,7 @@ GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& b
   int const bits = bundle.choice.scrambling_bits;
   std::uint64_t const of_scrambling = j >> bits, scrambling = j & ((std::uint64_t{1} << bits) - 1);
   T u[sobol_dimensions];
-  sample_coordinates(bundle.choice, sources.number(i), ((of_scrambling >> 1) << bits) | scrambling, u);
+  sample_coordinates(bundle.choice, sources.key(i), ((of_scrambling >> 1) << bits) | scrambling, u);
   Vec2<T> const place = sources.place(u[2], u[3]);
   return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_of_circle(sqrt(u[0]), u[1]));
 }

@@ -106,11 +106,17 @@ TEST(RaysRenderer, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(one.statuses, three.statuses);
 }
 
-// A dot's truth depends on nothing but its own setup: not on how many others there are.
+// A dot's truth depends on nothing but its own setup: neither on how many others there are nor on its place among them.
 TEST(RaysRenderer, KnowsADotByItself) {
-  Scene all = late_scene(256), first = all;
-  first.dots.centre.resize(1);
-  EXPECT_EQ(by_rays(all).truth.displacement_px[0], by_rays(first).truth.displacement_px[0]);
+  Scene all = late_scene(256), turned = all;
+  std::reverse(turned.dots.centre.begin(), turned.dots.centre.end());
+  GroundTruth const truth = by_rays(all).truth, of_turned = by_rays(turned).truth;
+  for (std::size_t dot = 0; dot < truth.size(); ++dot) {
+    Scene alone = all;
+    alone.dots.centre = {all.dots.centre[dot]};
+    EXPECT_EQ(by_rays(alone).truth.displacement_px[0], truth.displacement_px[dot]) << dot;
+    EXPECT_EQ(of_turned.displacement_px[truth.size() - 1 - dot], truth.displacement_px[dot]) << dot;
+  }
 }
 
 // White paper under a thin lens: cos^4 of the angle to the axis.
