@@ -28,11 +28,15 @@ struct SourcesView {
   SourceShape shape = SourceShape::disc;
 };
 
-/// What a source's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene.
+/// What a source's random numbers are keyed by: its place, to a nanometre, whatever else is in the scene. Beyond 9e9 m,
+/// where whole numbers of nanometres end, all places of a side have one key.
 GLADSTONE_HD inline std::uint64_t key_of(Vec2d centre) {
   using std::floor;
   auto const nanometres = [](double at) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(floor(1e9 * at + 0.5)));
+    constexpr double farthest = 9e18;  // [nm], within the range of a 64-bit integer
+    double const whole = floor(1e9 * at + 0.5);
+    double const within = whole < -farthest ? -farthest : (whole < farthest ? whole : farthest);
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(within));
   };
   return random_bits(nanometres(centre.x), RandomStream::pupil, nanometres(centre.y), 0);
 }

@@ -265,5 +265,16 @@ TEST(Emission, SquareSourcesAreFilledEvenly) {
   }
 }
 
+// A place that no whole number of nanometres can tell has a key all the same, one for each side; all others have keys
+// of their own, to the nanometre.
+TEST(Emission, EveryFinitePlaceHasAKey) {
+  EXPECT_EQ(key_of({1e300, 0}), key_of({1e10, 0}));
+  EXPECT_EQ(key_of({0, -1e300}), key_of({0, -1e10}));
+  EXPECT_NE(key_of({1e300, 0}), key_of({-1e300, 0}));
+  EXPECT_NE(key_of({1e300, 0}), key_of({0, 1e300}));
+  EXPECT_NE(key_of({1e-9, 0}), key_of({2e-9, 0}));
+  EXPECT_NE(key_of({1e9, 0}), key_of({1e9 + 1e-6, 0}));
+}
+
 }  // namespace
 }  // namespace gladstone
