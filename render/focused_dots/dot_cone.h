@@ -84,7 +84,7 @@ struct CheckErrors {
   Vec2d scatter2;  ///< square of the standard error of what the rays correct the table by
   Vec2d miss2;     ///< variance from ray to ray of what the table is off by
 };
-/// From the scatter between independent scramblings, as truth_errors(). @param all their sum
+/// From the scatter between independent scramblings, as displacement_error2(). @param all their sum
 GLADSTONE_HD inline CheckErrors check_errors(TableCheck const* of, int scramblings, TableCheck const& all) {
   Vec2d const miss = all.miss / all.rays;
   Vec2d scatter2{};

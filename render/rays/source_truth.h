@@ -18,7 +18,7 @@ GLADSTONE_HD inline DotTruth source_truth(RaySums const* of_scramblings, int scr
   for (int i = 0; i < scramblings; ++i) all += of_scramblings[i];
   for (int frame = 0; frame < frame_count; ++frame) truth.hits[frame] = all.hits[frame];
   if (scramblings > 1) {
-    Vec2d const squares = truth_errors(of_scramblings, scramblings, all).rays2;
+    Vec2d const squares = displacement_error2(of_scramblings, scramblings, all);
     truth.error = {sqrt(squares.x), sqrt(squares.y)};
   }
   return truth;

@@ -16,11 +16,6 @@ struct RaySums {
   }
 };
 
-/// Squares of standard errors, by component [px^2].
-struct TruthErrors {
-  Vec2d rays2;  ///< of the difference of the rays' centroids
-};
-
 /// Student's quantile for `scramblings` - 1 degrees of freedom that 68.27 % lie within: widens an error that so few
 /// numbers tell.
 GLADSTONE_HD inline double student_factor(int scramblings) {
@@ -33,21 +28,22 @@ GLADSTONE_HD inline double error2_factor(int scramblings) {
 }
 GLADSTONE_HD inline Vec2d squares_of(Vec2d v) { return {v.x * v.x, v.y * v.y}; }
 
-/// Errors of ratios of sums over groups, each linearised about the whole (Cochran, Sampling Techniques, 1977, section
+/// Square of the standard error of the difference of the rays' centroids, by component [px^2]. They are ratios of sums
+/// over groups, each linearised about the whole (Cochran, Sampling Techniques, 1977, section
 /// 6.3): a group moves a ratio by its own excess over the whole's. All of them together move it by nothing, so that the
 /// variance of the ratio is n / (n - 1) times the sum of the n groups' squares. NaN for a single group.
 /// @param of each scrambling @param all their sum
 template <class Sums>
-GLADSTONE_HD TruthErrors truth_errors(Sums const* of, int scramblings, Sums const& all) {
+GLADSTONE_HD Vec2d displacement_error2(Sums const* of, int scramblings, Sums const& all) {
   CentroidSum<double> const &reference = all.hits[0], &flow = all.hits[1];
   Vec2d const in_reference = reference.mean(), in_flow = flow.mean();
-  Vec2d rays2{};
+  Vec2d squares{};
   for (int i = 0; i < scramblings; ++i) {
     Sums const& here = of[i];
-    rays2 += squares_of((here.hits[1].first - here.hits[1].weight * in_flow) / flow.weight -
-                        (here.hits[0].first - here.hits[0].weight * in_reference) / reference.weight);
+    squares += squares_of((here.hits[1].first - here.hits[1].weight * in_flow) / flow.weight -
+                          (here.hits[0].first - here.hits[0].weight * in_reference) / reference.weight);
   }
-  return {error2_factor(scramblings) * rays2};
+  return error2_factor(scramblings) * squares;
 }
 
 }  // namespace gladstone

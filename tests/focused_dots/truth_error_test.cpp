@@ -168,7 +168,7 @@ TEST(TruthError, IsThatOfTheMeanOfIndependentGroups) {
     all_checked += check[i];
   }
   double const expected = student_factor(4) * std::sqrt(14.0 / 12);
-  Vec2d const rays2 = truth_errors(of, 4, all).rays2;
+  Vec2d const rays2 = displacement_error2(of, 4, all);
   EXPECT_NEAR(std::sqrt(rays2.x), expected, 1e-12);
   EXPECT_EQ(rays2.y, 0);
   CheckErrors const errors = check_errors(check, 4, all_checked);
