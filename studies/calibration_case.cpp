@@ -13,6 +13,7 @@
 #include "render/base/random.h"
 #include "render/base/units.h"
 #include "render/scene/calibration_planes.h"
+#include "studies/case_warnings.h"
 #include "studies/json_text.h"
 #include "studies/scene_renderer.h"
 

@@ -1,7 +1,6 @@
 #include "studies/case.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -12,6 +11,7 @@
 #include "render/scene/field_coverage.h"
 #include "render/scene/particle_scene.h"
 #include "studies/cameras.h"
+#include "studies/case_warnings.h"
 #include "studies/light_exposure.h"
 #include "studies/scene_renderer.h"
 
@@ -88,15 +88,6 @@ void cross_check_method(CaseSetup& loaded) {
   loaded.document.root().table("render").problem("method",
                                                  "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
 }
-
-}  // namespace
-
-void warn(std::vector<std::string>& warnings, std::string text) {
-  spdlog::warn("{}", text);
-  warnings.push_back(std::move(text));
-}
-
-namespace {
 
 /// Warns where the camera sees nothing of what there is.
 void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
@@ -197,15 +188,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
-  if (!by_table && !prepared.rays.converged) {
-    warn(prepared.warnings,
-         fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
-                     "{:.2g} px, where {} and {} are asked (that would take some {:.2g} rays a dot and {:.0f} s of one "
-                     "processor; \"auto\" takes {:.0f} s or 1024 rays); set render.rays_per_dot higher if that matters",
-                     prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
-                     prepared.rays.truth_error_px, image_tolerance_levels, truth_tolerance_px,
-                     prepared.rays.rays_wanted, rays_seconds(scene) * prepared.rays.rays_wanted, rays_budget_s));
-  }
+  if (!by_table) warn_of_few_rays(prepared.warnings, scene, prepared.rays);
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);

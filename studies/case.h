@@ -26,9 +26,6 @@ struct CaseSetup {
   std::map<std::string, std::string> input_hashes = {};
 };
 
-/// Logs a warning, and keeps it for summary.json.
-void warn(std::vector<std::string>& warnings, std::string text);
-
 /// Reads and checks a setup. @throws SetupError with all problems together
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
 /// @param field whether the medium is still to be built, for the check of this machine's memory

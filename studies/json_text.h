@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -10,6 +11,11 @@ namespace gladstone {
 template <class Json>
 std::string json_text(Json const& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A number; null where it is not known or has no end.
+inline nlohmann::json known_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #include "studies/scene_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <numeric>
@@ -163,11 +164,11 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
   RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
   plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
-  plan.truth_error_px = std::max(plan.truth_error_px, at_side_faces.truth_error_px);
-  plan.image_error_levels = std::max(plan.image_error_levels, at_side_faces.image_error_levels);
+  plan.truth_error_px = std::fmax(plan.truth_error_px, at_side_faces.truth_error_px);
+  plan.image_error_levels = std::fmax(plan.image_error_levels, at_side_faces.image_error_levels);
   plan.extrapolated = at_side_faces.extrapolated;
   plan.converged = plan.converged && at_side_faces.converged;
-  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);
+  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);  // unknown stays unknown
   plan.seconds += at_side_faces.seconds;
 }
 

@@ -1,5 +1,6 @@
 #include "studies/truth_file.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -98,8 +99,9 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
       "appear displaced against grad n");
   file.attribute("/", "method", to_string(method));
   if (table) {
-    file.attribute("/dots", "table_truth_error_px", table->truth_error_px);
-    file.attribute("/dots", "table_image_error_levels", table->image_error_levels);
+    file.attribute("/dots", "table_truth_error_px", std::max(table->truth_error_px, table->truth_resolution_px));
+    file.attribute("/dots", "table_image_error_levels",
+                   std::max(table->image_error_levels, table->image_resolution_levels));
   }
   file.attribute("/dots", "step_mm", scene.step * 1e3);
   file.attribute("/dots", "magnification", scene.imaging.magnification);

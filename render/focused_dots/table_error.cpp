@@ -160,8 +160,12 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   };
   Scatter off = scatter_of(-share);
   Scatter const noise = scatter_of(share);
-  off.light_variance = std::max(0.0, off.light_variance - noise.light_variance);
-  plan.truth_error_px = std::sqrt(std::max(0.0, mean_variance(off.displacements) - mean_variance(noise.displacements)));
+  auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN stays
+  double const chance = mean_variance(noise.displacements);
+  plan.truth_resolution_px = std::sqrt(chance);
+  plan.image_resolution_levels = levels.error(noise);
+  off.light_variance = less(off.light_variance, noise.light_variance);
+  plan.truth_error_px = std::sqrt(less(mean_variance(off.displacements), chance));
   plan.image_error_levels = levels.error(off);
   return plan;
 }
@@ -173,7 +177,7 @@ RaysPlan plan_rays(FocusedDots const& dots) {
   for (searched.rays_per_dot = 32;; searched.rays_per_dot *= 4) {
     RaysPlan plan = measure_table_error(here);
     plan.converged = plan.excess() <= 1;
-    plan.rays_wanted = static_cast<double>(plan.rays);
+    if (plan.converged) plan.rays_wanted = static_cast<double>(plan.rays);  // more do not mend what a table leaves
     plan.seconds = rays_seconds(searched) * static_cast<double>(plan.rays);
     if (plan.converged || searched.rays_per_dot >= 512) return plan;
   }

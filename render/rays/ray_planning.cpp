@@ -89,7 +89,7 @@ class RayErrors {
  private:
   Sampled sample(std::size_t place, int scrambling) const {
     Vec2d const at = at_[place];
-    if (!std::isfinite(at.x)) return {{}, std::vector<double>(static_cast<std::size_t>(frame_count * side_ * side_))};
+    if (!std::isfinite(at.x)) return {at, std::vector<double>(static_cast<std::size_t>(frame_count * side_ * side_))};
     int const left = static_cast<int>(std::floor(at.x)) - side_ / 2,
               top = static_cast<int>(std::floor(at.y)) - side_ / 2;
     auto const change = [&](RaysLaunch& launch) {
@@ -103,8 +103,7 @@ class RayErrors {
     DotTruth const truth =
         scene_.setup.piv ? particle(change, sample_[place], images) : dot(change, sample_[place], images);
     Sampled sampled;
-    Vec2d const displacement = truth.hits[1].mean() - truth.hits[0].mean();
-    if (std::isfinite(displacement.x)) sampled.displacement = displacement;
+    sampled.displacement = truth.hits[1].mean() - truth.hits[0].mean();
     for (LightImage const& frame : frames) {
       Image<double> const light = frame.to_light();
       sampled.light.insert(sampled.light.end(), light.begin(), light.end());

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/base/parallel.h"
 #include "render/scene/ray_hit.h"
 
 namespace gladstone {
 namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// What dots look like on average in one frame: sums over a dot's pixels.
 struct MeanDot {
@@ -18,17 +21,27 @@ struct MeanDot {
 }  // namespace
 
 MeanDisplacement MeanDisplacement::of(Vec2d const (&found)[plan_scramblings]) {
+  auto const shown = [](Vec2d one) { return std::isfinite(one.x); };
   MeanDisplacement result;
-  for (Vec2d const one : found) result.mean += one / static_cast<double>(plan_scramblings);
-  for (Vec2d const one : found) result.variance += 0.5 * dot(one - result.mean, one - result.mean);
+  if (std::none_of(std::begin(found), std::end(found), shown)) return {{nan, nan}, nan};
+  auto const moved = [&shown](Vec2d one) { return shown(one) ? one : Vec2d{}; };
+  for (Vec2d const one : found) result.mean += moved(one) / static_cast<double>(plan_scramblings);
+  for (Vec2d const one : found) {
+    Vec2d const off = moved(one) - result.mean;
+    result.variance += 0.5 * dot(off, off);
+  }
   result.variance /= plan_scramblings - 1;
   return result;
 }
 
 double mean_variance(std::vector<MeanDisplacement> const& displacements) {
-  double sum = 0;
-  for (MeanDisplacement const& one : displacements) sum += one.variance;
-  return sum / static_cast<double>(displacements.size());
+  double sum = 0, count = 0;
+  for (MeanDisplacement const& one : displacements) {
+    if (std::isnan(one.variance)) continue;
+    sum += one.variance;
+    ++count;
+  }
+  return sum / count;
 }
 
 int plan_bits(CameraSetup const& camera) { return std::min(camera.bit_depth, 12); }
@@ -44,7 +57,7 @@ GreyLevels::GreyLevels(CameraSetup const& camera, std::size_t dots_in_view)
 
 double GreyLevels::error(Scatter const& scatter) const {
   double const light_per_level = level > 0 ? level : scatter.brightest / at_peak;
-  return light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : 0;
+  return light_per_level > 0 ? std::sqrt(scatter.light_variance) / light_per_level : nan;
 }
 
 Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& levels,
@@ -96,6 +109,7 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     double const overlapping = levels.density * sums.light + 3 * std::sqrt(levels.density * sums.square);
     scatter.brightest = std::max(scatter.brightest, overlapping);
   }
+  scatter.light_variance = nan;
   double const threshold = levels.level > 0 ? levels.level : scatter.brightest / levels.at_peak;
   for (int frame = 0; frame < frame_count; ++frame) {
     MeanDot& sums = frames[frame];
@@ -107,7 +121,7 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     // the share of a picture that n dots a pixel light with k pixels each is 1 - exp(-n k); they add their variances
     double const density = levels.density;
     double const pixels = density > 0 ? -std::expm1(-density * sums.lit) / density : sums.lit;
-    if (pixels > 0) scatter.light_variance = std::max(scatter.light_variance, sums.variance / pixels);
+    if (pixels > 0) scatter.light_variance = std::fmax(scatter.light_variance, sums.variance / pixels);
   }
   return scatter;
 }

@@ -12,7 +12,8 @@ namespace gladstone {
 inline constexpr int plan_scramblings = 4;
 inline constexpr std::size_t plan_sample_dots = 96;
 
-/// What one scrambling of one dot gives: its displacement, and its light in both frames over a window.
+/// What one scrambling of one dot gives: its displacement, NaN where no ray of it gets through, and its light in both
+/// frames over a window.
 struct Sampled {
   Vec2d displacement{};
   std::vector<double> light;
@@ -26,17 +27,19 @@ struct Window {
 /// Displacement of a dot over independent scramblings of its rays.
 struct MeanDisplacement {
   Vec2d mean{};
-  double variance = 0;  ///< between scramblings, averaged over both components [px^2]
+  double variance = 0;  ///< between scramblings, averaged over both components [px^2]; NaN: none shows the dot
 
+  /// @param found NaN where a scrambling does not show the dot, which counts as not moved where others do
   static MeanDisplacement of(Vec2d const (&found)[plan_scramblings]);
   double variance_of_mean() const { return variance / plan_scramblings; }
 };
+/// Over the dots that are shown; NaN where none is.
 double mean_variance(std::vector<MeanDisplacement> const& displacements);
 
 /// Scatter between scramblings at the scene's present number of rays.
 struct Scatter {
   std::vector<MeanDisplacement> displacements;  ///< of the dots
-  double light_variance = 0;                    ///< mean over lit pixels of the worse frame
+  double light_variance = 0;                    ///< mean over lit pixels of the worse frame; NaN: none is lit
   double brightest = 0;                         ///< pixel of both frames, where dots overlap too
 };
 
@@ -52,7 +55,7 @@ struct GreyLevels {
   int bits = 12;
 
   GreyLevels(CameraSetup const& camera, std::size_t dots_in_view);
-  /// Root mean square over lit pixels of what light scatters by [levels].
+  /// Root mean square over lit pixels of what light scatters by [levels]; NaN where none is lit.
   double error(Scatter const& scatter) const;
 };
 

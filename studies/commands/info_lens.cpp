@@ -18,13 +18,9 @@ namespace {
 
 constexpr int spot_rays = 2000;
 
-nlohmann::json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
-
 nlohmann::json pupil_json(Pupil const& pupil) {
-  return {{"position", finite_or_null(pupil.position / unit::millimetre)},
-          {"diameter", finite_or_null(pupil.diameter / unit::millimetre)}};
+  return {{"position", known_or_null(pupil.position / unit::millimetre)},
+          {"diameter", known_or_null(pupil.diameter / unit::millimetre)}};
 }
 
 /// "on_axis", "10_deg"
@@ -47,9 +43,9 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
       row["best_spot_rms_um"] = point.best_spot_rms * 1e6;
       row["best_focus_mm"] = point.best_focus * 1e3;
       row["chief_ray_mm"] = {point.chief.x * 1e3, point.chief.y * 1e3};
-      row["distortion"] = finite_or_null(point.distortion);
-      row["tangential_focus_mm"] = finite_or_null(point.tangential_focus * 1e3);
-      row["sagittal_focus_mm"] = finite_or_null(point.sagittal_focus * 1e3);
+      row["distortion"] = known_or_null(point.distortion);
+      row["tangential_focus_mm"] = known_or_null(point.tangential_focus * 1e3);
+      row["sagittal_focus_mm"] = known_or_null(point.sagittal_focus * 1e3);
       row["vignetting"] = point.vignetting;
     }
     row["lost"] = nlohmann::json::array();
@@ -62,15 +58,15 @@ nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAn
           {"source", lens.prescription.source},
           {"wavelength_nm", lens.wavelength / unit::nanometre},
           {"surfaces", lens.surfaces.size()},
-          {"effective_focal_length_mm", finite_or_null(paraxial.effective_focal_length / unit::millimetre)},
-          {"back_focal_length_mm", finite_or_null(paraxial.back_focal_length / unit::millimetre)},
-          {"front_focal_length_mm", finite_or_null(paraxial.front_focal_length / unit::millimetre)},
-          {"front_principal_plane_mm", finite_or_null(paraxial.front_principal_plane / unit::millimetre)},
-          {"rear_principal_plane_mm", finite_or_null(paraxial.rear_principal_plane / unit::millimetre)},
-          {"f_number", finite_or_null(paraxial.f_number)},
+          {"effective_focal_length_mm", known_or_null(paraxial.effective_focal_length / unit::millimetre)},
+          {"back_focal_length_mm", known_or_null(paraxial.back_focal_length / unit::millimetre)},
+          {"front_focal_length_mm", known_or_null(paraxial.front_focal_length / unit::millimetre)},
+          {"front_principal_plane_mm", known_or_null(paraxial.front_principal_plane / unit::millimetre)},
+          {"rear_principal_plane_mm", known_or_null(paraxial.rear_principal_plane / unit::millimetre)},
+          {"f_number", known_or_null(paraxial.f_number)},
           {"entrance_pupil_mm", pupil_json(paraxial.entrance)},
           {"exit_pupil_mm", pupil_json(paraxial.exit)},
-          {"image_plane_mm", finite_or_null(field.image_plane / unit::millimetre)},
+          {"image_plane_mm", known_or_null(field.image_plane / unit::millimetre)},
           {"spot_rms_um", spots},
           {"field", points},
           {"warnings", lens.warnings}};

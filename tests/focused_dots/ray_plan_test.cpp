@@ -5,6 +5,7 @@
 
 #include "render/base/random.h"
 #include "render/focused_dots/table_error.h"
+#include "render/scene/ray_scatter.h"
 #include "tests/focused_dots/picture_error.h"
 #include "tests/scene/small_scenes.h"
 
@@ -86,7 +87,12 @@ TEST(PlanRays, KeepsAGivenNumber) {
   auto setup = table1_setup(64);
   Scene scene = scene_with_dots(setup, {{30, 30}}, 77);
   scene.rays_per_dot = 1;
-  EXPECT_EQ(plan_rays(scene).rays, 77u);
+  RaysPlan const plan = plan_rays(scene);
+  EXPECT_EQ(plan.rays, 77u);
+  EXPECT_TRUE(std::isnan(plan.truth_error_px)) << "nothing was measured";
+  EXPECT_TRUE(std::isnan(plan.image_error_levels));
+  EXPECT_TRUE(std::isnan(plan.rays_wanted));
+  EXPECT_EQ(plan.excess(), 0);
   EXPECT_EQ(scene.rays_per_dot, 77u);
 }
 
@@ -113,6 +119,7 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
     EXPECT_FALSE(plan.converged);
     EXPECT_EQ(plan.rays, 512u);
     EXPECT_GT(plan.image_error_levels, 0.5);
+    EXPECT_TRUE(std::isnan(plan.rays_wanted)) << "no number would do";
   }
 }
 
@@ -236,6 +243,32 @@ TEST(MeasureTableError, TellsHowFarImagesAreOff) {
     EXPECT_LT(told.image_error_levels, 2 * found) << instant << " found " << found;
     EXPECT_GT(std::hypot(told.image_error_levels, 0.4), found / 2) << instant << " found " << found;
   }
+}
+
+// A uniform gradient bends all rays of a dot alike but for second order: what the table is off by is below what the
+// rays of the measurement scatter by, and is not told from nothing.
+TEST(MeasureTableError, TellsWhatItCanResolve) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(20, 10);
+  Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
+  RaysPlan const told = measure_table_error(focused_dots(scene).value());
+  EXPECT_GT(told.truth_resolution_px, 0);
+  EXPECT_LT(told.truth_resolution_px, 1e-4);
+  EXPECT_GT(told.image_resolution_levels, 0);
+  EXPECT_LT(told.truth_error_px, 2 * told.truth_resolution_px);
+}
+
+// A dot that no scrambling shows tells nothing; one that some of them show moves from there to nowhere, which scatters.
+TEST(RayScatter, ADotThatIsNotSeenTellsNothing) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  MeanDisplacement const unseen = MeanDisplacement::of({{nan, nan}, {nan, nan}, {nan, nan}, {nan, nan}});
+  MeanDisplacement const twice = MeanDisplacement::of({{1, 0}, {nan, nan}, {1, 0}, {nan, nan}});
+  MeanDisplacement const still = MeanDisplacement::of({{1, 0}, {1, 0}, {1, 0}, {1, 0}});
+  EXPECT_TRUE(std::isnan(unseen.variance));
+  EXPECT_DOUBLE_EQ(twice.variance, 1.0 / 6);  // (4 x 0.25)/3 along x, 0 along y
+  EXPECT_EQ(still.variance, 0);
+  EXPECT_DOUBLE_EQ(mean_variance({unseen, twice, still}), 1.0 / 12);
+  EXPECT_TRUE(std::isnan(mean_variance({unseen})));
 }
 
 }  // namespace

@@ -1,0 +1,112 @@
+#include "studies/case_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/base/units.h"
+#include "studies/json_text.h"
+#include "studies/particle_case.h"
+#include "studies/scene_renderer.h"
+
+namespace gladstone {
+namespace {
+
+/// Least, median and most of some numbers.
+nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
+  if (numbers.empty()) return nullptr;
+  std::sort(numbers.begin(), numbers.end());
+  return {{"least", numbers.front()}, {"median", numbers[numbers.size() / 2]}, {"most", numbers.back()}};
+}
+
+nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
+  nlohmann::json json;
+  for (std::size_t status = 0; status < ray_status_count; ++status) {
+    json[to_string(static_cast<RayStatus>(status))] = counts[frame][status];
+  }
+  return json;
+}
+
+/// An error that was told from none; null: it was not, or was not measured.
+nlohmann::json resolved(double error, double resolution) {
+  return error < resolution ? nlohmann::json(nullptr) : known_or_null(error);
+}
+
+nlohmann::json table_error_json(RaysPlan const& error) {
+  return {{"truth_px", resolved(error.truth_error_px, error.truth_resolution_px)},
+          {"image_levels", resolved(error.image_error_levels, error.image_resolution_levels)},
+          {"truth_resolution_px", known_or_null(error.truth_resolution_px)},
+          {"image_resolution_levels", known_or_null(error.image_resolution_levels)},
+          {"bits", error.bits}};
+}
+
+nlohmann::json plan_json(RaysPlan const& plan) {
+  return {{"truth_error_px", resolved(plan.truth_error_px, plan.truth_resolution_px)},
+          {"image_error_levels", resolved(plan.image_error_levels, plan.image_resolution_levels)},
+          {"truth_resolution_px", known_or_null(plan.truth_resolution_px)},
+          {"image_resolution_levels", known_or_null(plan.image_resolution_levels)},
+          {"bits", plan.bits},
+          {"extrapolated", plan.extrapolated},
+          {"truth_asked_px", truth_tolerance_px},
+          {"image_asked_levels", image_tolerance_levels},
+          {"rays_wanted", known_or_null(plan.rays_wanted)},
+          {"processor_seconds", known_or_null(plan.seconds)},
+          {"processor_seconds_allowed", rays_budget_s}};
+}
+
+}  // namespace
+
+nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                            RecordedFrames const& frames, CaseOutcome const& outcome) {
+  Scene const& scene = prepared.scene;
+  Rendering const& rendering = *rendered.rendering;
+  TruthAccuracy const& accuracy = outcome.accuracy;
+  bool const piv = scene.setup.piv.has_value();
+  nlohmann::json summary{
+      {"magnification", scene.imaging.magnification},
+      {"step_mm", prepared.step.step_mm},
+      {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
+      {"rays_per_dot", prepared.rays.rays},
+      {"rays_planned", spread_of(rendering.truth.rays_planned)},
+      {"exposure", rendered.exposure_e},
+      {"gladstone_dale", scene.setup.medium.gladstone_dale},
+      {"spot",
+       {{"model", loaded.document.root().table("lens").text("psf", "gaussian")},
+        {"first_zero_diameter_px", scene.setup.spot_diameter_px()},
+        {"sigma_px", scene.spot_sigma_px() > 0 ? nlohmann::json(scene.spot_sigma_px()) : nlohmann::json(nullptr)}}},
+      {"experiment", piv ? "piv" : "bos"},
+      {"dots", rendering.truth.size()},
+      {"dots_unseen", outcome.unseen},
+      {"truth_error_px",
+       {{"rms", known_or_null(accuracy.rms_px)},
+        {"largest", std::isnan(accuracy.rms_px) ? nlohmann::json(nullptr) : nlohmann::json(accuracy.largest_px)},
+        {"largest_dot", accuracy.worst},
+        {"dots_above_1e-3", accuracy.above},
+        {"dots_unknown", accuracy.unknown}}},
+      {"estimator",
+       {{"dots_by_table", accuracy.by_table},
+        {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
+        {"no_table_since", to_string(rendering.table)},
+        {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)}}},
+      {"method", to_string(rendering.method)},
+      {"device", outcome.device},
+      {"precision", "double"},
+      {"rays",
+       {{"traced", rendering.rays},
+        {"reference", status_counts(rendering.statuses, 0)},
+        {"flow", status_counts(rendering.statuses, 1)}}},
+      {"pupil_margin_mm", rendered.pupil_margin / unit::millimetre},
+      {"caustic_fraction", prepared.strain.caustic_fraction},
+      {"saturated", {{"reference", frames.saturated_reference}, {"flow", frames.saturated_flow}}},
+      {"reference_sha256", outcome.reference_sha256},
+      {"flow_sha256", outcome.flow_sha256},
+      {"photons_fully_lit", rendered.exposure_e / scene.setup.camera.noise.quantum_efficiency},
+      {"warnings", outcome.warnings},
+      {"seconds_render", rendered.seconds},
+  };
+  if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
+  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(prepared.rays);
+  return summary;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,126 @@
+#include "studies/case_warnings.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/units.h"
+
+namespace gladstone {
+
+void warn(std::vector<std::string>& warnings, std::string text) {
+  spdlog::warn("{}", text);
+  warnings.push_back(std::move(text));
+}
+
+std::string error_in_words(double error, double resolution, std::string_view unit) {
+  if (std::isnan(error)) return "an unknown amount";
+  if (error < resolution) return fmt::format("less than {:.2g} {}", resolution, unit);
+  return fmt::format("{:.2g} {}", error, unit);
+}
+
+std::string image_error_in_words(RaysPlan const& plan) {
+  return error_in_words(plan.image_error_levels, plan.image_resolution_levels,
+                        fmt::format("grey levels of {} bits", plan.bits));
+}
+
+std::string truth_error_in_words(RaysPlan const& plan) {
+  return error_in_words(plan.truth_error_px, plan.truth_resolution_px, "px");
+}
+
+void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
+  if (plan.converged) return;
+  warn(
+      warnings,
+      fmt::format("rays_per_dot = {}: the image is only good to {}, truth to {}, where {} and {} are asked (that would "
+                  "take some {:.2g} rays a dot and {:.0f} s of one processor; \"auto\" takes {:.0f} s or 1024 rays); "
+                  "set render.rays_per_dot higher if that matters",
+                  plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
+                  truth_tolerance_px, plan.rays_wanted, rays_seconds(scene) * plan.rays_wanted, rays_budget_s));
+}
+
+void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
+                   RaysPlan const& plan, std::string_view sources) {
+  if (accuracy.unknown > 0) {
+    warn(warnings, fmt::format("truth: how well the displacements of {} of {} {} are known cannot be told (a single "
+                               "ray has no scatter); increase render.rays_per_dot to 8 or more",
+                               accuracy.unknown, rendering.truth.size(), sources));
+  }
+  if (!(accuracy.rms_px > truth_tolerance_px)) return;
+  std::string why;
+  if (rendering.table != TableState::made && sources == "dots") {
+    why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
+  } else if (accuracy.above_by_rays > 0 && sources == "dots") {
+    why = fmt::format(
+        "; the truth of {} of these is that of rays alone, which meet the faces of the field or lose "
+        "their way in it",
+        accuracy.above_by_rays);
+  }
+  warn(
+      warnings,
+      fmt::format("truth: displacements are known to {:.2g} px only (rms of the standard errors): {} of {} {} are "
+                  "worse than {} px, the worst is number {} with {:.2g} px{}; increase render.rays_per_dot, {} now, if "
+                  "that matters",
+                  accuracy.rms_px, accuracy.above, rendering.truth.size(), sources, truth_tolerance_px, accuracy.worst,
+                  accuracy.largest_px, why, plan.rays));
+}
+
+void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
+  if (!(error.excess() > 1)) return;
+  warn(warnings,
+       fmt::format(
+           "what the table of deflections leaves: images are off by {}, truth by {}, where {} and {} are asked; "
+           "render.method = \"rays\" leaves nothing, but takes many render.rays_per_dot to scatter less",
+           image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px));
+}
+
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth) {
+  auto const unseen = std::count_if(truth.displacement_px.begin(), truth.displacement_px.end(),
+                                    [](Vec2d d) { return std::isnan(d.x); });
+  if (unseen > 0 && !scene.setup.piv) {  // of particles those are meant that are beside the light
+    double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
+    double const passing = static_cast<double>(scene.rays_per_dot) * (stop * stop) / (disc * disc);
+    constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
+    std::string const why =
+        !scene.chief_rays_only() && passing < few
+            ? fmt::format(
+                  "some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
+                  "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
+                  passing, scene.rays_per_dot, scene.pupil_margin / unit::millimetre)
+            : "the flow bends their rays past the lens; reduce the gradients or Z_D";
+    warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
+                               scene.dots.centre.size(), why));
+  }
+  return static_cast<std::size_t>(unseen);
+}
+
+namespace {
+
+/// What keeps pixels from saturation: what fills them is the light, the charge without light, or their noise.
+std::string saturation_cure(CameraSetup const& camera, double light_e) {
+  NoiseSetup const& noise = camera.noise;
+  double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
+  double const offset_e = camera.offset_dn / full_scale * noise.full_well_e;
+  double const dark_e = noise.enabled ? noise.dark_current_e : 0.0;
+  double const stray_e = camera.background.most_e();
+  bool const without_noise = offset_e + light_e + stray_e + dark_e >= noise.full_well_e;
+  if (without_noise && dark_e > light_e) return "lower camera.noise.dark_current_e";
+  if (without_noise && stray_e > light_e) return "lower camera.background";
+  double const shot_e = noise.shot_noise ? std::sqrt(light_e + dark_e) : 0.0;
+  if (without_noise || noise.read_noise_e <= shot_e) return "lower camera.exposure";
+  return fmt::format("lower camera.noise.read_noise_e: {:.4g} electrons are {:.2g} of the full well",
+                     noise.read_noise_e, noise.read_noise_e / noise.full_well_e);
+}
+
+}  // namespace
+
+void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
+                        std::size_t in_flow, double light_e) {
+  if (in_reference + in_flow == 0) return;
+  warn(warnings, fmt::format("{} pixels are saturated in the reference, {} in the flow frame; {}", in_reference,
+                             in_flow, saturation_cure(camera, light_e)));
+}
+
+}  // namespace gladstone

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/scene/ray_plan.h"
+#include "render/scene/renderer.h"
+
+/// What a user is warned of when a case is rendered, and what would cure it.
+namespace gladstone {
+
+/// Logs a warning, and keeps it for summary.json.
+void warn(std::vector<std::string>& warnings, std::string text);
+
+/// "0.012 px"; "less than 0.0001 px" where no more than that was resolved; "an unknown amount".
+std::string error_in_words(double error, double resolution, std::string_view unit);
+/// A plan's errors so: those of images in grey levels.
+std::string image_error_in_words(RaysPlan const& plan);
+std::string truth_error_in_words(RaysPlan const& plan);
+
+/// Warns where the rays that "auto" takes are too few.
+void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan);
+
+/// Warns of a truth that is not known well.
+/// @param sources what they are: dots or particles
+void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
+                   RaysPlan const& plan, std::string_view sources);
+
+/// Warns of what the deflection table leaves of truth and images, where it is more than is asked.
+void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error);
+
+/// Warns of dots that are not seen. @return how many sources are not, of any kind
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth);
+
+/// Warns of pixels that are saturated.
+/// @param light_e electrons that light sets free in the brightest pixel
+void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
+                        std::size_t in_flow, double light_e);
+
+}  // namespace gladstone
