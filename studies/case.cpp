@@ -188,7 +188,11 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
-  if (!by_table) warn_of_few_rays(prepared.warnings, scene, prepared.rays);
+  if (by_table) {
+    warn_of_side_faces(prepared.warnings, scene, prepared.rays);
+  } else {
+    warn_of_few_rays(prepared.warnings, scene, prepared.rays);
+  }
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
     Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);

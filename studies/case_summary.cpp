@@ -40,6 +40,15 @@ nlohmann::json table_error_json(RaysPlan const& error) {
           {"bits", error.bits}};
 }
 
+nlohmann::json side_faces_json(SideFaceErrors const& there, int bits) {
+  return {{"dots", there.dots},
+          {"rays", there.rays},
+          {"truth_error_px", known_or_null(there.truth_error_px)},
+          {"image_error_levels", known_or_null(there.image_error_levels)},
+          {"bits", bits},
+          {"rays_wanted", known_or_null(there.rays_wanted)}};
+}
+
 nlohmann::json plan_json(RaysPlan const& plan) {
   return {{"truth_error_px", resolved(plan.truth_error_px, plan.truth_resolution_px)},
           {"image_error_levels", resolved(plan.image_error_levels, plan.image_resolution_levels)},
@@ -61,12 +70,13 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Scene const& scene = prepared.scene;
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
+  RaysPlan const& plan = prepared.rays;
   bool const piv = scene.setup.piv.has_value();
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
       {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
-      {"rays_per_dot", prepared.rays.rays},
+      {"rays_per_dot", plan.rays},
       {"rays_planned", spread_of(rendering.truth.rays_planned)},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
@@ -87,7 +97,8 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
        {{"dots_by_table", accuracy.by_table},
         {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
         {"no_table_since", to_string(rendering.table)},
-        {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)}}},
+        {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)},
+        {"side_faces", plan.side_faces ? side_faces_json(*plan.side_faces, plan.bits) : nlohmann::json(nullptr)}}},
       {"method", to_string(rendering.method)},
       {"device", outcome.device},
       {"precision", "double"},
@@ -105,7 +116,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"seconds_render", rendered.seconds},
   };
   if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
-  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(prepared.rays);
+  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(plan);
   return summary;
 }
 

@@ -41,6 +41,26 @@ void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, Ra
                   truth_tolerance_px, plan.rays_wanted, rays_seconds(scene) * plan.rays_wanted, rays_budget_s));
 }
 
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
+  if (!plan.side_faces || !(plan.side_faces->excess() > 1)) return;
+  SideFaceErrors const& there = *plan.side_faces;
+  bool const given = scene.setup.render.rays_per_dot.has_value(),
+             by_brightest = !scene.setup.camera.exposure_e && !scene.setup.camera.absolute_exposure;
+  std::string const cure =
+      given ? "set render.rays_per_dot = \"auto\", which gives these dots as many as they need"
+            : fmt::format("some {:.2g} would be enough; set render.rays_per_dot so if that matters", there.rays_wanted);
+  warn(warnings,
+       fmt::format(
+           "render.rays_per_dot: {} dots lie at side faces of the medium, which cut their cones of rays, and go "
+           "ray by ray, by {} rays each. Their truth is known to {}, their images to {} (rms; {} and {} are "
+           "asked){}; {}",
+           there.dots, there.rays, error_in_words(there.truth_error_px, 0, "px"),
+           error_in_words(there.image_error_levels, 0, fmt::format("grey levels of {} bits", plan.bits)),
+           truth_tolerance_px, image_tolerance_levels,
+           by_brightest ? ", and camera.exposure = \"auto\" is chosen from the brightest pixel of such images" : "",
+           cure));
+}
+
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,
                    RaysPlan const& plan, std::string_view sources) {
   if (accuracy.unknown > 0) {
@@ -49,6 +69,8 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
                                accuracy.unknown, rendering.truth.size(), sources));
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
+  bool const all_by_rays = accuracy.above_by_rays == accuracy.above;
+  if (plan.side_faces && plan.side_faces->excess() > 1 && all_by_rays) return;  // warned of already
   std::string why;
   if (rendering.table != TableState::made && sources == "dots") {
     why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));

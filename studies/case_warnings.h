@@ -22,6 +22,9 @@ std::string truth_error_in_words(RaysPlan const& plan);
 /// Warns where the rays that "auto" takes are too few.
 void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan);
 
+/// Warns of dots at side faces of a volume whose rays are too few for truth or images.
+void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan);
+
 /// Warns of a truth that is not known well.
 /// @param sources what they are: dots or particles
 void warn_of_truth(std::vector<std::string>& warnings, Rendering const& rendering, TruthAccuracy const& accuracy,

@@ -157,12 +157,22 @@ StepPlan plan_step_of(Scene& scene) {
 
 namespace {
 
-/// The rays of those dots that are left to the general renderer, as far as the field's side faces tell which.
+/// The rays of those dots that are left to the general renderer, as far as the field's side faces tell which. Where
+/// their number is given, what it leaves of truth and images is measured all the same.
 void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
-  if (at_faces.empty() || scene.setup.render.rays_per_dot) return;
-  Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
-  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
+  if (at_faces.empty()) return;
+  auto const given = scene.setup.render.rays_per_dot;
+  Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), given.value_or(1));
+  bool const seen = std::any_of(by_rays.dots.centre.begin(), by_rays.dots.centre.end(),
+                                [&scene](Vec2d centre) { return scene.in_view(centre); });
+  if (given && !seen) return;
+  RaysPlan const at_side_faces = given ? measure_rays_by_rays(by_rays) : plan_rays_by_rays(by_rays);
+  if (seen) {
+    plan.side_faces = {at_faces.size(), at_side_faces.rays, at_side_faces.truth_error_px,
+                       at_side_faces.image_error_levels, at_side_faces.rays_wanted};
+  }
+  if (given) return;
   plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
   plan.truth_error_px = std::fmax(plan.truth_error_px, at_side_faces.truth_error_px);
   plan.image_error_levels = std::fmax(plan.image_error_levels, at_side_faces.image_error_levels);

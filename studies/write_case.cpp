@@ -24,7 +24,7 @@ constexpr int map_spacing_px = 2;  // of the maps in truth.h5: turbulence's fron
 
 /// What the deflection table leaves of truth and images, measured where the plan has not.
 RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan) {
-  // with dots at side faces the plan's errors are also those of their rays
+  // with dots at side faces "auto" tells the errors of their rays, too
   bool const measured =
       plan.rays_at_side_faces == 0 && (std::isfinite(plan.truth_error_px) || std::isfinite(plan.image_error_levels));
   return measured ? plan : measure_table_error(focused_dots(scene).value());

@@ -35,6 +35,16 @@ inline double excess_of(double truth_px, double image_levels) {
   return std::fmax(std::fmax(0.0, truth_px / truth_tolerance_px), image_levels / image_tolerance_levels);
 }
 
+/// What rays alone leave of the dots at side faces (side_faces.h), as RaysPlan says it of all.
+struct SideFaceErrors {
+  std::size_t dots = 0;    ///< there are
+  std::uint64_t rays = 0;  ///< of each
+  double truth_error_px = unknown, image_error_levels = unknown;
+  double rays_wanted = unknown;
+
+  double excess() const { return excess_of(truth_error_px, image_error_levels); }
+};
+
 /// How the number of rays was chosen.
 struct RaysPlan {
   RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
@@ -51,6 +61,8 @@ struct RaysPlan {
   bool converged = true;         ///< false: the largest number that is taken is not enough
   double rays_wanted = unknown;  ///< that would be, as far as can be told; NaN: nothing tells, or no number would
   double seconds = unknown;      ///< of processor time that a rendering with `rays` will take, by rays_seconds()
+
+  std::optional<SideFaceErrors> side_faces;  ///< of the fast renderer; none: no dot in view lies there
 
   double excess() const { return excess_of(truth_error_px, image_error_levels); }
 };

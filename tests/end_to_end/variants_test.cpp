@@ -162,6 +162,20 @@ class FieldFiles : public Variants {
     return with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
                 "kind = \"file\"\nfile = \"" + file + "\"\n" + more);
   }
+  /// The ramp as a volume, ramp.nrrd, of 8 mm across.
+  void write_volume() const {
+    std::string data =
+        "NRRD0004\ntype: float\ndimension: 3\nsizes: 17 17 5\nendian: little\nencoding: raw\nspacings: 0.5 0.5 2.5\n\n";
+    for (int k = 0; k < depth; ++k) {
+      for (int j = 0; j < side; ++j) {
+        for (int i = 0; i < side; ++i) {
+          float const value = ramp(i);
+          data.append(reinterpret_cast<char const*>(&value), sizeof value);
+        }
+      }
+    }
+    write("ramp.nrrd", data);
+  }
   void expect_the_ramp(std::string const& name, std::string const& text) const {
     write("ramp.toml", text);
     render(name, {}, "ramp.toml");
@@ -186,18 +200,44 @@ class FieldFiles : public Variants {
 };
 
 TEST_F(FieldFiles, NrrdVolumeBendsAsTheGradientItHolds) {
-  std::string data =
-      "NRRD0004\ntype: float\ndimension: 3\nsizes: 17 17 5\nendian: little\nencoding: raw\nspacings: 0.5 0.5 2.5\n\n";
-  for (int k = 0; k < depth; ++k) {
-    for (int j = 0; j < side; ++j) {
-      for (int i = 0; i < side; ++i) {
-        float const value = ramp(i);
-        data.append(reinterpret_cast<char const*>(&value), sizeof value);
-      }
-    }
-  }
-  write("ramp.nrrd", data);
+  write_volume();
   expect_the_ramp("case", setup("ramp.nrrd", ""));
+}
+
+// 4 mm of a volume in a view of 4.09 mm at its depth: its faces cut the cones of dots all about. One warning says what
+// 32 rays of each leave of truth and of images, that "auto" exposure rests on these, and what to do.
+TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
+  write_volume();
+  write("faces.toml", setup("ramp.nrrd", "spacing_mm = [0.25, 0.25, 2.5]"));
+  auto const rendered = [&](std::vector<std::string> const& more) {
+    std::vector<std::string> arguments{"render", "faces.toml", "-o", "case"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return nlohmann::json::parse(read("case/summary.json"));
+  };
+  auto const of_faces = [](nlohmann::json const& summary) {
+    std::string found;
+    for (std::string const text : summary["warnings"]) {
+      if (text.find("lie at side faces of the medium") != std::string::npos) found = text;
+    }
+    return found;
+  };
+  auto const summary = rendered({});
+  EXPECT_THAT(of_faces(summary),
+              testing::AllOf(testing::HasSubstr("by 32 rays each. Their truth is known to 0."),
+                             testing::HasSubstr("grey levels of 12 bits (rms; 0.001 and 0.5 are asked)"),
+                             testing::HasSubstr("camera.exposure = \"auto\" is chosen from the brightest pixel"),
+                             testing::HasSubstr("set render.rays_per_dot = \"auto\"")));
+  auto const& faces = summary["estimator"]["side_faces"];
+  EXPECT_GT(faces["dots"], 4);
+  EXPECT_EQ(faces["rays"], 32);
+  EXPECT_GT(faces["truth_error_px"], 1e-3);
+  EXPECT_GT(faces["image_error_levels"], 0.5);
+  EXPECT_THAT(of_faces(rendered({"--set", "camera.exposure=20000"})),
+              testing::AllOf(testing::HasSubstr("side faces"), testing::Not(testing::HasSubstr("camera.exposure"))));
+  EXPECT_THAT(of_faces(rendered({"--set", "render.rays_per_dot=auto"})),
+              testing::Not(testing::HasSubstr("set render.rays_per_dot = \"auto\"")));
 }
 
 TEST_F(FieldFiles, AnIndexInSinglePrecisionIsWarnedOfInTheSummary) {

@@ -149,5 +149,54 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   EXPECT_GE(plan.rays_at_side_faces, 4 * plan.rays);
 }
 
+// With a given number of rays the plan measures what it leaves of these dots, truth and images: 32 plain rays of a cone
+// that a face cuts in two scatter by more than is asked, and 32,768 by the square root of a thousand less, 32; what
+// scatters is told from so many dots to a tenth or so.
+TEST(SideFaces, AreMeasuredWithAGivenNumber) {
+  auto const measured = [](std::uint64_t rays) {
+    Scene scene = volume_in_view(rays);
+    RaysPlan const plan = plan_rays_of(scene);
+    EXPECT_EQ(plan.rays, rays);
+    EXPECT_EQ(plan.rays_at_side_faces, 0u) << "the number is the user's";
+    EXPECT_TRUE(plan.side_faces);
+    return plan.side_faces.value_or(SideFaceErrors{});
+  };
+  SideFaceErrors const few = measured(32), many = measured(32768);
+  Scene const scene = volume_in_view(32);
+  EXPECT_EQ(few.dots, sources_at_side_faces(scene, scene.dots).size());
+  EXPECT_EQ(few.rays, 32u);
+  EXPECT_GT(few.truth_error_px, truth_tolerance_px);
+  EXPECT_GT(few.image_error_levels, 10 * image_tolerance_levels);
+  EXPECT_LT(many.truth_error_px, few.truth_error_px / 16);
+  EXPECT_LT(many.image_error_levels, few.image_error_levels / 16);
+}
+
+// What the plan says of images holds for the pictures: those of the dots there, by their 32 rays, beside their own of
+// another choice, which scatter as much. A factor of two is allowed for the pixels that count as lit.
+TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
+  Scene scene = volume_in_view(32);
+  RaysPlan const plan = plan_rays_of(scene);
+  ASSERT_TRUE(plan.side_faces);
+  DotPattern const all = scene.dots;
+  scene.dots.centre.clear();
+  for (std::size_t const dot : sources_at_side_faces(scene, all)) scene.dots.centre.push_back(all.centre[dot]);
+  Scene other = scene;
+  other.setup.render.seed = 99;
+  RaysRenderer renderer;
+  Image<double> const one = renderer.render(scene, scene.dots, RenderImages::yes, RenderTheory::no).light.flow,
+                      two = renderer.render(other, other.dots, RenderImages::yes, RenderTheory::no).light.flow;
+  double const level = *std::max_element(two.begin(), two.end()) / (0.9 * 4095);
+  double square = 0, lit = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    double const a = one.data()[i], b = two.data()[i];
+    if (a + b < 2 * level) continue;
+    square += (a - b) * (a - b) / (2 * level * level);
+    ++lit;
+  }
+  double const found = std::sqrt(square / lit);
+  EXPECT_GT(plan.side_faces->image_error_levels, found / 2);
+  EXPECT_LT(plan.side_faces->image_error_levels, found * 2);
+}
+
 }  // namespace
 }  // namespace gladstone
