@@ -72,7 +72,9 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
   bool const all_by_rays = accuracy.above_by_rays == accuracy.above;
   if (plan.side_faces && plan.side_faces->excess() > 1 && all_by_rays) return;  // warned of already
   std::string why;
-  if (rendering.table != TableState::made && sources == "dots") {
+  if (rendering.table == TableState::by_rays) {
+    // all truth is that of rays then, as was asked or chosen
+  } else if (rendering.table != TableState::made && sources == "dots") {
     why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
   } else if (accuracy.above_by_rays > 0 && sources == "dots") {
     why = fmt::format(
