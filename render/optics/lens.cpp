@@ -66,6 +66,7 @@ class LensBuilder {
       before = after;
       if (last && (way != 0 || lens_.prescription.ends_at_image)) lens_.image_distance = way;
     }
+    refuse_glasses();
     note_described_glasses();
   }
 
@@ -176,8 +177,13 @@ class LensBuilder {
   Substance substance(PrescribedSurface const& surface) {
     auto const& is = surface.after.is;
     if (auto const* const named = std::get_if<PrescribedMedium::Named>(&is)) {
-      Glass const& glass = catalogue_.find(named->glass, lens_.wavelength, surface.where);
-      return {glass.index(lens_.wavelength), options_.absorption ? glass.absorption(lens_.wavelength) : 0};
+      try {
+        Glass const& glass = catalogue_.find(named->glass, lens_.wavelength, surface.where);
+        return {glass.index(lens_.wavelength), options_.absorption ? glass.absorption(lens_.wavelength) : 0};
+      } catch (DataError const& error) {
+        not_found_.push_back({error.file(), error.message()});
+        return {};
+      }
     }
     if (auto const* const index = std::get_if<PrescribedMedium::Index>(&is)) return {index->n, 0};
     if (auto const* const described = std::get_if<PrescribedMedium::Described>(&is)) {
@@ -189,6 +195,13 @@ class LensBuilder {
       return {glass.index(lens_.wavelength), 0};
     }
     return {};
+  }
+
+  /// Refuses all glasses that are not known, or not at this wavelength, together: each at its own line.
+  void refuse_glasses() const {
+    if (not_found_.empty()) return;
+    if (not_found_.size() == 1) throw DataError(not_found_.front().where, not_found_.front().message);
+    throw SetupError(not_found_);
   }
 
   /// Warns of the glasses that nd and Vd alone describe, all at once, at the first of them.
@@ -240,8 +253,9 @@ class LensBuilder {
   Lens& lens_;
   GlassCatalogue const& catalogue_;
   LensOptions const& options_;
-  std::vector<std::string> described_;  // glasses by nd and Vd alone
-  std::string described_where_;         // the first of them stands
+  std::vector<SetupProblem> not_found_;  // glasses
+  std::vector<std::string> described_;   // glasses by nd and Vd alone
+  std::string described_where_;          // the first of them stands
 };
 
 /// Radius that the prescription itself opens the stop of placed surfaces to, paraxially [m]; empty: it cannot say.

@@ -77,7 +77,8 @@ struct LensOptions {
 /// axial ray that enters at the rim of the entrance pupil, or where that ray is lost to the paraxial one's.
 /// @param wavelength [m]
 /// Warns of faces that cross within the axial beam, and of an f-number that opens the stop wider than the prescription.
-/// @throws DataError with the surface's place for a glass that is not known, and where nothing passes the stop
+/// @throws DataError with the surface's place for a glass that is not known, and where nothing passes the stop;
+///         SetupError with the places of all glasses where several are not
 Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, double wavelength,
                 LensOptions const& options = {});
 
