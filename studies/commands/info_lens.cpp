@@ -29,8 +29,11 @@ std::string field_name(double angle) {
   return degrees == 0 ? "on_axis" : fmt::format("{:.6g}_deg", degrees);
 }
 
+/// A length in millimetres; what rounding leaves of none is none.
 std::string length_text(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.6g} mm", metres / unit::millimetre) : "infinite";
+  constexpr double rounding = 1e-12;  // [m]
+  if (!std::isfinite(metres)) return "infinite";
+  return fmt::format("{:.6g} mm", std::abs(metres) < rounding ? 0.0 : metres / unit::millimetre);
 }
 
 nlohmann::json lens_json(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field) {

@@ -64,6 +64,14 @@ TEST_F(InfoLens, CountsLostRaysBySurfaceAndCause) {
   EXPECT_NEAR(field["lost"][0]["share"], field["vignetting"].get<double>(), 0.02);
 }
 
+// Of a telecentric lens the exit pupil stands at the stop, to rounding: that is told as 0, without sign or digits.
+TEST_F(InfoLens, TellsNoRoundingOfALengthThatIsNone) {
+  std::string const text = succeed({"info", "lens", GLADSTONE_DATA_DIR "/lenses/telecentric.toml"});
+  EXPECT_THAT(text, HasSubstr("exit pupil            3.2 mm wide at 0 mm from the last vertex"));
+  EXPECT_THAT(text, HasSubstr("back focal length     0 mm behind the last vertex"));
+  EXPECT_THAT(text, testing::Not(HasSubstr(" -0 mm")));
+}
+
 TEST_F(InfoLens, DrawsTheLens) {
   write("lens.toml", singlet);
   succeed({"info", "lens", "lens.toml", "--figure", "lens.png"});
