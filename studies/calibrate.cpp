@@ -12,6 +12,7 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "studies/cameras.h"
 #include "studies/case.h"
 
 namespace gladstone {
@@ -185,7 +186,13 @@ Calibration calibrate_case(std::string const& folder) {
 }
 
 Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures) {
-  CaseSetup const loaded = load_case_setup(setup, {});
+  SetupDocument document = SetupDocument::from_file(setup);
+  if (std::vector<std::string> const cameras = camera_names(document); !cameras.empty()) {
+    throw DataError(setup, fmt::format("is of {} cameras ({}), and pictures are of one; leave the [[camera]] that took "
+                                       "them alone in it, and calibrate the others likewise",
+                                       cameras.size(), fmt::join(cameras, ", ")));
+  }
+  CaseSetup const loaded = load_case_setup(std::move(document));
   if (!loaded.setup.calibration()) {
     throw DataError(setup,
                     "is no setup of a calibration; set experiment = \"calibration\" and say in [calibration] "

@@ -172,7 +172,11 @@ std::string calibration_table(Calibration const& calibration) {
     }
     text += '\n';
   }
-  if (calibration.rendered) text += "(off by: in standard errors)\n";
+  text += calibration.rendered
+              ? "(off by: in standard errors)\n"
+              : "(no columns of a rendered camera to compare with: pictures of your own have no truth, and that of a "
+                "case knows a pinhole camera for an ideal thin lens alone, without windows and without distortion of a "
+                "tilted sensor)\n";
   for (CalibratedPlane const& plane : calibration.planes) {
     text += fmt::format(
         "Z = {:.6g} mm: {} of {} dots found are on the grid{}\n", plane.z / unit::millimetre, plane.used, plane.found,

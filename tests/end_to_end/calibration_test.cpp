@@ -271,6 +271,8 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   auto const own = json_of(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3));
   auto const cases = calibrate("case");
   EXPECT_EQ(names("camera"), std::vector<std::string>{"calibration.h5"});
+  EXPECT_THAT(succeed(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3)),
+              HasSubstr("no columns of a rendered camera to compare with: pictures of your own have no truth"));
   EXPECT_EQ(own["dots"], cases["dots"]);
   EXPECT_EQ(own["planes"][2]["z_mm"], 20.0);
   for (auto const& [name, parameter] : cases["pinhole"]["parameters"].items()) {
@@ -283,6 +285,15 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   }
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 2), 2,
                  {"names 3 planes where 2 pictures are given"});
+  std::string two = roughly;
+  std::string const one_camera = "[camera]";
+  two.replace(two.find(one_camera), one_camera.size(), "[[camera]]\nname = \"left\"");
+  write("two.toml", two + "\n[[camera]]\nname = \"right\"\n");
+  Outcome const several = gladstone(with({"calibrate", "two.toml", "-o", "other", "--quiet"}, 3));
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_EQ(several.err,
+            "two.toml: is of 2 cameras (left, right), and pictures are of one; leave the [[camera]] "
+            "that took them alone in it, and calibrate the others likewise\n");
   std::reverse(pictures.begin(), pictures.end());
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 3), 2,
                  {"roughly.toml: fits a camera with the dots behind it only", "in the order of calibration.planes_mm"});
