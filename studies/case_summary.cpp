@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/base/units.h"
+#include "render/scene/ray_losses.h"
 #include "studies/json_text.h"
 #include "studies/particle_case.h"
 #include "studies/scene_renderer.h"
@@ -23,6 +24,21 @@ nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   nlohmann::json json;
   for (std::size_t status = 0; status < ray_status_count; ++status) {
     json[to_string(static_cast<RayStatus>(status))] = counts[frame][status];
+  }
+  return json;
+}
+
+/// Shares of a sample of rays by place and cause, in each frame.
+nlohmann::json losses_json(RayLosses const& losses) {
+  nlohmann::json json{{"sample", {{"sources", losses.sources}, {"rays_of_each", losses.rays}}},
+                      {"reference", nlohmann::json::object()},
+                      {"flow", nlohmann::json::object()}};
+  for (RaysLostAt const& lost : losses.lost) {
+    for (std::size_t frame = 0; frame < frame_count; ++frame) {
+      if (lost.share[frame] > 0) {
+        json[frame == 0 ? "reference" : "flow"][lost.place][to_string(lost.cause)] = lost.share[frame];
+      }
+    }
   }
   return json;
 }
@@ -106,6 +122,8 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
        {{"traced", rendering.rays},
         {"reference", status_counts(rendering.statuses, 0)},
         {"flow", status_counts(rendering.statuses, 1)}}},
+      {"rays_lost_by_surface",
+       rendering.method == RenderMethod::formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
       {"pupil_margin_mm", rendered.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", frames.saturated_reference}, {"flow", frames.saturated_flow}}},

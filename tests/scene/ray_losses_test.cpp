@@ -1,0 +1,80 @@
+#include "render/scene/ray_losses.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/scene/real_lens_setups.h"
+
+namespace gladstone {
+namespace {
+
+/// Share of what was sent that ends at a place for a cause.
+double share_of(RayLosses const& losses, std::string const& place, RayStatus cause, Frame frame) {
+  double share = 0;
+  for (RaysLostAt const& lost : losses.lost) {
+    if (lost.place == place && lost.cause == cause) share += lost.share[static_cast<std::size_t>(frame)];
+  }
+  return share;
+}
+
+// A stop of radius r on the first face of a plano-convex lens, R = 51.5 mm, t = 3.6 mm, n = 1.5168, fills its second
+// face to y2 = r (1 + t / (n D) - t (n - 1) / (n R)) with light of a point at D; an edge of 3 mm there takes the rest.
+// 256 points spread evenly tell areas to some two hundredths of the rim's.
+TEST(RayLosses, AreCountedBySurfaceAndCause) {
+  std::string const path = testing::TempDir() + "ray_losses_singlet.toml";
+  std::ofstream(path) << "schema = 1\nf_number = 10.0\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
+                         "index = 1.5168\nstop = true\n[[surface]]\nsemi_diameter_mm = 3.0\n";
+  auto setup = table1_setup(64);
+  setup.lens.prescription =
+      std::make_shared<Lens const>(build_lens(read_prescription(path), GlassCatalogue::shipped(), 532e-9));
+  setup.lens.focal_length = paraxial_lens(*setup.lens.prescription).effective_focal_length;
+  setup.lens.f_number = 10;
+  Scene const scene = scene_with_dots(setup, {{31.5, 31.5}}, 32);
+  RayLosses const losses = sample_ray_losses(scene);
+  EXPECT_EQ(losses.sources, 1u);
+  EXPECT_EQ(losses.rays, 256u);
+  double const r = 51.5 / 0.5168 / 20, rim = r * (1 + 3.6 / (1.5168 * 1000) - 3.6 * 0.5168 / (1.5168 * 51.5));
+  double const lost = share_of(losses, "surface 2", RayStatus::vignetted, Frame::reference);
+  EXPECT_NEAR(lost, 1 - 9 / (rim * rim), 0.03);
+  EXPECT_GT(lost, 0.3);
+  EXPECT_LT(share_of(losses, "surface 1", RayStatus::vignetted, Frame::reference), 0.02) << "the stop lets all pass";
+  EXPECT_EQ(share_of(losses, "surface 2", RayStatus::vignetted, Frame::flow), lost) << "there is no medium";
+}
+
+// A uniform gradient bends all rays by e = K L |grad rho| and moves them by s = e Z_A on the lens, whose stop of radius
+// r then takes 1 - (2 / pi) (acos q - q sqrt(1 - q^2)), q = s / (2 r), of those that it lets pass without.
+TEST(RayLosses, TellThoseThatTheFlowBendsPastTheStop) {
+  auto setup = table1_setup(64);
+  setup.medium.field = uniform_gradient(150, 0);
+  Scene const scene = scene_with_dots(setup, lattice(64, 3, 18), 32);
+  RayLosses const losses = sample_ray_losses(scene);
+  EXPECT_EQ(losses.sources, 9u);
+  double const q = 2.26e-4 * 0.01 * 150 * 0.75 / (105e-3 / 11);
+  double const lost = 1 - 2 / pi * (std::acos(q) - q * std::sqrt(1 - q * q));
+  EXPECT_NEAR(share_of(losses, "stop", RayStatus::vignetted, Frame::flow), lost, 0.2 * lost);
+  EXPECT_LT(share_of(losses, "stop", RayStatus::vignetted, Frame::reference), 0.1 * lost);
+}
+
+// What takes light of a double Gauss behind a window are the lens' edges, none of the window's faces: places keep their
+// names with more elements before them. At f/2 the stop is filled to what the edges let pass.
+TEST(RayLosses, NameSurfacesBehindAWindowAsTheLensCountsThem) {
+  auto setup = double_gauss_setup(64, 2);
+  WindowSetup window;
+  window.side = WindowSide::camera;
+  window.glass = "N-BK7";
+  window.index = 1.5195;
+  window.thickness = 10e-3;
+  window.position = {0, 0, 100e-3};
+  setup.windows = {window};
+  Scene const scene = scene_with_dots(setup, {{2, 2}, {61, 61}}, 32);
+  RayLosses const losses = sample_ray_losses(scene);
+  EXPECT_FALSE(losses.lost.empty());
+  for (RaysLostAt const& lost : losses.lost) {
+    EXPECT_EQ(lost.place.find("surface"), 0u) << lost.place << ": the window passes all, the lens' edges do not";
+  }
+}
+
+}  // namespace
+}  // namespace gladstone
