@@ -68,6 +68,16 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
   add(all.light.flow, some.light.flow);
 }
 
+/// Takes the rays of a rendering out of the counts of another.
+void take_back(Rendering& all, Rendering const& some) {
+  all.rays -= some.rays;
+  for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
+    for (std::size_t status = 0; status < ray_status_count; ++status) {
+      all.statuses[frame][status] -= some.statuses[frame][status];
+    }
+  }
+}
+
 }  // namespace
 
 RenderMethod method_of(Scene const& scene) {
@@ -135,6 +145,9 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   }
   merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), left, scene.setup.target.polarity);
   scene.pupil_margin = std::max(scene.pupil_margin, by_rays.pupil_margin);
+  // by what the fast renderer traced of them before it left them, they would count twice
+  Scene given_up = scene;
+  take_back(all, focused_dots_->render(given_up, by_rays.dots, RenderImages::no, RenderTheory::no));
   if (images == RenderImages::kept) {
     all.kept = std::make_shared<HostLight const>(std::move(all.light));
     all.light = {};

@@ -126,6 +126,23 @@ TEST(SideFaces, DotsThereAreRightWithRaysOfTheirOwn) {
   EXPECT_LT(rms_levels(found.light.reference, plain.light.reference, 0, 96), 4.5);
 }
 
+// Each ray counts once: those that reach the sensor's plane are as many as the dots count, and all together are what
+// was traced, though the fast renderer began with rays of dots that it then left.
+TEST(SideFaces, RaysThereAreCountedOnce) {
+  Scene const scene = volume_in_view(32);
+  Rendering const found = render(scene);
+  std::int64_t traced = 0;
+  for (std::size_t frame = 0; frame < frame_count; ++frame) {
+    auto const& statuses = found.statuses[frame];
+    std::int64_t of_dots = 0;
+    for (auto const& rays : found.truth.rays) of_dots += rays[frame];
+    EXPECT_EQ(of_dots, statuses[static_cast<std::size_t>(RayStatus::alive)] +
+                           statuses[static_cast<std::size_t>(RayStatus::missed_sensor)]);
+    for (std::int64_t const count : statuses) traced += count;
+  }
+  EXPECT_EQ(traced, found.rays);
+}
+
 // Dark dots are taken from white paper once.
 TEST(SideFaces, DarkDotsAreWhiteLessBright) {
   Scene scene = volume_in_view(32);
