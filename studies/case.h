@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -69,26 +70,25 @@ double exposure_of(Scene const& scene, KeptLight const& light);
 /// What the camera records of a rendering.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
 
-/// A case from its setup to its frames, and the text of its summary.json.
+/// A case from its setup to its frames.
 struct FinishedCase {
   PreparedCase prepared;
   RenderedCase rendered;
   RecordedFrames frames;
-  std::string summary;
 };
 
 /// Hashes the files that a setup names, before anything is made of them.
 void hash_inputs(CaseSetup& loaded);
 
-/// Renders a case as far as memory; its summary is still empty.
+/// Renders a case as far as memory.
 FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known = {});
 
 /// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json.
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
-/// Writes these files for a case that is rendered already. @return the text of summary.json
+/// Writes these files for a case that is rendered already. @return what summary.json holds
 /// @throws DataError where a file that the setup names no longer holds what was hashed
-std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
+nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 
 }  // namespace gladstone

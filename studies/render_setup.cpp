@@ -93,8 +93,7 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
   }
   FinishedCase const finished = finish_case(camera.loaded, renderer, known);
   fill([&](std::string const& place) {
-    return nlohmann::ordered_json::parse(
-        write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place));
+    return write_case(camera.loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
   Rendering const& rendering = *finished.rendered.rendering;
   told.sources = rendering.truth.size();

@@ -80,14 +80,14 @@ FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string
   OutputFolder output(folder, case_content());
   FinishedCase finished = finish_case(loaded, renderer);
   output.fill([&](std::string const& place) {
-    finished.summary = write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
+    write_case(loaded, finished.prepared, finished.rendered, finished.frames, renderer, place);
   });
   output.commit();
   return finished;
 }
 
-std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
-                       RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
+nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
+                          RecordedFrames const& frames, Renderer const& renderer, std::string const& folder) {
   namespace fs = std::filesystem;
   CaseOutcome outcome;
   std::vector<std::string>& warnings = outcome.warnings = prepared.warnings;
@@ -147,9 +147,9 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, scene.setup.piv ? "particles" : "dots");
   outcome.reference_sha256 = origin.sources.sha256("reference");
   outcome.flow_sha256 = origin.sources.sha256("flow");
-  std::string const text = json_text(case_summary(loaded, prepared, rendered, frames, outcome)) + "\n";
-  OutputFile::write_text(place(case_file::summary), text);
-  return text;
+  nlohmann::json summary = case_summary(loaded, prepared, rendered, frames, outcome);
+  OutputFile::write_text(place(case_file::summary), json_text(summary) + "\n");
+  return summary;
 }
 
 }  // namespace gladstone
