@@ -219,5 +219,30 @@ TEST(PublishedLenses, TelecentricLensKeepsTheSizeOfWhatMoves) {
   for (double const way : {-0.3, 0.3}) EXPECT_NEAR(image(way) / here, 1, 1e-3) << way;
 }
 
+// US 2,532,751, Example 1: F = 1.000 at f/2, printed to 0.001 with indices to 0.001, so that these leave open what half
+// a thousandth of each makes, beside the lengths and the digits of F. The sample lens that has its form has its glass
+// as thick to 0.1 mm, and other airspaces and curvatures.
+TEST(PublishedLenses, DoubleGaussHasThePatentsFocalLength) {
+  Prescription const lens = shipped("double_gauss_patent.toml");
+  double const as_printed = focal_length(lens);
+  double indices = 0;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    if (!std::holds_alternative<PrescribedMedium::Described>(lens.surfaces[i].after.is)) continue;
+    Prescription changed = lens;
+    std::get<PrescribedMedium::Described>(changed.surfaces[i].after.is).nd += 0.0005;
+    indices += std::abs(focal_length(changed) - as_printed);
+  }
+  expect_published(lens, 100, focal_length, 100 * mm, indices + 0.05 * mm);
+  EXPECT_LT(indices + left_open(lens, 100, focal_length), 1.5 * mm);
+  EXPECT_NEAR(paraxial_lens(build(lens)).f_number, 2, 1e-12);
+  Prescription const sample = shipped("double_gauss.toml");
+  ASSERT_EQ(sample.surfaces.size(), lens.surfaces.size());
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    EXPECT_EQ(sample.surfaces[i].after.is_air(), lens.surfaces[i].after.is_air()) << i;
+    if (lens.surfaces[i].after.is_air()) continue;
+    EXPECT_NEAR(sample.surfaces[i].thickness, lens.surfaces[i].thickness, 0.11 * mm) << i;
+  }
+}
+
 }  // namespace
 }  // namespace gladstone
