@@ -1,0 +1,104 @@
+#include "studies/compared_vectors.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/errors/scattered_grid.h"
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+
+namespace gladstone {
+namespace {
+
+/// Ray truth of the dots on a lattice, for quick look-ups anywhere in the view.
+class TruthMap {
+ public:
+  TruthMap(GroundTruth const& truth, CameraSetup const& camera)
+      : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
+        maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
+
+  /// Bilinear between the lattice's points, so that half a pixel shows; NaN beyond the view by more than what codes'
+  /// ways of counting pixels differ by.
+  Vec2d at(Vec2d c) const {
+    Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
+    Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
+    if (!(length(c - inside) <= 2 * outside_margin_px)) return {std::nan(""), std::nan("")};
+    int const column = std::clamp(static_cast<int>(inside.x / spacing), 0, std::max(0, grid_.columns - 2));
+    int const row = std::clamp(static_cast<int>(inside.y / spacing), 0, std::max(0, grid_.rows - 2));
+    double const fx = inside.x / spacing - column, fy = inside.y / spacing - row;
+    int const right = std::min(column + 1, grid_.columns - 1), below = std::min(row + 1, grid_.rows - 1);
+    auto const blend = [&](Image<double> const& map) {
+      return (1 - fy) * ((1 - fx) * map(column, row) + fx * map(right, row)) +
+             fy * ((1 - fx) * map(column, below) + fx * map(right, below));
+    };
+    return {blend(maps_.u_px), blend(maps_.v_px)};
+  }
+
+ private:
+  /// Dots far from the view do not count, lest a few of them spread the smoothing over all that is seen.
+  static std::vector<Vec2d> near_view(std::vector<Vec2d> places, CameraSetup const& camera) {
+    double const margin = std::max(camera.columns, camera.rows);
+    for (Vec2d& p : places) {
+      bool const near = std::abs(p.x - 0.5 * camera.columns) <= 0.5 * camera.columns + margin &&
+                        std::abs(p.y - 0.5 * camera.rows) <= 0.5 * camera.rows + margin;
+      if (!near) p = {std::nan(""), std::nan("")};
+    }
+    return places;
+  }
+
+  static constexpr int spacing = 2;
+  MapGrid grid_;
+  DisplacementMaps maps_;
+};
+
+/// Leaves out what no camera can have seen. @throws DataError where nothing is left, or no place is in px
+LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
+  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
+  std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
+  if (!refusal.empty()) throw DataError(path, refusal);
+  if (left_out.all() > 0) {
+    spdlog::warn("{}: {} of {} vectors are left out: {}", path, left_out.all(),
+                 file.field.size() + left_out.without_place(), left_out.text());
+  }
+  std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
+  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+  return left_out;
+}
+
+}  // namespace
+
+MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
+                             CompareOptions const& options) {
+  VectorFile file = read_vectors(path);
+  if (options.conventions) file.conventions = parse_conventions(*options.conventions, file.conventions);
+  CameraSetup const& camera = loaded.setup.camera;
+  LeftOutVectors const left_out = screen(file, path, camera);
+  MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
+  if (options.conventions) {
+    vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
+  } else if (file.foreign) {
+    TruthMap const map(truth, camera);
+    auto const lookup = [&map](Vec2d c) { return map.at(c); };
+    vectors.detected = detect_conventions(file, lookup, camera.rows);
+    vectors.report = vectors.detected->report;
+    if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, vectors.report);
+    file.conventions = vectors.detected->conventions;
+    bool const told = vectors.detected->verdict != DetectedConventions::Verdict::cannot_be_told;
+    if (!told || vectors.detected->ambiguous) spdlog::warn("{}: {}", path, vectors.report);
+  }
+  vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
+  if (!file.foreign && path.ends_with(".h5")) {
+    std::string const text = Hdf5Reader(path).attribute("setup");
+    if (!text.empty()) {
+      SetupDocument document = SetupDocument::from_text(text, path);
+      vectors.settings = read_correlation_settings(document.root().table("correlate"));
+    }
+  } else if (!file.foreign) {
+    vectors.foreign = true;  // a CSV does not say how it was measured, so it cannot be measured again
+  }
+  return vectors;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/errors/uncertainty_quality.h"
+#include "studies/compare.h"
+#include "studies/figures/error_figures.h"
+#include "studies/figures/map_figures.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+namespace {
+
+nlohmann::json term_json(BudgetTerm const& term) {
+  nlohmann::json json{{"bias_u_px", known_or_null(term.bias_u_px)},
+                      {"bias_v_px", known_or_null(term.bias_v_px)},
+                      {"random_u_px", known_or_null(term.random_u_px)},
+                      {"random_v_px", known_or_null(term.random_v_px)},
+                      {"rms_px", known_or_null(term.rms_px)}};
+  if (!term.includes.empty()) json["includes"] = term.includes;
+  return json;
+}
+
+nlohmann::json matrix_json(CovarianceMatrix const& matrix) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (std::size_t i = 0; i < matrix.size; ++i) {
+    nlohmann::json row = nlohmann::json::array();
+    for (std::size_t j = 0; j < matrix.size; ++j) row.push_back(known_or_null(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+nlohmann::ordered_json fit_json(ConventionFit const& fit) {
+  return {{"conventions", describe(fit.conventions)}, {"rms_px", known_or_null(fit.rms_px)}};
+}
+
+/// How a foreign file's vectors fit the truth by its conventions, without the offset, and by every other choice.
+nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
+  using Verdict = DetectedConventions::Verdict;
+  nlohmann::ordered_json json = fit_json(detected.fit);
+  json["verdict"] = detected.verdict == Verdict::fits    ? "fits"
+                    : detected.verdict == Verdict::noisy ? "noisy"
+                                                         : "cannot_be_told";
+  json["ambiguous"] = detected.ambiguous;
+  json["signal_px"] = known_or_null(detected.fit.signal_px);
+  json["slope"] = known_or_null(detected.fit.slope);
+  json["offset_px"] = detected.conventions.offset_px;
+  json["rms_without_offset_px"] = known_or_null(detected.without_offset.rms_px);
+  json["tried"] = nlohmann::ordered_json::array();
+  for (ConventionFit const& fit : detected.tried) json["tried"].push_back(fit_json(fit));
+  return json;
+}
+
+/// How well the measurement's own uncertainties tell its errors against the truth on the window, and against that at
+/// the point, which the window's averaging adds to; nothing where there are none.
+nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
+  DisplacementField const& measured = comparison.measured;
+  auto const is_known = [](Vec2d sigma) { return std::isfinite(sigma.x) && std::isfinite(sigma.y); };
+  if (std::none_of(measured.sigma_px.begin(), measured.sigma_px.end(), is_known)) return {};
+  nlohmann::ordered_json json;
+  for (auto const& [name, truth] : {std::pair("window_truth", &comparison.window.displacement_px),
+                                    std::pair("ray_truth", &comparison.point.displacement_px)}) {
+    UncertaintyQuality const quality =
+        uncertainty_quality(measured.displacement_px, *truth, measured.sigma_px, comparison.mask);
+    for (auto const& [measure, value] : quality_measures(quality)) {
+      bool const is_count = measure == "count" || measure == "gross";
+      json[name][std::string(measure)] =
+          is_count ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
+    }
+  }
+  return json;
+}
+
+}  // namespace
+
+nlohmann::ordered_json errors_of(Comparison const& comparison) {
+  nlohmann::ordered_json json;
+  auto const summary = [&](std::vector<Vec2d> const& truth) {
+    nlohmann::ordered_json measures;
+    for (auto const& [name, value] :
+         error_measures(comparison.measured.displacement_px, truth, comparison.mask, comparison.vectors_in_file())) {
+      measures[std::string(name)] =
+          name == "count" ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
+    }
+    return measures;
+  };
+  json["ray_truth"] = summary(comparison.point.displacement_px);
+  if (comparison.chain == BudgetChain::piv) {
+    json["flow"] = summary(comparison.flow_px);
+    json["ambient_truth"] = summary(comparison.ambient_px);
+    json["eq9"] = json["eq9_cone"] = nullptr;  // it is of BOS
+  } else {
+    json["eq9"] = summary(comparison.point.eq9_px);
+    json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
+  }
+  json["window_truth"] = summary(comparison.window.displacement_px);
+  if (nlohmann::ordered_json const quality = uncertainty_json(comparison); !quality.empty())
+    json["uncertainty"] = quality;
+  nlohmann::ordered_json budget;
+  nlohmann::json names = nlohmann::json::array();
+  for (BudgetTerm const& term : comparison.budget.terms) {
+    budget["terms"][term.name] = term_json(term);
+    names.push_back(term.name);
+  }
+  budget["total"] = term_json(comparison.budget.total);
+  budget["covariance"] = {{"terms", names},
+                          {"both_px2", matrix_json(comparison.budget.covariance)},
+                          {"u_px2", matrix_json(comparison.budget.covariance_u)},
+                          {"v_px2", matrix_json(comparison.budget.covariance_v)}};
+  budget["peak_locking_px"] = known_or_null(comparison.budget.peak_locking_px);
+  budget["closure_px"] = known_or_null(comparison.budget.closure_px);
+  json["budget"] = budget;
+  json["vectors"] = {{"total", comparison.vectors_in_file()},
+                     {"left_out_fewer_than_three_dots", comparison.window.left_out},
+                     {"conventions", comparison.report}};
+  LeftOutVectors const& left_out = comparison.left_out;
+  if (comparison.foreign || left_out.all() > 0) {  // what a study measures itself has none
+    json["vectors"].update({{"left_out_place_not_finite", left_out.place_not_finite},
+                            {"left_out_outside_image", left_out.outside_image},
+                            {"left_out_displacement_not_finite", left_out.displacement_not_finite},
+                            {"left_out_displacement_beyond_image", left_out.displacement_beyond_image}});
+  }
+  if (comparison.detected) json["vectors"]["fit"] = fit_json(*comparison.detected);
+  if (!comparison.sources.all().empty()) {
+    nlohmann::ordered_json made_from;
+    for (SourceFiles::Source const& source : comparison.sources.all()) {
+      if (!source.name.empty()) made_from[source.name + "_sha256"] = source.sha256;
+    }
+    made_from["frames"] = comparison.verified ? "verified" : "unverified";
+    json["made_from"] = made_from;
+  }
+  return json;
+}
+
+std::string errors_json(Comparison const& comparison) { return json_text(errors_of(comparison)) + "\n"; }
+
+std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
+                                         std::string const& format) {
+  DisplacementField const& measured = comparison.measured;
+  bool const piv = comparison.chain == BudgetChain::piv;
+  std::vector<std::string> drawn;
+  auto const next = [&](char const* name) { return drawn.emplace_back(folder + '/' + name + '.' + format); };
+  auto const difference = [&](std::vector<Vec2d> const& from) {
+    std::vector<Vec2d> error(measured.size());
+    for (std::size_t i = 0; i < error.size(); ++i) {
+      error[i] = comparison.mask[i] ? measured.displacement_px[i] - from[i] : Vec2d{std::nan(""), std::nan("")};
+    }
+    return error;
+  };
+  if (measured.columns > 1 && measured.rows > 1) {
+    auto const maps = [&](std::string name, std::vector<Vec2d> const& values) {
+      NamedMaps both{std::move(name), Image<double>(measured.columns, measured.rows),
+                     Image<double>(measured.columns, measured.rows)};
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        both.u_px.data()[i] = values[i].x;
+        both.v_px.data()[i] = values[i].y;
+      }
+      return both;
+    };
+    MapAxes axes;
+    axes.x_first = measured.position_px.front().x;
+    axes.x_step = measured.position_px[1].x - axes.x_first;
+    axes.y_first = measured.position_px.front().y;
+    axes.y_step = measured.position_px[static_cast<std::size_t>(measured.columns)].y - axes.y_first;
+    std::vector<NamedMaps> drawings{maps("ray truth", comparison.point.displacement_px)};
+    if (piv) {
+      drawings.push_back(maps("flow", comparison.flow_px));
+      drawings.push_back(maps("without medium", comparison.ambient_px));
+    } else {
+      drawings.push_back(maps("Eq. 9", comparison.point.eq9_px));
+      drawings.push_back(maps("cone-filtered Eq. 9", comparison.point.eq9_cone_px));
+    }
+    drawings.push_back(maps("measurement", measured.displacement_px));
+    write_displacement_maps(next("displacement_maps"), "Displacement, and differences from ray truth", axes, drawings);
+  }
+  std::vector<ErrorSeries> series{{"against ray truth", difference(comparison.point.displacement_px)}};
+  if (piv) {
+    series.push_back({"against the flow", difference(comparison.flow_px)});
+    series.push_back({"against truth without medium", difference(comparison.ambient_px)});
+  } else {
+    series.push_back({"against Eq. 9", difference(comparison.point.eq9_px)});
+    series.push_back({"against cone-filtered Eq. 9", difference(comparison.point.eq9_cone_px)});
+  }
+  write_error_histograms(next("error_histograms"), "Measurement error", series);
+  if (measured.columns > 1 && measured.rows > 1) {
+    DisplacementField truth = measured;
+    truth.displacement_px = comparison.point.displacement_px;
+    write_error_against_gradient(next("error_against_gradient"), "Measurement error against the local gradient", truth,
+                                 series);
+  }
+  write_budget_bars(
+      next("error_budget"),
+      piv ? "Error budget, from the flow to the measurement" : "Error budget, from Eq. 9 to the measurement",
+      comparison.budget);
+  return drawn;
+}
+
+}  // namespace gladstone
