@@ -12,6 +12,7 @@
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
+#include "studies/budget_stages.h"
 #include "studies/compared_vectors.h"
 #include "studies/correlate.h"
 #include "studies/particle_points.h"
@@ -156,21 +157,7 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
         "has no vector that can be compared: none is valid, in view and has truth on its window (three dots); check "
         "the vectors and --conventions");
   }
-  std::vector<BudgetStage> stages{{"window", comparison.window.displacement_px},
-                                  {"noise_free", comparison.noise_free},
-                                  {"measured", measured.displacement_px}};
-  if (piv) {
-    stages.insert(
-        stages.end(),
-        {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}});
-  } else {
-    stages.insert(stages.end(), {{"eq9", comparison.point.eq9_px},
-                                 {"straight", comparison.point.chief_px},
-                                 {"eq9_cone", comparison.point.eq9_cone_px},
-                                 {"thin_lens", comparison.thin_lens},
-                                 {"lens", comparison.point.displacement_px}});
-  }
-  comparison.budget = error_budget(stages, comparison.mask, comparison.chain);
+  comparison.budget = error_budget(budget_stages(comparison), comparison.mask, comparison.chain);
   return comparison;
 }
 

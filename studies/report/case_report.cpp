@@ -8,6 +8,7 @@
 #include "analysis/errors/uncertainty_quality.h"
 #include "render/base/image_file.h"
 #include "render/base/text_file.h"
+#include "studies/budget_stages.h"
 #include "studies/case_files.h"
 #include "studies/compare.h"
 #include "studies/report/report.h"
@@ -70,7 +71,6 @@ void add_maps(CaseView& view) {
   Comparison const& all = view.comparison;
   std::vector<Vec2d> const& measured = all.measured.displacement_px;
   std::vector<Vec2d> const& truth = all.point.displacement_px;
-  std::vector<Vec2d> const& window = all.window.displacement_px;
   view.add_field("measured", "measurement", measured);
   view.add_field("truth", "ray truth", truth);
   if (view.piv) {
@@ -86,14 +86,10 @@ void add_maps(CaseView& view) {
     view.add_error("error_flow", "against the flow", all.flow_px);
   } else {
     view.add_error("error_eq9", "against Eq. 9", all.point.eq9_px);
-    view.add_field("cone", "cause: cone", view.difference(all.point.eq9_cone_px, all.point.chief_px));
-    view.add_field("refraction", "cause: refraction", view.difference(all.thin_lens, all.point.eq9_cone_px));
-    view.add_field("aberration", "cause: aberration", view.difference(truth, all.thin_lens));
   }
-  view.add_field("window", "cause: window", view.difference(window, truth));
-  view.add_field("estimator", "cause: estimator",
-                 view.difference(all.noise_free.empty() ? measured : all.noise_free, window));
-  view.add_field("noise", "cause: noise", view.difference(measured, all.noise_free));
+  for (BudgetStage const& cause : budget_differences(all)) {
+    view.add_field(cause.name, "cause: " + cause.name, cause.displacement_px);
+  }
 }
 
 /// rms of the error over bins of equal count of the estimated uncertainty.

@@ -1,0 +1,52 @@
+#include "studies/budget_stages.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gladstone {
+
+std::vector<BudgetStage> budget_stages(Comparison const& comparison) {
+  std::vector<BudgetStage> stages{{"window", comparison.window.displacement_px},
+                                  {"noise_free", comparison.noise_free},
+                                  {"measured", comparison.measured.displacement_px}};
+  if (comparison.chain == BudgetChain::piv) {
+    stages.insert(
+        stages.end(),
+        {{"flow", comparison.flow_px}, {"ambient", comparison.ambient_px}, {"seen", comparison.point.displacement_px}});
+  } else {
+    stages.insert(stages.end(), {{"eq9", comparison.point.eq9_px},
+                                 {"straight", comparison.point.chief_px},
+                                 {"eq9_cone", comparison.point.eq9_cone_px},
+                                 {"thin_lens", comparison.thin_lens},
+                                 {"lens", comparison.point.displacement_px}});
+  }
+  return stages;
+}
+
+std::vector<BudgetStage> budget_differences(Comparison const& comparison) {
+  std::vector<BudgetStage> const stages = budget_stages(comparison);
+  std::vector<std::string_view> const chain = budget_stage_names(comparison.chain),
+                                      terms = budget_term_names(comparison.chain);
+  std::vector<BudgetStage> differences;
+  BudgetStage const* before = nullptr;
+  std::size_t first_term = 0;  // of the gap behind that stage
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    auto const here = std::find_if(stages.begin(), stages.end(), [&](BudgetStage const& stage) {
+      return stage.name == chain[i] && !stage.displacement_px.empty();
+    });
+    if (here == stages.end()) continue;
+    if (before) {
+      BudgetStage& added = differences.emplace_back();
+      added.name = terms[first_term];
+      added.displacement_px.assign(comparison.mask.size(), Vec2d{std::nan(""), std::nan("")});
+      for (std::size_t k = 0; k < comparison.mask.size(); ++k) {
+        if (comparison.mask[k]) added.displacement_px[k] = here->displacement_px[k] - before->displacement_px[k];
+      }
+    }
+    before = &*here;
+    first_term = i;
+  }
+  return differences;
+}
+
+}  // namespace gladstone
