@@ -1,155 +1,15 @@
 #include "render/base/setup_table.h"
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "render/base/nearest_name.h"
-#include "render/base/setup_state.h"
+#include "render/base/setup_reading.h"
 
 namespace gladstone {
+using namespace setup_reading;
 namespace {
 
-/// A default in SI as a setup writes it: to 12 digits, without what products with a unit leave of rounding.
-double in_unit(double si, double unit) {
-  double const value = si / unit;
-  if (value == 0 || !std::isfinite(value)) return value;
-  int const places = std::clamp(11 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 22);
-  double const scale = std::pow(10.0, places);
-  return std::round(value * scale) / scale;
-}
-
 using Kind = SetupNode::Kind;
-
-std::vector<std::string> below(std::vector<std::string> path, std::string const& key) {
-  path.push_back(key);
-  return path;
-}
-
-std::string plain(double value) {
-  std::string const text = toml_text(value);
-  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
-}
-
-/// What a number breaks of its range, with the rule; empty where it keeps it.
-std::string broken_rule(double value, Range const& range) {
-  if (std::isnan(value)) return "must be a number (nan is none)";
-  if (std::isinf(value) && !range.allow_inf) return "must be finite";
-  bool const too_low = range.low_open ? value <= range.low : value < range.low;
-  if (!too_low && value <= range.high) return {};
-  bool const has_low = std::isfinite(range.low), has_high = std::isfinite(range.high);
-  std::string rule = "must be ";
-  if (has_low) rule += (range.low_open ? "greater than " : "at least ") + plain(range.low);
-  if (has_low && has_high) rule += " and ";
-  if (has_high) rule += "at most " + plain(range.high);
-  return rule;
-}
-
-/// Some number that the range allows.
-double harmless(Range const& range) {
-  if (broken_rule(1.0, range).empty()) return 1.0;
-  if (broken_rule(range.low, range).empty()) return range.low;
-  if (!std::isfinite(range.high)) return range.low + 1.0;
-  return std::isfinite(range.low) ? 0.5 * (range.low + range.high) : range.high;
-}
-
-/// "must be a number (it is a text)", with a hint where quotes are the mistake.
-std::string wrong_kind(std::string const& wanted, SetupNode const& node) {
-  std::string message = "must be " + wanted + " (it is " + kind_name(node) + ')';
-  if (node.kind != Kind::text) return message;
-  auto const bare = parse_toml_value(node.text);
-  if (bare && (bare->is_number() || bare->kind == Kind::boolean)) message += "; write it without quotes";
-  return message;
-}
-
-std::string wrong_integer(SetupNode const& node) {
-  if (node.kind != Kind::number) return wrong_kind("a whole number", node);
-  std::string message = "must be a whole number";
-  bool const whole = std::isfinite(node.number) && node.number == std::trunc(node.number);
-  if (whole && std::abs(node.number) < 1e15) {
-    message += "; write " + std::to_string(static_cast<long long>(node.number));
-  }
-  return message;
-}
-
-std::string between(long long low, long long high) {
-  if (high == std::numeric_limits<long long>::max()) return "must be at least " + std::to_string(low);
-  if (low == std::numeric_limits<long long>::min()) return "must be at most " + std::to_string(high);
-  return "must be at least " + std::to_string(low) + " and at most " + std::to_string(high);
-}
-
-std::string wrong_word(std::string const& text, std::vector<std::string> const& words) {
-  std::string message = "must be " + quoted_list(words);
-  if (auto const nearest = nearest_name(text, words)) message += "; did you mean \"" + *nearest + "\"?";
-  return message;
-}
-
-std::string counted(std::size_t at_least, std::size_t at_most) {
-  if (at_least == at_most) return std::to_string(at_least);
-  if (at_most == std::numeric_limits<std::size_t>::max()) return std::to_string(at_least) + " or more";
-  return std::to_string(at_least) + " to " + std::to_string(at_most);
-}
-
-template <class Value, class Text>
-std::string array_text(std::vector<Value> const& values, Text const& text) {
-  std::string list;
-  for (auto const& value : values) list += (list.empty() ? "" : ", ") + text(value);
-  return '[' + list + ']';
-}
-
-std::string boolean_text(bool value) { return value ? "true" : "false"; }
-
-/// Marks a key as known to its table.
-SetupRecord::Entry& known(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key) {
-  return state.record_of(table).entry(key);
-}
-
-/// The value of a key being read; null where it is absent.
-SetupNode const* read(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key) {
-  known(state, table, key).read = true;
-  return state.find(below(table, key));
-}
-
-/// Remembers what a key came to.
-void use(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key,
-         std::string const& value) {
-  auto& entry = known(state, table, key);
-  if (!entry.resolved) entry.value = value;
-}
-
-/// What a key came to in the end.
-void settle(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key,
-            std::string const& value) {
-  auto& entry = known(state, table, key);
-  entry.value = value;
-  entry.resolved = true;
-}
-
-/// The elements of an array with an allowed count and, each, nothing to object to; null, with problems, otherwise.
-template <class Objection>
-SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::string const& key, std::string const& wanted,
-                            std::size_t at_least, std::size_t at_most, Objection const& objection) {
-  if (!node) return nullptr;
-  std::string const form = "an array of " + counted(at_least, at_most) + ' ' + wanted;
-  if (node->kind != Kind::array) {
-    std::string const bracketed = node->kind == Kind::text ? '[' + node->text + ']' : std::string();
-    bool const brackets_are_missing = !bracketed.empty() && parse_toml_value(bracketed);
-    table.problem(key, wrong_kind(form, *node) + (brackets_are_missing ? "; write " + bracketed : ""));
-    return nullptr;
-  }
-  std::size_t const count = node->elements.size();
-  if (count < at_least || count > at_most) {
-    table.problem(key, "must be " + form + " (it has " + std::to_string(count) + ')');
-    return nullptr;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    std::string const broken = objection(node->elements[i]);
-    if (broken.empty()) continue;
-    table.problem(key, "value " + std::to_string(i + 1) + ", " + toml_text(node->elements[i]) + ", " + broken);
-    return nullptr;
-  }
-  return node;
-}
 
 }  // namespace
 
@@ -231,17 +91,6 @@ double SetupTable::number(std::string const& key, double fallback, Range range) 
 
 double SetupTable::quantity(std::string const& key, double fallback, double unit, Range range) {
   return number(key, in_unit(fallback, unit), range) * unit;
-}
-
-Vec2d SetupTable::quantities(std::string const& key, Vec2d fallback, double unit, Range range) {
-  auto const v = numbers(key, {in_unit(fallback.x, unit), in_unit(fallback.y, unit)}, 2, range);
-  return v.size() == 2 ? Vec2d{v[0] * unit, v[1] * unit} : fallback;
-}
-
-Vec3d SetupTable::quantities(std::string const& key, Vec3d fallback, double unit, Range range) {
-  auto const v =
-      numbers(key, {in_unit(fallback.x, unit), in_unit(fallback.y, unit), in_unit(fallback.z, unit)}, 3, range);
-  return v.size() == 3 ? Vec3d{v[0] * unit, v[1] * unit, v[2] * unit} : fallback;
 }
 
 double SetupTable::required_number(std::string const& key, Range range) {
@@ -360,81 +209,10 @@ std::string SetupTable::required_path(std::string const& key) {
   return path;
 }
 
-std::vector<std::string> SetupTable::path_list(std::string const& key) {
-  auto const objection = [](SetupNode const& element) -> std::string {
-    if (element.kind != Kind::text) return wrong_kind("a file name in quotes", element);
-    return element.text.empty() ? "must not be empty; give a file name" : "";
-  };
-  auto const* const array = read_array(*this, read(*state_, path_, key), key, "file names in quotes", 0,
-                                       std::numeric_limits<std::size_t>::max(), objection);
-  if (!array) return {};
-  std::vector<std::string> paths;
-  for (std::size_t i = 0; i < array->elements.size(); ++i) {
-    paths.push_back(state_->absolute_name(array->elements[i]));
-    state_->files.push_back({below(below(path_, key), '[' + std::to_string(i) + ']'), paths.back()});
-  }
-  use(*state_, path_, key,
-      array_text(paths, [](std::string const& path) { return toml_text(std::string_view(path)); }));
-  return paths;
-}
-
-std::vector<double> SetupTable::numbers(std::string const& key, std::vector<double> const& fallback, std::size_t count,
-                                        Range range) {
-  return number_list(key, fallback, count, count, range);
-}
-
-std::vector<double> SetupTable::number_list(std::string const& key, std::vector<double> const& fallback,
-                                            std::size_t at_least, std::size_t at_most, Range range) {
-  auto const objection = [&](SetupNode const& element) {
-    return element.is_number() ? broken_rule(element.as_double(), range) : wrong_kind("a number", element);
-  };
-  auto const* const array = read_array(*this, read(*state_, path_, key), key, "numbers", at_least, at_most, objection);
-  std::vector<double> values = array ? std::vector<double>{} : fallback;
-  if (array) {
-    for (auto const& element : array->elements) values.push_back(element.as_double());
-  }
-  use(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
-  return values;
-}
-
-std::vector<long long> SetupTable::integers(std::string const& key, std::vector<long long> const& fallback,
-                                            std::size_t at_least, std::size_t at_most, long long low, long long high) {
-  auto const objection = [&](SetupNode const& element) {
-    if (element.kind != Kind::integer) return wrong_integer(element);
-    return element.integer < low || element.integer > high ? between(low, high) : std::string();
-  };
-  auto const* const array =
-      read_array(*this, read(*state_, path_, key), key, "whole numbers", at_least, at_most, objection);
-  std::vector<long long> values = array ? std::vector<long long>{} : fallback;
-  if (array) {
-    for (auto const& element : array->elements) values.push_back(element.integer);
-  }
-  use(*state_, path_, key, array_text(values, [](long long value) { return std::to_string(value); }));
-  return values;
-}
-
-std::vector<bool> SetupTable::booleans(std::string const& key, std::vector<bool> const& fallback, std::size_t count) {
-  auto const objection = [](SetupNode const& element) {
-    return element.kind == Kind::boolean ? std::string() : wrong_kind("true or false", element);
-  };
-  auto const* const array =
-      read_array(*this, read(*state_, path_, key), key, "times true or false", count, count, objection);
-  std::vector<bool> values = array ? std::vector<bool>{} : fallback;
-  if (array) {
-    for (auto const& element : array->elements) values.push_back(element.boolean);
-  }
-  use(*state_, path_, key, array_text(values, boolean_text));
-  return values;
-}
-
 void SetupTable::resolve(std::string const& key, double value) { settle(*state_, path_, key, toml_text(value)); }
 
 void SetupTable::resolve(std::string const& key, long long value) {
   settle(*state_, path_, key, std::to_string(value));
-}
-
-void SetupTable::resolve(std::string const& key, std::vector<double> const& values) {
-  settle(*state_, path_, key, array_text(values, [](double value) { return toml_text(value); }));
 }
 
 void SetupTable::resolve(std::string const& key, std::string const& word) {
