@@ -5,12 +5,12 @@
 #include <filesystem>
 
 #include "analysis/errors/error_summary.h"
-#include "analysis/errors/uncertainty_quality.h"
 #include "render/base/image_file.h"
 #include "render/base/text_file.h"
 #include "studies/budget_stages.h"
 #include "studies/case_files.h"
 #include "studies/compare.h"
+#include "studies/report/case_view.h"
 #include "studies/report/report.h"
 #include "studies/sweep/job_array.h"
 
@@ -21,50 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr int most_frame_px = 1024;    ///< of a picture in a report, across and down
 constexpr std::size_t bin_count = 10;  ///< of the uncertainty
-
-/// Displacements at the vectors as a map of the report: whole multiples of 1e-6 px, null where unknown.
-nlohmann::json component_json(std::vector<Vec2d> const& values, double Vec2d::*component) {
-  nlohmann::json json = nlohmann::json::array();
-  for (Vec2d const& value : values) {
-    double const number = value.*component;
-    json.push_back(std::isfinite(number) ? nlohmann::json(std::round(number * 1e6) * 1e-6) : nlohmann::json(nullptr));
-  }
-  return json;
-}
-
-struct CaseView {
-  Comparison comparison;
-  bool piv = false;
-  nlohmann::json fields = nlohmann::json::array();
-  nlohmann::json errors = nlohmann::json::array();
-
-  explicit CaseView(Comparison compared) : comparison(std::move(compared)), piv(comparison.chain == BudgetChain::piv) {}
-
-  void add_field(std::string const& name, std::string const& title, std::vector<Vec2d> const& values) {
-    if (values.empty()) return;
-    fields.push_back({{"name", name},
-                      {"title", title},
-                      {"u", component_json(values, &Vec2d::x)},
-                      {"v", component_json(values, &Vec2d::y)}});
-  }
-  /// What `to` is beyond `from`, at the vectors that count.
-  std::vector<Vec2d> difference(std::vector<Vec2d> const& to, std::vector<Vec2d> const& from) const {
-    if (to.empty() || from.empty()) return {};
-    std::vector<Vec2d> values(to.size(), Vec2d{std::nan(""), std::nan("")});
-    for (std::size_t i = 0; i < to.size(); ++i) {
-      if (comparison.mask[i]) values[i] = to[i] - from[i];
-    }
-    return values;
-  }
-  void add_error(std::string const& name, std::string const& title, std::vector<Vec2d> const& truth) {
-    std::vector<Vec2d> const values = difference(comparison.measured.displacement_px, truth);
-    errors.push_back({{"name", name},
-                      {"title", title},
-                      {"u", component_json(values, &Vec2d::x)},
-                      {"v", component_json(values, &Vec2d::y)}});
-    add_field(name, "error " + title, values);
-  }
-};
 
 /// The displacements of the budget's chain, and what each cause adds to them.
 void add_maps(CaseView& view) {
@@ -172,77 +128,6 @@ nlohmann::json budget_json(ErrorBudget const& budget) {
   for (BudgetTerm const& term : budget.terms) add(term);
   add(budget.total);
   return json;
-}
-
-std::string largest_term(ErrorBudget const& budget) {
-  BudgetTerm const* largest = nullptr;
-  for (BudgetTerm const& term : budget.terms) {
-    if (term.known() && (!largest || term.rms_px > largest->rms_px)) largest = &term;
-  }
-  if (!largest) return "";
-  return fmt::format(
-      "The largest cause of error is {}, with a bias of ({:.2g}, {:.2g}) px, a random part of ({:.2g}, "
-      "{:.2g}) px and an rms of {:.3g} px; the total rms is {:.3g} px.",
-      largest->name, largest->bias_u_px, largest->bias_v_px, largest->random_u_px, largest->random_v_px,
-      largest->rms_px, budget.total.rms_px);
-}
-
-/// What an uncertainty report says in the words of the GUM (JCGM 100:2008).
-std::vector<std::string> uncertainty_statements(CaseView const& view) {
-  Comparison const& all = view.comparison;
-  std::vector<std::string> statements;
-  UncertaintyQuality const quality =
-      uncertainty_quality(all.measured.displacement_px, all.window.displacement_px, all.measured.sigma_px, all.mask);
-  if (!all.measured.sigma_px.empty() && quality.count > 0) {
-    std::vector<double> sigmas;
-    for (std::size_t i = 0; i < all.mask.size(); ++i) {
-      if (!all.mask[i]) continue;
-      for (double const one : {all.measured.sigma_px[i].x, all.measured.sigma_px[i].y}) {
-        if (std::isfinite(one)) sigmas.push_back(one);
-      }
-    }
-    statements.push_back(fmt::format(
-        "The estimator's standard uncertainty is {:.3g} px in the median ({:.3g} to {:.3g} px for 10 to 90 % of the "
-        "components). It covers {:.1f} % of the errors against truth on the window (68.3 % would be right), twice of "
-        "it "
-        "{:.1f} % (95.4 %); {} components, {} vectors with gross errors left out.",
-        quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1,
-        100 * quality.coverage_2, quality.count, quality.gross));
-    statements.push_back(fmt::format("Its rms is {:.2f} times the rms error. {}", quality.rms_ratio,
-                                     quality.rms_ratio < 0.85 ? "It is too small: enlarge it by the inverse before use."
-                                     : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."
-                                                                : "That is within 15 %."));
-  }
-  ErrorBudget const& budget = all.budget;
-  double const bias = std::hypot(budget.total.bias_u_px, budget.total.bias_v_px);
-  double const random = std::sqrt(
-      (budget.total.random_u_px * budget.total.random_u_px + budget.total.random_v_px * budget.total.random_v_px) / 2);
-  statements.push_back(fmt::format(
-      "Against {}, all causes together: the combined standard uncertainty of a component is {:.3g} px (type B, from "
-      "this "
-      "simulated measurement over {} vectors), the expanded uncertainty {:.3g} px with a coverage factor of 2. The "
-      "uncorrected bias of {:.3g} px is stated apart and is not in it.",
-      view.piv ? "the displacement of the flow" : "Eq. 9", random, budget.count, 2 * random, bias));
-  return statements;
-}
-
-std::vector<std::string> findings_of(CaseView const& view) {
-  Comparison const& all = view.comparison;
-  std::vector<std::string> findings;
-  auto const rms = [&](std::vector<Vec2d> const& truth) {
-    return summarize_errors(all.measured.displacement_px, truth, all.mask, all.vectors_in_file());
-  };
-  ErrorSummary const truth = rms(all.point.displacement_px);
-  ErrorSummary const theory = rms(view.piv ? all.flow_px : all.point.eq9_px);
-  findings.push_back(
-      fmt::format("The measurement is wrong by {:.3g} px rms against ray truth and by {:.3g} px against {}; {} of {} "
-                  "vectors count, "
-                  "{:.2g} % of them with gross errors.",
-                  truth.rms_px, theory.rms_px, view.piv ? "the displacement of the flow" : "Eq. 9", truth.count,
-                  all.vectors_in_file(), 100 * truth.gross_fraction));
-  if (std::string const cause = largest_term(all.budget); !cause.empty()) findings.push_back(cause);
-  findings.push_back(uncertainty_statements(view).front());
-  return findings;
 }
 
 /// Grey values of a frame from black to white as 8 bits, of its middle where it is large.
