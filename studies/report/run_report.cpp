@@ -11,7 +11,9 @@
 #include "studies/case_files.h"
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
+#include "studies/json_text.h"
 #include "studies/report/report.h"
+#include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
 #include "studies/sweep/study_columns.h"
 #include "studies/sweep/study_table.h"
@@ -21,153 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_places = 24;      ///< of an axis in a chart; more values are gathered
 constexpr std::size_t most_table_rows = 20;  ///< without a search field
-
-/// A study as its report asks it.
-struct StudyView {
-  StudyTable table;
-  std::vector<StudyRow const*> finished;
-  std::string main;  ///< the measure that says how wrong the measurement is
-  std::string against;
-  std::vector<std::string> terms;  ///< of the budget, those that some case knows
-
-  explicit StudyView(std::string const& run);
-  double of(StudyRow const& row, std::string const& measure) const {
-    auto const at = table.find_measure(measure);
-    return at ? row.measures[*at] : std::nan("");
-  }
-  bool knows(std::string const& measure) const {
-    return std::any_of(finished.begin(), finished.end(),
-                       [&](StudyRow const* row) { return std::isfinite(of(*row, measure)); });
-  }
-  /// "f-number 8, density field late"
-  std::string title(StudyRow const& row) const;
-  std::vector<double> values(std::string const& measure) const;
-};
-
-StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
-  for (StudyRow const& row : table.rows) {
-    if (row.status == CaseStatus::ok) finished.push_back(&row);
-  }
-  if (finished.empty()) {
-    throw DataError(run, "holds no finished case; run gladstone sweep run " + shell_word(run) + " first");
-  }
-  for (auto const& [measure, name] :
-       {std::pair{"eq9.rms_px", "Eq. 9, the displacement that the density gradient gives"},
-        std::pair{"flow.rms_px", "the displacement of the flow"}, std::pair{"ray_truth.rms_px", "ray truth"}}) {
-    main = measure;
-    against = name;
-    if (knows(measure)) break;
-  }
-  for (std::string const& measure : table.measures) {
-    std::string_view constexpr head = "budget.terms.", tail = ".rms_px";
-    if (measure.starts_with(head) && measure.ends_with(tail) && knows(measure)) {
-      terms.push_back(measure.substr(head.size(), measure.size() - head.size() - tail.size()));
-    }
-  }
-}
-
-std::string StudyView::title(StudyRow const& row) const {
-  std::string text;
-  for (std::size_t k = 0; k < table.axes.size(); ++k) {
-    if (table.axes[k].labels.size() < 2) continue;
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", axis_title(table.axes[k].key),
-                        table.axes[k].labels[row.value[k]]);
-  }
-  return text.empty() ? fmt::format("case {}", row.index) : text;
-}
-
-std::vector<double> StudyView::values(std::string const& measure) const {
-  std::vector<double> known;
-  for (StudyRow const* row : finished) {
-    if (double const value = of(*row, measure); std::isfinite(value)) known.push_back(value);
-  }
-  return known;
-}
-
-std::string question_of(StudyView const& study) {
-  std::string axes;
-  for (StudyAxis const& axis : study.table.axes) {
-    if (axis.labels.size() < 2) continue;
-    axes += fmt::format("{}{} ({} values)", axes.empty() ? "" : ", ", axis_title(axis.key), axis.labels.size());
-  }
-  return fmt::format("How wrong is the measured displacement against {}{}? {} of {} cases are finished.", study.against,
-                     axes.empty() ? "" : " over " + axes, study.finished.size(), study.table.rows.size());
-}
-
-std::string extremes(StudyView const& study, StudyRow const& best, StudyRow const& worst) {
-  return fmt::format(
-      "The rms error against {} lies between {:.3g} px ({}) and {:.3g} px ({}); its median is {:.3g} px.",
-      study.against, study.of(best, study.main), study.title(best), study.of(worst, study.main), study.title(worst),
-      quantile(study.values(study.main), 0.5));
-}
-
-/// Which cause is the largest in how many cases. Empty where the budget is not known.
-std::string largest_cause(StudyView const& study) {
-  std::vector<std::size_t> wins(study.terms.size());
-  std::size_t judged = 0;
-  for (StudyRow const* row : study.finished) {
-    std::size_t largest = study.terms.size();
-    double most = -1;
-    for (std::size_t k = 0; k < study.terms.size(); ++k) {
-      double const rms = study.of(*row, "budget.terms." + study.terms[k] + ".rms_px");
-      if (rms > most) {
-        most = rms;
-        largest = k;
-      }
-    }
-    if (largest == study.terms.size()) continue;
-    ++wins[largest];
-    ++judged;
-  }
-  if (judged == 0) return "";
-  auto const first = static_cast<std::size_t>(std::max_element(wins.begin(), wins.end()) - wins.begin());
-  return fmt::format("The largest cause of error is {} in {} of {} cases, with a median rms of {:.3g} px.",
-                     study.terms[first], wins[first], judged,
-                     quantile(study.values("budget.terms." + study.terms[first] + ".rms_px"), 0.5));
-}
-
-/// The axis along which the median error changes by the largest factor. Empty where no axis has two values.
-std::string strongest_axis(StudyView const& study) {
-  double strongest = 0;
-  std::string text;
-  for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
-    StudyAxis const& axis = study.table.axes[k];
-    FigureAxis const places =
-        figure_axis(axis, std::min<std::size_t>(most_places, std::max<std::size_t>(2, axis.labels.size())));
-    double least = std::numeric_limits<double>::infinity(), most = 0;
-    std::string least_at, most_at;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      std::vector<double> here;
-      for (StudyRow const* row : study.finished) {
-        double const value = study.of(*row, study.main);
-        if (places.place_of[row->value[k]] == i && std::isfinite(value)) here.push_back(value);
-      }
-      double const median = quantile(std::move(here), 0.5);
-      if (median < least) least = median, least_at = places.label[i];
-      if (median > most) most = median, most_at = places.label[i];
-    }
-    if (!(most > least) || !(most / least > strongest)) continue;
-    strongest = most / least;
-    text = fmt::format("{} matters most: the median error is {:.3g} px at {} and {:.3g} px at {}.", places.title, least,
-                       least_at, most, most_at);
-  }
-  return text;
-}
-
-std::string uncertainty_finding(StudyView const& study) {
-  std::vector<double> const coverage = study.values("uncertainty.window_truth.coverage_1");
-  if (coverage.empty()) return "";
-  return fmt::format(
-      "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; "
-      "68 % would be right).",
-      100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
-}
-
-nlohmann::json finite_or_null(double number) {
-  return std::isfinite(number) ? nlohmann::json(number) : nlohmann::json(nullptr);
-}
 
 nlohmann::json data_of(StudyView const& study) {
   nlohmann::json data{{"main", study.main}, {"terms", study.terms}};
@@ -177,7 +33,7 @@ nlohmann::json data_of(StudyView const& study) {
   for (StudyAxis const& axis : study.table.axes) {
     axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(most_places, axis.labels.size()))));
     nlohmann::json numbers = nlohmann::json::array();
-    for (double const position : axes.back().position) numbers.push_back(finite_or_null(position));
+    for (double const position : axes.back().position) numbers.push_back(known_or_null(position));
     data["axes"].push_back({{"key", axis.key},
                             {"title", axes.back().title},
                             {"numeric", axes.back().numeric},
@@ -198,7 +54,7 @@ nlohmann::json data_of(StudyView const& study) {
     for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
     for (auto const& measure : data["measures"]) {
       one["m"].push_back(row.status == CaseStatus::ok
-                             ? finite_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
+                             ? known_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
                              : nlohmann::json(nullptr));
     }
     data["rows"].push_back(std::move(one));

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "analysis/errors/error_summary.h"
+#include "render/base/error.h"
+#include "studies/figures/study_axes.h"
+#include "studies/report/study_view.h"
+#include "studies/sweep/job_array.h"
+
+namespace gladstone {
+
+StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
+  for (StudyRow const& row : table.rows) {
+    if (row.status == CaseStatus::ok) finished.push_back(&row);
+  }
+  if (finished.empty()) {
+    throw DataError(run, "holds no finished case; run gladstone sweep run " + shell_word(run) + " first");
+  }
+  for (auto const& [measure, name] :
+       {std::pair{"eq9.rms_px", "Eq. 9, the displacement that the density gradient gives"},
+        std::pair{"flow.rms_px", "the displacement of the flow"}, std::pair{"ray_truth.rms_px", "ray truth"}}) {
+    main = measure;
+    against = name;
+    if (knows(measure)) break;
+  }
+  for (std::string const& measure : table.measures) {
+    std::string_view constexpr head = "budget.terms.", tail = ".rms_px";
+    if (measure.starts_with(head) && measure.ends_with(tail) && knows(measure)) {
+      terms.push_back(measure.substr(head.size(), measure.size() - head.size() - tail.size()));
+    }
+  }
+}
+
+std::string StudyView::title(StudyRow const& row) const {
+  std::string text;
+  for (std::size_t k = 0; k < table.axes.size(); ++k) {
+    if (table.axes[k].labels.size() < 2) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", axis_title(table.axes[k].key),
+                        table.axes[k].labels[row.value[k]]);
+  }
+  return text.empty() ? fmt::format("case {}", row.index) : text;
+}
+
+std::vector<double> StudyView::values(std::string const& measure) const {
+  std::vector<double> known;
+  for (StudyRow const* row : finished) {
+    if (double const value = of(*row, measure); std::isfinite(value)) known.push_back(value);
+  }
+  return known;
+}
+
+std::string question_of(StudyView const& study) {
+  std::string axes;
+  for (StudyAxis const& axis : study.table.axes) {
+    if (axis.labels.size() < 2) continue;
+    axes += fmt::format("{}{} ({} values)", axes.empty() ? "" : ", ", axis_title(axis.key), axis.labels.size());
+  }
+  return fmt::format("How wrong is the measured displacement against {}{}? {} of {} cases are finished.", study.against,
+                     axes.empty() ? "" : " over " + axes, study.finished.size(), study.table.rows.size());
+}
+
+std::string extremes(StudyView const& study, StudyRow const& best, StudyRow const& worst) {
+  return fmt::format(
+      "The rms error against {} lies between {:.3g} px ({}) and {:.3g} px ({}); its median is {:.3g} px.",
+      study.against, study.of(best, study.main), study.title(best), study.of(worst, study.main), study.title(worst),
+      quantile(study.values(study.main), 0.5));
+}
+
+std::string largest_cause(StudyView const& study) {
+  std::vector<std::size_t> wins(study.terms.size());
+  std::size_t judged = 0;
+  for (StudyRow const* row : study.finished) {
+    std::size_t largest = study.terms.size();
+    double most = -1;
+    for (std::size_t k = 0; k < study.terms.size(); ++k) {
+      double const rms = study.of(*row, "budget.terms." + study.terms[k] + ".rms_px");
+      if (rms > most) {
+        most = rms;
+        largest = k;
+      }
+    }
+    if (largest == study.terms.size()) continue;
+    ++wins[largest];
+    ++judged;
+  }
+  if (judged == 0) return "";
+  auto const first = static_cast<std::size_t>(std::max_element(wins.begin(), wins.end()) - wins.begin());
+  return fmt::format("The largest cause of error is {} in {} of {} cases, with a median rms of {:.3g} px.",
+                     study.terms[first], wins[first], judged,
+                     quantile(study.values("budget.terms." + study.terms[first] + ".rms_px"), 0.5));
+}
+
+std::string strongest_axis(StudyView const& study) {
+  double strongest = 0;
+  std::string text;
+  for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
+    StudyAxis const& axis = study.table.axes[k];
+    FigureAxis const places =
+        figure_axis(axis, std::min<std::size_t>(most_places, std::max<std::size_t>(2, axis.labels.size())));
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    std::string least_at, most_at;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      std::vector<double> here;
+      for (StudyRow const* row : study.finished) {
+        double const value = study.of(*row, study.main);
+        if (places.place_of[row->value[k]] == i && std::isfinite(value)) here.push_back(value);
+      }
+      double const median = quantile(std::move(here), 0.5);
+      if (median < least) least = median, least_at = places.label[i];
+      if (median > most) most = median, most_at = places.label[i];
+    }
+    if (!(most > least) || !(most / least > strongest)) continue;
+    strongest = most / least;
+    text = fmt::format("{} matters most: the median error is {:.3g} px at {} and {:.3g} px at {}.", places.title, least,
+                       least_at, most, most_at);
+  }
+  return text;
+}
+
+std::string uncertainty_finding(StudyView const& study) {
+  std::vector<double> const coverage = study.values("uncertainty.window_truth.coverage_1");
+  if (coverage.empty()) return "";
+  return fmt::format(
+      "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; "
+      "68 % would be right).",
+      100 * quantile(coverage, 0.5), 100 * quantile(coverage, 0), 100 * quantile(coverage, 1));
+}
+
+}  // namespace gladstone
