@@ -27,8 +27,8 @@ inline constexpr double image_tolerance_levels = 0.5;
 /// Processor time that rays chosen by "auto" may take [s], half of it on two cores: beyond, 1024 rays a dot are taken.
 inline constexpr double rays_budget_s = 60;
 
-/// What nobody knows of a plan.
-inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// What nothing tells of a plan.
+inline constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
 
 /// Errors over their tolerances, whichever is larger; 0 for one that is not known.
 inline double excess_of(double truth_px, double image_levels) {
@@ -39,8 +39,8 @@ inline double excess_of(double truth_px, double image_levels) {
 struct SideFaceErrors {
   std::size_t dots = 0;    ///< there are
   std::uint64_t rays = 0;  ///< of each
-  double truth_error_px = unknown, image_error_levels = unknown;
-  double rays_wanted = unknown;
+  double truth_error_px = not_told, image_error_levels = not_told;
+  double rays_wanted = not_told;
 
   double excess() const { return excess_of(truth_error_px, image_error_levels); }
 };
@@ -50,17 +50,17 @@ struct RaysPlan {
   RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
   std::uint64_t rays = 0;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
-  double truth_error_px = unknown;       ///< of displacements, rms over dots, components and scramblings; NaN: none was
+  double truth_error_px = not_told;      ///< of displacements, rms over dots, components and scramblings; NaN: none was
                                          ///< measured, or of no dot a ray got through
-  double image_error_levels = unknown;   ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:
+  double image_error_levels = not_told;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:
                                          ///< none was measured, or none was lit
   double truth_resolution_px = 0;        ///< an error found smaller than this could as well be none
   double image_resolution_levels = 0;    ///< likewise
   int bits = 0;
-  bool extrapolated = false;     ///< the errors were measured up to 4096 rays and extrapolated from there
-  bool converged = true;         ///< false: the largest number that is taken is not enough
-  double rays_wanted = unknown;  ///< that would be, as far as can be told; NaN: nothing tells, or no number would
-  double seconds = unknown;      ///< of processor time that a rendering with `rays` will take, by rays_seconds()
+  bool extrapolated = false;      ///< the errors were measured up to 4096 rays and extrapolated from there
+  bool converged = true;          ///< false: the largest number that is taken is not enough
+  double rays_wanted = not_told;  ///< that would be, as far as can be told; NaN: nothing tells, or no number would
+  double seconds = not_told;      ///< of processor time that a rendering with `rays` will take, by rays_seconds()
 
   std::optional<SideFaceErrors> side_faces;  ///< of the fast renderer; none: no dot in view lies there
 
