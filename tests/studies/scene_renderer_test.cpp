@@ -167,8 +167,8 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
 }
 
 // With a given number of rays the plan measures what it leaves of these dots, truth and images: 32 plain rays of a cone
-// that a face cuts in two scatter by more than is asked, and 32,768 by the square root of a thousand less, 32; what
-// scatters is told from so many dots to a tenth or so.
+// that a face cuts in two scatter by more than is asked, and 32,768 by the square root of a thousand less, 32, or more:
+// that many are not traced, but told from 256. What scatters is told from so many dots to a tenth or so.
 TEST(SideFaces, AreMeasuredWithAGivenNumber) {
   auto const measured = [](std::uint64_t rays) {
     Scene scene = volume_in_view(rays);
