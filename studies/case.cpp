@@ -186,6 +186,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
   scene.rays_per_dot = prepared.rays.rays;
   scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
+  scene.fineness = prepared.rays.fineness;
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
   if (by_table) {

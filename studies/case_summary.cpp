@@ -49,7 +49,8 @@ nlohmann::json resolved(double error, double resolution) {
 }
 
 nlohmann::json table_error_json(RaysPlan const& error) {
-  return {{"truth_px", resolved(error.truth_error_px, error.truth_resolution_px)},
+  return {{"fineness", error.fineness},
+          {"truth_px", resolved(error.truth_error_px, error.truth_resolution_px)},
           {"image_levels", resolved(error.image_error_levels, error.image_resolution_levels)},
           {"truth_resolution_px", known_or_null(error.truth_resolution_px)},
           {"image_resolution_levels", known_or_null(error.image_resolution_levels)},

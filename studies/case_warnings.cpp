@@ -93,11 +93,12 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
 
 void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
   if (!(error.excess() > 1)) return;
-  warn(warnings,
-       fmt::format(
-           "what the table of deflections leaves: images are off by {}, truth by {}, where {} and {} are asked; "
-           "render.method = \"rays\" leaves nothing, but takes many render.rays_per_dot to scatter less",
-           image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px));
+  warn(
+      warnings,
+      fmt::format("what the table of deflections leaves: images are off by {}, truth by {}, where {} and {} are asked; "
+                  "{}render.method = \"rays\" leaves nothing, but takes many render.rays_per_dot to scatter less",
+                  image_error_in_words(error), truth_error_in_words(error), image_tolerance_levels, truth_tolerance_px,
+                  error.fineness == 1 ? "render.rays_per_dot = \"auto\" takes a finer table; " : ""));
 }
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth) {

@@ -246,6 +246,7 @@ RaysPlan plan_rays_of(Scene& scene) {
     scene.setup.render.method = plan.method;
   }
   scene.rays_per_dot = plan.rays;
+  scene.fineness = plan.fineness;
   if (plan.method != RenderMethod::rays) plan_rays_at_side_faces(scene, plan);
   scene.rays_at_side_faces = plan.rays_at_side_faces;
   return plan;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double most_rays = 1e8;     // of a table
 constexpr double cheap_rays = 2.5e5;  // that a table of twice as many nodes may take
+constexpr double fine_rays = 2.5e7;   // the same, where fineness is asked for
 constexpr double fewest_nodes = 12;   // along either axis of the view
 constexpr double slope_reach = 0.6;   // of the stop's radius: where the pupil's points are on average
 constexpr double leaning = 2;         // radii of the stop: rays further out are not looked for at a field's sides
@@ -23,13 +24,13 @@ struct NodeDensity {
   int coarseness;  ///< the slopes' spacing over that
 
   /// A grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as
-  /// many; twice as many of both, and as many slopes, where they are cheap. A field that is smooth over all of the view
-  /// has no fewer nodes than polynomials need.
+  /// many; twice as many of both, and as many slopes, where they are cheap or asked for. A field that is smooth over
+  /// all of the view has no fewer nodes than polynomials need.
   /// @param finest of the medium @param extent of the mid-plane that the view's cones cross [m]
-  static NodeDensity choose(double finest, bool grid, Vec2d extent) {
+  static NodeDensity choose(double finest, bool grid, Vec2d extent, int fineness) {
     double const spacing = std::min(grid ? finest : finest / 6, std::min(extent.x, extent.y) / fewest_nodes);
     NodeDensity const fine{spacing / 2, 1}, usual{spacing, 2};
-    return fine.rays(extent.x * extent.y) <= cheap_rays ? fine : usual;
+    return fine.rays(extent.x * extent.y) <= (fineness > 1 ? fine_rays : cheap_rays) ? fine : usual;
   }
   double nodes(double area) const { return area / (spacing * spacing); }
   double rays(double area) const { return nodes(area) * (1 + 4.0 / (coarseness * coarseness)); }
@@ -57,7 +58,7 @@ double way_to(Bounds<double> const& box, Setup const& setup) {
 }
 
 NodeDensity density_of(Scene const& scene, Vec2d extent) {
-  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent);
+  return NodeDensity::choose(scene.medium.finest, scene.medium.grid.nodes[0] > 1, extent, scene.fineness);
 }
 
 Bounds<double> bounds_of(Scene const& scene) {
@@ -83,7 +84,9 @@ double table_bytes_needed(Setup const& setup) {
   if (field.kind == FieldKind::none || !reason_against_focused_dots(setup).empty()) return 0;
   Vec2d const crossed = crossed_extent(setup, (setup.z_d + field.center.z) / setup.z_b());
   double const area = crossed.x * crossed.y;
-  NodeDensity const density = NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, crossed);
+  int const most_fineness = setup.render.rays_per_dot ? 1 : 2;
+  NodeDensity const density =
+      NodeDensity::choose(finest_length(setup.medium), field.kind == FieldKind::file, crossed, most_fineness);
   return density.bytes(area) * std::min(1.0, most_rays / density.rays(area));
 }
 

@@ -18,7 +18,7 @@ struct ConePoint {
   int direction;
 };
 struct ConeRule {
-  static constexpr int most_directions = 128;
+  static constexpr int most_directions = 256;
   ConePoint const* points = nullptr;
   Vec2d const* directions = nullptr;
   int count = 0;

@@ -26,10 +26,13 @@ unsigned z_order(Vec2d p) {
 
 /// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
 /// finest lengths.
-/// @param radius of the cone, in those lengths @param times as many rings and directions
-void make_cone_rule(double radius, int times, std::vector<ConePoint>& points, std::vector<Vec2d>& directions) {
-  int const rings = std::min(40, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
-  int const count = std::min(ConeRule::most_directions, times * 4 * static_cast<int>(std::ceil(0.45 * radius + 4)));
+/// @param radius of the cone, in those lengths @param fineness of the rule @param times as many rings and directions
+void make_cone_rule(double radius, int fineness, int times, std::vector<ConePoint>& points,
+                    std::vector<Vec2d>& directions) {
+  times *= fineness;
+  int const rings = std::min(40 * fineness, times * (static_cast<int>(std::ceil(0.35 * radius)) + 4));
+  int const count = std::min(std::min(128 * fineness, ConeRule::most_directions),
+                             times * 4 * static_cast<int>(std::ceil(0.45 * radius + 4)));
   for (int k = 0; k < count; ++k) directions.push_back({std::cos(2 * pi * k / count), std::sin(2 * pi * k / count)});
   GaussLegendre const nodes(rings);
   for (std::size_t ring = 0; ring < nodes.node.size(); ++ring) {
@@ -99,9 +102,10 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   model.dot_light = light_of_dot(half_px, sources.shape);
   model.table = table;
   // a closed form's finest length is no cell but the whole of a wave's slope
-  model.cone.fine = scene.medium.grid.nodes[0] <= 1;
+  bool const closed_form = scene.medium.grid.nodes[0] <= 1;
+  model.cone.fine = closed_form || scene.fineness > 1;
   double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
-  make_cone_rule(radius, model.cone.fine ? 2 : 1, cone_points, cone_directions);
+  make_cone_rule(radius, scene.fineness, closed_form ? 2 : 1, cone_points, cone_directions);
   model.cone.points = cone_points.data();
   model.cone.directions = cone_directions.data();
   model.cone.count = static_cast<int>(cone_points.size());

@@ -1,6 +1,7 @@
 #include "render/focused_dots/table_error.h"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::size_t measured_dots = 8;
 constexpr int traced_rays = 2048, tabled_rays = 131072;  ///< a scrambling
+constexpr double worth_more_rays = 0.7;                  ///< of the error with a quarter of them
 
 /// One dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
@@ -137,6 +139,7 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
   RaysPlan plan;
   plan.rays = scene.rays_per_dot;
+  plan.fineness = scene.fineness;
   std::vector<std::size_t> const in_view = dots_in_view(scene);
   GreyLevels const levels(scene.setup.camera, in_view.size());
   plan.bits = levels.bits;
@@ -172,14 +175,27 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
 
 RaysPlan plan_rays(FocusedDots const& dots) {
   if (auto const given = given_rays(dots.scene().setup)) return *given;
-  Scene searched = dots.scene();  // at one number of rays after the other
+  Scene searched = dots.scene();  // at one fineness and number of rays after the other
   FocusedDots const here = focused_dots(searched).value();
-  for (searched.rays_per_dot = 32;; searched.rays_per_dot *= 4) {
-    RaysPlan plan = measure_table_error(here);
+  searched.rays_per_dot = 32;
+  searched.fineness = 1;
+  RaysPlan plan;
+  double last = std::numeric_limits<double>::infinity();
+  while (true) {
+    plan = measure_table_error(here);
     plan.converged = plan.excess() <= 1;
-    if (plan.converged) plan.rays_wanted = static_cast<double>(plan.rays);  // more do not mend what a table leaves
     plan.seconds = rays_seconds(searched) * static_cast<double>(plan.rays);
-    if (plan.converged || searched.rays_per_dot >= 512) return plan;
+    if (plan.converged) {
+      plan.rays_wanted = static_cast<double>(plan.rays);
+      return plan;
+    }
+    if (searched.fineness == 1) {
+      searched.fineness = 2;
+    } else {  // more rays do not mend what a table leaves
+      if (searched.rays_per_dot >= 512 || plan.excess() > worth_more_rays * last) return plan;
+      last = plan.excess();
+      searched.rays_per_dot *= 4;
+    }
   }
 }
 

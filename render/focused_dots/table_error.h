@@ -13,9 +13,10 @@ namespace gladstone {
 /// scatter by is taken off. Dots that the table does not cover do not count.
 RaysPlan measure_table_error(FocusedDots const& dots);
 
-/// The rays that every dot takes to correct the table: a given number, else 32, or 128 or 512 where truth is off by
-/// more than 1e-3 px rms otherwise or images by more than half a grey level; and what it is off by then. Dots that
-/// still scatter take up to 256 (DotModel). `converged` tells whether that is enough.
+/// The rays that every dot takes to correct the table, and how fine table and rules are: a given number of rays, else
+/// 32. Where truth is off by more than 1e-3 px rms or images by more than half a grey level, table and rules twice as
+/// fine; then 128 or 512 rays, as long as they take a third off the error. Dots that still scatter take up to 256
+/// (DotModel). Says what it is off by then, and whether that is enough (`converged`).
 RaysPlan plan_rays(FocusedDots const& dots);
 
 }  // namespace gladstone

@@ -50,6 +50,7 @@ struct RaysPlan {
   RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
   std::uint64_t rays = 0;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
+  int fineness = 1;                      ///< as the scene's
   double truth_error_px = not_told;      ///< of displacements, rms over dots, components and scramblings; NaN: none was
                                          ///< measured, or of no dot a ray got through
   double image_error_levels = not_told;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:

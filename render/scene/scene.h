@@ -30,6 +30,7 @@ struct Scene {
   double pupil_margin = 0;                   ///< by which the pupil is enlarged so that bending loses no ray [m]
   std::uint64_t rays_per_dot = 1;
   std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
+  int fineness = 1;                      ///< of the fast renderer's table and rules: 2 where fronts ask for it
 
   /// Dots, or particles.
   std::size_t source_count() const { return setup.piv ? particles.size() : dots.centre.size(); }
