@@ -133,7 +133,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
 
 struct CudaRenderer::Uploads {
   KeptMedium medium;
-  KeptDeflections<DeviceDeflections> deflections;
+  LastDeflections<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
 

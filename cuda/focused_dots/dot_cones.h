@@ -5,30 +5,12 @@
 #include "cuda/device/device_images.h"
 #include "cuda/rays/device_medium.h"
 #include "render/focused_dots/bench_theory.h"
+#include "render/focused_dots/cone_integral.h"
 
 /// What launches do with dots. All pointers of models, media and dots are the device's; a launch works on `count` dots
 /// that lie one after the other, a dot's sums have one order, and light is in whole units: the same bits on any number
 /// of blocks.
 namespace gladstone::cuda {
-
-/// What is known of a dot once its rays are traced and its cone is integrated; stays on the device.
-struct DotCone {
-  DotKind kind;
-  Vec2d centre, aim;
-  double light;  ///< in the reference frame [fully lit px]
-  TableCheck check;
-  CheckErrors errors;
-  Vec2d origin;       ///< where the cone's displacements count from [px]
-  Extent extent;      ///< of a wide one
-  MomentField field;  ///< of a narrow one
-};
-
-/// What goes back to the host.
-struct DotFound {
-  DotTruth truth;
-  int rays;   ///< traced
-  bool left;  ///< to another renderer
-};
 
 /// Counted over all dots of a rendering, on the device.
 struct RayTally {

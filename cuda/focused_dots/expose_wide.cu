@@ -1,12 +1,15 @@
 #include <algorithm>
 
+#include "cuda/device/device_array.h"
 #include "cuda/device/launch.h"
-#include "cuda/focused_dots/box_light.cuh"
+#include "cuda/focused_dots/dot_patch.cuh"
+#include "render/focused_dots/square_light.h"
 
 namespace gladstone::cuda {
 namespace {
 
-constexpr std::uint64_t most_blocks = 1024;  // each of which keeps the points of a cone
+using Squares = SquareSums<4>;
+constexpr std::uint64_t most_blocks = 1024;  // each of which has room for the points of a cone
 
 /// Room for one cone's points a block, since a block works on one dot at a time.
 struct RoomForCones {
@@ -30,23 +33,25 @@ __global__ void __launch_bounds__(dot_threads, 4)
                        DeviceImages const images, int const side, ConeLight* const room, unsigned short* const order,
                        std::size_t const points_a_block) {
   extern __shared__ double dynamic[];
-  __shared__ __align__(16) unsigned char state_storage[sizeof(ConeState)];
+  __shared__ __align__(16) unsigned char integral_storage[sizeof(ConeIntegral)];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
-  __shared__ __align__(16) unsigned char box_storage[sizeof(BoxState)];
-  ConeState& state = *reinterpret_cast<ConeState*>(state_storage);
+  __shared__ __align__(16) unsigned char square_storage[sizeof(Squares)];
+  ConeIntegral& whole = *reinterpret_cast<ConeIntegral*>(integral_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
   for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
     DotCone const& dot = cones[i];
     if (dot.kind != DotKind::wide) continue;
-    Patch patch{dynamic, side, 0, 0};
     __syncthreads();
     if (threadIdx.x == 0) cone = cone_of(model, dot);
     __syncthreads();
-    ConeLight* const kept = room + blockIdx.x * points_a_block;
-    integrate_cone(model, cone, state, kept);
-    expose_boxes(model, dot, cone, state,
-                 {kept, order + blockIdx.x * points_a_block, model.cone.points_of(state.simple)},
-                 *reinterpret_cast<BoxState*>(box_storage), patch, images);
+    ConeLight* const points = room + blockIdx.x * points_a_block;
+    integrate_cone(Block{}, model, cone, whole, points);
+    Patch patch{images, Frame::flow, dynamic, side};
+    patch.begin(model.to_pixel(dot.centre) + dot.origin);
+    lay_down_squares<1>(Block{}, model, dot, cone, whole,
+                        {points, order + blockIdx.x * points_a_block, model.cone.points_of(whole.simple)},
+                        *reinterpret_cast<Squares*>(square_storage), patch);
+    patch.flush();
   }
 }
 
@@ -58,8 +63,7 @@ void expose_wide(DotModel const& model, std::uint64_t count, DotCone const* cone
   int const side = patch_side(model, most_shared_bytes(kernel));
   std::size_t const shared = patch_bytes(side);
   allow_shared_bytes(kernel, shared);
-  std::size_t const points_a_block =
-      static_cast<std::size_t>(model.places.count * std::max(model.cone.count, model.cone.scattered_count));
+  auto const points_a_block = static_cast<std::size_t>(model.most_points());
   int blocks = blocks_for(kernel, dot_threads, shared, std::min(count, most_blocks));
   RoomForCones room = RoomForCones::make(points_a_block, blocks);
   kernel<<<blocks, dot_threads, shared>>>(model, count, cones, images, side, room.light.data(), room.order.data(),

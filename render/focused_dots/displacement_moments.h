@@ -50,14 +50,7 @@ struct PlaceRule {
 struct MomentField {
   double coefficient[DisplacementMoments::count][PlaceRule::terms];
 
-  /// @param moments at the places of the rule
-  static MomentField fit(PlaceRule const& rule, DisplacementMoments const* moments) {
-    MomentField field;
-    for (int i = 0; i < DisplacementMoments::count; ++i) {
-      for (int term = 0; term < PlaceRule::terms; ++term) field.coefficient[i][term] = fitted(rule, moments, i, term);
-    }
-    return field;
-  }
+  /// A coefficient. @param moments at the places of the rule
   GLADSTONE_HD static double fitted(PlaceRule const& rule, DisplacementMoments const* moments, int moment, int term) {
     double sum = 0;
     for (int place = 0; place < rule.count; ++place) sum += rule.fit[term][place] * moments[place].of[moment];
@@ -69,11 +62,6 @@ struct MomentField {
     double sum = 0;
     for (int term = 0; term < PlaceRule::terms; ++term) sum += basis[term] * coefficient[moment][term];
     return sum;
-  }
-  GLADSTONE_HD DisplacementMoments at(Vec2d place) const {
-    DisplacementMoments moments;
-    for (int i = 0; i < DisplacementMoments::count; ++i) moments.of[i] = value(i, place);
-    return moments;
   }
 };
 

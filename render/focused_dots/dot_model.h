@@ -31,7 +31,7 @@ enum class DotKind : int {
 /// the source's disc convolved with the spot. In the flow a table of deflections tells what every ray of a dot's cone
 /// does; a few rays of each dot are traced and correct it (CorrectedCone). Truth is an integral over the cone, and
 /// light goes by the moments of its displacements; no spot is laid down for a ray. What the rule over the cone and the
-/// table are off by beyond the rays' mean, their spread and a tilt of the bend stays, whatever the number of rays:
+/// table are off by beyond the rays' mean, their spread and a tilt of the shift stays, whatever the number of rays:
 /// table_error() measures it.
 struct DotModel {
   Vec2d axis_px{};            ///< where the optical axis meets the sensor [px]
@@ -64,13 +64,17 @@ struct DotModel {
     double const spread = 1 + (dot(centre, centre) + 0.5 * stop_radius * stop_radius) / (distance() * distance());
     return dot_light * radiance / (spread * spread);
   }
+  /// Points that a cone may be integrated over, at all places of the source.
+  int most_points() const {
+    return places.count * (cone.count > cone.scattered_count ? cone.count : cone.scattered_count);
+  }
   /// From the centre of the source to a place on it [m].
   GLADSTONE_HD Vec2d offset(Vec2d place) const { return {source_half * place.x, -source_half * place.y}; }
   /// Most side of the squares into which wide distributions of displacements are sorted [px], within which four orders
   /// of moments do. The series runs in displacements over sigma; a pixel blurs what it leaves but does not shorten it,
   /// and a disc, of which a spot is but the rim's blur, allows more than a point. Table 1: 2e-5 of the peak, rms over
   /// lit pixels, 1e-4 at worst.
-  GLADSTONE_HD double most_box_side() const {
+  GLADSTONE_HD double most_square_side() const {
     using std::sqrt;
     double const blur = sqrt(spot.sigma * spot.sigma + 1.0 / 12), allowed = (source_half > 0 ? 1.5 : 1.0) * spot.sigma;
     return blur < allowed ? blur : allowed;
@@ -108,13 +112,13 @@ struct DotAim {
 };
 
 /// Bend of a dot's rays about an aim, on average over middle and ring [m]. @pre the table covers them
-GLADSTONE_HD inline Vec2d mean_bend(DotModel const& model, Vec2d centre, Vec2d aim) {
+GLADSTONE_HD inline Vec2d mean_shift(DotModel const& model, Vec2d centre, Vec2d aim) {
   Vec2d sum{};
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       double const away = x != 0 && y != 0 ? 0.5 : 0.7;  // of the stop's radius
       Vec2d const pupil = aim + (away * model.stop_radius) * Vec2d{static_cast<double>(x), static_cast<double>(y)};
-      sum += model.table.bend(model.table.crossing(centre, pupil), pupil);
+      sum += model.table.shift(model.table.crossing(centre, pupil), pupil);
     }
   }
   return sum / 9.0;
@@ -139,7 +143,7 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
     if (round == most_rounds) break;
     Vec2d const last = aim.pupil;
     bool const alone = round < rounds_of_one;
-    aim.pupil = alone ? -table.bend(table.crossing(centre, last), last) : -mean_bend(model, centre, last);
+    aim.pupil = alone ? -table.shift(table.crossing(centre, last), last) : -mean_shift(model, centre, last);
     if (!(length(aim.pupil - last) > (alone ? 1e-6 : 0.01) * model.stop_radius)) {
       if (!table.covers(centre, half, aim.pupil, reach)) return aim;
       break;
@@ -151,7 +155,7 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
 
 /// What tracing a dot's rays says.
 struct CheckedRay {
-  Vec2d at;  ///< of the stop, from its middle, but for what the medium bends further [m]
+  Vec2d at;  ///< of the stop, from its middle, but for what the medium shifts further [m]
   Deflection expected;
   RayStatus status[frame_count];  ///< where it ends in either frame
 };
@@ -182,10 +186,10 @@ GLADSTONE_HD inline CheckedRay check_ray(DotModel const& model, Vec2d aim, SentR
   CheckedRay checked;
   checked.at = sent.pupil - aim;
   Vec2d const crossing = model.table.crossing(sent.from, sent.pupil);
-  checked.expected = {model.table.displacement(crossing, sent.pupil), model.table.bend(crossing, sent.pupil)};
+  checked.expected = {model.table.displacement(crossing, sent.pupil), model.table.shift(crossing, sent.pupil)};
   for (int frame = 0; frame < frame_count; ++frame) {
     Vec2d pixel = model.to_pixel(sent.from), arrival = sent.pupil;
-    if (frame == 1) pixel += found.displacement, arrival += found.bend;
+    if (frame == 1) pixel += found.displacement, arrival += found.shift;
     bool const seen = pixel.x >= -0.5 && pixel.x < model.columns - 0.5 && pixel.y >= -0.5 && pixel.y < model.rows - 0.5;
     checked.status[frame] = length(arrival) > model.stop_radius ? RayStatus::vignetted
                             : seen                              ? RayStatus::alive
@@ -229,7 +233,7 @@ GLADSTONE_HD inline void sum_cone(DotModel const& model, double light, Vec2d ori
 GLADSTONE_HD inline DotKind wide_or_narrow(DotModel const& model, bool narrow, Vec2d origin, Extent const& extent) {
   if (narrow) return DotKind::narrow;
   MomentImages const& images = model.moment_images;
-  return images.exist() && SpannedBoxes(images.lattice, origin, extent).few ? DotKind::wide : DotKind::left;
+  return images.exist() && SpannedSquares(images.lattice, origin, extent).few ? DotKind::wide : DotKind::left;
 }
 
 /// Some light to be laid down around a point.

@@ -66,9 +66,9 @@ void make_images(MomentImages const& images, double* first, Vec2d middle, std::v
 MomentImages MomentImages::plan(double half_px, GaussianSpot<double> const& spot, double side, int terms) {
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   MomentImages images;
-  images.lattice = BoxLattice::no_coarser(side);
+  images.lattice = MomentLattice::no_coarser(side);
   // the source's points lie up to half a pixel further out than seen from the pixel's middle, spots about their pixels
-  images.half = static_cast<int>(std::ceil(half_px + 0.5 + BoxLattice::aside)) + spot.half_width();
+  images.half = static_cast<int>(std::ceil(half_px + 0.5 + MomentLattice::aside)) + spot.half_width();
   images.terms = terms;
   int const reach = 2 * spot.half_width() + 1;
   if (reach > most_lanes || !(half_px < 1000)) return {};
