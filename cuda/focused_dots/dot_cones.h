@@ -28,11 +28,8 @@ void integrate_cones(DotModel const& model, std::uint64_t count, DotCone* cones,
 /// Works out the images of a model's moments, which have a plan. @param out room for them
 void make_moment_images(DotModel const& model, double* out);
 
-/// Lays down the light of all dots in the reference frame, and of still and narrow ones in the flow.
-void expose_cones(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
-
-/// Lays down the light of wide ones in the flow.
-void expose_wide(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
+/// Lays down the light of dots in both frames, a block a dot.
+void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
 
 /// Integrates the gradient along the straight rays of dots.
 void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium<double> const& medium,

@@ -63,10 +63,13 @@ using Warp = WarpPart<warp_size>;
 
 /// A block that works on one dot; its teams are its warps.
 struct Block {
+  static constexpr bool alone = false;
+
   __device__ static int lane() { return static_cast<int>(threadIdx.x); }
   __device__ static constexpr int size() { return dot_threads; }
   __device__ static void sync() { __syncthreads(); }
   __device__ static void sync_team() { __syncwarp(); }
+  __device__ static void poll() {}
   static __device__ Warp team() { return {lane() / warp_size, dot_warps}; }
   static __device__ WarpPart<8> eight() { return {lane() / 8, dot_threads / 8}; }
   __device__ static int take(int& listed) { return atomicAdd(&listed, 1); }

@@ -43,22 +43,31 @@ GLADSTONE_HD DotAim check_dot(Lanes& lanes, DotModel const& model, Medium const&
     bool lost = false;
     for (int first = traced + abreast * lanes.lane(); first < enough; first += abreast * lanes.size()) {
       lanes.poll();  // each of them may take a million steps
-      SentRay sent[abreast];
       Vec2d from[abreast], pupil[abreast];
       Deflection ray[abreast];
       for (int i = 0; i < abreast; ++i) {
-        sent[i] = send_ray(model, centre, aim.pupil, first + i < enough ? first + i : enough - 1);
-        from[i] = sent[i].from;
-        pupil[i] = sent[i].pupil;
+        DotRay const sent =
+            DotRay::choose(model.choice, model.shape, centre, first + i < enough ? first + i : enough - 1);
+        from[i] = centre + model.offset(sent.place);
+        pupil[i] = aim.pupil + model.stop_radius * sent.at;
       }
       deflect(model.bench, medium, from, pupil, ray);
       for (int i = 0; i < abreast && first + i < enough; ++i) {
-        CheckedRay const checked = check_ray(model, aim.pupil, sent[i], ray[i]);
-        lanes.check(first + i).add(checked.at, ray[i], checked.expected);
+        Vec2d const crossing = model.table.crossing(from[i], pupil[i]);
+        lanes.check(first + i).add(
+            pupil[i] - aim.pupil, ray[i],
+            {model.table.displacement(crossing, pupil[i]), model.table.shift(crossing, pupil[i])});
         lost = lost || ray[i].status != RayStatus::alive;
+        Vec2d pixel = model.to_pixel(from[i]), arrival = pupil[i];
         for (int frame = 0; frame < frame_count; ++frame) {
-          passing[frame] += reaches_sensor_plane(checked.status[frame]) ? 1 : 0;
-          lanes.count(frame, checked.status[frame]);
+          RayStatus const status = frame == 1 && ray[i].status != RayStatus::alive ? ray[i].status
+                                   : length(arrival) > model.stop_radius           ? RayStatus::vignetted
+                                   : model.sees(pixel)                             ? RayStatus::alive
+                                                                                   : RayStatus::missed_sensor;
+          passing[frame] += reaches_sensor_plane(status) ? 1 : 0;
+          lanes.count(frame, status);
+          pixel += ray[i].displacement;
+          arrival += ray[i].shift;
         }
       }
     }
@@ -156,8 +165,9 @@ template <class Group>
 GLADSTONE_HD void conclude(Group const& group, DotModel const& model, Vec2d origin, ConeIntegral const& whole,
                            DotCone& dot, DotFound& found) {
   using std::sqrt;
+  using M = DisplacementMoments;
   constexpr int terms = PlaceRule::terms;
-  for (int k = group.lane(); whole.narrow && k < DisplacementMoments::count * terms; k += group.size()) {
+  for (int k = group.lane(); whole.narrow && k < M::count * terms; k += group.size()) {
     dot.field.coefficient[k / terms][k % terms] =
         MomentField::fitted(model.places, whole.moments, k / terms, k % terms);
   }
@@ -167,10 +177,24 @@ GLADSTONE_HD void conclude(Group const& group, DotModel const& model, Vec2d orig
   dot.origin = origin;
   dot.extent = {};
   for (int place = 0; place < model.places.count; ++place) dot.extent.include(whole.extents[place]);
-  if (dot.kind == DotKind::narrow) {
-    dot.kind = wide_or_narrow(model, whole.narrow, truth.origin + origin, dot.extent);
+  MomentImages const& images = model.moment_images;
+  if (dot.kind == DotKind::narrow && !whole.narrow) {
+    bool const few = images.exist() && SpannedSquares(images.lattice, truth.origin + origin, dot.extent).few;
+    dot.kind = few ? DotKind::wide : DotKind::left;
   }
-  sum_cone(model, dot.light, origin, whole.moments, whole.without_medium, truth);
+  PlaceRule const& rule = model.places;
+  double all = 0;
+  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * whole.without_medium[i];
+  for (int i = 0; i < rule.count; ++i) {
+    double const weight = dot.light * (rule.weights[i] * whole.without_medium[i] / all);
+    double const(&of)[M::count] = whole.moments[i].of;
+    Vec2d const at = model.half_size_px() * rule.places[i], moved = at + origin, mean{of[M::at(1, 0)], of[M::at(0, 1)]};
+    truth.hits[0].add(at, weight, false);
+    truth.hits[1].weight += weight * of[0];
+    truth.hits[1].first += weight * (of[0] * moved + mean);
+    truth.hits[1].second += weight * Vec2d{of[0] * moved.x * moved.x + 2 * moved.x * mean.x + of[M::at(2, 0)],
+                                           of[0] * moved.y * moved.y + 2 * moved.y * mean.y + of[M::at(0, 2)]};
+  }
   if (dot.kind == DotKind::still) {
     truth.hits[1] = truth.hits[0];
   } else {

@@ -15,6 +15,10 @@ struct DisplacementMoments {
   /// Place of x^a y^b: by total order, then by the power of y.
   GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
 
+  GLADSTONE_HD static constexpr int order_of(int moment) {
+    return (moment > 0) + (moment > 2) + (moment > 5) + (moment > 9);
+  }
+
   /// Sum of weight (x^2 + y^2).
   GLADSTONE_HD double square() const { return of[at(2, 0)] + of[at(0, 2)]; }
 

@@ -51,9 +51,9 @@ class DotIntegrator {
 
  private:
   void integrate();
-  void deposit_source(Frame frame, LightImage* image);
-  void deposit_narrow();
-  void deposit_wide();
+  /// @param moved that the light is on average [px]
+  template <int orders>
+  void lay_down_points(std::size_t frame, Vec2d moved);
 
   DotModel const& model_;
   std::vector<DotPatch> patches_;

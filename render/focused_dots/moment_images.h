@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/focused_dots/displacement_moments.h"
-#include "render/sensor/diffraction_spot.h"
+#include "render/focused_dots/spot_factors.h"
 
 /// Light of dots whose displacements spread over several widths of a spot: they are sorted into squares, within each of
 /// which a few moments tell the light (Hermite series, as in the fast Gauss transform of Greengard & Strain 1991). The
@@ -148,6 +148,8 @@ struct MomentImages {
   static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
 
   static constexpr int pad = 16;  ///< stride is a multiple of it
+  /// Numbers that the factors of a point take.
+  GLADSTONE_HD static constexpr int factors(int pitch) { return 2 * (DisplacementMoments::order + 1) * pitch; }
 
   GLADSTONE_HD bool exist() const { return terms > 0; }
   GLADSTONE_HD int width() const { return 2 * half + 1; }
@@ -170,9 +172,63 @@ struct MomentImages {
   }
 };
 
-/// Works out a plan's images, on all cores. @param points in units of half_px @param weights of sum one
-std::vector<double> make_moment_images(MomentImages const& plan, std::vector<Vec2d> const& points,
-                                       std::vector<double> const& weights, double half_px,
+/// Points of a unit disc (or square) with weights of sum one, as a view.
+struct CubatureView {
+  Vec2d const* points = nullptr;  ///< in units of the half size
+  double const* weights = nullptr;
+  int count = 0;
+};
+
+/// Adds what a source's points leave in the images of one phase and some moments, by a group of lanes.
+/// @tparam pixels that a lane works out side by side: a spot's width and more, row by row, or 1
+/// @tparam moments from `begin` on @param first of the phase and moment `begin`
+/// @param room for the factors of so many points at a time
+template <int pixels, int moments, class Group>
+GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, CubatureView const& source,
+                                double half_px, GaussianSpot<double> const& spot, int phase, int begin, double* first,
+                                double* room, int points) {
+  using M = DisplacementMoments;
+  constexpr bool rows = pixels > 1;
+  constexpr int orders = M::order + 1, terms = PlaceRule::terms;
+  int const width = 2 * spot.half_width() + 1, pitch = rows ? pixels : width + 1, side = images.width();
+  auto const at_point = [&](int i) { return images.middle(phase) + half_px * source.points[i]; };
+  for (int base = 0; base < source.count; base += points) {
+    group.poll();
+    int const here = source.count - base < points ? source.count - base : points;
+    spot_factors<orders>(
+        group, spot, [&](int which) { return at_point(base + which); }, here, pitch, 2 * orders * pitch, room);
+    for (int unit = group.lane(); unit < (rows ? side : side * side); unit += group.size()) {
+      int const row = rows ? unit : unit / side;
+      double sums[rows ? 1 : moments * terms] = {};
+      for (int which = 0; which < here; ++which) {
+        Footprint const reach = spot.footprint(at_point(base + which));
+        int const j = row - images.half - reach.row, left = reach.column + images.half;
+        int const i = rows ? 0 : unit % side - left;
+        if (j < 0 || j >= width || i < 0 || i >= width) continue;
+        double basis[terms];
+        PlaceRule::basis(source.points[base + which], basis);
+        double const* const along_x = room + which * 2 * orders * pitch + i;
+        double const* const along_y = room + which * 2 * orders * pitch + orders * pitch + j;
+        for (int k = 0; k < moments; ++k) {
+          int const order = M::order_of(begin + k), b = begin + k - M::at(order, 0);
+          for (int term = 0; term < terms && term < images.terms; ++term) {
+            double const share = source.weights[base + which] * basis[term] * along_y[b * pitch];
+            double* const to =
+                rows ? first + (k * images.terms + term) * images.stride + row * side + left : sums + k * terms + term;
+            for (int c = 0; c < pixels; ++c) to[c] += share * along_x[(order - b) * pitch + c];
+          }
+        }
+      }
+      for (int k = 0; k < moments * terms && !rows; ++k) {
+        if (k % terms < images.terms) first[(k / terms * images.terms + k % terms) * images.stride + unit] += sums[k];
+      }
+    }
+    group.sync();
+  }
+}
+
+/// Works out a plan's images, on all cores. @param source in units of half_px, with weights of sum one
+std::vector<double> make_moment_images(MomentImages const& plan, CubatureView const& source, double half_px,
                                        GaussianSpot<double> const& spot);
 
 }  // namespace gladstone

@@ -46,4 +46,29 @@ struct OneLane {
   }
 };
 
+/// Numbers in which a spot's row is held: whole vectors, whose ends add zeros beyond its last pixel.
+constexpr int most_lanes = 48;
+constexpr int lanes_for(int width) {
+  for (int const lanes : {8, 12, 16, 24}) {
+    if (width <= lanes) return lanes;
+  }
+  return most_lanes;
+}
+/// Calls body<lanes>(), so that the compiler knows them and a row takes whole vectors.
+template <class Body>
+void with_lanes(int width, Body const& body) {
+  switch (lanes_for(width)) {
+    case 8:
+      return body.template operator()<8>();
+    case 12:
+      return body.template operator()<12>();
+    case 16:
+      return body.template operator()<16>();
+    case 24:
+      return body.template operator()<24>();
+    default:
+      return body.template operator()<most_lanes>();
+  }
+}
+
 }  // namespace gladstone

@@ -75,7 +75,9 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
   int const terms = half_px > 0 ? PlaceRule::terms : 1;
   MomentImages images = MomentImages::plan(half_px, spot.gaussian, side, terms);
   ASSERT_TRUE(images.exist());
-  std::vector<double> const values = make_moment_images(images, source.points, source.weights, half_px, spot.gaussian);
+  std::vector<double> const values =
+      make_moment_images(images, {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())},
+                         half_px, spot.gaussian);
   images.values = values.data();
   double const slope = half_px > 0 ? 0.02 * side : 0;
   for (Vec2d const at : {Vec2d{30.1, 33.4}, Vec2d{29.51, 31.98}, Vec2d{32.77, 30.26}}) {
