@@ -43,6 +43,7 @@ class MirroredModel {
   void make_images_of_moments() {
     if (!model_.moment_images.exist() || !model_.table.exists()) return;
     moment_images_ = DeviceArray<double>(model_.moment_images.size(), "the images of moments");
+    moment_images_.zero();
     model_.moment_images.values = moment_images_.data();
     make_moment_images(model_, moment_images_.data());
   }
@@ -94,10 +95,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
       if (!sources.radiance.empty()) seen.radiance = radiances.data() + first;
       check_dots(model, medium, seen, count, cones.data(), found.data() + first, tally.data());
       integrate_cones(model, count, cones.data(), found.data() + first);
-      if (images) {
-        expose_cones(model, count, cones.data(), frames);
-        expose_wide(model, count, cones.data(), frames);
-      }
+      if (images) expose_dots(model, count, cones.data(), frames);
       throw_if_interrupted();
       if (theory == RenderTheory::yes) {
         integrate_theory(model, theory_model, medium, seen, count, integrals.data() + first);
@@ -133,7 +131,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
 
 struct CudaRenderer::Uploads {
   KeptMedium medium;
-  KeptDeflections<DeviceDeflections> deflections;
+  LastDeflections<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
 

@@ -19,7 +19,7 @@ class DeviceDeflections {
 
  private:
   DeflectionTable table_;
-  DeviceArray<std::byte> values_;  ///< all of the table's: displacements, bends, and the slopes of both
+  DeviceArray<std::byte> values_;  ///< all of the table's: displacements, shifts, and the slopes of both
 };
 
 }  // namespace gladstone::cuda

@@ -5,30 +5,12 @@
 #include "cuda/device/device_images.h"
 #include "cuda/rays/device_medium.h"
 #include "render/focused_dots/bench_theory.h"
+#include "render/focused_dots/cone_integral.h"
 
 /// What launches do with dots. All pointers of models, media and dots are the device's; a launch works on `count` dots
 /// that lie one after the other, a dot's sums have one order, and light is in whole units: the same bits on any number
 /// of blocks.
 namespace gladstone::cuda {
-
-/// What is known of a dot once its rays are traced and its cone is integrated; stays on the device.
-struct DotCone {
-  DotKind kind;
-  Vec2d centre, aim;
-  double light;  ///< in the reference frame [fully lit px]
-  TableCheck check;
-  CheckErrors errors;
-  Vec2d origin;       ///< where the cone's displacements count from [px]
-  Extent extent;      ///< of a wide one
-  MomentField field;  ///< of a narrow one
-};
-
-/// What goes back to the host.
-struct DotFound {
-  DotTruth truth;
-  int rays;   ///< traced
-  bool left;  ///< to another renderer
-};
 
 /// Counted over all dots of a rendering, on the device.
 struct RayTally {
@@ -46,11 +28,8 @@ void integrate_cones(DotModel const& model, std::uint64_t count, DotCone* cones,
 /// Works out the images of a model's moments, which have a plan. @param out room for them
 void make_moment_images(DotModel const& model, double* out);
 
-/// Lays down the light of all dots in the reference frame, and of still and narrow ones in the flow.
-void expose_cones(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
-
-/// Lays down the light of wide ones in the flow.
-void expose_wide(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
+/// Lays down the light of dots in both frames, a block a dot.
+void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
 
 /// Integrates the gradient along the straight rays of dots.
 void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium<double> const& medium,

@@ -5,23 +5,22 @@
 
 #include "cuda/device/device_images.cuh"
 #include "cuda/focused_dots/dot_cones.h"
+#include "cuda/focused_dots/dot_groups.cuh"
 
 /// How a block of threads gathers a dot's light.
 namespace gladstone::cuda {
 
-inline constexpr int dot_threads = 128;
-inline constexpr int warp_size = 32;
-inline constexpr int dot_warps = dot_threads / warp_size;
-inline constexpr unsigned int whole_warp = 0xffffffffu;
-
 /// A square piece of a frame in which a block gathers a dot's light, one copy a warp, so that few additions go to the
 /// image; what falls beside it does so at once.
 struct Patch {
+  DeviceImages const& images;
+  Frame frame;
   double* light;  ///< [warp][side][side], whole units
   int side;
-  int left, top;  ///< image position of its corner
+  int left = 0, top = 0;  ///< image position of its corner
 
   __device__ double* of_warp(int warp) const { return light + static_cast<std::size_t>(warp) * side * side; }
+  __device__ double units_per_weight() const { return images.units_per_weight; }
 
   __device__ void begin(Vec2d middle) {
     bool const sound = fabs(middle.x) < 1e8 && fabs(middle.y) < 1e8;
@@ -30,9 +29,37 @@ struct Patch {
     for (int i = threadIdx.x; i < dot_warps * side * side; i += dot_threads) light[i] = 0;
     __syncthreads();
   }
-
+  /// Adds a spot, by a warp: a lane a pixel. @param fill (row, column, line) adds to a pixel's light
+  template <int pixels, class Fill>
+  __device__ void add(Warp const& warp, Footprint const& spot, Fill const& fill) {
+    bool const inside = spot.column >= left && spot.row >= top && spot.column + spot.width <= left + side &&
+                        spot.row + spot.width <= top + side;
+    double* const corner = of_warp(warp.index()) + (spot.row - top) * side + spot.column - left;
+    for (int row = warp.lane() / 8; row < spot.width; row += warp_size / 8) {
+      for (int column = warp.lane() % 8; column < spot.width; column += 8) {
+        double line[1] = {};
+        fill(row, column, line);
+        double const share = whole_units(line[0]);
+        if (inside) {
+          corner[row * side + column] += share;
+        } else {
+          add_light(images, frame, spot.column + column, spot.row + row, share);
+        }
+      }
+    }
+  }
+  /// Adds a pixel of a square.
+  __device__ void add_run(Footprint const& square, int pixel, double const (&units)[1]) {
+    int const column = square.column - left + pixel % square.width, row = square.row - top + pixel / square.width;
+    double const share = whole_units(units[0]);
+    if (column >= 0 && row >= 0 && column < side && row < side) {
+      of_warp(threadIdx.x / warp_size)[row * side + column] += share;
+    } else {
+      add_light(images, frame, left + column, top + row, share);
+    }
+  }
   /// Sends what all warps have gathered to the image.
-  __device__ void flush(DeviceImages const& images, Frame frame) const {
+  __device__ void flush() const {
     __syncthreads();
     for (int i = threadIdx.x; i < side * side; i += dot_threads) {
       double sum = 0;
@@ -42,63 +69,6 @@ struct Patch {
     __syncthreads();
   }
 };
-
-/// Room for the column and row shares of a group of deposits, one a warp.
-struct SharesOfGroup {
-  static constexpr int room = 512;
-  double of[room];
-};
-
-/// Lays down a source's disc. A warp takes a group of its points, works each out on a lane, its shares of columns and
-/// rows included, and then spreads one after the other, a lane a pixel.
-/// @param origin image of its centre [px] @param light of all of it [fully lit px]
-__device__ inline void lay_down_source(DotModel const& model, Vec2d origin, double light, Patch& patch,
-                                       DeviceImages const& images, Frame frame, SharesOfGroup* shares_of_warps) {
-  GaussianSpot<double> const& spot = model.spot;
-  int const lane = threadIdx.x % warp_size, warp = threadIdx.x / warp_size;
-  int const width = 2 * spot.half_width() + 1, count = model.source.count;
-  int const group = min(warp_size, SharesOfGroup::room / (2 * width));
-  double* const shares = shares_of_warps[warp].of;
-  double* const gathered = patch.of_warp(warp);
-  patch.begin(origin);
-  for (int base = group * warp; base < count; base += group * dot_warps) {
-    Deposit mine;
-    if (lane < group && base + lane < count) mine = reference_light(model, origin, light, base + lane);
-    if (!(fabs(mine.at.x) < 1e8 && fabs(mine.at.y) < 1e8)) mine = {};
-    mine.weight *= images.units_per_weight;
-    unsigned int const lit = __ballot_sync(whole_warp, mine.weight != 0);
-    int const my_column = static_cast<int>(floor(mine.at.x + 0.5)) - width / 2;
-    int const my_row = static_cast<int>(floor(mine.at.y + 0.5)) - width / 2;
-    if (mine.weight != 0) {
-      double* const of_columns = shares + lane * 2 * width;
-      spot.shares(mine.at.x, my_column, width, of_columns);
-      spot.shares(mine.at.y, my_row, width, of_columns + width);
-      for (int i = 0; i < width; ++i) of_columns[i] *= mine.weight;
-    }
-    __syncwarp();
-    for (int which = 0; which < group; ++which) {
-      if ((lit >> which & 1u) == 0) continue;
-      int const c0 = __shfl_sync(whole_warp, my_column, which), r0 = __shfl_sync(whole_warp, my_row, which);
-      double const* const of_columns = shares + which * 2 * width;
-      double const* const of_rows = of_columns + width;
-      bool const inside = c0 >= patch.left && r0 >= patch.top && c0 + width <= patch.left + patch.side &&
-                          r0 + width <= patch.top + patch.side;
-      double* const corner = gathered + (r0 - patch.top) * patch.side + c0 - patch.left;
-      for (int r = lane / 8; r < width; r += warp_size / 8) {
-        for (int c = lane % 8; c < width; c += 8) {
-          double const share = whole_units(of_rows[r] * of_columns[c]);
-          if (inside) {
-            corner[r * patch.side + c] += share;
-          } else {
-            add_light(images, frame, c0 + c, r0 + r, share);
-          }
-        }
-      }
-      __syncwarp();
-    }
-  }
-  patch.flush(images, frame);
-}
 
 inline std::size_t patch_bytes(int side) { return sizeof(double) * dot_warps * side * side; }
 /// Side of a patch: wide enough for a dot, its spot and some pixels of spread, as far as a block's shared memory goes.

@@ -1,5 +1,6 @@
 #include "cuda/device/launch.h"
-#include "cuda/focused_dots/cone_light.cuh"
+#include "cuda/focused_dots/dot_cones.h"
+#include "cuda/focused_dots/dot_groups.cuh"
 
 namespace gladstone::cuda {
 namespace {
@@ -7,45 +8,17 @@ namespace {
 __global__ void __launch_bounds__(dot_threads, 5)
     integrate_cones_kernel(DotModel const __grid_constant__ model, std::uint64_t const count, DotCone* const cones,
                            DotFound* const found) {
-  __shared__ __align__(16) unsigned char state_storage[sizeof(ConeState)];
+  __shared__ __align__(16) unsigned char integral_storage[sizeof(ConeIntegral)];
   __shared__ __align__(16) unsigned char cone_storage[sizeof(CorrectedCone)];
-  ConeState& state = *reinterpret_cast<ConeState*>(state_storage);
+  ConeIntegral& whole = *reinterpret_cast<ConeIntegral*>(integral_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
   for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
-    DotCone& dot = cones[i];
-    if (dot.kind == DotKind::left) continue;
+    if (cones[i].kind == DotKind::left) continue;
     __syncthreads();
-    if (threadIdx.x == 0) cone = cone_of(model, dot);
+    if (threadIdx.x == 0) cone = cone_of(model, cones[i]);
     __syncthreads();
-    integrate_cone(model, cone, state);
-    if (!state.sound) {
-      if (threadIdx.x == 0) {
-        dot.kind = DotKind::left;
-        found[i].left = true;
-      }
-      continue;
-    }
-    if (threadIdx.x == 0) {
-      DotTruth& truth = found[i].truth;
-      dot.origin = cone.origin();
-      dot.extent = state.extent;
-      if (dot.kind == DotKind::narrow) {
-        dot.kind = wide_or_narrow(model, state.narrow, truth.origin + cone.origin(), state.extent);
-      }
-      sum_cone(model, dot.light, cone.origin(), state.moments, state.without_medium, truth);
-      if (dot.kind != DotKind::still) {
-        Vec2d const square = model.error2(dot.errors, state.simple);
-        truth.error = {sqrt(square.x), sqrt(square.y)};
-      }
-      if (dot.kind == DotKind::still) truth.hits[1] = truth.hits[0];
-      truth.path = TruthPath::table;
-      found[i].left = dot.kind == DotKind::left;
-    }
-    constexpr int terms = PlaceRule::terms;
-    for (int k = threadIdx.x; state.narrow && k < DisplacementMoments::count * terms; k += dot_threads) {
-      dot.field.coefficient[k / terms][k % terms] =
-          MomentField::fitted(model.places, state.moments, k / terms, k % terms);
-    }
+    integrate_cone(Block{}, model, cone, whole, nullptr);
+    conclude(Block{}, model, cone.origin(), whole, cones[i], found[i]);
   }
 }
 

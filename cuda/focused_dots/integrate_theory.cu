@@ -7,19 +7,24 @@ namespace {
 
 constexpr int threads = 128;
 
+struct SummingBlock {
+  ConeSum* shared;
+
+  __device__ static int lane() { return static_cast<int>(threadIdx.x); }
+  __device__ static constexpr int size() { return threads; }
+  __device__ static void poll() {}
+  __device__ ConeSum sum(ConeSum const& value) const { return block_sum(value, shared); }
+};
+
 template <class Medium>
 __global__ void __launch_bounds__(threads)
     integrate_theory_kernel(DotModel const __grid_constant__ model, TheoryModel const theory, Medium const medium,
                             SourcesView<double> const dots, std::uint64_t const count, DotTheory* const out) {
   __shared__ __align__(16) unsigned char storage[threads * sizeof(ConeSum)];
-  auto* const shared = reinterpret_cast<ConeSum*>(storage);
+  SummingBlock const block{reinterpret_cast<ConeSum*>(storage)};
   for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
-    ConeSum sum;
-    for (int ray = threadIdx.x; ray < theory_rays(model); ray += threads) {
-      add_straight_ray(model, theory, medium, dots.centre[i], ray, sum);
-    }
-    sum = block_sum(sum, shared);
-    if (threadIdx.x == 0) out[i] = {integrate_chief(theory, model.bench, medium, dots.centre[i]), sum};
+    DotTheory const found = gladstone::integrate_theory(block, model, theory, medium, dots.centre[i]);
+    if (threadIdx.x == 0) out[i] = found;
   }
 }
 

@@ -38,26 +38,27 @@ struct DotTheory {
   ConeSum cone;
 };
 
-template <class Medium>
-GLADSTONE_HD GradientIntegral<double> integrate_chief(TheoryModel const& theory, BenchView const& bench,
-                                                      Medium const& medium, Vec2d centre) {
-  return integrate_gradient(medium, bench.straight_ray(centre, {}), theory.step);
-}
-
-/// Straight rays of a dot's cone: the points of the rule at every place of the source.
-GLADSTONE_HD inline int theory_rays(DotModel const& model) { return model.cone.count * model.places.count; }
-/// Adds the i-th of them.
-template <class Medium>
-GLADSTONE_HD void add_straight_ray(DotModel const& model, TheoryModel const& theory, Medium const& medium, Vec2d centre,
-                                   int i, ConeSum& sum) {
-  int const place = i / model.cone.count;
-  ConePoint const at = model.cone.points[i % model.cone.count];
-  Ray<double> const ray =
-      model.bench.straight_ray(centre + model.offset(model.places.places[place]),
-                               (at.radius * model.stop_radius) * model.cone.directions[at.direction]);
-  double const cosine2 = ray.direction.z * ray.direction.z;
-  double const weight = model.places.weights[place] * at.weight * cosine2 * cosine2;
-  sum += {weight * integrate_gradient(medium, ray, theory.step).levered, weight};
+/// Integrates the gradient along a dot's chief ray and along the straight rays of its cone, the points of the rule at
+/// every place of the source, by a group of lanes. @return on lane 0 what it finds
+template <class Group, class Medium>
+GLADSTONE_HD DotTheory integrate_theory(Group const& group, DotModel const& model, TheoryModel const& theory,
+                                        Medium const& medium, Vec2d centre) {
+  DotTheory found;
+  ConeSum sum;
+  for (int i = group.lane(); i < model.cone.count * model.places.count; i += group.size()) {
+    group.poll();
+    int const place = i / model.cone.count;
+    ConePoint const at = model.cone.points[i % model.cone.count];
+    Ray<double> const ray =
+        model.bench.straight_ray(centre + model.offset(model.places.places[place]),
+                                 (at.radius * model.stop_radius) * model.cone.directions[at.direction]);
+    double const cosine2 = ray.direction.z * ray.direction.z;
+    double const weight = model.places.weights[place] * at.weight * cosine2 * cosine2;
+    sum += {weight * integrate_gradient(medium, ray, theory.step).levered, weight};
+  }
+  found.cone = group.sum(sum);
+  if (group.lane() == 0) found.along = integrate_gradient(medium, model.bench.straight_ray(centre, {}), theory.step);
+  return found;
 }
 
 /// Writes what theory says of a dot.

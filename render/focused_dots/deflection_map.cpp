@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "render/base/interrupt.h"
 #include "render/base/parallel.h"
 #include "render/focused_dots/dot_cone.h"
+#include "render/focused_dots/one_lane.h"
 
 namespace gladstone {
 namespace {
@@ -17,6 +17,12 @@ constexpr double fine_rays = 2.5e7;   // the same, where fineness is asked for
 constexpr double fewest_nodes = 12;   // along either axis of the view
 constexpr double slope_reach = 0.6;   // of the stop's radius: where the pupil's points are on average
 constexpr double leaning = 2;         // radii of the stop: rays further out are not looked for at a field's sides
+
+/// A lane that traces four rays side by side.
+struct FourAbreast : OneLane {
+  static constexpr int abreast = 4;
+  static Vec2d of_lane(int, Vec2d value) { return value; }
+};
 
 /// How densely a table's nodes lie.
 struct NodeDensity {
@@ -35,7 +41,7 @@ struct NodeDensity {
   double nodes(double area) const { return area / (spacing * spacing); }
   double rays(double area) const { return nodes(area) * (1 + 4.0 / (coarseness * coarseness)); }
   double bytes(double area) const {
-    return nodes(area) * 2 * (sizeof(Vec2d) + sizeof(KeptSlopes) / static_cast<double>(coarseness * coarseness));
+    return nodes(area) * 2 * (sizeof(Vec2d) + sizeof(TableSlopes) / static_cast<double>(coarseness * coarseness));
   }
 };
 
@@ -52,9 +58,9 @@ Vec2d crossed_extent(Setup const& setup, double way) {
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }
 
-/// The way to the medium's mid-plane as a share of that to the lens. @param box the medium's
-double way_to(Bounds<double> const& box, Setup const& setup) {
-  return (0.5 * (box.low.z + box.high.z) + setup.z_d) / setup.z_b();
+/// The way to the medium's mid-plane as a share of that to the lens. @param bounds the medium's
+double way_to(Bounds<double> const& bounds, Setup const& setup) {
+  return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();
 }
 
 NodeDensity density_of(Scene const& scene, Vec2d extent) {
@@ -114,15 +120,16 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   }
   if (sources.centre.empty()) state = TableState::no_sources;
   if (state != TableState::made) return;
-  Bounds<double> const box = bounds_of(scene);
-  double const stop = scene.imaging.entrance_pupil / 2, way = way_to(box, scene.setup);
+  Bounds<double> const bounds = bounds_of(scene);
+  double const stop = scene.imaging.entrance_pupil / 2, way = way_to(bounds, scene.setup);
   BenchView const bench = dots.bench();
   table.way = way;
   table.pupil_step = slope_reach * stop;
-  table.low = {box.low.x, box.low.y};
-  table.high = {box.high.x, box.high.y};
+  table.low = {bounds.low.x, bounds.low.y};
+  table.high = {bounds.high.x, bounds.high.y};
   for (int face = 0; face < 2; ++face) {
-    table.face_ways[face] = ((face == 0 ? box.low.z : box.high.z) - bench.plane_z) / (bench.lens_z - bench.plane_z);
+    table.face_ways[face] =
+        ((face == 0 ? bounds.low.z : bounds.high.z) - bench.plane_z) / (bench.lens_z - bench.plane_z);
   }
 
   // what the sources' cones cover of the mid-plane, as far as rays to all of the pupil cross the medium's whole depth
@@ -139,12 +146,12 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
                        3 * spacing_of_slopes;
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};
-  double const to_lens = (1 - way) * (bench.lens_z - bench.plane_z), half_depth = 0.5 * (box.high.z - box.low.z);
+  double const to_lens = (1 - way) * (bench.lens_z - bench.plane_z), half_depth = 0.5 * (bounds.high.z - bounds.low.z);
   // rays through q meet the faces up to half_depth (|q| + leaning stop) / to_lens beside it
   double const lean = half_depth / to_lens, aside = lean * leaning * stop;
   auto const inside = [&](double side) { return (side - aside) / (side > aside ? 1 + lean : 1 - lean); };
-  low = {std::max(low.x, -inside(-box.low.x)), std::max(low.y, -inside(-box.low.y))};
-  high = {std::min(high.x, inside(box.high.x)), std::min(high.y, inside(box.high.y))};
+  low = {std::max(low.x, -inside(-bounds.low.x)), std::max(low.y, -inside(-bounds.low.y))};
+  high = {std::min(high.x, inside(bounds.high.x)), std::min(high.y, inside(bounds.high.y))};
   table.straight = lattice_within(density.spacing, low, high);
   table.sloping = lattice_within(spacing_of_slopes, low, high);
   if (std::min(table.sloping.columns, table.sloping.rows) < 4) {
@@ -174,57 +181,22 @@ bool DeflectionPlan::same_table(DeflectionPlan const& other) const {
 }
 
 DeflectionMap::DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan) {
+  constexpr std::size_t grain = 64;
   if (!plan.wanted()) return;
   BenchView const bench = dots.bench();
-  table_ = plan.table;
-  double const way = table_.way;
-  // visit(row of nodes) in parallel
-  auto const for_each_row = [](SquareLattice const& lattice, auto const& visit) {
-    parallel_for(static_cast<std::size_t>(lattice.rows), [&](std::size_t row) {
-      throw_if_interrupted();
-      visit(static_cast<int>(row), row * static_cast<std::size_t>(lattice.columns));
-    });
-  };
-  auto const nodes = static_cast<std::size_t>(table_.straight.size());
-  auto const slopes = static_cast<std::size_t>(table_.sloping.size());
-  displacements_.resize(nodes);
-  bends_.resize(nodes);
-  displacement_slopes_.resize(slopes);
-  bend_slopes_.resize(slopes);
+  values_.resize(plan.table.bytes());
+  DeflectionTable::Values const values = plan.table.values_in(values_.data());
   std::visit(
       [&](auto const& medium) {
-        for_each_row(table_.straight, [&](int row, std::size_t first) {
-          for (int column = 0; column < table_.straight.columns; column += 2) {
-            int const next = std::min(column + 1, table_.straight.columns - 1);
-            Deflection found[2];
-            deflect_across(bench, medium, way, {table_.straight.node(column, row), table_.straight.node(next, row)},
-                           {Vec2d{}, Vec2d{}}, found);
-            for (int const i : {0, 1}) {
-              std::size_t const at = first + static_cast<std::size_t>(i == 0 ? column : next);
-              displacements_[at] = KeptVector::of(found[i].displacement);
-              bends_[at] = KeptVector::of(found[i].bend);
-            }
-          }
-        });
-        for_each_row(table_.sloping, [&](int row, std::size_t first) {
-          for (int column = 0; column < table_.sloping.columns; ++column) {
-            Vec2d const q = table_.sloping.node(column, row);
-            Deflection sides[4];
-            deflect_across(
-                bench, medium, way, {q, q, q, q},
-                {slope_pupil(table_, 0), slope_pupil(table_, 1), slope_pupil(table_, 2), slope_pupil(table_, 3)},
-                sides);
-            DeflectionSlopes const node = slopes_of(table_, sides);
-            displacement_slopes_[first + static_cast<std::size_t>(column)] = node.displacement;
-            bend_slopes_[first + static_cast<std::size_t>(column)] = node.bend;
+        parallel_chunks(static_cast<std::size_t>(plan.table.fours()), grain, [&](std::size_t begin, std::size_t end) {
+          throw_if_interrupted();
+          for (std::size_t four = begin; four < end; ++four) {
+            trace_four(FourAbreast{}, bench, medium, plan.table, values, static_cast<long long>(four));
           }
         });
       },
       dots.scene().medium.view);
-  table_.displacements = displacements_.data();
-  table_.bends = bends_.data();
-  table_.displacement_slopes = displacement_slopes_.data();
-  table_.bend_slopes = bend_slopes_.data();
+  table_ = plan.table.with(values);
 }
 
 }  // namespace gladstone

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -15,7 +16,7 @@ TableState table_state(Scene const& scene);
 /// Where a scene's deflection table has its nodes: at multiples of a spacing that hangs on the field, the view and the
 /// cone alone, as far as the cones of the scene's own dots and of the sources reach, but within the medium.
 struct DeflectionPlan {
-  /// Bends that a table has room for unless told otherwise, in radii of the stop.
+  /// Shifts that a table has room for unless told otherwise, in radii of the stop.
   static constexpr double usual_aim = 0.25;
 
   DeflectionTable table;  ///< without its values
@@ -43,7 +44,7 @@ class DeflectionMap {
  public:
   /// Traces the table's rays on all cores. @throws Interrupted
   DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan);
-  DeflectionMap(DeflectionMap const&) = delete;  // the table points into the arrays
+  DeflectionMap(DeflectionMap const&) = delete;  // the table points into the values
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
   /// exists() only where it was wanted.
@@ -51,15 +52,14 @@ class DeflectionMap {
 
  private:
   DeflectionTable table_;
-  std::vector<KeptVector> displacements_, bends_;
-  std::vector<KeptSlopes> displacement_slopes_, bend_slopes_;
+  std::vector<std::byte> values_;
 };
 
 /// A renderer's last table, for those who render one scene several times: its dots, and truth at vectors round by
 /// round.
 /// @tparam Map DeflectionMap, or a device's
 template <class Map>
-class KeptDeflections {
+class LastDeflections {
  public:
   /// The table of a scene; valid until the next call. @param more what a Map takes beside dots and plan
   template <class... More>

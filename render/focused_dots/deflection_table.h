@@ -24,7 +24,7 @@ struct BenchView {
 /// What the medium does to a ray, as the camera sees it.
 struct Deflection {
   Vec2d displacement;                   ///< on the sensor [px]
-  Vec2d bend;                           ///< on the lens plane [m]
+  Vec2d shift;                          ///< on the lens plane [m]
   RayStatus status = RayStatus::alive;  ///< or how it was lost on its way to the lens: NaN then
 };
 
@@ -45,14 +45,14 @@ GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d co
                                                       : RayStatus::missed_lens;
     if (out[i].status != RayStatus::alive) {
       out[i].displacement.x = out[i].displacement.y = std::numeric_limits<double>::quiet_NaN();
-      out[i].bend = out[i].displacement;
+      out[i].shift = out[i].displacement;
       continue;
     }
     Vec3d const moved = seen.position - start[i].position;
     double const far = (bench.lens_z - bench.plane_z) / seen.direction.z;
     out[i].displacement = bench.px_per_metre * Vec2d{moved.x, -moved.y};
-    out[i].bend = {seen.position.x + far * seen.direction.x - pupil[i].x,
-                   seen.position.y + far * seen.direction.y - pupil[i].y};
+    out[i].shift = {seen.position.x + far * seen.direction.x - pupil[i].x,
+                    seen.position.y + far * seen.direction.y - pupil[i].y};
   }
 }
 
@@ -140,22 +140,22 @@ struct PupilSlopes {
 };
 
 /// A vector as a table keeps it, to be read at once.
-struct alignas(16) KeptVector {
+struct alignas(16) TableVector {
   double x, y;
 
-  GLADSTONE_HD static KeptVector of(Vec2d v) { return {v.x, v.y}; }
-  GLADSTONE_HD friend Vec2d operator*(double scale, KeptVector const& v) { return {scale * v.x, scale * v.y}; }
+  GLADSTONE_HD static TableVector of(Vec2d v) { return {v.x, v.y}; }
+  GLADSTONE_HD friend Vec2d operator*(double scale, TableVector const& v) { return {scale * v.x, scale * v.y}; }
 };
 
 /// Slopes as a table keeps them: what is a correction does with single precision, and half the memory to read, at once.
-struct alignas(16) KeptSlopes {
+struct alignas(16) TableSlopes {
   Vec2<float> by_x, by_y;
 
-  GLADSTONE_HD static KeptSlopes of(PupilSlopes const& s) {
+  GLADSTONE_HD static TableSlopes of(PupilSlopes const& s) {
     return {{static_cast<float>(s.by_x.x), static_cast<float>(s.by_x.y)},
             {static_cast<float>(s.by_y.x), static_cast<float>(s.by_y.y)}};
   }
-  GLADSTONE_HD friend PupilSlopes operator*(double scale, KeptSlopes const& s) {
+  GLADSTONE_HD friend PupilSlopes operator*(double scale, TableSlopes const& s) {
     return {{scale * s.by_x.x, scale * s.by_x.y}, {scale * s.by_y.x, scale * s.by_y.y}};
   }
 };
@@ -171,16 +171,35 @@ struct DeflectionTable {
   double face_ways[2]{};   ///< as `way`, of its faces across the axis
 
   /// [rows][columns] of the lattices, as in Deflection; NaN where a ray does not reach the lens; null: no table
-  KeptVector const* displacements = nullptr;
-  KeptVector const* bends = nullptr;
-  KeptSlopes const* displacement_slopes = nullptr;
-  KeptSlopes const* bend_slopes = nullptr;
+  TableVector const* displacements = nullptr;
+  TableVector const* shifts = nullptr;
+  TableSlopes const* displacement_slopes = nullptr;
+  TableSlopes const* shift_slopes = nullptr;
 
+  /// Memory for its values, as one piece, and where they stand there.
+  struct Values {
+    TableVector *displacements, *shifts;
+    TableSlopes *displacement_slopes, *shift_slopes;
+  };
+  Values values_in(void* memory) const {
+    auto* const vectors = static_cast<TableVector*>(memory);
+    auto* const slopes = reinterpret_cast<TableSlopes*>(vectors + 2 * straight.size());
+    return {vectors, vectors + straight.size(), slopes, slopes + sloping.size()};
+  }
+  /// The table whose values stand there.
+  DeflectionTable with(Values const& values) const {
+    DeflectionTable table = *this;
+    table.displacements = values.displacements;
+    table.shifts = values.shifts;
+    table.displacement_slopes = values.displacement_slopes;
+    table.shift_slopes = values.shift_slopes;
+    return table;
+  }
   GLADSTONE_HD bool exists() const { return displacements != nullptr; }
   /// Memory that its values take [bytes].
   std::size_t bytes() const {
-    return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(KeptVector) +
-                static_cast<std::size_t>(sloping.size()) * sizeof(KeptSlopes));
+    return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(TableVector) +
+                static_cast<std::size_t>(sloping.size()) * sizeof(TableSlopes));
   }
   /// Whether it holds all rays from within `half` of a point of the target to within `radius` of one of the pupil.
   GLADSTONE_HD bool covers(Vec2d on_target, double half, Vec2d pupil, double radius) const {
@@ -208,36 +227,55 @@ struct DeflectionTable {
     return interpolate<Vec2d>(straight.about(q), displacements) +
            interpolate<PupilSlopes>(sloping.about(q), displacement_slopes).at(pupil);
   }
-  GLADSTONE_HD Vec2d bend(Vec2d q, Vec2d pupil) const {
-    return interpolate<Vec2d>(straight.about(q), bends) +
-           interpolate<PupilSlopes>(sloping.about(q), bend_slopes).at(pupil);
+  GLADSTONE_HD Vec2d shift(Vec2d q, Vec2d pupil) const {
+    return interpolate<Vec2d>(straight.about(q), shifts) +
+           interpolate<PupilSlopes>(sloping.about(q), shift_slopes).at(pupil);
   }
+  /// The rays that make it are traced by fours: those of the straight lattice, then four about the pupil for every node
+  /// of the slopes', along +x, -x, +y and -y.
+  GLADSTONE_HD long long straight_fours() const { return (straight.size() + 3) / 4; }
+  GLADSTONE_HD long long fours() const { return straight_fours() + sloping.size(); }
 };
 
-/// What the medium does to N rays that cross the mid-plane at given places.
-template <int N, class Medium>
-GLADSTONE_HD void deflect_across(BenchView const& bench, Medium const& medium, double way, Vec2d const (&crossing)[N],
-                                 Vec2d const (&pupil)[N], Deflection (&out)[N]) {
-  Vec2d from[N];
-  for (int i = 0; i < N; ++i) from[i] = (crossing[i] - way * pupil[i]) / (1 - way);
-  deflect(bench, medium, from, pupil, out);
-}
-
-/// Slopes of displacement and bend, by central differences of four rays.
-struct DeflectionSlopes {
-  KeptSlopes displacement, bend;
-};
-/// The pupil point of the first ray, along +x, or the others, along -x, +y and -y [m].
-GLADSTONE_HD inline Vec2d slope_pupil(DeflectionTable const& table, int side) {
-  double const aside = side % 2 == 0 ? table.pupil_step : -table.pupil_step;
-  return side < 2 ? Vec2d{aside, 0} : Vec2d{0, aside};
-}
-GLADSTONE_HD inline DeflectionSlopes slopes_of(DeflectionTable const& table, Deflection const (&sides)[4]) {
+/// Traces four of the rays that make a table. @tparam Four lanes that share them, each with `abreast` side by side
+template <class Four, class Medium>
+GLADSTONE_HD void trace_four(Four const& four, BenchView const& bench, Medium const& medium,
+                             DeflectionTable const& table, DeflectionTable::Values const& out, long long which) {
+  constexpr int abreast = Four::abreast;
+  bool const straight = which < table.straight_fours();
+  SquareLattice const& lattice = straight ? table.straight : table.sloping;
+  long long node[abreast];
+  Vec2d from[abreast], pupil[abreast];
+  for (int i = 0; i < abreast; ++i) {
+    int const side = four.lane() * abreast + i;
+    node[i] = straight ? 4 * which + side : which - table.straight_fours();
+    if (node[i] >= lattice.size()) node[i] = lattice.size() - 1;
+    double const aside = side % 2 == 0 ? table.pupil_step : -table.pupil_step;
+    pupil[i] = straight ? Vec2d{} : (side < 2 ? Vec2d{aside, 0} : Vec2d{0, aside});
+    Vec2d const crossing =
+        lattice.node(static_cast<int>(node[i] % lattice.columns), static_cast<int>(node[i] / lattice.columns));
+    from[i] = (crossing - table.way * pupil[i]) / (1 - table.way);
+  }
+  Deflection found[abreast];
+  deflect(bench, medium, from, pupil, found);
+  if (straight) {
+    for (int i = 0; i < abreast; ++i) {
+      out.displacements[node[i]] = TableVector::of(found[i].displacement);
+      out.shifts[node[i]] = TableVector::of(found[i].shift);
+    }
+    return;
+  }
+  // slopes by central differences
   double const scale = 0.5 / table.pupil_step;
   auto const slopes = [&](Vec2d Deflection::*what) {
-    return KeptSlopes::of({scale * (sides[0].*what - sides[1].*what), scale * (sides[2].*what - sides[3].*what)});
+    Vec2d sides[4];
+    for (int i = 0; i < 4; ++i) sides[i] = four.of_lane(i / abreast, found[i % abreast].*what);
+    return TableSlopes::of({scale * (sides[0] - sides[1]), scale * (sides[2] - sides[3])});
   };
-  return {slopes(&Deflection::displacement), slopes(&Deflection::bend)};
+  TableSlopes const displacement = slopes(&Deflection::displacement), shift = slopes(&Deflection::shift);
+  if (four.lane() != 0) return;
+  out.displacement_slopes[node[0]] = displacement;
+  out.shift_slopes[node[0]] = shift;
 }
 
 }  // namespace gladstone

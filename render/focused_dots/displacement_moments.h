@@ -15,6 +15,10 @@ struct DisplacementMoments {
   /// Place of x^a y^b: by total order, then by the power of y.
   GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
 
+  GLADSTONE_HD static constexpr int order_of(int moment) {
+    return (moment > 0) + (moment > 2) + (moment > 5) + (moment > 9);
+  }
+
   /// Sum of weight (x^2 + y^2).
   GLADSTONE_HD double square() const { return of[at(2, 0)] + of[at(0, 2)]; }
 
@@ -50,14 +54,7 @@ struct PlaceRule {
 struct MomentField {
   double coefficient[DisplacementMoments::count][PlaceRule::terms];
 
-  /// @param moments at the places of the rule
-  static MomentField fit(PlaceRule const& rule, DisplacementMoments const* moments) {
-    MomentField field;
-    for (int i = 0; i < DisplacementMoments::count; ++i) {
-      for (int term = 0; term < PlaceRule::terms; ++term) field.coefficient[i][term] = fitted(rule, moments, i, term);
-    }
-    return field;
-  }
+  /// A coefficient. @param moments at the places of the rule
   GLADSTONE_HD static double fitted(PlaceRule const& rule, DisplacementMoments const* moments, int moment, int term) {
     double sum = 0;
     for (int place = 0; place < rule.count; ++place) sum += rule.fit[term][place] * moments[place].of[moment];
@@ -69,11 +66,6 @@ struct MomentField {
     double sum = 0;
     for (int term = 0; term < PlaceRule::terms; ++term) sum += basis[term] * coefficient[moment][term];
     return sum;
-  }
-  GLADSTONE_HD DisplacementMoments at(Vec2d place) const {
-    DisplacementMoments moments;
-    for (int i = 0; i < DisplacementMoments::count; ++i) moments.of[i] = value(i, place);
-    return moments;
   }
 };
 

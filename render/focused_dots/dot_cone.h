@@ -37,7 +37,7 @@ struct ConeRule {
 /// What the traced rays of a dot say of the table: sums over rays.
 struct TableCheck {
   double rays = 0;
-  Vec2d bend{}, bend_by_x{}, bend_by_y{};     ///< traced minus table [m]; times the stop's point [m^2]
+  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< traced minus table [m]; times the stop's point [m^2]
   double square = 0;                          ///< |stop's point|^2 [m^2]
   Vec2d traced{}, miss{};                     ///< displacements, and by what they are more than the table's [px]
   double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of the traced ones and the table's [px^2]
@@ -45,11 +45,11 @@ struct TableCheck {
 
   /// @param at of the stop, from its middle [m]
   GLADSTONE_HD void add(Vec2d at, Deflection const& found, Deflection const& expected) {
-    Vec2d const off = found.bend - expected.bend, aside = found.displacement - expected.displacement;
+    Vec2d const off = found.shift - expected.shift, aside = found.displacement - expected.displacement;
     rays += 1;
-    bend += off;
-    bend_by_x += at.x * off;
-    bend_by_y += at.y * off;
+    shift += off;
+    shift_by_x += at.x * off;
+    shift_by_y += at.y * off;
     square += dot(at, at);
     traced += found.displacement;
     miss += aside;
@@ -109,13 +109,13 @@ class CorrectedCone {
         per_distance2_(1 / (distance * distance)),
         centre_(centre),
         aim_(aim) {
-    if (!(check.rays > 0)) return;  // nothing bends its rays
-    bend_ = check.bend / check.rays;
+    if (!(check.rays > 0)) return;  // nothing deflects its rays
+    shift_ = check.shift / check.rays;
     origin_ = check.traced / check.rays;
     miss_ = check.miss / check.rays;
     if (check.rays < fewest_rays) return;  // a handful of rays tells the mean, not how it varies
-    bend_by_x_ = (2 / check.square) * check.bend_by_x;
-    bend_by_y_ = (2 / check.square) * check.bend_by_y;
+    shift_by_x_ = (2 / check.square) * check.shift_by_x;
+    shift_by_y_ = (2 / check.square) * check.shift_by_y;
     Vec2d const guess = origin_ - miss_;
     widening_[0] = (check.traced2[0] - check.expected2[0]) / check.rays - origin_.x * origin_.x + guess.x * guess.x;
     widening_[1] = (check.traced2[1] - check.expected2[1]) / check.rays - origin_.x * origin_.y + guess.x * guess.y;
@@ -133,7 +133,7 @@ class CorrectedCone {
   /// @param offset of the place from the dot's centre [m]
   GLADSTONE_HD double rim(Vec2d offset, Vec2d direction) const {
     using std::abs;
-    // where bends change little within their own length two looks do, as if their change went on (Aitken)
+    // where shifts change little within their own length two looks do, as if their change went on (Aitken)
     double const first = arriving(offset, direction, stop_radius_);
     if (!(first > 0 && first <= reach * stop_radius_)) return undefined();
     double const second = arriving(offset, direction, first);
@@ -156,8 +156,8 @@ class CorrectedCone {
   GLADSTONE_HD Vec2d arrival(Vec2d offset, Vec2d from_aim) const {
     Vec2d const to = pupil(from_aim);
     if (!table_.exists()) return to;
-    return to + table_.bend(table_.crossing(centre_ + offset, to), to) + bend_ + from_aim.x * bend_by_x_ +
-           from_aim.y * bend_by_y_;
+    return to + table_.shift(table_.crossing(centre_ + offset, to), to) + shift_ + from_aim.x * shift_by_x_ +
+           from_aim.y * shift_by_y_;
   }
   /// cos^4 of the angle at which a ray leaves the target.
   GLADSTONE_HD double lambert(Vec2d offset, Vec2d pupil_point) const {
@@ -178,7 +178,7 @@ class CorrectedCone {
   static constexpr double fewest_rays = 16;  ///< that say how the table is off across the cone
   DeflectionTable table_;
   double stop_radius_, per_distance2_;
-  Vec2d centre_, aim_, bend_{}, bend_by_x_{}, bend_by_y_{}, origin_{}, miss_{};
+  Vec2d centre_, aim_, shift_{}, shift_by_x_{}, shift_by_y_{}, origin_{}, miss_{};
   double widening_[3] = {};
 
   /// Radius at which a ray would have to be sent to arrive at the stop's edge, bent as one at `radius` is.

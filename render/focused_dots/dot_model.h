@@ -10,13 +10,6 @@
 /// How a dot's truth and light come from its cone, for every device.
 namespace gladstone {
 
-/// Points of a unit disc (or square) with weights of sum one, as a view.
-struct CubatureView {
-  Vec2d const* points = nullptr;  ///< in units of the half size
-  double const* weights = nullptr;
-  int count = 0;
-};
-
 /// What becomes of a dot.
 enum class DotKind : int {
   left,    ///< to the general renderer: the table does not cover its cone, or rays of it get lost
@@ -31,7 +24,7 @@ enum class DotKind : int {
 /// the source's disc convolved with the spot. In the flow a table of deflections tells what every ray of a dot's cone
 /// does; a few rays of each dot are traced and correct it (CorrectedCone). Truth is an integral over the cone, and
 /// light goes by the moments of its displacements; no spot is laid down for a ray. What the rule over the cone and the
-/// table are off by beyond the rays' mean, their spread and a tilt of the bend stays, whatever the number of rays:
+/// table are off by beyond the rays' mean, their spread and a tilt of the shift stays, whatever the number of rays:
 /// table_error() measures it.
 struct DotModel {
   Vec2d axis_px{};            ///< where the optical axis meets the sensor [px]
@@ -59,10 +52,18 @@ struct DotModel {
   GLADSTONE_HD Vec2d to_pixel(Vec2d on_target) const {
     return {axis_px.x + bench.px_per_metre * on_target.x, axis_px.y - bench.px_per_metre * on_target.y};
   }
+  /// Whether a place is on the sensor [px].
+  GLADSTONE_HD bool sees(Vec2d pixel) const {
+    return pixel.x >= -0.5 && pixel.x < columns - 0.5 && pixel.y >= -0.5 && pixel.y < rows - 0.5;
+  }
   /// Light of a dot in the reference frame [fully lit px].
   GLADSTONE_HD double light_of(Vec2d centre, double radiance) const {
     double const spread = 1 + (dot(centre, centre) + 0.5 * stop_radius * stop_radius) / (distance() * distance());
     return dot_light * radiance / (spread * spread);
+  }
+  /// Points that a cone may be integrated over, at all places of the source.
+  int most_points() const {
+    return places.count * (cone.count > cone.scattered_count ? cone.count : cone.scattered_count);
   }
   /// From the centre of the source to a place on it [m].
   GLADSTONE_HD Vec2d offset(Vec2d place) const { return {source_half * place.x, -source_half * place.y}; }
@@ -70,7 +71,7 @@ struct DotModel {
   /// of moments do. The series runs in displacements over sigma; a pixel blurs what it leaves but does not shorten it,
   /// and a disc, of which a spot is but the rim's blur, allows more than a point. Table 1: 2e-5 of the peak, rms over
   /// lit pixels, 1e-4 at worst.
-  GLADSTONE_HD double most_box_side() const {
+  GLADSTONE_HD double most_square_side() const {
     using std::sqrt;
     double const blur = sqrt(spot.sigma * spot.sigma + 1.0 / 12), allowed = (source_half > 0 ? 1.5 : 1.0) * spot.sigma;
     return blur < allowed ? blur : allowed;
@@ -108,13 +109,13 @@ struct DotAim {
 };
 
 /// Bend of a dot's rays about an aim, on average over middle and ring [m]. @pre the table covers them
-GLADSTONE_HD inline Vec2d mean_bend(DotModel const& model, Vec2d centre, Vec2d aim) {
+GLADSTONE_HD inline Vec2d mean_shift(DotModel const& model, Vec2d centre, Vec2d aim) {
   Vec2d sum{};
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       double const away = x != 0 && y != 0 ? 0.5 : 0.7;  // of the stop's radius
       Vec2d const pupil = aim + (away * model.stop_radius) * Vec2d{static_cast<double>(x), static_cast<double>(y)};
-      sum += model.table.bend(model.table.crossing(centre, pupil), pupil);
+      sum += model.table.shift(model.table.crossing(centre, pupil), pupil);
     }
   }
   return sum / 9.0;
@@ -139,7 +140,7 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
     if (round == most_rounds) break;
     Vec2d const last = aim.pupil;
     bool const alone = round < rounds_of_one;
-    aim.pupil = alone ? -table.bend(table.crossing(centre, last), last) : -mean_bend(model, centre, last);
+    aim.pupil = alone ? -table.shift(table.crossing(centre, last), last) : -mean_shift(model, centre, last);
     if (!(length(aim.pupil - last) > (alone ? 1e-6 : 0.01) * model.stop_radius)) {
       if (!table.covers(centre, half, aim.pupil, reach)) return aim;
       break;
@@ -148,13 +149,6 @@ GLADSTONE_HD inline DotAim aim_dot(DotModel const& model, Vec2d centre) {
   aim.kind = DotKind::narrow;
   return aim;
 }
-
-/// What tracing a dot's rays says.
-struct CheckedRay {
-  Vec2d at;  ///< of the stop, from its middle, but for what the medium bends further [m]
-  Deflection expected;
-  RayStatus status[frame_count];  ///< where it ends in either frame
-};
 
 /// Where ray k of a dot starts, from its centre in units of its half size, and its point of a stop of radius one.
 struct DotRay {
@@ -168,78 +162,5 @@ struct DotRay {
             point_of_circle(sqrt(u[0]), u[1])};
   }
 };
-/// Where it starts and what it is sent to [m].
-struct SentRay {
-  Vec2d from, pupil;
-};
-GLADSTONE_HD inline SentRay send_ray(DotModel const& model, Vec2d centre, Vec2d aim, int k) {
-  DotRay const ray = DotRay::choose(model.choice, model.shape, centre, k);
-  return {centre + model.offset(ray.place), aim + model.stop_radius * ray.at};
-}
-/// Compares it with the table.
-GLADSTONE_HD inline CheckedRay check_ray(DotModel const& model, Vec2d aim, SentRay const& sent,
-                                         Deflection const& found) {
-  CheckedRay checked;
-  checked.at = sent.pupil - aim;
-  Vec2d const crossing = model.table.crossing(sent.from, sent.pupil);
-  checked.expected = {model.table.displacement(crossing, sent.pupil), model.table.bend(crossing, sent.pupil)};
-  for (int frame = 0; frame < frame_count; ++frame) {
-    Vec2d pixel = model.to_pixel(sent.from), arrival = sent.pupil;
-    if (frame == 1) pixel += found.displacement, arrival += found.bend;
-    bool const seen = pixel.x >= -0.5 && pixel.x < model.columns - 0.5 && pixel.y >= -0.5 && pixel.y < model.rows - 0.5;
-    checked.status[frame] = length(arrival) > model.stop_radius ? RayStatus::vignetted
-                            : seen                              ? RayStatus::alive
-                                                                : RayStatus::missed_sensor;
-  }
-  if (found.status != RayStatus::alive) checked.status[1] = found.status;
-  return checked;
-}
-
-/// Adds what one place of a source shows to the sums of truth.
-/// @param at of the place's image [px] @param weight in the reference frame @param moments shares, about `origin`
-GLADSTONE_HD inline void add_place(DotTruth& truth, Vec2d at, double weight, DisplacementMoments const& moments,
-                                   Vec2d origin) {
-  using M = DisplacementMoments;
-  truth.hits[0].add(at, weight, false);
-  CentroidSum<double>& flow = truth.hits[1];
-  Vec2d const moved = at + origin, mean{moments.of[M::at(1, 0)], moments.of[M::at(0, 1)]};
-  double const all = moments.of[0];
-  flow.weight += weight * all;
-  flow.first += weight * (all * moved + mean);
-  flow.second += weight * Vec2d{all * moved.x * moved.x + 2 * moved.x * mean.x + moments.of[M::at(2, 0)],
-                                all * moved.y * moved.y + 2 * moved.y * mean.y + moments.of[M::at(0, 2)]};
-}
-
-/// A dot's truth from its cone. @param light of the dot [fully lit px]
-/// @param moments,without_medium of the whole cone at every place of the source
-GLADSTONE_HD inline void sum_cone(DotModel const& model, double light, Vec2d origin, DisplacementMoments const* moments,
-                                  double const* without_medium, DotTruth& truth) {
-  PlaceRule const& rule = model.places;
-  double all = 0;
-  for (int i = 0; i < rule.count; ++i) all += rule.weights[i] * without_medium[i];
-  for (int i = 0; i < rule.count; ++i) {
-    double const share = rule.weights[i] * without_medium[i] / all;
-    add_place(truth, model.half_size_px() * rule.places[i], light * share, moments[i], origin);
-  }
-}
-
-/// How the light of a dot in the flow goes whose cone the table covers. @param narrow its moments are, at all places
-/// @param origin image of its centre, moved by what its rays are on average [px] @param extent of displacements about
-/// it
-GLADSTONE_HD inline DotKind wide_or_narrow(DotModel const& model, bool narrow, Vec2d origin, Extent const& extent) {
-  if (narrow) return DotKind::narrow;
-  MomentImages const& images = model.moment_images;
-  return images.exist() && SpannedBoxes(images.lattice, origin, extent).few ? DotKind::wide : DotKind::left;
-}
-
-/// Some light to be laid down around a point.
-struct Deposit {
-  Vec2d at{};       ///< [px]
-  double weight{};  ///< 0: nothing
-};
-/// Light that the i-th point of the source leaves in the reference frame. @param origin image of its centre [px]
-GLADSTONE_HD inline Deposit reference_light(DotModel const& model, Vec2d origin, double light, int i) {
-  return {origin + model.half_size_px() * model.source.points[i], light * model.source.weights[i]};
-}
 
 }  // namespace gladstone

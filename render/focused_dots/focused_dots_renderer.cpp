@@ -17,18 +17,6 @@
 namespace gladstone {
 namespace {
 
-/// Eq. 9, its own-lever form and its average over disc and stop, for one dot.
-template <class Medium>
-void record_theory(DotModel const& model, TheoryModel const& theory, Medium const& medium, Vec2d centre,
-                   std::size_t dot, GroundTruth& truth) {
-  DotTheory found{integrate_chief(theory, model.bench, medium, centre), {}};
-  for (int ray = 0; ray < theory_rays(model); ++ray) {
-    throw_if_interrupted();
-    add_straight_ray(model, theory, medium, centre, ray, found.cone);
-  }
-  set_theory(truth, dot, theory, found);
-}
-
 template <class Medium>
 TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium const& medium,
                       DeflectionTable const& table, RenderImages images, RenderTheory theory) {
@@ -50,11 +38,12 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
     double farthest_aim = 0;
     for (std::size_t dot = begin; dot < end; ++dot) {
       SeenDot const& seen = integrator.see(medium, sources.centre[dot], sources.radiance_of(dot));
-      farthest_aim = std::max(farthest_aim, seen.aim.farthest);
+      farthest_aim = std::max(farthest_aim, seen.farthest_aim);
       pass.enter(dot, seen.truth, seen.rays, seen.kind == DotKind::left);
       if (lit && seen.kind != DotKind::left) integrator.lay_down(targets);
       if (theory == RenderTheory::yes) {
-        record_theory(owned.model, theory_model, medium, sources.centre[dot], dot, pass.rendering.truth);
+        set_theory(pass.rendering.truth, dot, theory_model,
+                   integrate_theory(OneLane{}, owned.model, theory_model, medium, sources.centre[dot]));
       }
     }
     progress.advance(end - begin);

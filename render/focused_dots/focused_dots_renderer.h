@@ -16,7 +16,7 @@ class FocusedDotsRenderer : public Renderer {
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
-  KeptDeflections<DeflectionMap> deflections_;
+  LastDeflections<DeflectionMap> deflections_;
 };
 
 /// Renders by a table with room for usual bends, and again by a larger one where a dot is aimed at beyond it: what

@@ -128,9 +128,10 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   source = SourceCubature::make(sources.shape, half_px, model.spot.sigma);
   model.source = {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())};
   MomentImages& images = model.moment_images;
-  images = MomentImages::plan(half_px, model.spot, model.most_box_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
+  images =
+      MomentImages::plan(half_px, model.spot, model.most_square_side(), sources.half_size > 0 ? PlaceRule::terms : 1);
   if (with_images && table.exists() && by == MomentImagesBy::host && images.exist()) {
-    moment_images = make_moment_images(images, source.points, source.weights, half_px, model.spot);
+    moment_images = make_moment_images(images, model.source, half_px, model.spot);
     images.values = moment_images.data();
   }
 }

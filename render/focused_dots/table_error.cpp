@@ -116,7 +116,7 @@ class LoneDot {
       Deflection found[1];
       deflect(model.bench, medium, {seen_.centre + offset}, {pupil}, found);
       enter(moved, arrival, -1, traced_rays, also_tabled);
-      enter(found[0].displacement, pupil + found[0].bend, 1, traced_rays, traced);
+      enter(found[0].displacement, pupil + found[0].shift, 1, traced_rays, traced);
     }
     patch.flush(&image, 1);
     Vec2d const told = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();

@@ -21,8 +21,8 @@ constexpr double stop = 4.77e-3, distance = 1.0, way = 0.25;  // Table 1 [m]
 /// for a medium.
 struct LensTable {
   DeflectionTable table;
-  std::vector<KeptVector> displacements, bends;
-  std::vector<KeptSlopes> none;
+  std::vector<TableVector> displacements, shifts;
+  std::vector<TableSlopes> none;
 
   LensTable(double d, double b) {
     SquareLattice lattice;
@@ -33,16 +33,16 @@ struct LensTable {
     for (int row = 0; row < lattice.rows; ++row) {
       for (int column = 0; column < lattice.columns; ++column) {
         Vec2d const pupil = lattice.node(column, row) / way;
-        displacements.push_back(KeptVector::of(d * pupil));
-        bends.push_back(KeptVector::of(b * pupil));
+        displacements.push_back(TableVector::of(d * pupil));
+        shifts.push_back(TableVector::of(b * pupil));
       }
     }
     none.resize(displacements.size());
     table.straight = table.sloping = lattice;
     table.way = way;
     table.displacements = displacements.data();
-    table.bends = bends.data();
-    table.displacement_slopes = table.bend_slopes = none.data();
+    table.shifts = shifts.data();
+    table.displacement_slopes = table.shift_slopes = none.data();
   }
 
   /// The dot's cone where rays agree with the table.

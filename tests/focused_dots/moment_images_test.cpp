@@ -6,15 +6,16 @@
 
 #include "render/focused_dots/dot_model.h"
 #include "render/focused_dots/dot_patch.h"
+#include "render/focused_dots/square_light.h"
 #include "render/scene/source_cubature.h"
 
 namespace gladstone {
 namespace {
 
 // Squares tile the sensor: wherever they lie, on either side of its edge, pixel and offset give back their middles.
-TEST(BoxLattice, PutsSquaresOnPixels) {
+TEST(MomentLattice, PutsSquaresOnPixels) {
   for (double const most : {0.23, 0.4, 0.5, 0.99, 1.0, 3.7}) {
-    BoxLattice const lattice = BoxLattice::no_coarser(most);
+    MomentLattice const lattice = MomentLattice::no_coarser(most);
     EXPECT_LE(lattice.side(), most);
     EXPECT_GT(lattice.side(), 0.5 * most);
     EXPECT_DOUBLE_EQ(lattice.side() * lattice.per_side(), 1);
@@ -22,25 +23,25 @@ TEST(BoxLattice, PutsSquaresOnPixels) {
       int const phase = lattice.phase(square);
       ASSERT_GE(phase, 0);
       ASSERT_LT(phase, lattice.per_pixel);
-      EXPECT_LE(std::abs(lattice.offset(phase) - BoxLattice::aside), 0.5);
-      EXPECT_NEAR(lattice.pixel(square) + lattice.offset(phase), square * lattice.side() + BoxLattice::aside, 1e-12);
+      EXPECT_LE(std::abs(lattice.offset(phase) - MomentLattice::aside), 0.5);
+      EXPECT_NEAR(lattice.pixel(square) + lattice.offset(phase), square * lattice.side() + MomentLattice::aside, 1e-12);
     }
   }
 }
 
-TEST(DotBoxes, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
-  BoxLattice const lattice = BoxLattice::no_coarser(0.4);
+TEST(DotSquares, CountDisplacementsFromTheMiddlesOfTheSensorsSquares) {
+  MomentLattice const lattice = MomentLattice::no_coarser(0.4);
   Vec2d const origin{101.87, -3.21};
   for (int const step : {1, 2, 4})
     for (Vec2d const displacement : {Vec2d{0, 0}, Vec2d{0.7, -2.3}, Vec2d{-5.01, 4.4}}) {
-      DotBoxes const boxes(lattice, origin, step);
-      Vec2<int> const box = boxes.box_of(displacement);
-      Vec2d const rest = boxes.from_middle(displacement, box);
+      DotSquares const squares(lattice, origin, step);
+      Vec2<int> const square = squares.square_of(displacement);
+      Vec2d const rest = squares.from_middle(displacement, square);
       EXPECT_LE(std::abs(rest.x), 0.5 * step * lattice.side() + 1e-12);
       EXPECT_LE(std::abs(rest.y), 0.5 * step * lattice.side() + 1e-12);
-      Vec2<int> const square = boxes.square(box);
-      EXPECT_NEAR(square.x * lattice.side() + BoxLattice::aside + rest.x, origin.x + displacement.x, 1e-11);
-      EXPECT_NEAR(square.y * lattice.side() + BoxLattice::aside + rest.y, origin.y + displacement.y, 1e-11);
+      Vec2<int> const on_sensor = squares.on_sensor(square);
+      EXPECT_NEAR(on_sensor.x * lattice.side() + MomentLattice::aside + rest.x, origin.x + displacement.x, 1e-11);
+      EXPECT_NEAR(on_sensor.y * lattice.side() + MomentLattice::aside + rest.y, origin.y + displacement.y, 1e-11);
     }
 }
 
@@ -70,18 +71,20 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
   DotModel model;
   model.spot = spot.gaussian;
   model.source_half = half_px > 0 ? 1e-3 : 0;
-  double const side = model.most_box_side();
+  double const side = model.most_square_side();
   int const terms = half_px > 0 ? PlaceRule::terms : 1;
   MomentImages images = MomentImages::plan(half_px, spot.gaussian, side, terms);
   ASSERT_TRUE(images.exist());
-  std::vector<double> const values = make_moment_images(images, source.points, source.weights, half_px, spot.gaussian);
+  std::vector<double> const values =
+      make_moment_images(images, {source.points.data(), source.weights.data(), static_cast<int>(source.points.size())},
+                         half_px, spot.gaussian);
   images.values = values.data();
   double const slope = half_px > 0 ? 0.02 * side : 0;
   for (Vec2d const at : {Vec2d{30.1, 33.4}, Vec2d{29.51, 31.98}, Vec2d{32.77, 30.26}}) {
-    DotBoxes const boxes(images.lattice, at, 1);
+    DotSquares const squares(images.lattice, at, 1);
     Vec2d const d0{0.61, -0.87};
-    Vec2<int> const box = boxes.box_of(d0);
-    Vec2d const rest = boxes.from_middle(d0, box);
+    Vec2<int> const square = squares.square_of(d0);
+    Vec2d const rest = squares.from_middle(d0, square);
     DotPatch direct(spot, images), by_moments(spot, images);
     // moments as functions of the place, term by term: (rest.x + s x)^a (rest.y - s y / 2)^b up to second order in s
     MomentField field{};
@@ -98,7 +101,11 @@ TEST_P(SpreadSource, IsTheSumOfItsPointsWhereTheyAreMoved) {
         of[5] = 0.5 * b * (b - 1) * power(rest.y, b - 2) * sy * sy * power(rest.x, a);
       }
     }
-    by_moments.deposit(boxes.square(box), 2.5, field, nullptr, 1);
+    SquareSums<1> sums;
+    sums.range = {square, square};
+    for (int k = 0; k < images.count(); ++k) sums.shares[k][0] = 2.5 * field.coefficient[k / terms][k % terms];
+    unsigned short const first = 0;
+    add_squares<MomentImages::pad>(OneLane{}, images, squares, &first, 1, sums, by_moments);
     for (std::size_t i = 0; i < source.points.size(); ++i) {
       Vec2d const p = source.points[i];
       Vec2d const moved = d0 + slope * Vec2d{p.x, -0.5 * p.y};
