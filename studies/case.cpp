@@ -193,18 +193,19 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
-  scene.rays_per_dot = prepared.rays.rays;
-  scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
+  use_rays(scene, prepared.rays);
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
   if (!by_table && !prepared.rays.converged) {
     warn(prepared.warnings,
-         fmt::format("rays_per_dot = {}: the image is only good to {:.2g} grey levels of {} bits, truth to "
-                     "{:.2g} px, where {} and {} are asked (that would take some {:.2g} rays a dot and {:.0f} s of one "
-                     "processor; \"auto\" takes {:.0f} s or 1024 rays); set render.rays_per_dot higher if that matters",
-                     prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits,
-                     prepared.rays.truth_error_px, image_tolerance_levels, truth_tolerance_px,
-                     prepared.rays.rays_wanted, rays_seconds(scene) * prepared.rays.rays_wanted, rays_budget_s));
+         fmt::format(
+             "rays_per_dot = \"auto\" takes up to {} of a source: the image is only good to {:.2g} grey levels of "
+             "{} bits, truth to {:.2g} px, where {} and {} are asked (that would take some {:.2g} rays of some, "
+             "{:.2g} s of one processor each; \"auto\" takes {:.2g} s or 1024 rays); set render.rays_per_dot "
+             "higher if that matters",
+             prepared.rays.rays, prepared.rays.image_error_levels, prepared.rays.bits, prepared.rays.truth_error_px,
+             image_tolerance_levels, truth_tolerance_px, prepared.rays.rays_wanted,
+             ray_seconds(scene) * prepared.rays.rays_wanted, source_budget_s));
   }
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
@@ -227,7 +228,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  if (by_table && !loaded.setup.render.rays_per_dot) {  // every dot's are chosen by themselves
+  if ((by_table || prepared.rays.by_need) && !loaded.setup.render.rays_per_dot) {  // every source's are its own
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

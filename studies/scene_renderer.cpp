@@ -37,7 +37,7 @@ DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& number
   return some;
 }
 
-/// A copy of a scene with other dots, so many rays each, bright.
+/// A copy of a scene with other dots, bright, of so many rays each or the most that they may need.
 Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
   Scene copy = scene;
   copy.dots = std::move(dots);
@@ -126,11 +126,10 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   std::vector<std::size_t> const left = all.left;
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   if (images == RenderImages::kept) all = focused_dots_->render(scene, sources, lit, theory);
-  Scene by_rays = with_dots(scene, some_of(sources, left), scene.rays_per_dot);
-  if (scene.rays_at_side_faces > 0) {
-    by_rays.rays_per_dot = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
-  } else if (!scene.setup.render.rays_per_dot) {
-    plan_rays_by_rays(by_rays);
+  Scene by_rays = with_dots(scene, some_of(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
+  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // no plan foresaw them
+    by_rays.by_need = need_of(scene);
+    by_rays.rays_per_dot = most_rays_of_source(by_rays);
   }
   merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), left, scene.setup.target.polarity);
   scene.pupil_margin = std::max(scene.pupil_margin, by_rays.pupil_margin);
@@ -161,8 +160,9 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
   if (at_faces.empty() || scene.setup.render.rays_per_dot) return;
   Scene by_rays = with_dots(scene, some_of(scene.dots, at_faces), 1);
-  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays);
-  plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
+  RaysPlan const at_side_faces = plan_rays_by_rays(by_rays, need_of(scene));
+  plan.by_need = at_side_faces.by_need;
+  plan.rays_at_side_faces = at_side_faces.most;
   plan.truth_error_px = std::max(plan.truth_error_px, at_side_faces.truth_error_px);
   plan.image_error_levels = std::max(plan.image_error_levels, at_side_faces.image_error_levels);
   plan.extrapolated = at_side_faces.extrapolated;
@@ -178,7 +178,7 @@ RaysPlan plan_rays_of(Scene& scene) {
     Scene first = scene, second = at_second_pulse(scene);
     first.second_medium.reset();
     RaysPlan const a = plan_rays_of(first), b = plan_rays_of(second), plan = b.rays > a.rays ? b : a;
-    scene.rays_per_dot = plan.rays;
+    use_rays(scene, plan);
     return plan;
   }
   if (method_of(scene) == RenderMethod::formula) {  // has none; what is written down is one
@@ -209,7 +209,7 @@ RaysPlan plan_rays_of(Scene& scene) {
   }
   scene.rays_per_dot = plan.rays;
   if (plan.method != RenderMethod::rays) plan_rays_at_side_faces(scene, plan);
-  scene.rays_at_side_faces = plan.rays_at_side_faces;
+  use_rays(scene, plan);
   return plan;
 }
 

@@ -176,7 +176,7 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   // where the rays are planned again, they are planned for the same exposure
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if (by_table && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
+  } else if ((by_table || scene.by_need) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
@@ -278,15 +278,16 @@ std::string write_case(CaseSetup& loaded, PreparedCase const& prepared, Rendered
   };
   if (scene.setup.piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
   if (!scene.setup.render.rays_per_dot) {
-    summary["rays_plan"] = {{"truth_error_px", prepared.rays.truth_error_px},
-                            {"image_error_levels", prepared.rays.image_error_levels},
-                            {"bits", prepared.rays.bits},
-                            {"extrapolated", prepared.rays.extrapolated},
-                            {"truth_asked_px", truth_tolerance_px},
-                            {"image_asked_levels", image_tolerance_levels},
-                            {"rays_wanted", prepared.rays.rays_wanted},
-                            {"processor_seconds", prepared.rays.seconds},
-                            {"processor_seconds_allowed", rays_budget_s}};
+    summary["rays_plan"] = {
+        {"truth_error_px", prepared.rays.truth_error_px},
+        {"image_error_levels", prepared.rays.image_error_levels},
+        {"bits", prepared.rays.bits},
+        {"extrapolated", prepared.rays.extrapolated},
+        {"truth_asked_px", truth_tolerance_px},
+        {"image_asked_levels", image_tolerance_levels},
+        {"rays_wanted", prepared.rays.rays_wanted},
+        {"processor_seconds", prepared.rays.seconds},
+        {"processor_seconds_allowed", source_budget_s * static_cast<double>(rendering.truth.size())}};
   }
   std::string const text = json_text(summary) + "\n";
   OutputFile::write_text(place(case_file::summary), text);

@@ -147,6 +147,7 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   EXPECT_EQ(scene.rays_at_side_faces, plan.rays_at_side_faces);
   EXPECT_LE(plan.rays, 256u);
   EXPECT_GE(plan.rays_at_side_faces, 4 * plan.rays);
+  EXPECT_TRUE(scene.by_need);
 }
 
 }  // namespace
