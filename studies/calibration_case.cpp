@@ -70,6 +70,7 @@ std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
   scene.rays_per_dot = std::max(least_rays, plan_rays_of(scene).rays);
+  scene.by_need.reset();  // all of them the same
   while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
     scene.rays_per_dot *= 2;
   }

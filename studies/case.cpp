@@ -184,9 +184,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   warn_of_view(scene, prepared.warnings);
   warn_of_blur(scene, prepared.warnings);
   prepared.rays = known.rays ? *known.rays : plan_rays_of(scene);
-  scene.rays_per_dot = prepared.rays.rays;
-  scene.rays_at_side_faces = prepared.rays.rays_at_side_faces;
-  scene.fineness = prepared.rays.fineness;
+  use_rays(scene, prepared.rays);
   if (prepared.rays.method != RenderMethod::automatic) scene.setup.render.method = prepared.rays.method;
   bool const by_table = method_of(scene) == RenderMethod::focused_dots;
   if (by_table) {
@@ -215,7 +213,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  if (by_table && !loaded.setup.render.rays_per_dot) {  // every dot's are chosen by themselves
+  if ((by_table || prepared.rays.by_need) && !loaded.setup.render.rays_per_dot) {  // every source's are its own
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

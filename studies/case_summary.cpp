@@ -66,7 +66,7 @@ nlohmann::json side_faces_json(SideFaceErrors const& there, int bits) {
           {"rays_wanted", known_or_null(there.rays_wanted)}};
 }
 
-nlohmann::json plan_json(RaysPlan const& plan) {
+nlohmann::json plan_json(RaysPlan const& plan, std::size_t sources) {
   return {{"truth_error_px", resolved(plan.truth_error_px, plan.truth_resolution_px)},
           {"image_error_levels", resolved(plan.image_error_levels, plan.image_resolution_levels)},
           {"truth_resolution_px", known_or_null(plan.truth_resolution_px)},
@@ -77,7 +77,7 @@ nlohmann::json plan_json(RaysPlan const& plan) {
           {"image_asked_levels", image_tolerance_levels},
           {"rays_wanted", known_or_null(plan.rays_wanted)},
           {"processor_seconds", known_or_null(plan.seconds)},
-          {"processor_seconds_allowed", rays_budget_s}};
+          {"processor_seconds_allowed", source_budget_s * static_cast<double>(sources)}};
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"seconds_render", rendered.seconds},
   };
   if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
-  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(plan);
+  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(plan, rendering.truth.size());
   return summary;
 }
 

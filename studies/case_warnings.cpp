@@ -32,13 +32,13 @@ std::string truth_error_in_words(RaysPlan const& plan) {
 
 void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {
   if (plan.converged) return;
-  warn(
-      warnings,
-      fmt::format("rays_per_dot = {}: the image is only good to {}, truth to {}, where {} and {} are asked (that would "
-                  "take some {:.2g} rays a dot and {:.0f} s of one processor; \"auto\" takes {:.0f} s or 1024 rays); "
-                  "set render.rays_per_dot higher if that matters",
-                  plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
-                  truth_tolerance_px, plan.rays_wanted, rays_seconds(scene) * plan.rays_wanted, rays_budget_s));
+  warn(warnings,
+       fmt::format(
+           "rays_per_dot = \"auto\" takes up to {} of a source: the image is only good to {}, truth to {}, where {} "
+           "and {} are asked (that would take some {:.2g} rays of some, {:.2g} s of one processor each; \"auto\" "
+           "takes {:.2g} s or 1024 rays); set render.rays_per_dot higher if that matters",
+           plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
+           truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
 }
 
 void warn_of_side_faces(std::vector<std::string>& warnings, Scene const& scene, RaysPlan const& plan) {

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -86,7 +87,7 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
     fill([&](std::string const& place) { return write_calibration(camera.loaded, rendered, place); });
     told.planes = rendered.planes.size();
     for (RenderedPlane const& plane : rendered.planes) told.sources += plane.truth.size();
-    told.rays = rendered.rays;
+    told.rays = told.most_rays = rendered.rays;
     told.seconds = rendered.seconds;
     told.device = rendered.device;
     return summary;
@@ -98,7 +99,12 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
   Rendering const& rendering = *finished.rendered.rendering;
   told.sources = rendering.truth.size();
   told.particles = camera.loaded.setup.piv.has_value();
-  told.rays = finished.prepared.rays.rays;
+  std::vector<std::int64_t> const& planned = rendering.truth.rays_planned;
+  if (!planned.empty()) {
+    auto const [least, most] = std::minmax_element(planned.begin(), planned.end());
+    told.rays = static_cast<std::uint64_t>(*least);
+    told.most_rays = static_cast<std::uint64_t>(*most);
+  }
   told.step_mm = finished.prepared.step.step_mm;
   told.magnification = finished.prepared.scene.imaging.magnification;
   told.seconds = finished.rendered.seconds;

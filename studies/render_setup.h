@@ -17,7 +17,8 @@ struct RenderedCamera {
   std::size_t planes = 0;   ///< of a calibration
   std::size_t sources = 0;  ///< of a calibration: of all planes
   bool particles = false;
-  std::uint64_t rays = 0;               ///< a source
+  std::uint64_t rays = 0;               ///< a source; the least
+  std::uint64_t most_rays = 0;          ///< of one
   std::optional<double> step_mm;        ///< none: there was no medium to step through
   std::optional<double> magnification;  ///< [1]; none: every plane has its own
   double seconds = 0;

@@ -38,7 +38,7 @@ DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& number
   return some;
 }
 
-/// A copy of a scene with other dots, so many rays each, bright.
+/// A copy of a scene with other dots, bright, of so many rays each or the most that they may need.
 Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
   Scene copy = scene;
   copy.dots = std::move(dots);
@@ -137,11 +137,10 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   std::vector<std::size_t> const left = all.left;
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   if (images == RenderImages::kept) all = focused_dots_->render(scene, sources, lit, theory);
-  Scene by_rays = with_dots(scene, some_of(sources, left), scene.rays_per_dot);
-  if (scene.rays_at_side_faces > 0) {
-    by_rays.rays_per_dot = std::max(scene.rays_per_dot, scene.rays_at_side_faces);
-  } else if (!scene.setup.render.rays_per_dot) {
-    plan_rays_by_rays(by_rays);
+  Scene by_rays = with_dots(scene, some_of(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
+  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // no plan foresaw them
+    by_rays.by_need = need_of(scene);
+    by_rays.rays_per_dot = most_rays_of_source(by_rays);
   }
   merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), left, scene.setup.target.polarity);
   scene.pupil_margin = std::max(scene.pupil_margin, by_rays.pupil_margin);
@@ -194,13 +193,14 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   bool const seen = std::any_of(by_rays.dots.centre.begin(), by_rays.dots.centre.end(),
                                 [&scene](Vec2d centre) { return scene.in_view(centre); });
   if (given && !seen) return;
-  RaysPlan const at_side_faces = given ? measure_given_rays(by_rays) : plan_rays_by_rays(by_rays);
+  RaysPlan const at_side_faces = given ? measure_given_rays(by_rays) : plan_rays_by_rays(by_rays, need_of(scene));
   if (seen) {
     plan.side_faces = {at_faces.size(), at_side_faces.rays, at_side_faces.truth_error_px,
                        at_side_faces.image_error_levels, at_side_faces.rays_wanted};
   }
   if (given) return;
-  plan.rays_at_side_faces = std::max(plan.rays, at_side_faces.rays);
+  plan.by_need = at_side_faces.by_need;
+  plan.rays_at_side_faces = at_side_faces.most;
   plan.truth_error_px = std::fmax(plan.truth_error_px, at_side_faces.truth_error_px);
   plan.image_error_levels = std::fmax(plan.image_error_levels, at_side_faces.image_error_levels);
   plan.extrapolated = at_side_faces.extrapolated;
@@ -216,7 +216,7 @@ RaysPlan plan_rays_of(Scene& scene) {
     Scene first = scene, second = at_second_pulse(scene);
     first.second_medium.reset();
     RaysPlan const a = plan_rays_of(first), b = plan_rays_of(second), plan = b.rays > a.rays ? b : a;
-    scene.rays_per_dot = plan.rays;
+    use_rays(scene, plan);
     return plan;
   }
   if (method_of(scene) == RenderMethod::formula) {  // has none; what is written down is one
@@ -246,9 +246,8 @@ RaysPlan plan_rays_of(Scene& scene) {
     scene.setup.render.method = plan.method;
   }
   scene.rays_per_dot = plan.rays;
-  scene.fineness = plan.fineness;
   if (plan.method != RenderMethod::rays) plan_rays_at_side_faces(scene, plan);
-  scene.rays_at_side_faces = plan.rays_at_side_faces;
+  use_rays(scene, plan);
   return plan;
 }
 

@@ -108,7 +108,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   // where the rays are planned again, they are planned for the same exposure
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
-  } else if (by_table && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
+  } else if ((by_table || scene.by_need) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
     loaded.document.root().table("camera").resolve("exposure", std::string("auto"));
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);

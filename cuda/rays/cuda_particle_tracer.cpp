@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cuda/device/launch.h"
@@ -22,138 +24,211 @@ constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch =
 /// Particles at both pulses, in the host's memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Takes particles through the device, batch by batch. The medium is there twice, for the host aims those that do not
-/// fill the stop.
+/// Takes a batch of particles through the device. The medium is there twice, for the host aims those that do not fill
+/// the stop.
 template <class Medium>
-class ParticlePasses {
+class BatchPass {
  public:
-  ParticlePasses(ParticleLaunch const& host, LaunchesOnDevice const& launches, HostPulses const& pulses,
-                 Medium const& medium, DeviceMedium<double> const& mirrored, PinnedBuffer& staging)
+  /// @param launches of the batch's particles, by steps
+  BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
+            HostPulses const& pulses, Medium const& medium, DeviceMedium<double> const& mirrored, ParticleBatch& batch,
+            double across_medium, unsigned long long* ends)
       : host_(host),
-        launches_(launches),
+        on_device_(on_device),
+        launches_(std::move(launches)),
         pulses_(pulses),
         medium_(medium),
         mirrored_(mirrored),
-        staging_(staging),
-        ends_(frame_count * ray_status_count, "the sums over a batch's rays"),
-        unknown_(1, "the particles") {
-    ends_.zero();
+        batch_(batch),
+        across_medium_(across_medium),
+        ends_(ends) {
+    batch.counts().zero();
+    aim_particles(on_device.stop(), launches_[0], on_device.ladder(), mirrored, batch.count(), batch.aims().data(),
+                  batch.origins().data(), batch.steps());
+    list(batch.steps().step);
   }
 
-  /// Sets the device to work on a batch. @param launch of the batch's particles
-  void start(ParticleBatch& batch, ParticlesLaunch const& launch) {
-    unknown_.zero();
-    aim_particles(launches_.stop(), launch, mirrored_, batch.count(), batch.aims().data(), batch.origins().data(),
-                  unknown_.data());
-    trace(batch, launch, AimState::filled, nullptr, frame_count * batch.count());
-  }
-
-  /// Waits for it, traces what the host has to aim, and enters the truth.
-  void finish(ParticleBatch& batch, ParticlesLaunch const& launch, double photons_per_weight, GroundTruth& truth) {
-    unsigned long long unknown = 0;
-    unknown_.download(&unknown, 1);
-    if (unknown > 0) trace_wide(batch, launch);
+  /// Traces all that is needed, and enters the truth.
+  void finish(PinnedBuffer& staging, GroundTruth& truth) {
     constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
-    std::size_t const count = batch.count();
-    DotTruth* const ambient_there = bends ? batch.ambient().data() : nullptr;
-    see_particles(launch, batch.aims().data(), batch.origins().data(), batch.sums().data(), count, batch.truth().data(),
-                  ambient_there);
-    auto* const seen = static_cast<DotTruth*>(staging_.reserve(2 * count * sizeof(DotTruth)));
-    batch.truth().download(seen, count);
+    std::size_t const count = batch_.count();
+    DotTruth* const ambient_there = bends ? batch_.ambient().data() : nullptr;
+    trace_listed(AimState::filled, 1);
+    if (counted(LadderView::most_steps) > 0) aim_wide();
+    while (true) {
+      batch_.counts().zero();
+      see_particles(on_device_.ladder(), batch_.aims().data(), batch_.origins().data(), batch_.sums().data(), count,
+                    batch_.steps(), batch_.truth().data(), ambient_there);
+      if (launches_.size() == 1) break;
+      batch_.counts().download(counts_, LadderView::most_steps + 1);
+      if (counted(LadderView::most_steps) == 0) break;
+      throw_if_interrupted();
+      go_on();
+    }
+    auto* const seen = static_cast<DotTruth*>(staging.reserve(count * (2 * sizeof(DotTruth) + sizeof(int))));
+    batch_.truth().download(seen, count);
     DotTruth* const ambient = bends ? seen + count : seen;
-    if (bends) batch.ambient().download(ambient, count);
+    if (bends) batch_.ambient().download(ambient, count);
+    auto* const step = reinterpret_cast<int*>(seen + 2 * count);
+    batch_.all_steps().download(step, count);
+    std::size_t const first = launches_[0].first;
     parallel_chunks(count, 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        set_particle(truth, launch.first + i, {seen[i], ambient[i]}, photons_per_weight);
+        set_particle(truth, first + i, {seen[i], ambient[i]}, launches_[static_cast<std::size_t>(step[i])].rays);
       }
     });
   }
 
-  /// Adds what became of all rays.
-  void count(StatusCounts& statuses) const {
-    unsigned long long ends[frame_count * ray_status_count] = {};
-    ends_.download(ends, frame_count * ray_status_count);
-    for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
-      statuses[i / ray_status_count][i % ray_status_count] += static_cast<std::int64_t>(ends[i]);
-    }
-  }
   /// The widest that any particle was aimed beyond the stop [m].
-  double largest_margin() const { return largest_margin_; }
+  double largest_margin() const {
+    double largest = 0;
+    for (std::uint32_t const at : wide_) largest = std::max(largest, found_[at].margin);
+    return largest;
+  }
 
  private:
-  void trace(ParticleBatch& batch, ParticlesLaunch const& launch, AimState state, std::uint32_t const* listed,
-             std::size_t count) {
-    trace_particles(launch, mirrored_, state, batch.aims().data(), batch.origins().data(), listed, count,
-                    {batch.sums().data(), batch.bend2().data(), ends_.data()});
-  }
-  void trace_listed(ParticleBatch& batch, ParticlesLaunch const& launch, std::vector<std::uint32_t> const& listed,
-                    double sign) {
-    DeviceArray<std::uint32_t> const on_device(listed.data(), listed.size(), "the particles");
-    trace(batch, launches_.wide(launch, sign), AimState::wide, on_device.data(), listed.size());
-  }
+  unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Aims at the host what the device could not, and traces it; what is bent beyond its margin is taken back and traced
-  /// again, wider.
-  void trace_wide(ParticleBatch& batch, ParticlesLaunch const& launch) {
-    std::vector<PulseAim> aims(batch.aims().size());
-    std::vector<Vec2d> origins(batch.count());
-    batch.aims().download(aims.data(), aims.size());
-    batch.origins().download(origins.data(), origins.size());
-    std::vector<SourceAim> found(aims.size());
-    parallel_chunks(batch.count(), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) aim_at_host(i, launch, &aims[frame_count * i], origins[i], found);
-    });
-    std::vector<std::uint32_t> listed;
-    for (std::size_t at = 0; at < aims.size(); ++at) {
-      if (aims[at].state == AimState::wide) listed.push_back(static_cast<std::uint32_t>(at));
+  /// Lists by steps the aims of chosen particles that fill the stop.
+  void list(int const* at) {
+    list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
+                   batch_.listed(launches_.size()));
+  }
+  /// Traces what is listed. @param sign of the light that is laid down and of the ends that are counted
+  void trace_listed(AimState state, double sign) {
+    batch_.counts().download(counts_, LadderView::most_steps + 1);
+    for (std::size_t step = 0; step < launches_.size(); ++step) {
+      trace(state, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(), counted(step), sign);
     }
-    batch.origins().upload(origins.data());
-    while (!listed.empty()) {
+  }
+  /// @param listed on the device
+  void trace(AimState state, std::size_t step, std::uint32_t const* listed, std::size_t count, double sign) {
+    ParticlesLaunch launch = launches_[step];
+    launch.sign = sign;
+    if (state == AimState::wide) launch.camera.elements = on_device_.smooth(step);
+    // so many at a time that one launch does not take long
+    double const at_once = most_steps_a_launch / on_device_.steps_a_particle(across_medium_, step);
+    auto const most = static_cast<std::size_t>(std::clamp(frame_count * at_once, 1.0, 1e9));
+    for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
-      batch.aims().upload(aims.data());
-      batch.bend2().zero();
-      trace_listed(batch, launch, listed, 1);
-      std::vector<double> bend2(aims.size());
-      batch.bend2().download(bend2.data(), bend2.size());
-      std::vector<std::uint32_t> missed;
-      for (std::uint32_t const at : listed) {
-        double const bend = std::sqrt(bend2[at]);
-        if (host_.smooth.camera.chief_rays_only() || !(bend > found[at].margin)) {
-          largest_margin_ = std::max(largest_margin_, found[at].margin);
-          continue;
-        }
-        missed.push_back(at);
-        found[at].margin = host_.smooth.wider_margin(bend);
-        aim_wide(at, launch, found[at], aims[at]);
-      }
-      if (!missed.empty()) trace_listed(batch, launch, missed, -1);  // with the aims that are there still
-      listed = std::move(missed);
+      trace_particles(launch, mirrored_, state, batch_.aims().data(), batch_.origins().data(), listed + first,
+                      std::min(most, count - first), {batch_.sums().data(), batch_.bend2().data(), ends_});
     }
-    batch.aims().upload(aims.data());
   }
 
-  /// Aims at both pulses of a particle what is not known yet.
-  void aim_at_host(std::size_t i, ParticlesLaunch const& launch, PulseAim* aims, Vec2d& origin,
-                   std::vector<SourceAim>& found) const {
+  /// Takes the light of particles that need more rays back, and traces them anew.
+  void go_on() {
+    std::size_t const count = batch_.count();
+    batch_.counts().zero();
+    list(batch_.steps().step);
+    trace_listed(AimState::filled, -1);
+    batch_.counts().zero();
+    list(batch_.steps().next);
+    trace_listed(AimState::filled, 1);
+    if (wide_.empty()) return;
+    std::vector<int> steps(3 * count);
+    batch_.all_steps().download(steps.data(), steps.size());
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t const at : wide_) {
+      if (steps[2 * count + at / frame_count] != 0) chosen.push_back(at);
+    }
+    trace_wide(chosen, steps.data(), -1);
+    for (std::uint32_t const at : chosen) place_aim(at, static_cast<std::size_t>(steps[count + at / frame_count]));
+    batch_.aims().upload(aims_.data());
+    trace_wider(chosen, steps.data() + count);
+  }
+
+  /// Aims at the host what the device could not, and traces these particles.
+  void aim_wide() {
+    std::size_t const count = batch_.count();
+    aims_.resize(batch_.aims().size());
+    found_.resize(aims_.size());
+    std::vector<Vec2d> origins(count);
+    std::vector<int> steps(3 * count);
+    batch_.aims().download(aims_.data(), aims_.size());
+    batch_.origins().download(origins.data(), origins.size());
+    batch_.all_steps().download(steps.data(), steps.size());
+    parallel_chunks(count, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        steps[2 * count + i] = 1 - steps[2 * count + i];  // those are chosen now that have not been
+        if (steps[2 * count + i] != 0) steps[i] = aim_at_host(i, origins[i], steps[i]);
+        steps[count + i] = steps[i];
+      }
+    });
+    for (std::size_t at = 0; at < aims_.size(); ++at) {
+      if (aims_[at].state == AimState::wide) wide_.push_back(static_cast<std::uint32_t>(at));
+    }
+    batch_.origins().upload(origins.data());
+    batch_.aims().upload(aims_.data());
+    batch_.all_steps().upload(steps.data());
+    batch_.counts().zero();
+    list(batch_.steps().step);
+    trace_listed(AimState::filled, 1);
+    trace_wider(wide_, steps.data());
+  }
+
+  /// Traces aims at clipped rays, by the steps of their particles.
+  void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
+    for (std::size_t here = 0; here < launches_.size(); ++here) {
+      std::vector<std::uint32_t> some;
+      std::copy_if(aims.begin(), aims.end(), std::back_inserter(some),
+                   [&](std::uint32_t at) { return static_cast<std::size_t>(step[at / frame_count]) == here; });
+      if (some.empty()) continue;
+      DeviceArray<std::uint32_t> const listed(some.data(), some.size(), "the particles");
+      trace(AimState::wide, here, listed.data(), some.size(), sign);
+    }
+  }
+  /// The same; what is bent beyond its margin is taken back and traced again, wider.
+  void trace_wider(std::vector<std::uint32_t> aims, int const* step) {
+    while (!aims.empty()) {
+      throw_if_interrupted();
+      batch_.bend2().zero();
+      trace_wide(aims, step, 1);
+      std::vector<double> bend2(aims_.size());
+      batch_.bend2().download(bend2.data(), bend2.size());
+      std::vector<std::uint32_t> missed;
+      for (std::uint32_t const at : aims) {
+        double const bend = std::sqrt(bend2[at]);
+        if (!host_.sharp.camera.chief_rays_only() && bend > found_[at].margin) missed.push_back(at);
+      }
+      trace_wide(missed, step, -1);  // with the aims that are there still
+      for (std::uint32_t const at : missed) {
+        found_[at].margin = host_.sharp.wider_margin(std::sqrt(bend2[at]));
+        place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
+      }
+      if (!missed.empty()) batch_.aims().upload(aims_.data());
+      aims = std::move(missed);
+    }
+  }
+
+  /// Aims at both pulses of a particle what is not known yet. @return the step that it begins at
+  int aim_at_host(std::size_t i, Vec2d& origin, int step) {
+    PulseAim* const aims = &aims_[frame_count * i];
     bool placed = aims[0].state == AimState::filled || aims[1].state == AimState::filled;
     for (std::size_t pulse = 0; pulse < frame_count; ++pulse) {
       if (aims[pulse].state != AimState::unknown) continue;
       throw_if_interrupted();
       std::size_t const at = frame_count * i + pulse;
       aims[pulse] = {};
-      found[at] =
-          aim_at_stop(host_.smooth, host_.smooth.camera.view(), medium_, pulses_[pulse].middle(launch.first + i));
-      if (!found[at].disc) continue;
-      aim_wide(at, launch, found[at], aims[pulse]);
-      if (!placed) origin = found[at].origin;
+      RaysLaunch const& shared = host_.ladder[0];
+      found_[at] = aim_at_stop(shared, shared.camera.view(), medium_, pulses_[pulse].middle(launches_[0].first + i));
+      if (!found_[at].disc) continue;
+      aims[pulse].state = AimState::wide;
+      step = std::max(step, on_device_.ladder().first_clipped);
+      if (!placed) origin = found_[at].origin;
       placed = true;
     }
+    for (std::size_t at = frame_count * i; at < frame_count * (i + 1); ++at) {
+      if (aims_[at].state == AimState::wide) place_aim(at, static_cast<std::size_t>(step));
+    }
+    return step;
   }
-  void aim_wide(std::size_t at, ParticlesLaunch const& launch, SourceAim const& found, PulseAim& aim) const {
-    std::size_t const pulse = at % frame_count;
-    AimedBundle<double> const bundle = host_.smooth.bundle(*found.disc, 0, found.margin);
-    aim.state = AimState::wide;
-    Pose<double> const& plane = launch.camera.aim_plane;
+  /// Where the rays of a wide aim go, at a step.
+  void place_aim(std::size_t at, std::size_t step) {
+    PulseAim& aim = aims_[at];
+    SourceAim const& found = found_[at];
+    AimedBundle<double> const bundle = host_.ladder[step].bundle(*found.disc, 0, found.margin);
+    Pose<double> const& plane = launches_[0].camera.aim_plane;
     auto const along = [&plane](Vec3d v) {
       Vec3d const there = plane.direction_inwards(v);
       return Vec2d{there.x, there.y};
@@ -164,28 +239,32 @@ class ParticlePasses {
     aim.seen.a[0] = along(bundle.a);
     aim.seen.b[0] = along(bundle.b);
     aim.ambient = aim.seen;
-    if (launch.most_window_px > 0) {
-      aim.most_weight = weight_expected(launch, pulses_[pulse], aim.seen, launch.first + at / frame_count);
-    }
-    place_window(launch, found.low[1], found.high[1], aim);
+    aim.low = found.low[1];
+    aim.high = found.high[1];
   }
 
-  ParticleLaunch const& host_;
-  LaunchesOnDevice const& launches_;
+  ParticleLaunches const& host_;
+  LaunchesOnDevice const& on_device_;
+  std::vector<ParticlesLaunch> launches_;
   HostPulses const& pulses_;
   Medium const& medium_;
   DeviceMedium<double> const& mirrored_;
-  PinnedBuffer& staging_;
-  DeviceArray<unsigned long long> ends_, unknown_;
-  double largest_margin_ = 0;
+  ParticleBatch& batch_;
+  double across_medium_;
+  unsigned long long* ends_;
+  unsigned int counts_[LadderView::most_steps + 1] = {};
+  std::vector<PulseAim> aims_;       ///< of the batch, where the host aims
+  std::vector<SourceAim> found_;     ///< of these
+  std::vector<std::uint32_t> wide_;  ///< those that it has aimed
 };
 
 /// Particles of a batch: so many that they fit, and that one launch does not take long.
 std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
-  double const at_once = most_steps_a_launch / launches.steps_a_particle(scene.steps_across());
-  return std::clamp<std::size_t>(std::min(most_batch_bytes / ParticleBatch::bytes_a_particle(launches.sums_a_pulse()),
-                                          static_cast<std::size_t>(std::min(at_once, 1e9))),
-                                 1, most_of_batch);
+  double const at_once = most_steps_a_launch / launches.steps_a_particle(scene.steps_across(), 0);
+  return std::clamp<std::size_t>(
+      std::min(most_batch_bytes / ParticleBatch::bytes_a_particle(launches.ladder().sums_a_pulse),
+               static_cast<std::size_t>(std::min(at_once, 1e9))),
+      1, most_of_batch);
 }
 
 }  // namespace
@@ -194,12 +273,12 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
                                     DeviceMedium<double> const& medium, KeptScattering& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
-  ParticleLaunch const host(scene, lit ? make_spot(scene, airy) : SpotView{});
+  ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
   LaunchesOnDevice const launches(host, medium, frames ? &*frames : nullptr,
-                                  lit ? photon_unit(scene, particles, light) : 1);
+                                  lit ? 1 / photon_unit(scene, particles, light) : 0);
   LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
   AnyScattering scattering;
   scattering.lambert.diameter = particles.diameter.data();
@@ -213,30 +292,41 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
     pulses[pulse] = {particles.place[pulse].data(), particles.photons[pulse].data(), scattering, sheet, pulse};
   }
   Rendering rendering;
-  double const photons_per_weight = 1 / static_cast<double>(host.smooth.rays);
   std::size_t const most = batch_size(scene, launches);
+  DeviceArray<unsigned long long> ends(frame_count * ray_status_count, "the sums over a batch's rays");
+  ends.zero();
+  double margin = 0;
   Progress progress(lit ? "tracing particles" : "tracing truth", particles.size());
   auto const trace_all = [&](auto const& host_medium) {
-    ParticlePasses passes(host, launches, pulses, host_medium, medium, staging);
     for (std::size_t first = 0; first < particles.size(); first += most) {
       throw_if_interrupted();
       std::size_t const count = std::min(most, particles.size() - first);
-      ParticleBatch batch(particles, first, count, launches.sums_a_pulse());
+      ParticleBatch batch(particles, first, count, launches.ladder().sums_a_pulse);
       if (scattering.kind == AnyScattering::Kind::mie) scattering.mie = kept.view(first);
-      ParticlesLaunch const launch = batch.launch(launches.filled(), first, scattering, sheet);
-      passes.start(batch, launch);
-      if (first == 0) rendering = empty_rendering(particles, host.smooth.rays);  // meanwhile
-      passes.finish(batch, launch, photons_per_weight, rendering.truth);
+      std::vector<ParticlesLaunch> of_batch;
+      for (std::size_t step = 0; step < launches.steps(); ++step) {
+        batch.fill(of_batch.emplace_back(launches.filled(step)), first, scattering, sheet);
+      }
+      BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, scene.steps_across(),
+                     ends.data());
+      if (first == 0) rendering = empty_rendering(particles);  // meanwhile
+      pass.finish(staging, rendering.truth);
+      margin = std::max(margin, pass.largest_margin());
       progress.advance(count);
     }
-    passes.count(rendering.statuses);
-    scene.pupil_margin = passes.largest_margin();
   };
   if (particles.size() > 0) {
     std::visit(trace_all, scene.medium.view);
   } else {
-    rendering = empty_rendering(particles, host.smooth.rays);
+    rendering = empty_rendering(particles);
   }
+  scene.pupil_margin = margin;
+  unsigned long long ended[frame_count * ray_status_count] = {};
+  ends.download(ended, frame_count * ray_status_count);
+  for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
+    rendering.statuses[i / ray_status_count][i % ray_status_count] += static_cast<std::int64_t>(ended[i]);
+  }
+  count_rays(rendering);
   if (!lit) return rendering;
   auto made = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*made);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cuda/device/device_images.h"
@@ -15,6 +16,7 @@
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "render/rays/ray_theory.h"
+#include "render/rays/rays_ladder.h"
 #include "render/rays/rays_renderer.h"
 #include "render/rays/source_tracer.h"
 #include "render/scene/spot.h"
@@ -25,24 +27,34 @@ namespace {
 /// Memory for the sums of one batch of sources [bytes].
 constexpr std::size_t most_sum_bytes = std::size_t{256} << 20;
 
-/// What the sources of a scene share, on the device and on the host.
+/// The sources of a scene, on the device and on the host.
+struct PatternOnDevice {
+  LambertSources<double> host;
+  DeviceArray<Vec2d> centres;
+  DeviceArray<double> radiances;
+
+  PatternOnDevice(DotPattern const& pattern, double plane_z)
+      : host{pattern.view(plane_z)},
+        centres(pattern.centre.data(), pattern.centre.size(), "the sources"),
+        radiances(pattern.radiance.data(), pattern.radiance.size(), "the sources") {}
+};
+
+/// What the sources of a scene share that take so many rays, on the device and on the host.
 class LaunchOnDevice {
  public:
   /// @param images null: truth only
-  LaunchOnDevice(RaysLaunch const& host, DotPattern const& pattern, double plane_z, DeviceMedium<double> const& medium,
+  LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium<double> const& medium,
                  ImagePairOnDevice* images)
       : host_(host),
-        pattern_{pattern.view(plane_z)},
+        pattern_(pattern.host),
         source_px_(pattern_.reach() / std::sqrt(host.point_area)),
-        elements_(host.camera.elements.data(), host.camera.elements.size(), "the camera"),
-        centres_(pattern.centre.data(), pattern.centre.size(), "the sources"),
-        radiances_(pattern.radiance.data(), pattern.radiance.size(), "the sources") {
+        elements_(host.camera.elements.data(), host.camera.elements.size(), "the camera") {
     launch_.camera = host.camera.view();
     launch_.camera.elements = elements_.data();
     launch_.tracing = host.tracing;
     launch_.sources = pattern_;
-    launch_.sources.dots.centre = centres_.data();
-    launch_.sources.dots.radiance = radiances_.data();
+    launch_.sources.dots.centre = pattern.centres.data();
+    launch_.sources.dots.radiance = pattern.radiances.data();
     launch_.choice = host.choice;
     launch_.rays = host.rays;
     if (!images) return;
@@ -60,7 +72,8 @@ class LaunchOnDevice {
     widest_window_px_ = widest_window_px(launch_, medium);
   }
 
-  LambertSources<double> const& pattern() const { return pattern_; }
+  RaysLaunch const& host() const { return host_; }
+  double light_per_weight() const { return host_.light_per_weight(pattern_.area()); }
   std::size_t sums_a_source() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }
   int scramblings() const { return launch_.scramblings(); }
 
@@ -111,8 +124,6 @@ class LaunchOnDevice {
   double source_px_;  ///< half size of a source's image on the axis [px]
   int widest_window_px_ = 0;
   DeviceArray<CameraElement<double>> elements_;
-  DeviceArray<Vec2d> centres_;
-  DeviceArray<double> radiances_;
   DeviceArray<double> airy_, share_;
   SourcesLaunch launch_;
 };
@@ -161,13 +172,12 @@ class Batch {
   AimedSources const& sources() const { return sources_; }
   /// Furthest that the medium moved a ray of a source on the aim plane [m].
   double bend(std::size_t at) const { return std::sqrt(bends_[at]); }
-  DotTruth truth(std::size_t at) const {
+  /// Sums over the rays of a source's scramblings.
+  void sum(std::size_t at, RaySums (&of_scramblings)[most_scramblings]) const {
     auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
-    RaySums of_scramblings[most_scramblings];
     for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
       of_scramblings[i % scramblings] += found_[at * scene_.sums_a_source() + i];
     }
-    return source_truth(of_scramblings, scene_.scramblings(), sources_.placed[at].origin);
   }
 
  private:
@@ -185,31 +195,26 @@ class Batch {
 template <class Medium>
 class SceneTracer {
  public:
-  SceneTracer(Scene const& scene, RaysLaunch const& launch, LaunchOnDevice const& on_device, Medium const& medium,
-              DeviceMedium<double> const& mirrored, GroundTruth& truth, StatusCounts& statuses)
+  SceneTracer(Scene const& scene, RaysLadder const& ladder, PatternOnDevice const& pattern, Medium const& medium,
+              DeviceMedium<double> const& mirrored, ImagePairOnDevice* images, TracingPass& pass)
       : scene_(scene),
-        launch_(launch),
-        on_device_(on_device),
+        ladder_(ladder),
+        pattern_(pattern),
         medium_(medium),
         mirrored_(mirrored),
-        truth_(truth),
-        statuses_(statuses),
-        light_per_weight_(launch.light_per_weight(on_device.pattern().area())) {}
+        images_(images),
+        truth_(pass.rendering.truth),
+        statuses_(pass.rendering.statuses),
+        steps_(ladder.size()) {}
 
   /// @return the widest that any source was aimed beyond the stop [m]
   double trace(char const* what) {
-    std::size_t const count = truth_.size();
-    // so many that their sums fit, that one launch does not take long, and that few wait for the first aims
-    double const launches_at_once = most_steps_a_launch / on_device_.steps_a_source(scene_.steps_across());
-    std::size_t const most =
-        std::clamp<std::size_t>(std::min(most_sum_bytes / (on_device_.sums_a_source() * sizeof(RaySums)),
-                                         static_cast<std::size_t>(std::min(launches_at_once, 1e9))),
-                                1, 1 << 14);
+    std::size_t const count = truth_.size(), most = at_once(0);
     Progress progress(what, count);
     AimedSources next = aim(0, std::min(most, count));
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
-      auto batch = std::make_unique<Batch>(on_device_, mirrored_, std::move(next), 1);
+      auto batch = std::make_unique<Batch>(on_device(0), mirrored_, std::move(next), 1);
       // meanwhile
       std::size_t const after = std::min(first + most, count);
       next = aim(after, std::min(after + most, count));
@@ -220,60 +225,99 @@ class SceneTracer {
   }
 
  private:
+  LaunchOnDevice const& on_device(std::size_t step) {
+    if (!steps_[step]) steps_[step] = std::make_unique<LaunchOnDevice>(ladder_[step], pattern_, mirrored_, images_);
+    return *steps_[step];
+  }
+  /// So many sources that their sums fit, that one launch does not take long, and that few wait for the first aims.
+  std::size_t at_once(std::size_t step) {
+    LaunchOnDevice const& launch = on_device(step);
+    double const launches_at_once = most_steps_a_launch / launch.steps_a_source(scene_.steps_across());
+    return std::clamp<std::size_t>(std::min(most_sum_bytes / (launch.sums_a_source() * sizeof(RaySums)),
+                                            static_cast<std::size_t>(std::min(launches_at_once, 1e9))),
+                                   1, 1 << 14);
+  }
+
   AimedSources aim(std::size_t begin, std::size_t end) {
+    RaysLaunch const& launch = ladder_[0];
     std::vector<SourceAim> aims(end - begin);
     parallel_chunks(aims.size(), 8, [&](std::size_t low, std::size_t high) {
       for (std::size_t i = low; i < high; ++i) {
         throw_if_interrupted();
-        aims[i] = aim_at_stop(launch_, launch_.camera.view(), medium_, on_device_.pattern().middle(begin + i));
+        aims[i] = aim_at_stop(launch, launch.camera.view(), medium_, pattern_.host.middle(begin + i));
       }
     });
     AimedSources aimed;
     for (std::size_t i = 0; i < aims.size(); ++i) {
       if (aims[i].disc) {
-        aimed.add(on_device_.place(begin + i, aims[i]), aims[i]);
+        aimed.add(on_device(0).place(begin + i, aims[i]), aims[i]);
       } else {
-        truth_.set_hits(begin + i, source_truth(nullptr, 0, {}), light_per_weight_);
+        truth_.set_hits(begin + i, source_truth(nullptr, 0, {}), 0);
+        truth_.rays_planned[begin + i] = static_cast<std::int64_t>(launch.rays);
       }
     }
     return aimed;
   }
 
-  /// Takes in what a batch came to. Sources of which a ray was bent beyond their margin are taken back and traced
-  /// again.
+  /// Takes in what a batch of the first step came to. Sources of which a ray was bent beyond their margin, and those
+  /// that need more rays, are taken back and traced again.
   void finish(std::unique_ptr<Batch> batch) {
-    while (batch) {
-      batch->finish(1, statuses_);
-      AimedSources missed, wider;
-      AimedSources const& sources = batch->sources();
-      for (std::size_t at = 0; at < sources.placed.size(); ++at) {
-        SourceOnDevice const& placed = sources.placed[at];
-        SourceAim aim = sources.aims[at];
-        if (launch_.camera.chief_rays_only() || !(batch->bend(at) > aim.margin)) {
-          largest_margin_ = std::max(largest_margin_, aim.margin);
-          truth_.set_hits(placed.source, batch->truth(at), light_per_weight_);
-          continue;
+    std::vector<AimedSources> waiting(ladder_.size());
+    take_in(*batch, 0, waiting);
+    batch.reset();
+    for (std::size_t step = 0; step < waiting.size(); ++step) {
+      std::size_t const most = at_once(step);
+      while (!waiting[step].placed.empty()) {
+        throw_if_interrupted();
+        AimedSources all = std::exchange(waiting[step], {});
+        for (std::size_t first = 0; first < all.placed.size(); first += most) {
+          AimedSources some;
+          for (std::size_t i = first; i < std::min(first + most, all.placed.size()); ++i) {
+            some.add(all.placed[i], all.aims[i]);
+          }
+          Batch here(on_device(step), mirrored_, std::move(some), 1);
+          take_in(here, step, waiting);
         }
-        missed.add(placed, aim);
-        aim.margin = launch_.wider_margin(batch->bend(at));
-        wider.add(on_device_.place(placed.source, aim), aim);
       }
-      batch.reset();
-      if (missed.placed.empty()) return;
-      throw_if_interrupted();
-      Batch(on_device_, mirrored_, std::move(missed), -1).finish(-1, statuses_);
-      batch = std::make_unique<Batch>(on_device_, mirrored_, std::move(wider), 1);
     }
   }
 
+  /// @param waiting for their turn at every step
+  void take_in(Batch& batch, std::size_t step, std::vector<AimedSources>& waiting) {
+    batch.finish(1, statuses_);
+    RaysLaunch const& launch = ladder_[step];
+    LaunchOnDevice const& here = on_device(step);
+    AimedSources missed;
+    AimedSources const& sources = batch.sources();
+    for (std::size_t at = 0; at < sources.placed.size(); ++at) {
+      SourceOnDevice const& placed = sources.placed[at];
+      SourceAim aim = sources.aims[at];
+      RaySums sums[most_scramblings];
+      batch.sum(at, sums);
+      bool const beyond = !launch.camera.chief_rays_only() && batch.bend(at) > aim.margin;
+      std::size_t const next = beyond ? step : ladder_.next(step, RaysSent::clipped, {}, sums, here.light_per_weight());
+      if (!beyond && next == step) {
+        largest_margin_ = std::max(largest_margin_, aim.margin);
+        truth_.set_hits(placed.source, source_truth(sums, here.scramblings(), placed.origin), here.light_per_weight());
+        truth_.rays_planned[placed.source] = static_cast<std::int64_t>(launch.rays);
+        continue;
+      }
+      missed.add(placed, aim);
+      if (beyond) aim.margin = launch.wider_margin(batch.bend(at));
+      waiting[next].add(on_device(next).place(placed.source, aim), aim);
+    }
+    if (!missed.placed.empty()) Batch(here, mirrored_, std::move(missed), -1).finish(-1, statuses_);
+  }
+
   Scene const& scene_;
-  RaysLaunch const& launch_;
-  LaunchOnDevice const& on_device_;
+  RaysLadder const& ladder_;
+  PatternOnDevice const& pattern_;
   Medium const& medium_;
   DeviceMedium<double> const& mirrored_;
+  ImagePairOnDevice* images_;
   GroundTruth& truth_;
   StatusCounts& statuses_;
-  double light_per_weight_;
+  std::vector<std::unique_ptr<LaunchOnDevice>> steps_;  ///< made when first needed
   double largest_margin_ = 0;
 };
 
@@ -305,30 +349,31 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   CameraSetup const& camera = scene.setup.camera;
   std::optional<ImagePairOnDevice> frames;
   if (lit) frames.emplace(camera.columns, camera.rows);
-  LaunchOnDevice const on_device(launch, sources, -scene.setup.z_d, mirrored, frames ? &*frames : nullptr);
+  RaysLadder const ladder = RaysLadder::of_points(scene, launch, images);
+  PatternOnDevice const pattern(sources, -scene.setup.z_d);
   TracingPass pass(scene, sources);
   Rendering& rendering = pass.rendering;
   RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
   std::visit(
       [&](auto const& medium) {
-        SceneTracer tracer(scene, launch, on_device, medium, mirrored, rendering.truth, rendering.statuses);
+        SceneTracer tracer(scene, ladder, pattern, medium, mirrored, frames ? &*frames : nullptr, pass);
         scene.pupil_margin = tracer.trace(lit ? "tracing rays" : "tracing truth");
         if (theory == RenderTheory::no) return;
         parallel_chunks(rendering.truth.size(), 8, [&](std::size_t begin, std::size_t end) {
           for (std::size_t dot = begin; dot < end; ++dot) {
-            model.record(launch, on_device.pattern(), medium, dot, rendering.truth);
+            model.record(launch, pattern.host, medium, dot, rendering.truth);
           }
         });
       },
       scene.medium.view);
   rendering.table = TableState::by_rays;
-  if (!lit) return std::move(rendering);
+  if (!lit) return pass.finish();
   auto light = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*light);
   if (scene.setup.target.polarity == Polarity::dark) light->take_from(white_picture(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
   if (images == RenderImages::kept) rendering.kept = std::move(light);
-  return std::move(rendering);
+  return pass.finish();
 }
 
 Rendering CudaRaysRenderer::render_particles(Scene& scene, Particles const& particles, ParticleLight light,

@@ -1,5 +1,7 @@
 #include "cuda/rays/particles_on_device.h"
 
+#include <algorithm>
+
 #include "render/rays/hit_grid.h"
 
 namespace gladstone::cuda {
@@ -32,46 +34,86 @@ MieScatteringView<double> KeptScattering::view(std::uint64_t first) const {
   return view;
 }
 
-LaunchesOnDevice::LaunchesOnDevice(ParticleLaunch const& host, DeviceMedium<double> const& medium,
-                                   ImagePairOnDevice* images, double photon_unit)
-    : smooth_(host.smooth.camera.elements.data(), host.smooth.camera.elements.size(), "the camera"),
+LaunchesOnDevice::LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium,
+                                   ImagePairOnDevice* images, double light_per_photon)
+    : host_(host),
       sharp_(host.sharp.camera.elements.data(), host.sharp.camera.elements.size(), "the camera"),
+      smooth_(host.ladder.size()),
       stop_(host.sharp.camera) {
-  RaysLaunch const& shared = host.smooth;
+  RaysLaunch const& shared = host.ladder[0];
+  GLADSTONE_EXPECTS(host.ladder.size() <= LadderView::most_steps);
   stop_.camera.elements = sharp_.data();
-  launch_.camera = stop_.camera;
-  launch_.tracing = shared.tracing;
-  launch_.choice = shared.choice;
-  launch_.rays = shared.rays;
-  launch_.chief_rays = shared.camera.chief_rays_only();
-  if (!images) return;
-  launch_.images = images->view(1 / (static_cast<double>(shared.rays) * photon_unit));
-  launch_.spot = shared.spot;
-  if (shared.spot.model == SpotModel::airy) {
-    airy_ = DeviceArray<double>(shared.spot.airy.shares, shared.spot.airy.count(), "the Airy table");
-    launch_.spot.airy.shares = airy_.data();
-  } else if (shared.spot.model != SpotModel::none && HitGrid::pays(shared.spot.gaussian.sigma, shared.rays)) {
-    HitSpline const spline(shared.spot.gaussian);
-    launch_.spline = spline.view();
-    share_ = DeviceArray<double>(launch_.spline.share, static_cast<std::size_t>(launch_.spline.count()), "a spline");
-    launch_.spline.share = share_.data();
-    launch_.most_window_px = widest_particle_window_px(launch_, medium);
-  } else if (shared.spot.model != SpotModel::none && 2 * shared.spot.half_width() + 1 <= widest_patch_px) {
-    launch_.patch_px = widest_patch_px;
+  ParticlesLaunch launch;
+  launch.camera = stop_.camera;
+  launch.tracing = shared.tracing;
+  launch.chief_rays = shared.camera.chief_rays_only();
+  ladder_.goal = host.ladder.goal();
+  ladder_.light_per_photon = light_per_photon;
+  ladder_.steps = static_cast<int>(host.ladder.size());
+  ladder_.first_clipped = static_cast<int>(host.step_clipped());
+  ladder_.ruled = static_cast<bool>(shared.rule.view());
+  bool const gaussian = shared.spot.model != SpotModel::none && shared.spot.model != SpotModel::airy;
+  HitSplineView spline;
+  if (images) {
+    launch.spot = shared.spot;
+    if (shared.spot.model == SpotModel::airy) {
+      airy_ = DeviceArray<double>(shared.spot.airy.shares, shared.spot.airy.count(), "the Airy table");
+      launch.spot.airy.shares = airy_.data();
+    } else if (gaussian && HitGrid::pays(shared.spot.gaussian.sigma, host.ladder[host.ladder.size() - 1].rays)) {
+      HitSpline const owner(shared.spot.gaussian);
+      spline = owner.view();
+      share_ = DeviceArray<double>(spline.share, static_cast<std::size_t>(spline.count()), "a spline");
+      spline.share = share_.data();
+    }
+  }
+  std::vector<double> rules;
+  for (std::size_t step = 0; step < host.ladder.size(); ++step) {
+    RaysLaunch const& here = host.ladder[step];
+    launch.choice = here.choice;
+    launch.rays = here.rays;
+    launch.rule = here.rule.view();
+    rules.insert(rules.end(), launch.rule.radius2, launch.rule.radius2 + launch.rule.rings);
+    rules.insert(rules.end(), launch.rule.share, launch.rule.share + launch.rule.rings);
+    ladder_.rays[step] = here.rays;
+    ladder_.scrambling_bits[step] = here.choice.scrambling_bits;
+    ladder_.sums_a_pulse =
+        std::max(ladder_.sums_a_pulse, launch.shares() * static_cast<std::uint64_t>(launch.scramblings()));
+    launch.spline = {};
+    launch.most_window_px = launch.patch_px = 0;
+    if (images) {
+      launch.images = images->view(light_per_photon / static_cast<double>(here.rays));
+      if (gaussian && HitGrid::pays(shared.spot.gaussian.sigma, here.rays)) {
+        launch.spline = spline;
+        launch.most_window_px = widest_particle_window_px(launch, medium);
+      } else if (gaussian && 2 * shared.spot.half_width() + 1 <= widest_patch_px) {
+        launch.patch_px = widest_patch_px;
+      }
+    }
+    launches_.push_back(launch);
+  }
+  rules_ = DeviceArray<double>(rules.data(), rules.size(), "the rules");
+  double const* rule = rules_.data();
+  for (ParticlesLaunch& one : launches_) {
+    one.sums_a_pulse = ladder_.sums_a_pulse;
+    one.rule.radius2 = rule;
+    one.rule.share = rule + one.rule.rings;
+    rule += 2 * one.rule.rings;
   }
 }
 
-ParticlesLaunch LaunchesOnDevice::wide(ParticlesLaunch const& of, double sign) const {
-  ParticlesLaunch launch = of;
-  launch.camera.elements = smooth_.data();
-  launch.sign = sign;
-  return launch;
+CameraElement<double> const* LaunchesOnDevice::smooth(std::size_t step) const {
+  if (smooth_[step].size() == 0) {
+    std::vector<CameraElement<double>> const& elements = host_.ladder[step].camera.elements;
+    smooth_[step] = DeviceArray<CameraElement<double>>(elements.data(), elements.size(), "the camera");
+  }
+  return smooth_[step].data();
 }
 
-double LaunchesOnDevice::steps_a_particle(double across_medium) const {
-  int const wide = 2 * launch_.spot.half_width() + 1;
-  double const light = launch_.images.light[0] ? wide * wide / 16.0 : 0;
-  return static_cast<double>(frame_count * launch_.rays) * (across_medium + 2.0 * launch_.camera.count + light);
+double LaunchesOnDevice::steps_a_particle(double across_medium, std::size_t step) const {
+  ParticlesLaunch const& launch = launches_[step];
+  int const wide = 2 * launch.spot.half_width() + 1;
+  double const light = launch.images.light[0] ? wide * wide / 16.0 : 0;
+  return static_cast<double>(frame_count * launch.rays) * (across_medium + 2.0 * launch.camera.count + light);
 }
 
 }  // namespace gladstone::cuda

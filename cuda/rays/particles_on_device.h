@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "cuda/device/device_array.h"
 #include "cuda/rays/trace_particles.h"
@@ -23,28 +24,33 @@ class KeptScattering {
   DeviceArray<float> coefficients_;
 };
 
-/// What all particles of a scene share, on the device.
+/// What all particles of a scene share, on the device, by the steps of their ladder.
 class LaunchesOnDevice {
  public:
-  /// @param images null: truth only @param photon_unit that light of 1 stands for in them
-  LaunchesOnDevice(ParticleLaunch const& host, DeviceMedium<double> const& medium, ImagePairOnDevice* images,
-                   double photon_unit);
+  /// @param images null: truth only @param light_per_photon in them
+  LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium, ImagePairOnDevice* images,
+                   double light_per_photon);
 
   StopView const& stop() const { return stop_; }
-  std::size_t sums_a_pulse() const { return launch_.shares() * static_cast<std::size_t>(launch_.scramblings()); }
+  LadderView const& ladder() const { return ladder_; }
+  std::size_t steps() const { return launches_.size(); }
   /// For rays that fill the stop; of no particles yet.
-  ParticlesLaunch const& filled() const { return launch_; }
-  /// For rays that are clipped at a smooth rim. @param sign of the light that is laid down
-  ParticlesLaunch wide(ParticlesLaunch const& of, double sign) const;
+  ParticlesLaunch const& filled(std::size_t step) const { return launches_[step]; }
+  /// The camera's elements for rays that are clipped at a smooth rim.
+  CameraElement<double> const* smooth(std::size_t step) const;
 
-  /// Operations of all rays of a particle, in steps across a medium, for the length of a launch.
-  double steps_a_particle(double across_medium) const;
+  /// Operations of all rays of a particle that takes the fewest that it may, in steps across a medium, for the length
+  /// of a launch.
+  double steps_a_particle(double across_medium, std::size_t step) const;
 
  private:
-  DeviceArray<CameraElement<double>> smooth_, sharp_;
-  DeviceArray<double> airy_, share_;
+  ParticleLaunches const& host_;
+  DeviceArray<CameraElement<double>> sharp_;
+  mutable std::vector<DeviceArray<CameraElement<double>>> smooth_;  ///< uploaded when first asked for
+  DeviceArray<double> airy_, share_, rules_;
   StopView stop_;
-  ParticlesLaunch launch_;
+  LadderView ladder_;
+  std::vector<ParticlesLaunch> launches_;
 };
 
 /// Some particles on the device.
@@ -58,7 +64,9 @@ class ParticleBatch {
         sums_(frame_count * count * sums_a_pulse, "the sums over a batch's rays"),
         bend2_(frame_count * count, "the sums over a batch's rays"),
         truth_(count, "the particles"),
-        ambient_(count, "the particles") {
+        ambient_(count, "the particles"),
+        steps_(3 * count, "the particles"),
+        counts_(LadderView::most_steps + 1, "the particles") {
     for (int pulse = 0; pulse < frame_count; ++pulse) {
       places_[pulse] = DeviceArray<Vec3d>(particles.place[pulse].data() + first, count, "the particles");
       photons_[pulse] = DeviceArray<double>(particles.photons[pulse].data() + first, count, "the particles");
@@ -68,21 +76,30 @@ class ParticleBatch {
   /// What a particle takes.
   static std::size_t bytes_a_particle(std::size_t sums_a_pulse) {
     std::size_t const a_pulse = sizeof(PulseAim) + sizeof(Vec3d) + 2 * sizeof(double) + sums_a_pulse * sizeof(RaySums);
-    return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + 2 * sizeof(DotTruth);
+    std::size_t const listed = LadderView::most_steps * frame_count * sizeof(std::uint32_t);
+    return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + 2 * sizeof(DotTruth) + 3 * sizeof(int) + listed;
   }
 
-  /// A launch of its particles. @param scattering of them
-  ParticlesLaunch launch(ParticlesLaunch const& shared, std::size_t first, AnyScattering scattering,
-                         LaserSheet<double> const& sheet) const {
-    ParticlesLaunch launch = shared;
+  /// Makes a launch one of its particles.
+  void fill(ParticlesLaunch& launch, std::size_t first, AnyScattering scattering,
+            LaserSheet<double> const& sheet) const {
     launch.first = first;
     scattering.lambert.diameter = diameters_.data();
     for (int pulse = 0; pulse < frame_count; ++pulse) {
       launch.pulses[pulse] = {places_[pulse].data(), photons_[pulse].data(), scattering, sheet, pulse};
     }
-    return launch;
   }
 
+  ParticleSteps steps() { return {steps_.data(), steps_.data() + count_, steps_.data() + 2 * count_, counts_.data()}; }
+  /// As they lie there: step, next, chosen.
+  DeviceArray<int>& all_steps() { return steps_; }
+  /// Numbers of listed aims by step, and of aims that the host is to find, or of particles that go on.
+  DeviceArray<unsigned int>& counts() { return counts_; }
+  /// Room for lists of aims. @param steps of the ladder
+  std::uint32_t* listed(std::size_t steps) {
+    if (listed_.size() == 0) listed_ = DeviceArray<std::uint32_t>(steps * frame_count * count_, "the particles");
+    return listed_.data();
+  }
   std::size_t count() const { return count_; }
   DeviceArray<PulseAim>& aims() { return aims_; }
   DeviceArray<Vec2d>& origins() { return origins_; }
@@ -101,6 +118,9 @@ class ParticleBatch {
   DeviceArray<RaySums> sums_;
   DeviceArray<double> bend2_;
   DeviceArray<DotTruth> truth_, ambient_;
+  DeviceArray<int> steps_;
+  DeviceArray<unsigned int> counts_;
+  DeviceArray<std::uint32_t> listed_;
 };
 
 }  // namespace gladstone::cuda

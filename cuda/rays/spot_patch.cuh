@@ -19,8 +19,8 @@ struct SpotPatch {
     return pixels * pixels * sizeof(double) + 2 * warp_size * pixels * sizeof(float);
   }
   __device__ SpotPatch() = default;
-  __device__ SpotPatch(unsigned char* memory, PulseAim const& aim)
-      : light(reinterpret_cast<double*>(memory)), side(aim.window_px), left(aim.left), top(aim.top) {
+  __device__ SpotPatch(unsigned char* memory, LightSquare const& square)
+      : light(reinterpret_cast<double*>(memory)), side(square.side), left(square.left), top(square.top) {
     columns = reinterpret_cast<float*>(light + side * side);
     rows = columns + warp_size * side;
   }
@@ -29,9 +29,9 @@ struct SpotPatch {
     for (int k = threadIdx.x; k < side * side; k += warp_size) light[k] = 0;
   }
 
-  /// Takes the rays of a warp in, one a lane. @param units of light; 0: none @return false where this lane's lies
-  /// elsewhere
-  __device__ bool take(SpotView const& spot, Vec2d p, double units) const {
+  /// Takes the rays of a warp in, one a lane, of the first `lanes`. @param units of light; 0: none @return false where
+  /// this lane's lies elsewhere
+  __device__ bool take(SpotView const& spot, Vec2d p, double units, int lanes) const {
     int const lane = threadIdx.x;
     int const half = spot.half_width(), width = 2 * half + 1;
     bool taken = false;
@@ -42,14 +42,16 @@ struct SpotPatch {
       taken = column >= 0 && row >= 0 && column + width <= side && row + width <= side;
     }
     __syncwarp();  // all have done with the rays before
-    shares(spot.gaussian.sigma, p.x - left, taken ? column : side, width, 1, columns + lane * side);
-    shares(spot.gaussian.sigma, p.y - top, taken ? row : side, width, taken ? units : 0, rows + lane * side);
+    if (lane < lanes) {
+      shares(spot.gaussian.sigma, p.x - left, taken ? column : side, width, 1, columns + lane * side);
+      shares(spot.gaussian.sigma, p.y - top, taken ? row : side, width, taken ? units : 0, rows + lane * side);
+    }
     unsigned int const any = __ballot_sync(whole_warp, taken);
     __syncwarp();
     for (int k = lane; any != 0 && k < side * side; k += warp_size) {
       float const *of_column = columns + k % side, *of_row = rows + k / side;
       float sum = 0;
-      for (int ray = 0; ray < warp_size; ++ray) sum += of_column[ray * side] * of_row[ray * side];
+      for (int ray = 0; ray < lanes; ++ray) sum += of_column[ray * side] * of_row[ray * side];
       light[k] += static_cast<double>(sum);
     }
     return taken || units == 0;

@@ -13,8 +13,22 @@ struct BlockShare {
   std::uint64_t particle;  ///< of the batch
   int pulse;
   std::uint64_t first, last;  ///< of its rays
+  std::uint64_t key;          ///< of its random numbers
   Vec2d origin;
 };
+
+/// What the heaviest ray of a window is expected to weigh. All threads of the block come here.
+__device__ double weight_expected(ParticlesLaunch const& launch, PulseAim const& aim, BlockShare const& share) {
+  __shared__ unsigned long long heaviest;
+  if (threadIdx.x == 0) heaviest = 0;
+  __syncthreads();
+  if (threadIdx.x <= rim_rays) {
+    double const weight = weight_of_rim(launch, aim, share.pulse, share.particle, static_cast<int>(threadIdx.x));
+    if (weight > 0) atomicMax(&heaviest, static_cast<unsigned long long>(__double_as_longlong(weight)));
+  }
+  __syncthreads();
+  return heavier_in_window * __longlong_as_double(static_cast<long long>(heaviest));
+}
 
 /// Traces the rays of a block's share. Seen rays are counted and lay down light; the sums are of seen and ambient.
 template <class Medium>
@@ -22,6 +36,7 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
                             PulseAim const& aim, BlockShare const& share, HitWindow const& window,
                             SpotPatch const& patch, unsigned int* counts, RaySums& sums, double& bend2) {
   bool const lit = launch.images.light[0] != nullptr;
+  StopRuleView const rule = aim.state == AimState::filled ? launch.rule : StopRuleView{};
   auto const& particles = launch.pulses[share.pulse];
   auto const enter = [&share](RayHit<double> const& hit, CentroidSum<double>& sum) {
     if (hit.weight != 0) sum.add(hit.pixel - share.origin, hit.weight, reaches_sensor_plane(hit.status));
@@ -32,13 +47,13 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
     RayHit<double> seen;
     bool alone = false;  // whether neither window nor patch takes its light
     if (j < share.last) {
-      Vec2d const at = place_of_ray(launch.choice, launch.first + share.particle, j);
-      AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, share.particle, at);
-      seen = trace_ray(camera, medium, launch.tracing, aimed.ray, aimed.weight);
+      StopPlace const to = place_of_ray(rule, launch.choice, share.key, j);
+      AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, share.particle, to.at);
+      seen = trace_ray(camera, medium, launch.tracing, aimed.ray, to.share * aimed.weight);
       RayHit<double> ambient = seen;
       if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
-        AimedRay<double> const straight = aimed_ray(launch, particles, aim.ambient, share.particle, at);
-        ambient = trace_ray(camera, NoMedium<double>{}, launch.tracing, straight.ray, straight.weight);
+        AimedRay<double> const straight = aimed_ray(launch, particles, aim.ambient, share.particle, to.at);
+        ambient = trace_ray(camera, NoMedium<double>{}, launch.tracing, straight.ray, to.share * straight.weight);
         if (seen.status <= RayStatus::vignetted && ambient.status <= RayStatus::vignetted) {
           Vec2d const bend = seen.at_lens - ambient.at_lens;
           bend2 = fmax(bend2, dot(bend, bend));
@@ -50,8 +65,10 @@ __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> co
       alone = lit && seen.weight != 0 && !window.take(seen.pixel, seen.weight);
     }
     if (patch.light) {
+      std::uint64_t const rest = share.last - of_block;
       alone =
-          !patch.take(launch.spot, seen.pixel, alone ? launch.sign * seen.weight * launch.images.units_per_weight : 0);
+          !patch.take(launch.spot, seen.pixel, alone ? launch.sign * seen.weight * launch.images.units_per_weight : 0,
+                      rest < warp_size ? static_cast<int>(rest) : warp_size);
     }
     if (lit) lay_down_spots(launch, alone, seen, share.pulse);
   }
@@ -75,25 +92,31 @@ __global__ void __launch_bounds__(most_threads, 3)
   std::uint64_t const shares = launch.shares();
   unsigned int const scramblings = launch.scramblings();
   for (std::uint64_t item = blockIdx.x; item < count * shares; item += gridDim.x) {
-    std::uint64_t const at = listed ? listed[item / shares] : item / shares, part = item % shares;
+    std::uint64_t const at = listed[item / shares], part = item % shares;
     PulseAim const& aim = aims[at];
     if (aim.state != state) continue;
-    std::uint64_t const first = part * ParticlesLaunch::most_rays_of_block;
-    BlockShare const share{at / frame_count, static_cast<int>(at % frame_count), first,
-                           min(launch.rays, first + ParticlesLaunch::most_rays_of_block), origins[at / frame_count]};
+    std::uint64_t const first = part * ParticlesLaunch::most_rays_of_block, particle = at / frame_count;
+    BlockShare const share{particle,
+                           static_cast<int>(at % frame_count),
+                           first,
+                           min(launch.rays, first + ParticlesLaunch::most_rays_of_block),
+                           launch.pulses[0].key(particle),
+                           origins[particle]};
     HitWindow window;
     SpotPatch patch;
-    if (parts.nodes != nullptr && aim.window_px > 0) {
+    LightSquare const square = light_square(launch, aim);
+    if (parts.nodes != nullptr && square.side > 0) {
+      double const most_weight = weight_expected(launch, aim, share);
       window = {parts.nodes,
-                aim.window_px * spline.per_px,
+                square.side * spline.per_px,
                 spline.per_px,
-                aim.left,
-                aim.top,
-                HitWindow::units_per_weight(aim.most_weight, min(launch.rays, ParticlesLaunch::most_rays_of_block)),
-                aim.most_weight};
+                square.left,
+                square.top,
+                HitWindow::units_per_weight(most_weight, min(launch.rays, ParticlesLaunch::most_rays_of_block)),
+                most_weight};
       window.clear();
-    } else if (launch.patch_px > 0 && aim.window_px > 0) {
-      patch = SpotPatch(dynamic + SharedParts::bytes(launch, blockDim.x), aim);
+    } else if (launch.patch_px > 0 && square.side > 0) {
+      patch = SpotPatch(dynamic + SharedParts::bytes(launch, blockDim.x), square);
       patch.clear();
     }
     __syncthreads();
@@ -107,7 +130,7 @@ __global__ void __launch_bounds__(most_threads, 3)
     __syncthreads();
     block_sums(sums, parts.sums, scramblings);
     if (threadIdx.x < scramblings) {
-      traced.sums[(at * shares + part) * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
+      traced.sums[at * launch.sums_a_pulse + part * scramblings + threadIdx.x] = parts.sums[threadIdx.x];
     }
     __syncthreads();
     if (window.nodes) window.flush(spline, parts.rows_seen, launch.images, share.pulse, launch.sign);
@@ -124,25 +147,33 @@ __global__ void __launch_bounds__(most_threads, 3)
 constexpr int seeing_threads = 64;
 
 __global__ void __launch_bounds__(seeing_threads)
-    see_particles_kernel(ParticlesLaunch const __grid_constant__ launch, PulseAim const* const aims,
+    see_particles_kernel(LadderView const __grid_constant__ ladder, PulseAim const* const aims,
                          Vec2d const* const origins, RaySums const* const sums, std::uint64_t const count,
-                         DotTruth* const truth, DotTruth* const ambient) {
+                         ParticleSteps const steps, DotTruth* const truth, DotTruth* const ambient) {
   std::uint64_t const i = std::uint64_t{blockIdx.x} * seeing_threads + threadIdx.x;
   if (i >= count) return;
   RaySums through_medium[most_scramblings], without[most_scramblings];
-  int const scramblings = launch.scramblings();
+  int const step = steps.step[i] = steps.next[i];
+  int const scramblings = 1 << ladder.scrambling_bits[step];
+  std::uint64_t const shares = ParticlesLaunch::shares_of(ladder.rays[step]);
+  bool clipped = !ladder.ruled;
   for (int pulse = 0; pulse < frame_count; ++pulse) {
     std::uint64_t const at = frame_count * i + pulse;
     AimState const state = aims[at].state;
     if (state != AimState::filled && state != AimState::wide) continue;
-    for (std::uint64_t share = 0; share < launch.shares(); ++share) {
+    clipped = clipped || state == AimState::wide;
+    for (std::uint64_t share = 0; share < shares; ++share) {
       for (int k = 0; k < scramblings; ++k) {
-        RaySums const& here = sums[(at * launch.shares() + share) * scramblings + k];
+        RaySums const& here = sums[at * ladder.sums_a_pulse + share * scramblings + k];
         through_medium[k].hits[pulse] += here.hits[0];
         if (ambient) without[k].hits[pulse] += here.hits[1];
       }
     }
   }
+  RimSpread const rim{{aims[frame_count * i].spread2, aims[frame_count * i + 1].spread2}};
+  steps.next[i] = ladder.next(step, clipped ? RaysSent::clipped : RaysSent::by_rule, rim, through_medium);
+  steps.chosen[i] = steps.next[i] > step ? 1 : 0;
+  if (steps.chosen[i] != 0) atomicAdd(steps.count + LadderView::most_steps, 1u);
   truth[i] = source_truth(through_medium, scramblings, origins[i]);
   if (ambient) ambient[i] = source_truth(without, scramblings, origins[i]);
 }
@@ -179,10 +210,10 @@ void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& 
       medium);
 }
 
-void see_particles(ParticlesLaunch const& launch, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
-                   std::uint64_t count, DotTruth* truth, DotTruth* ambient) {
+void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
+                   std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient) {
   auto const blocks = static_cast<unsigned int>((count + seeing_threads - 1) / seeing_threads);
-  see_particles_kernel<<<blocks, seeing_threads>>>(launch, aims, origins, sums, count, truth, ambient);
+  see_particles_kernel<<<blocks, seeing_threads>>>(ladder, aims, origins, sums, count, steps, truth, ambient);
   check_launch("see_particles");
 }
 

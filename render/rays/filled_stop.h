@@ -75,6 +75,7 @@ struct AimMap {
 struct FilledStop {
   AimMap map;
   Vec2d low{}, high{};  ///< between which the rays of the rim end on the sensor [px]
+  double spread2 = 0;   ///< variance along an axis of where rays end, if they fill a disc of that rim [px^2]
 };
 
 namespace detail {
@@ -188,6 +189,8 @@ template <class Medium>
 GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                             Vec3d point, FilledStop& filled) {
   if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
+  Vec2d first{}, sum{};  // of where rays of the rim end, from the first of them
+  double squares = 0;
   GLADSTONE_RAY_BY_RAY
   for (int k = 0; k < 2 * rim_rays; ++k) {
     bool const within = k % 2 == 0;
@@ -197,10 +200,13 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
     if (within ? !reaches_sensor_plane(hit.status) : hit.status != RayStatus::vignetted) return false;
     if (!within) continue;
     Vec2d const p = hit.pixel;
-    if (k == 0) filled.low = filled.high = p;
+    if (k == 0) filled.low = filled.high = first = p;
+    sum += p - first;
+    squares += dot(p - first, p - first);
     filled.low = {p.x < filled.low.x ? p.x : filled.low.x, p.y < filled.low.y ? p.y : filled.low.y};
     filled.high = {p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
   }
+  filled.spread2 = 0.25 * (squares / rim_rays - dot(sum, sum) / (rim_rays * rim_rays));
   // a hair's breadth inside, so that rounding clips no ray
   double inside = 1;
   for (int m = 0; m < AimMap::orders; ++m) {

@@ -25,20 +25,24 @@ struct ParticleSources {
   GLADSTONE_HD T intensity(std::uint64_t i, Vec3<T> direction) const {
     return photons[i] * scattering.cross_section(i, direction, sheet.wave(at[i], pulse));
   }
+  /// That its random numbers are keyed by, where these are its places at the first pulse.
+  GLADSTONE_HD std::uint64_t key(std::uint64_t i) const {
+    return random_bits(key_of({at[i].x, at[i].y}), RandomStream::pupil, key_of({at[i].z, T(0)}), 0);
+  }
   GLADSTONE_HD Vec3<T> middle(std::uint64_t i) const { return at[i]; }
   GLADSTONE_HD T reach() const { return T(0); }
   GLADSTONE_HD T area() const { return T(0); }
 };
 
-/// Where on the unit disc ray j of particle i goes. Those of a scrambling come in pairs, to opposite places: what
-/// changes evenly over the lens does not move their centroid.
+/// Where on the unit disc ray j of the particle of that key goes. Those of a scrambling come in pairs, to opposite
+/// places: what changes evenly over the lens does not move their centroid.
 template <class T>
-GLADSTONE_HD Vec2<T> place_of_ray(BundleView<T> const& choice, std::uint64_t i, std::uint64_t j) {
+GLADSTONE_HD Vec2<T> place_of_ray(BundleView<T> const& choice, std::uint64_t key, std::uint64_t j) {
   using std::sqrt;
   int const bits = choice.scrambling_bits;
   std::uint64_t const of_scrambling = j >> bits, scrambling = j & ((std::uint64_t{1} << bits) - 1);
   T u[sobol_dimensions];
-  sample_coordinates(choice, i, ((of_scrambling >> 1) << bits) | scrambling, u);
+  sample_coordinates(choice, key, ((of_scrambling >> 1) << bits) | scrambling, u);
   Vec2<T> const at = point_of_circle(sqrt(u[0]), u[1]);
   return of_scrambling % 2 == 1 ? -at : at;
 }

@@ -11,11 +11,27 @@
 
 namespace gladstone {
 
-/// What all particles of a launch share: with a smooth rim of the stop, and with a sharp one.
-struct ParticleLaunch {
-  RaysLaunch smooth, sharp;
+/// What all particles of a scene share: with a sharp rim of the stop for rays that fill it, and with smooth ones for
+/// rays that are clipped, by their numbers.
+struct ParticleLaunches {
+  RaysLaunch sharp;
+  RaysLadder ladder;
 
-  ParticleLaunch(Scene const& scene, SpotView const& spot) : smooth(scene, spot), sharp(scene, spot, StopRim::sharp) {}
+  /// @param spot nothing where there are no images
+  ParticleLaunches(Scene const& scene, SpotView const& spot, RenderImages images)
+      : sharp(scene, spot, StopRim::sharp),
+        ladder(RaysLadder::of_rules(scene, RaysLaunch(scene, spot, StopRim::smooth), images)) {}
+
+  /// The step that a particle begins at whose rays fill the stop. @param light of its image @param spread2 as
+  /// FilledStop's
+  std::size_t step_filled(double light, double spread2) const {
+    RaysLaunch const& least = ladder[0];
+    RaysSent const sent = least.rule.view() ? RaysSent::by_rule : RaysSent::clipped;
+    return ladder.at_least(rays_for_spread(ladder.goal(), sent, light, spread2, static_cast<double>(least.rays)));
+  }
+  /// The step that a particle begins at whose rays are clipped.
+  std::size_t step_clipped() const { return ladder.at_least(least_clipped); }
+  static constexpr double least_clipped = 32;  ///< rays: fewer have too wide a rim
 };
 
 /// Traces the rays of particles, one particle at a time: the medium stands before both frames, and each frame has a
@@ -24,40 +40,53 @@ struct ParticleLaunch {
 ///
 /// Where the rays that fill the stop can be told beforehand (filled_stop.h), just these are sent: their light is known
 /// without any, and they differ by what medium and lens do to them alone, so that few are enough. Elsewhere rays go to
-/// a wider disc and are clipped at the stop, as a dot's.
+/// a wider disc and are clipped at the stop, as a dot's. Where more rays turn out to be needed, light is taken back and
+/// all begin again.
 /// @tparam Sources ParticleSources of one pulse
 template <class Sources, class Medium>
 class ParticleTracer {
  public:
-  ParticleTracer(ParticleLaunch const& launch, Sources const (&pulses)[frame_count], Medium const& medium,
+  ParticleTracer(ParticleLaunches const& launches, Sources const (&pulses)[frame_count], Medium const& medium,
                  bool with_images)
-      : launch_(launch.smooth),
+      : launches_(launches),
         pulses_{pulses[0], pulses[1]},
         medium_(medium),
-        view_(launch.smooth.camera.view()),
-        stop_(launch.sharp.camera),
+        stop_(launches.sharp.camera),
         with_images_(with_images) {
-    for (auto& light : light_) light.emplace(launch_);
+    use(0);
+    view_ = launch_->camera.view();
+    for (auto& light : light_) light.emplace(launch_->spot);
   }
 
-  /// @param images null: its light is not sent anywhere @param light_per_weight of an image, for one ray's weight
+  /// @param images null: its light is not sent anywhere @param light_per_photon of an image
   /// @return its truth; NaN at a pulse that does not light it, or where no ray of it gets through
-  ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_weight) {
-    std::fill_n(seen_, most_scramblings, RaySums{});
-    std::fill_n(ambient_, most_scramblings, RaySums{});
+  ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon) {
+    key_ = pulses_[0].key(particle);
+    light_per_photon_ = light_per_photon;
     origin_ = {};
-    placed_ = false;
-    for (int frame = 0; frame < frame_count; ++frame) {
-      if (!(pulses_[frame].photons[particle] > 0)) continue;
-      if (!trace_filled(frame, particle, images[frame], light_per_weight)) {
-        trace_wide(frame, particle, images[frame], light_per_weight);
-      }
-      placed_ = true;
+    std::size_t step = aim(particle);
+    while (true) {
+      use(step);
+      StatusCounts const before = statuses_;
+      trace_all(particle, images, 1);
+      bool const clipped = aims_[0].sent == Aim::Sent::wide || aims_[1].sent == Aim::Sent::wide;
+      RimSpread const rim{{aims_[0].bent.spread2, aims_[1].bent.spread2}};
+      RaysSent const sent = clipped || !launch_->rule.view() ? RaysSent::clipped : RaysSent::by_rule;
+      std::size_t const next = launches_.ladder.next(step, sent, rim, seen_, light_per_weight());
+      if (next == step) break;
+      if (with_images_) trace_all(particle, images, -1);
+      statuses_ = before;
+      step = next;
     }
-    int const scramblings = 1 << launch_.choice.scrambling_bits;
+    for (Aim const& aim : aims_) {
+      if (aim.sent == Aim::Sent::wide) largest_margin_ = std::max(largest_margin_, aim.wide.margin);
+    }
+    int const scramblings = 1 << launch_->choice.scrambling_bits;
     return {source_truth(seen_, scramblings, origin_), source_truth(ambient_, scramblings, origin_)};
   }
 
+  /// Rays that the last particle took.
+  std::uint64_t rays() const { return launch_->rays; }
   StatusCounts const& statuses() const { return statuses_; }
   /// The widest that any particle was aimed beyond the stop [m].
   double largest_margin() const { return largest_margin_; }
@@ -67,53 +96,103 @@ class ParticleTracer {
   /// Rays that go side by side, as SourceTracer's.
   static constexpr int side_by_side = bends ? 2 : 4;
 
-  /// Sends rays to the very stop, with and without the medium. @return false: it is not known where they go
-  bool trace_filled(int frame, std::uint64_t particle, LightImage* image, double light_per_weight) {
-    if (launch_.camera.chief_rays_only()) return false;
-    Vec3d const place = pulses_[frame].middle(particle);
-    FilledStop straight;
-    straight.map = paraxial_aim(stop_, place);
-    if (!fill_stop(stop_, NoMedium<double>{}, launch_.tracing, place, straight)) return false;
-    FilledStop bent = straight;
-    if constexpr (bends) {
-      if (!fill_stop(stop_, medium_, launch_.tracing, place, bent)) return false;
+  /// How rays are sent at one pulse.
+  struct Aim {
+    enum class Sent { not_at_all, filled, wide };
+    Sent sent = Sent::not_at_all;
+    FilledStop straight, bent;  ///< without the medium, and with it
+    SourceAim wide;
+  };
+
+  void use(std::size_t step) {
+    launch_ = &launches_.ladder[step];
+    view_.elements = launch_->camera.elements.data();
+  }
+  double light_per_weight() const { return light_per_photon_ / static_cast<double>(launch_->rays); }
+
+  /// Aims at both pulses. @return the step to begin with
+  std::size_t aim(std::uint64_t particle) {
+    bool placed = false;  // the origin is known, from the first pulse that lights it
+    std::size_t step = 0;
+    for (int frame = 0; frame < frame_count; ++frame) {
+      Aim& aim = aims_[frame];
+      aim.sent = Aim::Sent::not_at_all;
+      auto const& pulse = pulses_[frame];
+      if (!(pulse.photons[particle] > 0)) continue;
+      Vec3d const place = pulse.middle(particle);
+      if (fill(place, aim)) {
+        aim.sent = Aim::Sent::filled;
+        if (!placed) origin_ = origin_of(aim.straight);
+        double const weight = ray_to(pulse, stop_.camera.aim_plane, aim.bent.map, particle, {}).weight;
+        step = std::max(step, launches_.step_filled(weight * light_per_photon_, aim.bent.spread2));
+      } else {
+        aim.wide = aim_at_stop(*launch_, view_, medium_, place);
+        if (!aim.wide.disc) continue;
+        aim.sent = Aim::Sent::wide;
+        if (!placed) origin_ = aim.wide.origin;
+        step = std::max(step, launches_.step_clipped());
+      }
+      placed = true;
     }
-    if (!placed_) origin_ = origin_of(straight);
+    return step;
+  }
+
+  /// Aims at the very stop, with and without the medium. @return false: it is not known where rays go
+  bool fill(Vec3d place, Aim& aim) const {
+    if (launch_->camera.chief_rays_only()) return false;
+    aim.straight.map = paraxial_aim(stop_, place);
+    if (!fill_stop(stop_, NoMedium<double>{}, launch_->tracing, place, aim.straight)) return false;
+    aim.bent = aim.straight;
+    if constexpr (bends) {
+      if (!fill_stop(stop_, medium_, launch_->tracing, place, aim.bent)) return false;
+    }
+    return true;
+  }
+
+  /// @param sign of the light that is laid down
+  void trace_all(std::uint64_t particle, LightImage* const (&images)[frame_count], double sign) {
+    std::fill_n(seen_, most_scramblings, RaySums{});
+    std::fill_n(ambient_, most_scramblings, RaySums{});
+    for (int frame = 0; frame < frame_count; ++frame) {
+      if (aims_[frame].sent == Aim::Sent::filled) trace_filled(frame, particle, images[frame], sign);
+      if (aims_[frame].sent == Aim::Sent::wide) trace_wide(frame, particle, images[frame], sign);
+    }
+  }
+
+  void trace_filled(int frame, std::uint64_t particle, LightImage* image, double sign) {
+    Aim const& aim = aims_[frame];
     auto const aimed_by = [&](AimMap const& map) {
       return [&](Vec2d at) { return ray_to(pulses_[frame], stop_.camera.aim_plane, map, particle, at); };
     };
-    if (with_images_) light_[frame]->begin(image, light_per_weight);
+    if (with_images_) light_[frame]->begin(image, sign * light_per_weight(), launch_->rays);
     largest_bend2_ = 0;
-    all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
+    all_rays(launch_->rule.view(), [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
       RayHit<double> seen[N], ambient[N];
-      trace_through(aimed_by(bent.map), at, stop_.camera, medium_, seen);
+      trace_through(aimed_by(aim.bent.map), to, stop_.camera, medium_, seen);
       if constexpr (bends) {
-        trace_through(aimed_by(straight.map), at, stop_.camera, NoMedium<double>{}, ambient);
+        trace_through(aimed_by(aim.straight.map), to, stop_.camera, NoMedium<double>{}, ambient);
       } else {
         std::copy_n(seen, N, ambient);
       }
       enter(frame, ray, seen, ambient);
     });
     if (with_images_) light_[frame]->finish();
-    return true;
   }
 
   /// Sends rays to a disc about the stop, the same with and without the medium; where a ray is bent further than the
   /// disc is wide, its light is taken back and all begin again, wider.
-  void trace_wide(int frame, std::uint64_t particle, LightImage* image, double light_per_weight) {
-    SourceAim aim = aim_at_stop(launch_, view_, medium_, pulses_[frame].middle(particle));
-    if (!aim.disc) return;
-    if (!placed_) origin_ = aim.origin;
-    auto const trace = [&](double sign) {
-      AimedBundle<double> const bundle = launch_.bundle(*aim.disc, 0, aim.margin);
+  void trace_wide(int frame, std::uint64_t particle, LightImage* image, double sign) {
+    SourceAim& aim = aims_[frame].wide;
+    auto const trace = [&](double of_light) {
+      AimedBundle<double> const bundle = launch_->bundle(*aim.disc, 0, aim.margin);
       auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
-      if (with_images_) light_[frame]->begin(image, sign * light_per_weight);
+      if (with_images_) light_[frame]->begin(image, of_light * light_per_weight(), launch_->rays);
       largest_bend2_ = 0;
-      all_rays(particle, [&]<int N>(std::uint64_t const(&ray)[N], Vec2d const(&at)[N]) {
+      all_rays(StopRuleView{}, [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
         RayHit<double> seen[N], ambient[N];
-        trace_through(aimed, at, view_, NoMedium<double>{}, ambient);
+        trace_through(aimed, to, view_, NoMedium<double>{}, ambient);
         if constexpr (bends) {
-          trace_through(aimed, at, view_, medium_, seen);
+          trace_through(aimed, to, view_, medium_, seen);
         } else {
           std::copy_n(ambient, N, seen);
         }
@@ -124,53 +203,52 @@ class ParticleTracer {
     };
     while (true) {
       auto const before = statuses_[static_cast<std::size_t>(frame)];
-      double const bend = trace(1);
-      if (launch_.camera.chief_rays_only() || !(bend > aim.margin)) break;
-      if (with_images_) trace(-1);
+      double const bend = trace(sign);
+      if (launch_->camera.chief_rays_only() || !(bend > aim.margin)) break;
+      if (with_images_) trace(-sign);
       statuses_[static_cast<std::size_t>(frame)] = before;
       for (int i = 0; i < most_scramblings; ++i) seen_[i].hits[frame] = ambient_[i].hits[frame] = {};
-      aim.margin = launch_.wider_margin(bend);
+      aim.margin = launch_->wider_margin(bend);
     }
-    largest_margin_ = std::max(largest_margin_, aim.margin);
   }
 
-  /// Calls some(rays, places on the unit disc) for all rays.
+  /// Calls some(rays, places on the unit disc) for all rays. @param rule none: by points of a sequence
   template <class Some>
-  void all_rays(std::uint64_t particle, Some&& some) {
+  void all_rays(StopRuleView const& rule, Some&& some) {
     std::uint64_t ray = 0;
-    for (; ray + side_by_side <= launch_.rays; ray += side_by_side) these_rays<side_by_side>(particle, ray, some);
-    for (; ray < launch_.rays; ++ray) these_rays<1>(particle, ray, some);
+    for (; ray + side_by_side <= launch_->rays; ray += side_by_side) these_rays<side_by_side>(rule, ray, some);
+    for (; ray < launch_->rays; ++ray) these_rays<1>(rule, ray, some);
   }
   template <int N, class Some>
-  void these_rays(std::uint64_t particle, std::uint64_t first, Some&& some) {
+  void these_rays(StopRuleView const& rule, std::uint64_t first, Some&& some) {
     throw_if_interrupted();
     std::uint64_t ray[N];
-    Vec2d at[N];
+    StopPlace to[N];
     for (int i = 0; i < N; ++i) {
       ray[i] = first + static_cast<std::uint64_t>(i);
-      at[i] = place_of_ray(launch_.choice, particle, ray[i]);
+      to[i] = place_of_ray(rule, launch_->choice, key_, ray[i]);
     }
-    some(ray, at);
+    some(ray, to);
   }
 
   /// @param aimed gives the AimedRay to a place of the unit disc
   template <int N, class Aimed, class Through>
-  void trace_through(Aimed const& aimed, Vec2d const (&at)[N], CameraView<double> const& view, Through const& medium,
-                     RayHit<double> (&hit)[N]) const {
+  void trace_through(Aimed const& aimed, StopPlace const (&to)[N], CameraView<double> const& view,
+                     Through const& medium, RayHit<double> (&hit)[N]) const {
     Ray<double> start[N];
     double weight[N];
     for (int i = 0; i < N; ++i) {
-      AimedRay<double> const one = aimed(at[i]);
+      AimedRay<double> const one = aimed(to[i].at);
       start[i] = one.ray;
-      weight[i] = one.weight;
+      weight[i] = to[i].share * one.weight;
     }
-    trace_rays(view, medium, launch_.tracing, start, weight, hit);
+    trace_rays(view, medium, launch_->tracing, start, weight, hit);
   }
 
   template <int N>
   void enter(int frame, std::uint64_t const (&ray)[N], RayHit<double> const (&seen)[N],
              RayHit<double> const (&ambient)[N]) {
-    auto const mask = (std::uint64_t{1} << launch_.choice.scrambling_bits) - 1;
+    auto const mask = (std::uint64_t{1} << launch_->choice.scrambling_bits) - 1;
     for (int i = 0; i < N; ++i) {
       add(ambient[i], ambient_[ray[i] & mask].hits[frame]);
       add(seen[i], seen_[ray[i] & mask].hits[frame]);
@@ -185,7 +263,8 @@ class ParticleTracer {
     if (hit.weight != 0) sum.add(hit.pixel - origin_, hit.weight, reaches_sensor_plane(hit.status));
   }
 
-  RaysLaunch const& launch_;
+  ParticleLaunches const& launches_;
+  RaysLaunch const* launch_ = nullptr;  ///< of the present step
   Sources pulses_[frame_count];
   Medium const& medium_;
   CameraView<double> view_;
@@ -193,8 +272,10 @@ class ParticleTracer {
   bool with_images_;
   std::optional<RayLight> light_[frame_count];
   RaySums seen_[most_scramblings], ambient_[most_scramblings];
-  bool placed_ = false;  ///< the origin is known, from the first pulse that lights it
-  Vec2d origin_{};       ///< whole pixel that sums count from [px]
+  Aim aims_[frame_count];
+  std::uint64_t key_ = 0;  ///< of the particle's random numbers
+  double light_per_photon_ = 0;
+  Vec2d origin_{};  ///< whole pixel that sums count from [px]
   StatusCounts statuses_{};
   double largest_bend2_ = 0, largest_margin_ = 0;
 };

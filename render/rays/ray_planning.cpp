@@ -72,22 +72,29 @@ class RayErrors {
     side_ = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(widest_image_px(), 100.0));
   }
 
-  RaysPlan measure() const {
+  RaysPlan measure() {
     RaysPlan plan;
     plan.rays = scene_.rays_per_dot;
     plan.bits = levels_.bits;
     if (sample_.empty()) return plan;
+    taken_.assign(sample_.size() * plan_scramblings, 0);
     std::vector<std::size_t> places(sample_.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
     Scatter const scatter =
         measure_scatter(places, levels_, [&](std::size_t place, int scrambling) { return sample(place, scrambling); });
     plan.truth_error_px = std::sqrt(mean_variance(scatter.displacements));
     plan.image_error_levels = levels_.error(scatter);
+    plan.rays = *std::max_element(taken_.begin(), taken_.end());
+    double const all = std::accumulate(taken_.begin(), taken_.end(), 0.0);
+    plan.seconds = all / static_cast<double>(taken_.size()) * rays_seconds(scene_);
+    brightest_ = scatter.brightest;
     return plan;
   }
+  /// Light of the brightest pixel of the last measurement.
+  double brightest() const { return brightest_; }
 
  private:
-  Sampled sample(std::size_t place, int scrambling) const {
+  Sampled sample(std::size_t place, int scrambling) {
     Vec2d const at = at_[place];
     if (!std::isfinite(at.x)) return {at, std::vector<double>(static_cast<std::size_t>(frame_count * side_ * side_))};
     int const left = static_cast<int>(std::floor(at.x)) - side_ / 2,
@@ -100,8 +107,10 @@ class RayErrors {
     };
     LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
+    std::uint64_t rays = 0;
     DotTruth const truth =
-        scene_.setup.piv ? particle(change, sample_[place], images) : dot(change, sample_[place], images);
+        scene_.setup.piv ? particle(change, sample_[place], images, rays) : dot(change, sample_[place], images, rays);
+    taken_[place * plan_scramblings + static_cast<std::size_t>(scrambling)] = rays;
     Sampled sampled;
     sampled.displacement = truth.hits[1].mean() - truth.hits[0].mean();
     for (LightImage const& frame : frames) {
@@ -112,26 +121,34 @@ class RayErrors {
   }
 
   template <class Change>
-  DotTruth dot(Change const& change, std::size_t source, LightImage* const (&images)[frame_count]) const {
+  DotTruth dot(Change const& change, std::size_t source, LightImage* const (&images)[frame_count],
+               std::uint64_t& rays) const {
     RaysLaunch launch(scene_, spot_);
     change(launch);
+    RaysLadder const ladder = RaysLadder::of_points(scene_, launch, RenderImages::yes);
     LambertSources<double> const lambert{scene_.dots.view(-scene_.setup.z_d)};
     return std::visit(
         [&](auto const& medium) {
-          return SourceTracer(launch, launch.camera.view(), lambert, medium, true).trace(source, images);
+          SourceTracer tracer(ladder, launch.camera.view(), lambert, medium, true);
+          DotTruth const truth = tracer.trace(source, images);
+          rays = tracer.launch().rays;
+          return truth;
         },
         scene_.medium.view);
   }
   template <class Change>
-  DotTruth particle(Change const& change, std::size_t source, LightImage* const (&images)[frame_count]) const {
-    ParticleLaunch launch(scene_, spot_);
-    change(launch.smooth);
-    change(launch.sharp);
-    double const light_per_weight = 1 / (static_cast<double>(launch.smooth.rays) * scene_.photon_unit);
-    return with_particles(
-        scene_, scene_.particles, ParticleLight::scattered, [&](auto const& pulses, auto const& medium) {
-          return ParticleTracer(launch, pulses, medium, true).trace(source, images, light_per_weight).truth;
-        });
+  DotTruth particle(Change const& change, std::size_t source, LightImage* const (&images)[frame_count],
+                    std::uint64_t& rays) const {
+    ParticleLaunches launches(scene_, spot_, RenderImages::yes);
+    change(launches.sharp);
+    launches.ladder.change(change);
+    return with_particles(scene_, scene_.particles, ParticleLight::scattered,
+                          [&](auto const& pulses, auto const& medium) {
+                            ParticleTracer tracer(launches, pulses, medium, true);
+                            DotTruth const truth = tracer.trace(source, images, 1 / scene_.photon_unit).truth;
+                            rays = tracer.rays();
+                            return truth;
+                          });
   }
 
   /// Width of the sample's images without diffraction and medium [px].
@@ -160,7 +177,9 @@ class RayErrors {
   SpotView spot_;
   GreyLevels levels_;
   std::vector<std::size_t> sample_;
-  std::vector<Vec2d> at_;  // where they lie in the picture [px]
+  std::vector<Vec2d> at_;             // where they lie in the picture [px]
+  std::vector<std::uint64_t> taken_;  // rays, by place and scrambling
+  double brightest_ = 0;
   int side_ = 0;
 };
 
@@ -188,6 +207,7 @@ StepPlan plan_step_by_rays(Scene& scene) {
 RaysPlan measure_rays_by_rays(Scene const& scene) {
   constexpr std::uint64_t most = 4096;
   Scene fewer = scene;
+  fewer.by_need.reset();
   fewer.rays_per_dot = std::min(scene.rays_per_dot, most);
   RaysPlan plan = RayErrors(fewer).measure();
   double const gain = std::sqrt(static_cast<double>(fewer.rays_per_dot) / static_cast<double>(scene.rays_per_dot));
@@ -198,18 +218,52 @@ RaysPlan measure_rays_by_rays(Scene const& scene) {
   return plan;
 }
 
+RaysByNeed need_of(Scene const& scene) {
+  constexpr std::uint64_t rays = 64;  // brightest pixels are told to some percent, levels likewise
+  CameraSetup const& camera = scene.setup.camera;
+  double const full_scale = std::pow(2.0, plan_bits(camera)) - 1;
+  RaysByNeed need;
+  need.brightest_at = 0.9 * full_scale;
+  if (camera.absolute_exposure || camera.exposure_e) {
+    double const electrons =
+        camera.absolute_exposure ? scene.photon_unit * camera.noise.quantum_efficiency : *camera.exposure_e;
+    need.level = camera.noise.full_well_e / electrons / full_scale;
+    return need;
+  }
+  Scene same = scene;
+  same.by_need.reset();
+  same.rays_per_dot = rays;
+  RayErrors errors(same);
+  errors.measure();
+  need.level = errors.brightest() / need.brightest_at;
+  return need;
+}
+
 RaysPlan plan_rays_by_rays(Scene& scene) {
   if (auto const given = given_rays(scene.setup)) {
-    scene.rays_per_dot = given->rays;
+    use_rays(scene, *given);
     return *given;
   }
-  RayErrors const errors(scene);
-  // to the time of a ray through a thin lens comes that of the surfaces, in both frames [s]
-  constexpr double a_surface = 60e-9;
-  double const surfaces = a_surface * frame_count * static_cast<double>(scene.camera.elements.size());
-  double const seconds = rays_seconds(scene) + surfaces * static_cast<double>(scene.source_count());
-  return choose_rays(
-      scene, [&] { return errors.measure(); }, seconds);
+  return plan_rays_by_rays(scene, need_of(scene));
+}
+
+RaysPlan plan_rays_by_rays(Scene& scene, RaysByNeed const& need) {
+  bool const one_path = scene.chief_rays_only() && (scene.setup.piv || scene.dots.half_size == 0);
+  RaysPlan plan;
+  plan.most = one_path ? 1 : most_rays_of_source(scene);
+  plan.by_need = need;
+  use_rays(scene, plan);
+  RaysPlan const measured = RayErrors(scene).measure();
+  plan.rays = measured.rays;
+  plan.truth_error_px = measured.truth_error_px;
+  plan.image_error_levels = measured.image_error_levels;
+  plan.bits = measured.bits;
+  plan.seconds = measured.seconds;
+  plan.converged = plan.excess() <= 1;
+  plan.rays_wanted = static_cast<double>(plan.rays);
+  // points of a sequence where rough media or rims are integrated: errors fall as n^-0.75 or faster
+  if (!plan.converged) plan.rays_wanted *= std::exp2(std::ceil(std::log2(plan.excess()) / 0.75));
+  return plan;
 }
 
 }  // namespace gladstone

@@ -20,8 +20,8 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
                     RenderTheory theory) {
   RaysLaunch const launch(scene, spot ? *spot : SpotView{});
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
+  RaysLadder const ladder = RaysLadder::of_points(scene, launch, spot ? RenderImages::yes : RenderImages::no);
   std::size_t const count = sources.centre.size();
-  double const light_per_weight = launch.light_per_weight(lambert.area());
   TracingPass pass(scene, sources);
   std::optional<LightImage> images[frame_count];
   LightImage* targets[frame_count] = {};
@@ -34,10 +34,12 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
   parallel_chunks(count, 8, [&](std::size_t begin, std::size_t end) {
-    SourceTracer tracer(launch, launch.camera.view(), lambert, medium, spot != nullptr);
+    SourceTracer tracer(ladder, launch.camera.view(), lambert, medium, spot != nullptr);
     GroundTruth& truth = pass.rendering.truth;
     for (std::size_t dot = begin; dot < end; ++dot) {
-      truth.set_hits(dot, tracer.trace(dot, targets), light_per_weight);
+      DotTruth const found = tracer.trace(dot, targets);
+      truth.set_hits(dot, found, tracer.launch().light_per_weight(lambert.area()));
+      truth.rays_planned[dot] = static_cast<std::int64_t>(tracer.launch().rays);
       if (one_path) truth.displacement_error_px[dot] = {};
       if (theory == RenderTheory::yes) model.record(launch, lambert, medium, dot, truth);
     }
@@ -52,7 +54,7 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
   });
   if (spot) pass.rendering.light = {images[0]->to_light(), images[1]->to_light()};
   scene.pupil_margin = margin;
-  return std::move(pass.rendering);
+  return pass.finish();
 }
 
 /// A camera whose rays land where an ideal lens in its place would image what they seem to come from.
@@ -113,6 +115,7 @@ Rendering RaysRenderer::render_particles(Scene& scene, Particles const& particle
 
 std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources) {
   RaysLaunch const launch(scene, SpotView{});
+  RaysLadder const ladder = RaysLadder::of_points(scene, launch, RenderImages::no);
   LambertSources<double> const lambert{sources.view(-scene.setup.z_d)};
   IdealView view{launch.camera.view(), &launch.camera, -scene.setup.z_d, -scene.setup.z_d};
   for (WindowSetup const& window : scene.setup.windows) {
@@ -123,7 +126,7 @@ std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sou
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(displacement.size(), 8, [&](std::size_t begin, std::size_t end) {
-          SourceTracer tracer(launch, view, lambert, medium, false);
+          SourceTracer tracer(ladder, view, lambert, medium, false);
           for (std::size_t dot = begin; dot < end; ++dot) {
             DotTruth const truth = tracer.trace(dot, {});
             displacement[dot] = truth.hits[1].mean() - truth.hits[0].mean();

@@ -9,6 +9,7 @@
 #include "render/base/interrupt.h"
 #include "render/rays/aimed_sources.h"
 #include "render/rays/hit_grid.h"
+#include "render/rays/rays_ladder.h"
 #include "render/rays/source_truth.h"
 #include "render/scene/camera.h"
 #include "render/scene/light_patch.h"
@@ -16,49 +17,20 @@
 
 namespace gladstone {
 
-/// The rim of a launch's stop.
-enum class StopRim {
-  smooth,  ///< for rays that are clipped there: as wide as their number asks for
-  sharp,   ///< as it is, for rays that fill the stop and nothing else
-};
-
-/// What all sources of a launch share.
-struct RaysLaunch {
-  Camera camera;  ///< its stop with the rim asked for
-  TracingOptions<double> tracing;
-  BundleView<double> choice;
-  SpotView spot;
-  std::uint64_t rays = 1;
-  double z_b = 0;         ///< from the dots to the lens [m]
-  double light_unit = 1;  ///< of weight times source area: a fully lit pixel on the axis [m^2]
-  double point_area = 0;  ///< that a source of no size counts as: what a pixel on the axis sees [m^2]
-
-  RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth);
-
-  /// Light of one unit of a ray's weight [fully lit px].
-  double light_per_weight(double source_area) const {
-    return (source_area > 0 ? source_area : point_area) / (static_cast<double>(rays) * light_unit);
-  }
-  /// What a source at a point sees of the stop.
-  std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
-  /// Where its rays go, if it reaches so far about the point, and the medium bends rays aside by `margin` at most [m].
-  AimedBundle<double> bundle(WorldAimDisc const& disc, double reach, double margin) const;
-  /// The margin for a source of which the medium moved a ray so far on the aim plane [m].
-  /// @throws DataError where no bench has such a bend
-  double wider_margin(double bend) const;
-};
-
 /// Lays down the light of one frame of one source at a time.
 class RayLight {
  public:
-  explicit RayLight(RaysLaunch const& launch);
-  void begin(LightImage* image, double light_per_weight);
+  explicit RayLight(SpotView const& spot);
+  /// @param rays of the source
+  void begin(LightImage* image, double light_per_weight, std::uint64_t rays);
   void deposit(Vec2d p, double weight);
   void finish();
 
  private:
+  SpotView spot_;
   LightPatch patch_;
-  std::optional<HitGrid> grid_;
+  std::optional<HitGrid> grid_;  ///< made when it first pays
+  bool by_grid_ = false;
   LightImage* image_ = nullptr;
   double light_per_weight_ = 0;
 };
@@ -104,49 +76,64 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
 template <class View, class Sources, class Medium>
 class SourceTracer {
  public:
-  SourceTracer(RaysLaunch const& launch, View const& view, Sources const& sources, Medium const& medium,
+  SourceTracer(RaysLadder const& ladder, View const& view, Sources const& sources, Medium const& medium,
                bool with_images)
-      : launch_(launch), sources_(sources), medium_(medium), view_(view), with_images_(with_images) {
-    for (auto& light : light_) light.emplace(launch);
+      : ladder_(ladder), sources_(sources), medium_(medium), view_(view), with_images_(with_images) {
+    for (auto& light : light_) light.emplace(ladder[0].spot);
   }
 
-  /// Aims a little wide at first, by what its chief and rim rays are bent; where a ray turns out to be bent further,
-  /// its light is taken back and it begins again. So what it gives hangs on nothing but itself.
+  /// Aims a little wide at first, by what its chief and rim rays are bent, and begins with few rays. Where a ray turns
+  /// out to be bent further, or more rays are needed, its light is taken back and it begins again. So what it gives
+  /// hangs on nothing but itself.
   /// @param images null: its light is not sent anywhere @return its truth; NaN where no ray of it gets through
   DotTruth trace(std::uint64_t source, LightImage* const (&images)[frame_count]) {
-    SourceAim aim = aim_at_stop(launch_, view_, medium_, sources_.middle(source));
+    use(0);
+    SourceAim aim = aim_at_stop(*launch_, view_, medium_, sources_.middle(source));
     if (!aim.disc) return source_truth(nullptr, 0, {});
     while (true) {
       StatusCounts const before = statuses_;
       double const bend = trace_all(source, aim, images, 1);
-      if (launch_.camera.chief_rays_only() || !(bend > aim.margin)) break;
+      bool const beyond = !launch_->camera.chief_rays_only() && bend > aim.margin;
+      std::size_t const next = beyond ? step_
+                                      : ladder_.next(step_, RaysSent::clipped, {}, of_scramblings_,
+                                                     launch_->light_per_weight(sources_.area()));
+      if (!beyond && next == step_) break;
       if (with_images_) trace_all(source, aim, images, -1);
       statuses_ = before;
-      aim.margin = launch_.wider_margin(bend);
+      if (beyond) aim.margin = launch_->wider_margin(bend);
+      use(next);
     }
     largest_margin_ = std::max(largest_margin_, aim.margin);
-    return source_truth(of_scramblings_, 1 << launch_.choice.scrambling_bits, aim.origin);
+    return source_truth(of_scramblings_, 1 << launch_->choice.scrambling_bits, aim.origin);
   }
 
+  /// The launch that the last source went by.
+  RaysLaunch const& launch() const { return *launch_; }
   StatusCounts const& statuses() const { return statuses_; }
   /// The widest that any source was aimed beyond the stop [m].
   double largest_margin() const { return largest_margin_; }
 
  private:
+  void use(std::size_t step) {
+    step_ = step;
+    launch_ = &ladder_[step];
+    view_.elements = launch_->camera.elements.data();
+  }
+
   /// @param sign of the light that is laid down @return furthest that a ray was moved on the aim plane [m]
   double trace_all(std::uint64_t source, SourceAim const& aim, LightImage* const (&images)[frame_count], double sign) {
-    AimedBundle<double> const bundle = launch_.bundle(*aim.disc, sources_.reach(), aim.margin);
-    double const light_per_weight = sign * launch_.light_per_weight(sources_.area());
+    AimedBundle<double> const bundle = launch_->bundle(*aim.disc, sources_.reach(), aim.margin);
+    double const light_per_weight = sign * launch_->light_per_weight(sources_.area());
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) {
-      light_[frame]->begin(images[frame], light_per_weight);
+      light_[frame]->begin(images[frame], light_per_weight, launch_->rays);
     }
     std::fill_n(of_scramblings_, most_scramblings, RaySums{});
     largest_bend2_ = 0;
     std::uint64_t ray = 0;
-    for (; ray + side_by_side <= launch_.rays; ray += side_by_side) {
+    for (; ray + side_by_side <= launch_->rays; ray += side_by_side) {
       trace_some<side_by_side>(bundle, source, ray, aim.origin);
     }
-    for (; ray < launch_.rays; ++ray) trace_some<1>(bundle, source, ray, aim.origin);
+    for (; ray < launch_->rays; ++ray) trace_some<1>(bundle, source, ray, aim.origin);
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) light_[frame]->finish();
     return std::sqrt(largest_bend2_);
   }
@@ -165,9 +152,9 @@ class SourceTracer {
       weight[i] = aimed.weight;
     }
     RayHit<double> hit[frame_count][N];
-    trace_rays(view_, NoMedium<double>{}, launch_.tracing, start, weight, hit[0]);
-    trace_rays(view_, medium_, launch_.tracing, start, weight, hit[1]);
-    auto const mask = (std::uint64_t{1} << launch_.choice.scrambling_bits) - 1;
+    trace_rays(view_, NoMedium<double>{}, launch_->tracing, start, weight, hit[0]);
+    trace_rays(view_, medium_, launch_->tracing, start, weight, hit[1]);
+    auto const mask = (std::uint64_t{1} << launch_->choice.scrambling_bits) - 1;
     auto const count = [this](int frame, RayStatus status) {
       ++statuses_[static_cast<std::size_t>(frame)][static_cast<std::size_t>(status)];
     };
@@ -180,7 +167,9 @@ class SourceTracer {
     }
   }
 
-  RaysLaunch const& launch_;
+  RaysLadder const& ladder_;
+  std::size_t step_ = 0;
+  RaysLaunch const* launch_ = nullptr;  ///< of that step
   Sources sources_;
   Medium const& medium_;
   View view_;

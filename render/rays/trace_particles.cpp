@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <mutex>
+#include <numeric>
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -15,16 +16,14 @@ constexpr Vec2d unknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_l
 
 }  // namespace
 
-Rendering empty_rendering(Particles const& particles, std::uint64_t rays) {
+Rendering empty_rendering(Particles const& particles) {
   Rendering rendering;
-  rendering.rays = frame_count * static_cast<std::int64_t>(particles.size() * rays);
   rendering.table = TableState::by_rays;
   rendering.method = RenderMethod::rays;
   GroundTruth& truth = rendering.truth;
   std::size_t const count = particles.size();
   truth.resize(count);
   truth.position_m = particles.place[0];
-  truth.rays_planned.assign(count, static_cast<std::int64_t>(rays));
   for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, unknown);
   truth.particles.second_m = particles.place[1];
   truth.particles.diameter_m = particles.diameter;
@@ -33,37 +32,41 @@ Rendering empty_rendering(Particles const& particles, std::uint64_t rays) {
   return rendering;
 }
 
-void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, double photons_per_weight) {
-  truth.set_hits(particle, seen.truth, photons_per_weight);
+void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, std::uint64_t rays) {
+  truth.set_hits(particle, seen.truth, 1 / static_cast<double>(rays));
+  truth.rays_planned[particle] = static_cast<std::int64_t>(rays);
   CentroidSum<double> const &first = seen.ambient.hits[0], &second = seen.ambient.hits[1];
   bool const there[2] = {first.weight > 0, second.weight > 0};
   truth.particles.reference_ambient_px[particle] = there[0] ? seen.ambient.origin + first.mean() : unknown;
   truth.particles.displacement_ambient_px[particle] = there[0] && there[1] ? second.mean() - first.mean() : unknown;
 }
 
+void count_rays(Rendering& rendering) {
+  std::vector<std::int64_t> const& planned = rendering.truth.rays_planned;
+  rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
+}
+
 Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images) {
   std::optional<AiryTable> airy;
   SpotView const spot = make_spot(scene, airy);
   bool const lit = images != RenderImages::no;
-  ParticleLaunch const launch(scene, lit ? spot : SpotView{});
-  std::uint64_t const rays = scene.rays_per_dot;
-  Rendering rendering = empty_rendering(particles, rays);
+  ParticleLaunches const launches(scene, lit ? spot : SpotView{}, images);
+  Rendering rendering = empty_rendering(particles);
   std::optional<LightImage> frames[frame_count];
   LightImage* targets[frame_count] = {};
   for (int frame = 0; lit && frame < frame_count; ++frame) {
     targets[frame] = &frames[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
-  double const photons_per_weight = 1 / static_cast<double>(rays);
-  double const light_per_weight = lit ? photons_per_weight / photon_unit(scene, particles, light) : 0;
+  double const light_per_photon = lit ? 1 / photon_unit(scene, particles, light) : 0;
   double margin = 0;
   std::mutex merge;
   Progress progress(lit ? "tracing particles" : "tracing truth", particles.size());
   with_particles(scene, particles, light, [&](auto const& pulses, auto const& medium) {
     parallel_chunks(particles.size(), 32, [&](std::size_t begin, std::size_t end) {
-      ParticleTracer tracer(launch, pulses, medium, lit);
+      ParticleTracer tracer(launches, pulses, medium, lit);
       for (std::size_t i = begin; i < end; ++i) {
-        ParticleSeen const seen = tracer.trace(i, targets, light_per_weight);
-        set_particle(rendering.truth, i, seen, photons_per_weight);
+        ParticleSeen const seen = tracer.trace(i, targets, light_per_photon);
+        set_particle(rendering.truth, i, seen, tracer.rays());
       }
       progress.advance(end - begin);
       std::lock_guard const lock(merge);
@@ -75,6 +78,7 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
       }
     });
   });
+  count_rays(rendering);
   if (lit) rendering.light = {frames[0]->to_light(), frames[1]->to_light()};
   if (images == RenderImages::kept) {
     rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));

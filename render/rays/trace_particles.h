@@ -23,11 +23,14 @@ auto with_particles(Scene const& scene, Particles const& particles, ParticleLigh
   return with(LambertSpheres<double>{particles.diameter.data()});
 }
 
-/// A rendering whose truth is to be filled in, so many rays of every particle at either pulse.
-Rendering empty_rendering(Particles const& particles, std::uint64_t rays);
+/// A rendering whose truth is to be filled in.
+Rendering empty_rendering(Particles const& particles);
 
-/// Enters what a camera sees of a particle. @param photons_per_weight of its rays
-void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, double photons_per_weight);
+/// Enters what a camera sees of a particle. @param rays that it took at either pulse
+void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, std::uint64_t rays);
+
+/// Counts the rays of all particles.
+void count_rays(Rendering& rendering);
 
 /// Images and truth of particles, ray by ray. Light is in units of photon_unit(), truth's flux in photons.
 Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "render/base/progress.h"
 #include "render/base/units.h"
 #include "render/scene/ray_hit.h"
 #include "render/scene/ray_scatter.h"
@@ -14,8 +13,7 @@ namespace gladstone {
 namespace {
 
 constexpr double step_tolerance_px = 1e-4;
-constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, most_measured = std::uint64_t{1} << 12;
-constexpr std::uint64_t always_allowed = 1024;
+constexpr std::uint64_t most_rays = std::uint64_t{1} << 16, always_allowed = 1024;
 
 }  // namespace
 
@@ -78,13 +76,22 @@ void use_step(Scene& scene, StepPlan const& plan) {
   scene.widen_pupil(1.25 * plan.largest_bend);
 }
 
-double rays_seconds(Scene const& scene) {
-  // emission, lens and sums; a step of the flow ray; a pixel that a spot is spread over [s]
-  constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9;
+double ray_seconds(Scene const& scene) {
+  // emission, lens and sums; a step of the flow ray; a pixel that a spot is spread over; a surface of a lens [s]
+  constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9, a_surface = 60e-9;
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;
-  double const ray = a_ray + a_step * scene.steps_across() + frame_count * a_pixel * width * width;
-  return static_cast<double>(scene.source_count()) * ray;
+  double const surfaces = scene.setup.on_bench() ? 0.0 : static_cast<double>(scene.camera.elements.size());
+  return a_ray + a_step * scene.steps_across() + frame_count * (a_pixel * width * width + a_surface * surfaces);
+}
+
+double rays_seconds(Scene const& scene) { return static_cast<double>(scene.source_count()) * ray_seconds(scene); }
+
+std::uint64_t most_rays_of_source(Scene const& scene) {
+  double const seconds = ray_seconds(scene);
+  std::uint64_t most = always_allowed;
+  while (most < most_rays && 2 * static_cast<double>(most) * seconds <= source_budget_s) most *= 2;
+  return most;
 }
 
 std::optional<RaysPlan> given_rays(Setup const& setup) {
@@ -95,36 +102,11 @@ std::optional<RaysPlan> given_rays(Setup const& setup) {
   return plan;
 }
 
-RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray) {
-  RaysPlan plan;
-  std::uint64_t most = always_allowed;
-  while (most < most_rays && 2 * static_cast<double>(most) * seconds_a_ray <= rays_budget_s) most *= 2;
-  bool const single_ray = scene.chief_rays_only() && scene.dots.half_size == 0;
-  Progress progress("choosing the rays", 8);
-  std::vector<double> excess;  // errors over their tolerances, whichever is larger, from doubling to doubling
-  for (scene.rays_per_dot = single_ray ? 1 : 32;; scene.rays_per_dot *= 2) {
-    plan = measure();
-    excess.push_back(plan.excess());
-    plan.converged = excess.back() <= 1;
-    progress.advance();
-    if (plan.converged || scene.rays_per_dot >= std::min(most, most_measured)) break;
-  }
-  plan.rays_wanted = static_cast<double>(scene.rays_per_dot);
-  if (!plan.converged) {
-    // beyond what is measured, errors go on falling as they did over the last three doublings
-    double const order = std::clamp(std::log2(excess[excess.size() - 4] / excess.back()) / 3, 0.5, 1.0);
-    double const measured = plan.rays_wanted;
-    plan.rays_wanted *= std::exp2(std::ceil(std::log2(excess.back()) / order));
-    plan.converged = plan.rays_wanted <= static_cast<double>(most);
-    scene.rays_per_dot = plan.converged ? static_cast<std::uint64_t>(plan.rays_wanted) : most;
-    double const gain = std::pow(static_cast<double>(scene.rays_per_dot) / measured, -order);
-    plan.truth_error_px *= gain;
-    plan.image_error_levels *= gain;
-    plan.extrapolated = scene.rays_per_dot > static_cast<std::uint64_t>(measured);
-  }
-  plan.rays = scene.rays_per_dot;
-  plan.seconds = seconds_a_ray * static_cast<double>(plan.rays);
-  return plan;
+void use_rays(Scene& scene, RaysPlan const& plan) {
+  scene.rays_per_dot = plan.most > 0 ? plan.most : plan.rays;
+  scene.by_need = plan.by_need;
+  scene.rays_at_side_faces = plan.rays_at_side_faces;
+  scene.fineness = plan.fineness;
 }
 
 }  // namespace gladstone

@@ -24,8 +24,10 @@ struct StepPlan {
 inline constexpr double truth_tolerance_px = 1e-3;
 inline constexpr double image_tolerance_levels = 0.5;
 
-/// Processor time that rays chosen by "auto" may take [s], half of it on two cores: beyond, 1024 rays a dot are taken.
-inline constexpr double rays_budget_s = 60;
+/// Processor time that the rays of a source may take where they are chosen by its need [s]: a minute for the 5000 dots
+/// of 512 x 512 px. Of a source and not of a scene, so that none has the fewer rays for the others. 1024 rays are
+/// always allowed, 65,536 at most.
+inline constexpr double source_budget_s = 0.012;
 
 /// What nothing tells of a plan.
 inline constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
@@ -48,8 +50,10 @@ struct SideFaceErrors {
 /// How the number of rays was chosen.
 struct RaysPlan {
   RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
-  std::uint64_t rays = 0;
-  std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
+  std::uint64_t rays = 0;                ///< of every source; where each takes what it needs, the most of the sample's
+  std::uint64_t most = 0;                ///< that a source may take of what it needs; 0: all have `rays`
+  std::optional<RaysByNeed> by_need;     ///< of the sources that take what they need
+  std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h), the most of one; 0: as many
   int fineness = 1;                      ///< as the scene's
   double truth_error_px = not_told;      ///< of displacements, rms over dots, components and scramblings; NaN: none was
                                          ///< measured, or of no dot a ray got through
@@ -58,19 +62,26 @@ struct RaysPlan {
   double truth_resolution_px = 0;        ///< an error found smaller than this could as well be none
   double image_resolution_levels = 0;    ///< likewise
   int bits = 0;
-  bool extrapolated = false;      ///< the errors were measured up to 4096 rays and extrapolated from there
-  bool converged = true;          ///< false: the largest number that is taken is not enough
-  double rays_wanted = not_told;  ///< that would be, as far as can be told; NaN: nothing tells, or no number would
-  double seconds = not_told;      ///< of processor time that a rendering with `rays` will take, by rays_seconds()
+  bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
+  bool converged = true;      ///< false: the errors are larger than is asked
+  double rays_wanted =
+      not_told;               ///< of a source, that would do, as far as can be told; NaN: nothing tells, or none would
+  double seconds = not_told;  ///< of processor time that a rendering will take, by ray_seconds()
 
   std::optional<SideFaceErrors> side_faces;  ///< of the fast renderer; none: no dot in view lies there
 
   double excess() const { return excess_of(truth_error_px, image_error_levels); }
 };
 
-/// Processor time that a rendering of the scene takes for one ray of every dot [s]: a count of steps and of pixels lit
-/// times what each took on the processor of docs/benchmarks.md. Not a clock's, so that a plan is the same anywhere.
+/// Processor time that a rendering of the scene takes for one ray of a source in both frames [s]: a count of steps and
+/// of pixels lit times what each took on the processor of docs/benchmarks.md. Not a clock's, so that a plan is the same
+/// anywhere.
+double ray_seconds(Scene const& scene);
+/// The same for one ray of every source.
 double rays_seconds(Scene const& scene);
+
+/// The most rays that a source may take of what it needs: a power of two.
+std::uint64_t most_rays_of_source(Scene const& scene);
 
 /// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
 struct Probe {
@@ -104,11 +115,7 @@ void use_step(Scene& scene, StepPlan const& plan);
 /// The plan of a setup that says how many rays; nothing where that is to be chosen.
 std::optional<RaysPlan> given_rays(Setup const& setup);
 
-/// Chooses rays_per_dot: the smallest power of two for which less than 1e-3 px rms is measured in truth and half a grey
-/// level (at the bit depth, or at 12 bits if that is coarser) rms over lit pixels in either frame. At most 65,536, and
-/// no more than rays_budget_s allows. Sets scene.rays_per_dot.
-/// @param measure the errors at the scene's present number of rays
-/// @param seconds_a_ray processor time of one ray of every dot
-RaysPlan choose_rays(Scene& scene, std::function<RaysPlan()> const& measure, double seconds_a_ray);
+/// Sets scene.rays_per_dot, by_need and rays_at_side_faces.
+void use_rays(Scene& scene, RaysPlan const& plan);
 
 }  // namespace gladstone

@@ -14,6 +14,12 @@
 
 namespace gladstone {
 
+/// By what the general renderer chooses the rays of every source: what the camera makes of light, which all share.
+struct RaysByNeed {
+  double level = 0;         ///< light of one grey level
+  double brightest_at = 0;  ///< grey levels of the brightest pixel that the camera is exposed for
+};
+
 /// A setup made ready to trace: owns the dots and the medium, gives views.
 struct Scene {
   Setup setup;
@@ -28,9 +34,10 @@ struct Scene {
   std::optional<BuiltMedium> second_medium;  ///< that PIV's second pulse sees instead
   double step = 0;                           ///< [m]
   double pupil_margin = 0;                   ///< by which the pupil is enlarged so that bending loses no ray [m]
-  std::uint64_t rays_per_dot = 1;
-  std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h); 0: as many
-  int fineness = 1;                      ///< of the fast renderer's table and rules: 2 where fronts ask for it
+  std::uint64_t rays_per_dot = 1;            ///< of every source, or the most of one where they are chosen by need
+  std::optional<RaysByNeed> by_need;         ///< nothing: all sources have rays_per_dot
+  std::uint64_t rays_at_side_faces = 0;      ///< of dots there (side_faces.h), as rays_per_dot; 0: as many
+  int fineness = 1;                          ///< of the fast renderer's table and rules: 2 where fronts ask for it
 
   /// Dots, or particles.
   std::size_t source_count() const { return setup.piv ? particles.size() : dots.centre.size(); }

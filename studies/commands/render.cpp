@@ -28,8 +28,9 @@ constexpr char const* example_setup =
 std::string in_words(RenderedCamera const& camera) {
   std::string text = fmt::format("{}: ", camera.folder);
   if (camera.planes > 0) text += fmt::format("{} planes, ", camera.planes);
-  text += fmt::format("{} {}, {} rays each{}, ", camera.sources, camera.particles ? "particles" : "dots", camera.rays,
-                      camera.planes > 0 ? "" : " in either frame");
+  text += fmt::format("{} {}, {}", camera.sources, camera.particles ? "particles" : "dots", camera.rays);
+  if (camera.most_rays > camera.rays) text += fmt::format(" to {}", camera.most_rays);
+  text += fmt::format(" rays each{}, ", camera.planes > 0 ? "" : " in either frame");
   if (camera.step_mm) text += fmt::format("step {:.4g} mm, ", *camera.step_mm);
   if (camera.magnification) text += fmt::format("magnification {:.6g}, ", *camera.magnification);
   return text + fmt::format("{:.2f} s on {}", camera.seconds, camera.device);

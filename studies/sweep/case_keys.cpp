@@ -37,8 +37,9 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   // The camera's electronics come after the light; the first window counts by the extent of the target only.
   SetupNode& camera = table_of(setup, "camera");
   std::string const electronics =
-      fmt::format("bits {}, exposure {}, full well {}", loaded.setup.camera.bit_depth,
-                  loaded.setup.camera.exposure_e.value_or(0), loaded.setup.camera.noise.full_well_e);
+      fmt::format("bits {}, exposure {}, full well {}, {} of photons", loaded.setup.camera.bit_depth,
+                  loaded.setup.camera.exposure_e.value_or(0), loaded.setup.camera.noise.full_well_e,
+                  loaded.setup.camera.absolute_exposure ? loaded.setup.camera.noise.quantum_efficiency : 0.0);
   for (char const* key : {"noise", "background", "bit_depth", "exposure", "offset_dn"}) remove(camera, key);
   std::optional<std::uint64_t> const rays = loaded.setup.render.rays_per_dot;
   remove(table_of(setup, "render"), "rays_per_dot");

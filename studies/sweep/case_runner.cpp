@@ -218,9 +218,11 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   if (!known.rays) shared.rays.keep(keys.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // of the dots: for truth.h5
-  std::string const frames_key = fmt::format(
-      "{}\n{}, rays {}, at side faces {}, fineness {}{}", keys.scene, to_string(method_of(prepared.scene)),
-      prepared.rays.rays, prepared.rays.rays_at_side_faces, prepared.rays.fineness, keep.empty() ? "" : ", theory");
+  std::string const frames_key =
+      fmt::format("{}\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}", keys.scene,
+                  to_string(method_of(prepared.scene)), prepared.scene.rays_per_dot, prepared.scene.rays_at_side_faces,
+                  prepared.rays.by_need ? prepared.rays.by_need->level : 0.0, prepared.rays.fineness,
+                  keep.empty() ? "" : ", theory");
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);

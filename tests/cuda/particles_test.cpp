@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "cuda/device/device_memory.h"
@@ -101,6 +103,36 @@ TEST_F(CudaParticlesTest, EveryScattering) {
   expect_particles_as_on_cpu(droplets(64), ParticleLight::equal);
   // drops of 30 um, whose light has 170 lobes over the half circle
   expect_particles_as_on_cpu(droplets(400, [](BosSetup& setup) { setup.piv->particles.diameter.middle = 30e-6; }));
+}
+
+// Every particle takes what it needs: few in focus, many out of it, through ideal lenses and real ones, in a medium,
+// and where some do not fill the stop. The choice is the CPU's.
+TEST_F(CudaParticlesTest, TakesTheRaysThatEachNeeds) {
+  auto const deep = [](BosSetup& setup) {
+    setup.piv->laser.profile = SheetProfile::top_hat;
+    setup.piv->laser.thickness = 20e-3;
+    setup.piv->particles.volume = Vec3d{5e-3, 5e-3, 20e-3};
+  };
+  std::function<void(BosSetup&)> const kinds[] = {
+      deep, [](BosSetup& setup) { setup.lens = real_lens_setup("double_gauss", 96, 4).lens; },
+      [](BosSetup& setup) {
+        setup.medium.field = blob();
+        setup.medium.thickness = 20e-3;
+      },
+      [](BosSetup& setup) {
+        setup.medium.field = dns_plane("late");
+        setup.medium.thickness = 20e-3;
+      }};
+  for (auto const& kind : kinds) {
+    Scene scene = droplets(1, kind);
+    plan_rays_by_rays(scene);
+    ASSERT_TRUE(scene.by_need);
+    expect_particles_as_on_cpu(scene);
+    expect_particles_as_on_cpu(scene, ParticleLight::scattered, RenderImages::no);
+    std::vector<std::int64_t> const rays = on_device(scene).truth.rays_planned;
+    auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
+    EXPECT_LT(*least, *most);
+  }
 }
 
 TEST_F(CudaParticlesTest, InsideEveryMedium) {

@@ -52,6 +52,26 @@ TEST_F(CudaRaysTest, LensesOfManySurfaces) {
   }
 }
 
+// Every point takes what it needs: those behind the blob more than others. The choice is the CPU's.
+TEST_F(CudaRaysTest, TakeTheRaysThatEachNeeds) {
+  Scene scene = seen_through(1, [](BosSetup& setup) {
+    setup.medium.field = GaussianBlob<double>{{{1e-3, 0, 0}, -0.4, 0.8e-3}};
+    setup.target.dot_diameter_px = 0;
+    setup.camera.bit_depth = 8;
+    setup.lens.f_number = 8;
+    setup.camera.tilt = {0.01, 0};
+  });
+  scene.dots.half_size = 0;
+  plan_rays_by_rays(scene);
+  ASSERT_TRUE(scene.by_need);
+  expect_as_on_cpu(scene);
+  Scene again = scene;
+  std::vector<std::int64_t> const rays =
+      renderer_->render(again, again.dots, RenderImages::yes, RenderTheory::no).truth.rays_planned;
+  auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
+  EXPECT_LT(*least, *most);
+}
+
 TEST_F(CudaRaysTest, WindowsPosesAndTiltedSensors) {
   auto const window = [](WindowSide side) {
     WindowSetup setup;

@@ -311,16 +311,5 @@ TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-// In focus of an ideal lens all rays of a particle meet: "auto" is done with the fewest it begins with.
-TEST(Particles, InFocusTakeFewRays) {
-  gladstone::Setup setup = piv_setup();
-  setup.piv->particles.volume->z = 0.1 * mm;
-  Scene scene = build_scene(setup);
-  plan_step_by_rays(scene);
-  RaysPlan const plan = plan_rays_by_rays(scene);
-  EXPECT_TRUE(plan.converged);
-  EXPECT_LE(plan.rays, 64u);
-}
-
 }  // namespace
 }  // namespace gladstone

@@ -134,6 +134,7 @@ TEST(RaysRenderer, PlansStepAndRaysByTracing) {
   auto setup = table1_setup(64);
   setup.medium.field = sinusoid(0.05, 4e-3);
   setup.camera.bit_depth = 8;
+  setup.target.dot_diameter_px = 0;
   Scene scene = scene_with_dots(setup, lattice(64, 3, 15), 64);
   scene.setup.render.rays_per_dot.reset();
   EXPECT_LT(plan_step_by_rays(scene).change_px, 1e-4);

@@ -164,6 +164,7 @@ TEST(SideFaces, AreWhereAutoTakesMoreRays) {
   EXPECT_EQ(scene.rays_at_side_faces, plan.rays_at_side_faces);
   EXPECT_LE(plan.rays, 256u);
   EXPECT_GE(plan.rays_at_side_faces, 4 * plan.rays);
+  EXPECT_TRUE(scene.by_need);
 }
 
 // With a given number of rays the plan measures what it leaves of these dots, truth and images: 32 plain rays of a cone

@@ -39,10 +39,13 @@ Scene droplets_scene(Setup const& setup, std::uint64_t rays) {
   return scene;
 }
 
-/// Renders a pair again and again. @return the median time [s]
+/// Renders a pair again and again, and says how many rays particles take. @return the median time [s]
 double seconds_a_pair(benchmark::State& state, Scene& scene, RenderImages images) {
   auto const renderer = cuda::make_rays_renderer();
-  renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+  Rendering const first = renderer->render_particles(scene, scene.particles, ParticleLight::scattered, images);
+  std::vector<std::int64_t> const& rays = first.truth.rays_planned;
+  state.counters["rays"] = static_cast<double>(first.rays) / static_cast<double>(frame_count * rays.size());
+  state.counters["most_rays"] = static_cast<double>(*std::max_element(rays.begin(), rays.end()));
   std::vector<double> seconds;
   for (auto _ : state) {
     auto const start = std::chrono::steady_clock::now();
@@ -72,10 +75,9 @@ void particles_tomographic(benchmark::State& state) {
   setup.piv->particles.amount = 100000;
   Scene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
   double const seconds = seconds_a_pair(state, scene, RenderImages::kept);
-  state.counters["rays"] = static_cast<double>(scene.rays_per_dot);
   state.counters["ms_a_frame"] = 1e3 * seconds / frame_count;
   state.counters["Grays/s"] =
-      1e-9 * frame_count * static_cast<double>(scene.particles.size() * scene.rays_per_dot) / seconds;
+      1e-9 * frame_count * static_cast<double>(scene.particles.size()) * state.counters["rays"].value / seconds;
 }
 BENCHMARK(particles_tomographic)
     ->ArgName("rays")
@@ -94,7 +96,6 @@ void particle_pairs(benchmark::State& state, ParticleScattering scattering, Rend
   setup.piv->particles.scattering = scattering;
   Scene scene = droplets_scene(setup, 0);
   state.counters["pairs/s"] = 1 / seconds_a_pair(state, scene, images);
-  state.counters["rays"] = static_cast<double>(scene.rays_per_dot);
   state.counters["particles"] = static_cast<double>(scene.particles.size());
 }
 

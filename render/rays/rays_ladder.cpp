@@ -1,0 +1,77 @@
+#include "render/rays/rays_ladder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/scene/spot.h"
+
+namespace gladstone {
+namespace {
+
+/// Whether more than an ideal lens images: rays do not fill a disc evenly then.
+bool aberrates(Setup const& setup) { return setup.lens.prescription || !setup.windows.empty(); }
+
+/// The square of the radius of a smooth spot that a rule's errors fall with as with this one: wide ones and the pixel's
+/// own add up; pixels are not smooth, and of narrow ones' own there is as much as twice the spot's. Half of it where
+/// aberrations crowd rays together (double Gauss at f/4: errors of 16 to 1024 nodes fall as with a spot so narrow).
+double smooth_spot2(Scene const& scene) {
+  constexpr double least = 0.05, of_pixel = 1.0 / 12;
+  double const airy = SpotSize{scene.spot_scale_px()}.matched_sigma();
+  double const sigma = scene.setup.lens.spot == SpotModel::airy ? airy : scene.spot_sigma_px();
+  double const crowded = aberrates(scene.setup) ? 0.5 : 1.0;
+  return std::max(least * least, crowded * std::min(2 * sigma * sigma, sigma * sigma + of_pixel));
+}
+
+}  // namespace
+
+RaysLadder::RaysLadder(Scene const& scene, RenderImages images) {
+  if (scene.by_need && images != RenderImages::no) goal_.level = scene.by_need->level;
+  if (scene.by_need) goal_.brightest_at = scene.by_need->brightest_at;
+  goal_.spot2 = smooth_spot2(scene);
+}
+
+RaysLadder RaysLadder::of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
+  constexpr std::uint64_t least = 32;
+  RaysLadder ladder(scene, images);
+  for (std::uint64_t rays = least; scene.by_need && rays < scene.rays_per_dot; rays *= 2) {
+    ladder.launches_.push_back(shared.with_rays(rays));
+  }
+  ladder.launches_.push_back(shared.with_rays(scene.rays_per_dot));
+  ladder.goal_.most = static_cast<double>(scene.rays_per_dot);
+  return ladder;
+}
+
+RaysLadder RaysLadder::of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images) {
+  Setup const& setup = scene.setup;
+  std::uint64_t const least = aberrates(setup) ? 64 : 4;
+  bool const smooth = !setup.lenslets && (images == RenderImages::no || shared.spot.model != SpotModel::none);
+  bool const ruled =
+      scene.by_need && smooth && shared.choice.sampling == PupilSampling::sobol && !scene.chief_rays_only();
+  if (!ruled || scene.rays_per_dot < least) return of_points(scene, shared, images);
+  RaysLadder ladder(scene, images);
+  for (std::uint64_t rays = least; rays <= scene.rays_per_dot; rays *= 4) {
+    RaysLaunch& launch = ladder.launches_.emplace_back(shared.with_rays(rays));
+    launch.rule = StopRule(rays);
+    launch.choice.scrambling_bits = rays < 64 ? 1 : 2;
+  }
+  ladder.goal_.most = static_cast<double>(ladder.launches_.back().rays);
+  return ladder;
+}
+
+std::size_t RaysLadder::at_least(double rays) const {
+  std::size_t step = 0;
+  while (step + 1 < launches_.size() && static_cast<double>(launches_[step].rays) < rays) ++step;
+  return step;
+}
+
+std::size_t RaysLadder::next(std::size_t step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings,
+                             double light_per_weight) const {
+  if (step + 1 == launches_.size()) return step;
+  RaysLaunch const& launch = launches_[step];
+  double const rays = static_cast<double>(launch.rays);
+  double const asked =
+      rays_asked(goal_, sent, rim, of_scramblings, 1 << launch.choice.scrambling_bits, rays, light_per_weight);
+  return asked > rays ? std::max(step + 1, at_least(asked)) : step;
+}
+
+}  // namespace gladstone

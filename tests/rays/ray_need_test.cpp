@@ -1,0 +1,288 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "render/base/parallel.h"
+#include "render/light/laser_sheet.h"
+#include "render/rays/rays_ladder.h"
+#include "tests/scene/real_lens_setups.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double mm = 1e-3;
+
+/// PIV through the lens of Table 1 at f/8, 750 mm before a sheet of uniform light, 60 mm deep.
+Setup piv_setup() {
+  Setup setup;
+  setup.camera.columns = setup.camera.rows = 128;
+  setup.camera.exposure_e = 20000;
+  setup.lens.f_number = 8;
+  setup.z_d = 0;
+  setup.medium.field = {};
+  PivSetup piv;
+  piv.laser.profile = SheetProfile::top_hat;
+  piv.laser.thickness = 60 * mm;
+  piv.particles.scattering = ParticleScattering::lambert;
+  piv.particles.amount = 50;
+  piv.particles.volume = Vec3d{8 * mm, 8 * mm, 4 * mm};
+  setup.piv = piv;
+  return setup;
+}
+
+struct Place {
+  Vec3d at;
+  double diameter = 1e-6;
+};
+
+/// A scene with these particles, which move by (0.05, 0.02, 0.1) mm, planned; the brightest of 1 um has light of 1.
+Scene scene_with(Setup const& setup, std::vector<Place> const& places) {
+  Scene scene = build_scene(setup);
+  LaserSheet<double> const sheet = laser_sheet<double>(setup.piv->laser);
+  scene.particles.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    scene.particles.place[0][i] = places[i].at;
+    scene.particles.place[1][i] = places[i].at + Vec3d{0.05 * mm, 0.02 * mm, 0.1 * mm};
+    scene.particles.diameter[i] = places[i].diameter;
+    for (int pulse = 0; pulse < 2; ++pulse) {
+      scene.particles.photons[pulse][i] = sheet.photons(scene.particles.place[pulse][i], pulse);
+    }
+  }
+  plan_step_by_rays(scene);
+  plan_rays_by_rays(scene);
+  return scene;
+}
+
+Rendering render(Scene scene) {
+  return scene.setup.piv
+             ? RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes)
+             : RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+}
+
+std::vector<std::int64_t> planned(Scene const& scene) { return render(scene).truth.rays_planned; }
+
+/// A scene of which every source takes as many rays as any may.
+Scene of_most_rays(Scene scene) {
+  scene.by_need->level *= 1e-12;
+  return scene;
+}
+
+/// Root mean square over the lit pixels of the worse frame [grey levels of the plan].
+double image_error(Scene const& scene, LightPair const& found, LightPair const& exact) {
+  double worse = 0, level = scene.by_need->level;
+  for (auto frame : {&LightPair::reference, &LightPair::flow}) {
+    double square = 0;
+    int lit = 0;
+    for (std::size_t i = 0; i < (found.*frame).size(); ++i) {
+      double const there = (exact.*frame).data()[i], off = (found.*frame).data()[i] - there;
+      if (there < level) continue;
+      square += off * off / (level * level);
+      ++lit;
+    }
+    worse = std::max(worse, std::sqrt(square / std::max(lit, 1)));
+  }
+  return worse;
+}
+
+/// Root mean square of a component of what displacements are off by [px].
+double truth_error(GroundTruth const& found, GroundTruth const& exact) {
+  double square = 0, count = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    Vec2d const off = found.displacement_px[i] - exact.displacement_px[i];
+    if (!std::isfinite(off.x)) continue;
+    square += dot(off, off);
+    count += 2;
+  }
+  return std::sqrt(square / count);
+}
+
+// Integrals of r^2p cos(q angle) over the unit disc, over its area: 1 / (p + 1) for q = 0, else nothing. Sixteen nodes
+// are exact to degree 7: 2p + q <= 7, and 2p even in q.
+TEST(StopRule, IntegratesPolynomialsExactly) {
+  BundleView<double> choice;
+  choice.seed = 5;
+  for (std::uint64_t const rays : {4u, 16u, 64u}) {
+    StopRule const rule(rays);
+    int const degree = 2 * static_cast<int>(std::lround(std::sqrt(static_cast<double>(rays)))) - 1;
+    for (int p = 0; p <= degree; ++p) {
+      for (int q = 0; p + q <= degree; ++q) {
+        double sum = 0;
+        for (std::uint64_t j = 0; j < rays; ++j) {
+          StopPlace const to = place_of_ray(rule.view(), choice, 77, j);
+          sum += to.share * std::pow(to.at.x, p) * std::pow(to.at.y, q) / static_cast<double>(rays);
+        }
+        // x^p y^q over the disc: Gamma((p+1)/2) Gamma((q+1)/2) / (pi Gamma((p+q)/2 + 2)) for even p and q
+        double const exact = p % 2 + q % 2 > 0 ? 0
+                                               : std::tgamma(0.5 * (p + 1)) * std::tgamma(0.5 * (q + 1)) /
+                                                     (pi * std::tgamma(0.5 * (p + q) + 2));
+        EXPECT_NEAR(sum, exact, 1e-14) << rays << ": " << p << ", " << q;
+      }
+    }
+  }
+}
+
+// The disc of confusion of z is 2 px wide at some 14 mm: in focus four rays do, out of focus it takes more, the more
+// the wider it is beside the spot.
+TEST(RayNeed, IsMoreOutOfFocus) {
+  Scene const scene = scene_with(
+      piv_setup(), {{{0, 0, -0.05 * mm}}, {{2 * mm, 0, 3 * mm}}, {{0, 2 * mm, 12 * mm}}, {{2 * mm, 2 * mm, 25 * mm}}});
+  std::vector<std::int64_t> const rays = planned(scene);
+  EXPECT_EQ(rays[0], 4);
+  for (std::size_t i = 1; i < rays.size(); ++i) EXPECT_GT(rays[i], rays[i - 1]) << i;
+  EXPECT_LE(rays[3], static_cast<std::int64_t>(scene.rays_per_dot));
+}
+
+// Light goes as the square of the diameter: a particle of a tenth has a hundredth of the grey levels to be wrong by.
+TEST(RayNeed, IsLessOfDimParticles) {
+  std::vector<Place> places;
+  for (int i = 0; i < 12; ++i) places.push_back({{(i - 6) * mm, 1 * mm, (1 + 2 * i) * mm}});
+  auto dim = places;
+  for (Place& place : dim) place.diameter = 0.02e-6;
+  std::vector<std::int64_t> const of_bright = planned(scene_with(piv_setup(), places)),
+                                  of_dim = planned(scene_with(piv_setup(), dim));
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LE(of_dim[i], of_bright[i]) << i;
+  auto const sum = [](auto const& rays) { return std::accumulate(rays.begin(), rays.end(), std::int64_t{0}); };
+  EXPECT_LT(sum(of_dim), sum(of_bright));
+}
+
+// What a particle takes and shows is its own alone, to the last bit, at a given exposure.
+TEST(RayNeed, HangsOnNoOtherParticle) {
+  gladstone::Setup setup = piv_setup();
+  setup.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
+  setup.medium.thickness = 40 * mm;
+  std::vector<Place> places;
+  for (int i = 0; i < 40; ++i) {
+    double const x = 0.37 * i - 4, y = 0.61 * (i % 9) - 3;
+    places.push_back({{x * mm, y * mm, (i % 7 - 3) * mm}, (0.5 + 0.02 * i) * 1e-6});
+  }
+  GroundTruth const many = render(scene_with(setup, places)).truth;
+  for (std::size_t const i : {0u, 17u, 38u}) {
+    // light of 1 is that of the brightest particle that the setup itself has: the same for all scenes
+    GroundTruth const one = render(scene_with(setup, {places[i]})).truth;
+    EXPECT_EQ(one.rays_planned[0], many.rays_planned[i]);
+    EXPECT_EQ(one.displacement_px[0], many.displacement_px[i]);
+    EXPECT_EQ(one.flux[0], many.flux[i]);
+  }
+}
+
+// A particle in and out of focus, through an ideal lens, a real one, a medium: truth and images are as good as is
+// asked, beside as many rays as any may take; and what the summary says was traced is what they took.
+TEST(RayNeed, IsEnough) {
+  std::vector<Place> places;
+  for (int i = 0; i < 30; ++i) {
+    places.push_back({{(0.4 * i - 6) * mm, (1.7 * (i % 8) - 6) * mm, (i % 5 - 2) * 2 * mm}, (0.6 + 0.02 * i) * 1e-6});
+  }
+  gladstone::Setup blob = piv_setup();
+  blob.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
+  blob.medium.thickness = 40 * mm;
+  gladstone::Setup real = piv_setup();
+  real.lens = real_lens_setup("double_gauss", 128, 8).lens;
+  for (gladstone::Setup const& setup : {piv_setup(), blob, real}) {
+    Scene const scene = scene_with(setup, places);
+    Rendering const found = render(scene), exact = render(of_most_rays(scene));
+    std::vector<std::int64_t> const& rays = found.truth.rays_planned;
+    auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
+    if (!setup.lens.prescription) {
+      EXPECT_LT(*least, *most);
+    }
+    EXPECT_LT(4 * found.rays, exact.rays);
+    EXPECT_EQ(found.rays, frame_count * std::accumulate(rays.begin(), rays.end(), std::int64_t{0}));
+    std::int64_t ended = 0;
+    for (auto const& frame : found.statuses) ended += std::accumulate(frame.begin(), frame.end(), std::int64_t{0});
+    EXPECT_EQ(ended, found.rays);
+    EXPECT_LT(truth_error(found.truth, exact.truth), truth_tolerance_px);
+    EXPECT_LT(image_error(scene, found.light, exact.light), image_tolerance_levels);
+  }
+}
+
+// The same bits on any number of threads, the light of what is taken back and traced again too.
+TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
+  gladstone::Setup setup = piv_setup();
+  setup.camera.exposure_e.reset();
+  setup.medium.field = sinusoid(0.1, 6 * mm);
+  setup.medium.thickness = 40 * mm;
+  setup.piv->particles.amount = 60;
+  auto const render_on = [&](int threads) {
+    set_thread_count(threads);
+    Scene scene = build_scene(setup);
+    plan_step_by_rays(scene);
+    plan_rays_by_rays(scene);
+    return render(scene);
+  };
+  int const before = thread_count();
+  Rendering const one = render_on(1), many = render_on(3);
+  set_thread_count(before);
+  EXPECT_EQ(one.truth.rays_planned, many.truth.rays_planned);
+  EXPECT_TRUE(std::equal(one.light.flow.begin(), one.light.flow.end(), many.light.flow.begin()));
+  EXPECT_TRUE(std::equal(one.light.reference.begin(), one.light.reference.end(), many.light.reference.begin()));
+}
+
+/// Points of a target behind a small blob, in a picture of 8 bits.
+Scene points_behind_blob(std::vector<Vec2d> const& at_px) {
+  auto setup = table1_setup(96);
+  setup.medium.field = GaussianBlob<double>{{{2 * mm, 0, 0}, -0.4, 0.8 * mm}};
+  setup.medium.thickness = 10 * mm;
+  setup.camera.bit_depth = 8;
+  setup.camera.exposure_e = 20000;
+  setup.target.dot_diameter_px = 0;
+  Scene scene = scene_with_dots(setup, at_px, 1);
+  scene.setup.render.rays_per_dot.reset();
+  plan_rays_by_rays(scene);
+  return scene;
+}
+
+// Dots that see the middle of a steep blob take more rays than those beside it, each the same alone as among others.
+TEST(RayNeed, IsOfTheDotsThatNeedIt) {
+  std::vector<Vec2d> at;
+  for (int i = 0; i < 12; ++i) at.push_back({4 + 8.0 * i, 47.3 + 0.1 * i});
+  Scene const scene = points_behind_blob(at);
+  Rendering const found = render(scene);
+  std::vector<std::int64_t> const& rays = found.truth.rays_planned;
+  auto const [least, most] = std::minmax_element(rays.begin(), rays.end());
+  EXPECT_GE(*most, 4 * *least);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    Vec2d const error = found.truth.displacement_error_px[i];
+    if (rays[i] < static_cast<std::int64_t>(scene.rays_per_dot)) {
+      EXPECT_LE(dot(error, error), 2 * truth_tolerance_px * truth_tolerance_px) << i;
+    }
+    if (i % 5 != 0) continue;
+    GroundTruth const alone = render(points_behind_blob({at[i]})).truth;
+    EXPECT_EQ(alone.rays_planned[0], rays[i]);
+    EXPECT_EQ(alone.displacement_px[0], found.truth.displacement_px[i]);
+  }
+  Scene many = scene;
+  many.by_need.reset();
+  many.rays_per_dot = 65536;
+  Rendering const exact = render(many);
+  EXPECT_LT(truth_error(found.truth, exact.truth), truth_tolerance_px);
+  EXPECT_LT(image_error(scene, found.light, exact.light), image_tolerance_levels);
+}
+
+// A number that is given is every source's.
+TEST(RayNeed, LeavesAGivenNumber) {
+  gladstone::Setup setup = piv_setup();
+  setup.render.rays_per_dot = 48;
+  std::vector<std::int64_t> const rays = planned(scene_with(setup, {{{0, 0, 0}}, {{0, 2 * mm, 12 * mm}}}));
+  EXPECT_EQ(rays, (std::vector<std::int64_t>{48, 48}));
+}
+
+// Errors that add up to half a level however many sources lie over each other: of k as bright as a kth of what the
+// camera is exposed for, the squares of k errors are half a level's.
+TEST(RayGoal, SharesHalfALevelByLight) {
+  RayGoal goal;
+  goal.level = 1e-4;
+  goal.brightest_at = 3685;
+  double const brightest = goal.level * goal.brightest_at;
+  for (double const k : {1.0, 7.0, 40.0}) {
+    double const levels = goal.allowed(brightest / k) * (brightest / k) / goal.level;
+    EXPECT_NEAR(std::sqrt(k) * levels, 0.5, 1e-12);
+  }
+  EXPECT_NEAR(goal.allowed(3 * brightest) * 3 * brightest / goal.level, 0.5, 1e-12);  // beyond saturation
+}
+
+}  // namespace
+}  // namespace gladstone
