@@ -18,7 +18,7 @@ void warn(std::vector<std::string>& warnings, std::string text) {
 std::string error_in_words(double error, double resolution, std::string_view unit) {
   if (std::isnan(error)) return "an unknown amount";
   if (error < resolution) return fmt::format("less than {:.2g} {}", resolution, unit);
-  return fmt::format("{:.2g} {}", error, unit);
+  return error < 99.5 ? fmt::format("{:.2g} {}", error, unit) : fmt::format("{:.0f} {}", error, unit);
 }
 
 std::string image_error_in_words(RaysPlan const& plan) {

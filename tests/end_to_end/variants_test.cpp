@@ -236,8 +236,6 @@ TEST_F(FieldFiles, FacesInViewAreWarnedOfWithWhatRaysLeave) {
   EXPECT_GT(faces["image_error_levels"], 0.5);
   EXPECT_THAT(of_faces(rendered({"--set", "camera.exposure=20000"})),
               testing::AllOf(testing::HasSubstr("side faces"), testing::Not(testing::HasSubstr("camera.exposure"))));
-  EXPECT_THAT(of_faces(rendered({"--set", "render.rays_per_dot=auto"})),
-              testing::Not(testing::HasSubstr("set render.rays_per_dot = \"auto\"")));
 }
 
 TEST_F(FieldFiles, AnIndexInSinglePrecisionIsWarnedOfInTheSummary) {
