@@ -59,12 +59,14 @@ class ParticleTracer {
   }
 
   /// @param images null: its light is not sent anywhere @param light_per_photon of an image
+  /// @param least step to begin at, should it need fewer rays
   /// @return its truth; NaN at a pulse that does not light it, or where no ray of it gets through
-  ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon) {
+  ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon,
+                     std::size_t least = 0) {
     key_ = pulses_[0].key(particle);
     light_per_photon_ = light_per_photon;
     origin_ = {};
-    std::size_t step = aim(particle);
+    std::size_t step = std::min(std::max(least, aim(particle)), launches_.ladder.size() - 1);
     while (true) {
       use(step);
       StatusCounts const before = statuses_;
@@ -85,7 +87,8 @@ class ParticleTracer {
     return {source_truth(seen_, scramblings, origin_), source_truth(ambient_, scramblings, origin_)};
   }
 
-  /// Rays that the last particle took.
+  /// The step that the last particle came to, and its rays.
+  std::size_t step() const { return static_cast<std::size_t>(launch_ - &launches_.ladder[0]); }
   std::uint64_t rays() const { return launch_->rays; }
   StatusCounts const& statuses() const { return statuses_; }
   /// The widest that any particle was aimed beyond the stop [m].

@@ -108,8 +108,10 @@ class RayErrors {
     LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
     std::uint64_t rays = 0;
-    DotTruth const truth =
-        scene_.setup.piv ? particle(change, sample_[place], images, rays) : dot(change, sample_[place], images, rays);
+    // every other one by the next finer rule: what turning a rule leaves as it is shows as scatter, too
+    bool const finer = scrambling % 2 == 1;
+    DotTruth const truth = scene_.setup.piv ? particle(change, sample_[place], images, finer, rays)
+                                            : dot(change, sample_[place], images, rays);
     taken_[place * plan_scramblings + static_cast<std::size_t>(scrambling)] = rays;
     Sampled sampled;
     sampled.displacement = truth.hits[1].mean() - truth.hits[0].mean();
@@ -137,17 +139,20 @@ class RayErrors {
         scene_.medium.view);
   }
   template <class Change>
-  DotTruth particle(Change const& change, std::size_t source, LightImage* const (&images)[frame_count],
+  DotTruth particle(Change const& change, std::size_t source, LightImage* const (&images)[frame_count], bool finer,
                     std::uint64_t& rays) const {
+    LightImage* const none[frame_count] = {};
     ParticleLaunches launches(scene_, spot_, RenderImages::yes);
     change(launches.sharp);
     launches.ladder.change(change);
     return with_particles(scene_, scene_.particles, ParticleLight::scattered,
                           [&](auto const& pulses, auto const& medium) {
                             ParticleTracer tracer(launches, pulses, medium, true);
-                            DotTruth const truth = tracer.trace(source, images, 1 / scene_.photon_unit).truth;
+                            double const light = 1 / scene_.photon_unit;
+                            bool const twice = finer && launches.ladder[0].rule.view();
+                            ParticleSeen const found = tracer.trace(source, twice ? none : images, light);
                             rays = tracer.rays();
-                            return truth;
+                            return twice ? tracer.trace(source, images, light, tracer.step() + 1).truth : found.truth;
                           });
   }
 

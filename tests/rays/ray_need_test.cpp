@@ -199,6 +199,22 @@ TEST(RayNeed, IsEnough) {
   }
 }
 
+// Turning a rule leaves what it makes wrong of aberrations as it is, all round; the plan, whose every other sample is
+// by the next finer rule, tells it all the same: 1/sqrt(3) of it is the scatter of two of one and two of the other.
+TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
+  gladstone::Setup setup = piv_setup();
+  setup.lens = real_lens_setup("achromat", 128, 8).lens;
+  std::vector<Place> places;
+  for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
+  Scene scene = scene_with(setup, places);
+  RaysPlan const plan = plan_rays_by_rays(scene);
+  Rendering const found = render(scene), exact = render(of_most_rays(scene));
+  double const off = image_error(scene, found.light, exact.light);
+  EXPECT_GT(off, 0.01);
+  EXPECT_LT(off, 3 * plan.image_error_levels) << plan.image_error_levels;
+  EXPECT_GT(off, plan.image_error_levels / 3) << plan.image_error_levels;
+}
+
 // The same bits on any number of threads, the light of what is taken back and traced again too.
 TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
   gladstone::Setup setup = piv_setup();
