@@ -271,8 +271,9 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   auto const own = json_of(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3));
   auto const cases = calibrate("case");
   EXPECT_EQ(names("camera"), std::vector<std::string>{"calibration.h5"});
-  EXPECT_THAT(succeed(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3)),
-              HasSubstr("no columns of a rendered camera to compare with: pictures of your own have no truth"));
+  EXPECT_THAT(
+      succeed(with({"calibrate", "roughly.toml", "-o", "camera", "--quiet", "--no-figures"}, 3)),
+      testing::HasSubstr("no columns of a rendered camera to compare with: pictures of your own have no truth"));
   EXPECT_EQ(own["dots"], cases["dots"]);
   EXPECT_EQ(own["planes"][2]["z_mm"], 20.0);
   for (auto const& [name, parameter] : cases["pinhole"]["parameters"].items()) {
