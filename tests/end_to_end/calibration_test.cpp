@@ -293,7 +293,7 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
   Outcome const several = gladstone(with({"calibrate", "two.toml", "-o", "other", "--quiet"}, 3));
   EXPECT_EQ(several.exit_code, 2);
   EXPECT_EQ(several.err,
-            "two.toml: is of 2 cameras (left, right), and pictures are of one; leave the [[camera]] "
+            "gladstone: two.toml: is of 2 cameras (left, right), and pictures are of one; leave the [[camera]] "
             "that took them alone in it, and calibrate the others likewise\n");
   std::reverse(pictures.begin(), pictures.end());
   expect_refused(with({"calibrate", "roughly.toml", "-o", "other", "--quiet"}, 3), 2,
