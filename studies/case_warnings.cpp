@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/base/units.h"
 
@@ -34,9 +35,10 @@ void warn_of_few_rays(std::vector<std::string>& warnings, Scene const& scene, Ra
   if (plan.converged) return;
   warn(warnings,
        fmt::format(
-           "rays_per_dot = \"auto\" takes up to {} of a source: the image is only good to {}, truth to {}, where {} "
-           "and {} are asked (that would take some {:.2g} rays of some, {:.2g} s of one processor each; \"auto\" "
-           "takes {:.2g} s or 1024 rays); set render.rays_per_dot higher if that matters",
+           "rays_per_dot = \"auto\" takes no more than {} rays of a source: the image is only good to {}, truth to {}, "
+           "where {} and {} are asked (the sources that are worst off would need some {:.0f} rays, {:.2g} s of one "
+           "processor for each source; \"auto\" takes {:.2g} s or 1024 rays); set render.rays_per_dot higher if that "
+           "matters",
            plan.rays, image_error_in_words(plan), truth_error_in_words(plan), image_tolerance_levels,
            truth_tolerance_px, plan.rays_wanted, ray_seconds(scene) * plan.rays_wanted, source_budget_s));
 }
@@ -102,18 +104,22 @@ void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
 }
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth) {
-  auto const unseen = std::count_if(truth.displacement_px.begin(), truth.displacement_px.end(),
-                                    [](Vec2d d) { return std::isnan(d.x); });
+  std::int64_t unseen = 0, rays = std::numeric_limits<std::int64_t>::max();  // the fewest of one
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (!std::isnan(truth.displacement_px[i].x)) continue;
+    ++unseen;
+    rays = std::min(rays, truth.rays_planned[i]);
+  }
   if (unseen > 0 && !scene.setup.piv) {  // of particles those are meant that are beside the light
     double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
-    double const passing = static_cast<double>(scene.rays_per_dot) * (stop * stop) / (disc * disc);
+    double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
     constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
     std::string const why =
         !scene.chief_rays_only() && passing < few
             ? fmt::format(
                   "some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
                   "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
-                  passing, scene.rays_per_dot, scene.pupil_margin / unit::millimetre)
+                  passing, rays, scene.pupil_margin / unit::millimetre)
             : "the flow bends their rays past the lens; reduce the gradients or Z_D";
     warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
                                scene.dots.centre.size(), why));

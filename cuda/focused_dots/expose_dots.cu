@@ -57,6 +57,7 @@ __global__ void __launch_bounds__(dot_threads, 4)
   __shared__ __align__(16) unsigned char square_storage[sizeof(Squares)];
   ConeIntegral& whole = *reinterpret_cast<ConeIntegral*>(integral_storage);
   CorrectedCone& cone = *reinterpret_cast<CorrectedCone*>(cone_storage);
+  if (threadIdx.x == 0) whole.rims = dynamic + dot_warps * side * side;
   for (std::uint64_t i = blockIdx.x; i < count; i += gridDim.x) {
     DotCone const& dot = cones[i];
     if (dot.kind != DotKind::wide) continue;
@@ -74,13 +75,13 @@ __global__ void __launch_bounds__(dot_threads, 4)
   }
 }
 
-/// Launches with as large a patch as there is shared memory for. @param more arguments after images and the patch's
-/// side
+/// Launches with as large a patch as there is shared memory for. @param beside bytes of it behind the patch
+/// @param more arguments after images and the patch's side
 template <class Kernel, class... More>
 void launch(Kernel* kernel, DotModel const& model, std::uint64_t count, DotCone const* cones,
-            DeviceImages const& images, std::uint64_t blocks, More... more) {
-  int const side = patch_side(model, most_shared_bytes(kernel));
-  std::size_t const shared = patch_bytes(side);
+            DeviceImages const& images, std::uint64_t blocks, std::size_t beside, More... more) {
+  int const side = patch_side(model, most_shared_bytes(kernel) - beside);
+  std::size_t const shared = patch_bytes(side) + beside;
   allow_shared_bytes(kernel, shared);
   kernel<<<blocks_for(kernel, dot_threads, shared, blocks), dot_threads, shared>>>(model, count, cones, images, side,
                                                                                    more...);
@@ -90,13 +91,14 @@ void launch(Kernel* kernel, DotModel const& model, std::uint64_t count, DotCone 
 }  // namespace
 
 void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images) {
-  launch(expose_kernel, model, count, cones, images, count);
+  launch(expose_kernel, model, count, cones, images, count, 0);
   if (!model.moment_images.exist()) return;
   std::uint64_t const blocks = std::min(count, most_blocks);
   auto const points_a_block = static_cast<std::size_t>(model.most_points());
   DeviceArray<ConeLight> light(blocks * points_a_block, "the points of wide cones");
   DeviceArray<unsigned short> order(light.size(), "the points of wide cones");
-  launch(expose_wide_kernel, model, count, cones, images, blocks, light.data(), order.data(), points_a_block);
+  std::size_t const rims = sizeof(double) * static_cast<std::size_t>(model.rim_count());
+  launch(expose_wide_kernel, model, count, cones, images, blocks, rims, light.data(), order.data(), points_a_block);
 }
 
 }  // namespace gladstone::cuda

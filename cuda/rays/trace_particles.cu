@@ -170,7 +170,8 @@ __global__ void __launch_bounds__(seeing_threads)
       }
     }
   }
-  RimSpread const rim{{aims[frame_count * i].spread2, aims[frame_count * i + 1].spread2}};
+  PulseAim const &first = aims[frame_count * i], &second = aims[frame_count * i + 1];
+  RimSpread const rim{{first.spread2, second.spread2}, {first.state == AimState::wide, second.state == AimState::wide}};
   steps.next[i] = ladder.next(step, clipped ? RaysSent::clipped : RaysSent::by_rule, rim, through_medium);
   steps.chosen[i] = steps.next[i] > step ? 1 : 0;
   if (steps.chosen[i] != 0) atomicAdd(steps.count + LadderView::most_steps, 1u);

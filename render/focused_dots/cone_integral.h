@@ -107,7 +107,7 @@ GLADSTONE_HD inline CorrectedCone cone_of(DotModel const& model, DotCone const& 
 struct ConeIntegral {
   DisplacementMoments moments[PlaceRule::most_places];  ///< of the whole cone, at every place of the source
   double without_medium[PlaceRule::most_places];
-  double rims[PlaceRule::most_places][ConeRule::most_directions];
+  double* rims = nullptr;                  ///< [place][direction] of the rule: room from elsewhere
   Extent extents[PlaceRule::most_places];  ///< of displacements
   bool simple, sound, narrow;              ///< the stop's edge; the moments; their spread
 };
@@ -125,7 +125,7 @@ GLADSTONE_HD void integrate_cone(Group const& group, DotModel const& model, Corr
     bool simple = true;
     for (int k = team.lane(); k < model.cone.direction_count; k += team.size()) {
       double const rim = cone.rim(offset, model.cone.directions[k]);
-      whole.rims[place][k] = rim;
+      whole.rims[place * model.cone.direction_count + k] = rim;
       simple = simple && rim == rim;
     }
     if (!team.all(simple)) whole.simple = false;
@@ -134,7 +134,7 @@ GLADSTONE_HD void integrate_cone(Group const& group, DotModel const& model, Corr
   int const count = model.cone.points_of(whole.simple);
   for (int place = team.index(); place < model.places.count; place += team.count()) {
     Vec2d const offset = model.offset(model.places.places[place]);
-    double const* const rims = whole.simple ? whole.rims[place] : nullptr;
+    double const* const rims = whole.simple ? whole.rims + place * model.cone.direction_count : nullptr;
     DisplacementMoments moments;
     double without_medium = 0;
     Extent extent;

@@ -12,6 +12,8 @@ DotIntegrator::DotIntegrator(DotModel const& model) : model_(model) {
   lane_.scramblings = model.scramblings();
   points_.resize(static_cast<std::size_t>(model.most_points()));
   order_.resize(points_.size());
+  rims_.resize(static_cast<std::size_t>(model.rim_count()));
+  whole_.rims = rims_.data();
 }
 
 void DotIntegrator::integrate() {

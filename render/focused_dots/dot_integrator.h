@@ -59,7 +59,8 @@ class DotIntegrator {
   std::vector<DotPatch> patches_;
   SeenDot seen_;
   CheckingLane lane_;
-  ConeIntegral whole_;
+  std::vector<double> rims_;
+  ConeIntegral whole_;             ///< points into the rims
   std::vector<ConeLight> points_;  ///< of the cone, of all places
   std::vector<unsigned short> order_;
   SquareSums<1> squares_;

@@ -65,6 +65,8 @@ struct DotModel {
   int most_points() const {
     return places.count * (cone.count > cone.scattered_count ? cone.count : cone.scattered_count);
   }
+  /// Rims of the stop that a cone is integrated with.
+  int rim_count() const { return places.count * cone.direction_count; }
   /// From the centre of the source to a place on it [m].
   GLADSTONE_HD Vec2d offset(Vec2d place) const { return {source_half * place.x, -source_half * place.y}; }
   /// Most side of the squares into which wide distributions of displacements are sorted [px], within which four orders

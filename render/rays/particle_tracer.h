@@ -72,7 +72,8 @@ class ParticleTracer {
       StatusCounts const before = statuses_;
       trace_all(particle, images, 1);
       bool const clipped = aims_[0].sent == Aim::Sent::wide || aims_[1].sent == Aim::Sent::wide;
-      RimSpread const rim{{aims_[0].bent.spread2, aims_[1].bent.spread2}};
+      RimSpread const rim{{aims_[0].bent.spread2, aims_[1].bent.spread2},
+                          {aims_[0].sent == Aim::Sent::wide, aims_[1].sent == Aim::Sent::wide}};
       RaysSent const sent = clipped || !launch_->rule.view() ? RaysSent::clipped : RaysSent::by_rule;
       std::size_t const next = launches_.ladder.next(step, sent, rim, seen_, light_per_weight());
       if (next == step) break;

@@ -72,7 +72,8 @@ GLADSTONE_HD inline double rays_for_spread(RayGoal const& goal, RaysSent sent, d
 
 /// What is known of a source before its rays are traced, in either frame.
 struct RimSpread {
-  double spread2[frame_count] = {};  ///< as FilledStop's, of rays that go by a rule
+  double spread2[frame_count] = {};          ///< as FilledStop's, of rays that go by a rule
+  bool clipped[frame_count] = {true, true};  ///< rays go to a wider disc than passes; none may get through
 };
 
 /// Rays that a source asks for by what its rays have come to: the scatter of its displacement between scramblings, that
@@ -93,7 +94,13 @@ GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpr
     if (n > asked) asked = n;
   };
   RaySums all;
-  for (int i = 0; i < scramblings; ++i) all += of[i];
+  for (int i = 0; i < scramblings; ++i) {
+    all += of[i];
+    for (int frame = 0; frame < frame_count; ++frame) {
+      // what no ray shows is not known to be dark
+      if (rim.clipped[frame] && !(of[i].hits[frame].weight > 0)) ask(4 * rays);
+    }
+  }
   if (scramblings > 1 && all.hits[0].weight > 0 && all.hits[1].weight > 0) {
     Vec2d const squares = displacement_error2(of, scramblings, all);
     double const excess2 = (squares.x + squares.y) / (2 * truth_tolerance_px * truth_tolerance_px);
