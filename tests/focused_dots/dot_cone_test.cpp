@@ -107,8 +107,11 @@ TEST(CorrectedCone, FindsTheRimThatTheMediumMovedInOrOut) {
 }
 
 // Uniform displacement d P over a disc of radius r: variance along x is d^2 r^2 / 4, the fourth moment d^4 r^4 / 8, the
-// light that arrives (r/R)^2 of what left, r = R/(1 + b). Both rules: with a rim to 1e-9 beside what cos^4 makes, to
-// 2e-3 where the stop's edge is smoothed, over a strip of a thousand and more points.
+// light that arrives (r/R)^2 of what left, r = R/(1 + b). Both rules. With a rim to 1e-9 beside what cos^4 makes. Where
+// the stop's edge is smoothed, the smoothing itself leaves nothing of light, second and fourth moments, integrals of 1,
+// u and u^2 over u = (r/R)^2, since three moments of its kernel vanish (ApertureStop); the N points, 1024 and more,
+// leave N^(-3/4) = 5.5e-3 of a sharp edge's and less than half of that, 2e-3, of a smooth one's: three times as much of
+// u^2, whose integral u^3/3 changes with the rim three times as fast as the light does.
 TEST(ConeRule, IntegratesALensInClosedForm) {
   double const d = 20.0, b = 0.02;
   auto const setup = table1_setup(64);

@@ -139,7 +139,8 @@ TEST(PlanRays, AdmitsWhatItCannotReach) {
 
 // Out of focus every ray's light stays where it lands, and half a grey level under discs twenty deep would take more
 // rays than anybody waits for. A dot stops at its budget of processor time, counted and not clocked, and the plan tells
-// what was asked, what it got, and what it would have taken.
+// what was asked, what it got, and what it would have taken. The bounds are on one source, 12 ms, where they were on a
+// scene, 60 s: the same for the 5000 dots of 512 x 512 px, and no dot has the fewer rays for the others.
 TEST(PlanRays, StaysWithinItsBudget) {
   auto setup = table1_setup(512);
   setup.lens.focus = Focus::medium;

@@ -11,28 +11,15 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"
 #include "render/scene/two_media.h"
+#include "tests/scene/piv_setups.h"
 
 namespace gladstone {
 namespace {
 
 constexpr double mm = 1e-3;
 
-/// PIV through the lens of Table 1 at f/8, 750 mm before a sheet of uniform light, with white spheres of 1 um.
-Setup piv_setup() {
-  Setup setup;
-  setup.camera.columns = setup.camera.rows = 128;
-  setup.lens.f_number = 8;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.laser.profile = SheetProfile::top_hat;
-  piv.laser.thickness = 30 * mm;
-  piv.particles.scattering = ParticleScattering::lambert;
-  piv.particles.amount = 50;
-  piv.particles.volume = Vec3d{8 * mm, 8 * mm, 1 * mm};
-  setup.piv = piv;
-  return setup;
-}
+/// White spheres of 1 um in a volume 1 mm deep, in a sheet of 30 mm.
+Setup deep_sheet() { return piv_setup(30 * mm, 1 * mm); }
 
 /// A scene with particles at these places, at either pulse.
 Scene scene_with_particles(Setup const& setup, std::vector<Vec3d> const& first, std::vector<Vec3d> const& second,
@@ -68,7 +55,7 @@ double scale_at(Scene const& scene, double z) {
 // cross-section varies over the cone of +-0.5 degrees by odd powers, which 32 pairs of rays to opposite places cancel,
 // and by a square below 1e-4.
 TEST(Particles, SendTheirPhotonsIntoTheLens) {
-  Scene scene = scene_with_particles(piv_setup(), {{0, 0, 0}}, {{0, 0, 0}}, 64);
+  Scene scene = scene_with_particles(deep_sheet(), {{0, 0, 0}}, {{0, 0, 0}}, 64);
   LaserSetup const& laser = scene.setup.piv->laser;
   double const fluence = laser.pulse_energy / (laser.height * laser.thickness);
   double const photon = constant::planck * constant::speed_of_light / laser.wavelength;
@@ -85,7 +72,7 @@ TEST(Particles, SendTheirPhotonsIntoTheLens) {
 // in a vacuum has |S1|^2 = 4.933372 and |S2|^2 = 8.263150 at 90 degrees, over k^2; the lens takes 2.40528e-4 sr: 45443
 // photons with the field across the plane of scattering, 27267 electrons at 0.6. S1 and S2 vary over the cone: 1 %.
 TEST(Particles, SendThePhotonsOfMieScattering) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.medium.ambient_density = 0;
   setup.piv->particles.scattering = ParticleScattering::mie;
   setup.piv->laser.profile = SheetProfile::gaussian;
@@ -103,7 +90,7 @@ TEST(Particles, SendThePhotonsOfMieScattering) {
 // of the way. The cosine varies over the lens by 1e-3 of itself, oddly.
 TEST(Particles, FallOffAsCosCubed) {
   Vec3d const off{100 * mm, 50 * mm, 0};
-  Scene scene = scene_with_particles(piv_setup(), {{}, off}, {{}, off}, 64);
+  Scene scene = scene_with_particles(deep_sheet(), {{}, off}, {{}, off}, 64);
   for (auto& photons : scene.particles.photons) photons = {1, 1};
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
   double const cosine = 0.75 / std::hypot(0.75, std::hypot(0.1, 0.05));
@@ -116,7 +103,7 @@ TEST(Particles, FallOffAsCosCubed) {
 TEST(Particles, LightThePictureByTheirFlux) {
   std::vector<Vec3d> const places{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 3 * mm}, {2.5 * mm, -1 * mm, -2 * mm}};
   for (std::uint64_t const rays : {64u, 300u}) {  // spot by spot, and gathered
-    Scene scene = scene_with_particles(piv_setup(), places, places, rays);
+    Scene scene = scene_with_particles(deep_sheet(), places, places, rays);
     for (ParticleLight const light : {ParticleLight::scattered, ParticleLight::equal}) {
       Rendering const rendering = render(scene, light, RenderImages::yes);
       double flux = 0, most = 0;
@@ -136,7 +123,7 @@ TEST(Particles, LightThePictureByTheirFlux) {
 // Chief rays of a pinhole: column and row are z_i / p times X and -Y over the distance, for every place, out of the
 // sheet too.
 TEST(Particles, AreProjectedByAPinhole) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = std::numeric_limits<double>::infinity();
   std::vector<Vec3d> const first{{1 * mm, 2 * mm, 0}, {-2 * mm, 1 * mm, 7 * mm}, {3 * mm, -1 * mm, -9 * mm}};
   std::vector<Vec3d> const second{{1.5 * mm, 2 * mm, 1 * mm}, {-2 * mm, 1.2 * mm, 7 * mm}, {3 * mm, -1 * mm, -3 * mm}};
@@ -154,7 +141,7 @@ TEST(Particles, AreProjectedByAPinhole) {
 
 // A particle out of the sheet sends no light; one that leaves it is seen once, and its displacement is not known.
 TEST(Particles, BesideTheSheetAreNotSeen) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.piv->laser.thickness = 2 * mm;
   Scene scene =
       scene_with_particles(setup, {{0, 0, 0}, {1 * mm, 0, 3 * mm}}, {{0, 0, 2 * mm}, {1 * mm, 0, 3 * mm}}, 64);
@@ -174,7 +161,7 @@ TEST(Particles, BesideTheSheetAreNotSeen) {
 // squared, (g l)^2 = 1e-5 and 8e-5 of the cone, are what this leaves out, and 512 rays add little: the cone is turned
 // as a whole, and fills the stop.
 TEST(Particles, InAnIndexGradientAreDisplaced) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.medium.thickness = 40 * mm;
   double const g = 0.1;  // [1/m]
   setup.medium.field = UniformGradient<double>{{}, {g / setup.medium.gladstone_dale, 0, 0}};
@@ -200,7 +187,7 @@ TEST(Particles, InAnIndexGradientAreDisplaced) {
 // with xi = -g l^2 / 2 as above. Light and rays are those of either pulse. 512 rays' displacements are wrong by far
 // less than 2e-3 of xi, and by as much as is said, give or take its own scatter: a third at six components' worth.
 TEST(Particles, SeemToMoveWhereTheMediumChanges) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.medium.thickness = 40 * mm;
   double const g[2] = {0.1, -0.05};  // [1/m]
   setup.medium.field = UniformGradient<double>{{}, {g[0] / setup.medium.gladstone_dale, 0, 0}};
@@ -231,7 +218,7 @@ TEST(Particles, SeemToMoveWhereTheMediumChanges) {
 // are good to a part in a thousand.
 TEST(Particles, OutOfFocusLeaveADisc) {
   double const z = 10 * mm;
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = 4;
   Scene scene = scene_with_particles(setup, {{0, 0, z}, {}}, {{0, 0, z}, {}}, 4096);
   GroundTruth const truth = render(scene, ParticleLight::equal).truth;
@@ -257,7 +244,7 @@ double variance_along_row(Image<double> const& image) {
 // image is the disc of confusion, of diameter M D |z| / (Z - z), smeared by the spot and by the pixel, whose variance
 // is a twelfth. 4096 rays know the disc's to a part in a thousand; the spot is cut off where 4e-8 of it are left.
 TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.camera.pixel_pitch = 2e-6;  // a sigma is a pixel: its place within it does not matter
   for (double const z : {0.0, 2 * mm, 6 * mm, -6 * mm}) {
     Scene scene = scene_with_particles(setup, {{0, 0, z}}, {{0, 0, z}}, 4096);
@@ -273,7 +260,7 @@ TEST(Particles, AreAsWideAsDiffractionAndBlurTogether) {
 // Depth of field 4.88 ((M + 1) / M)^2 N^2 lambda (Adrian 1991): at its ends the disc of confusion is as wide as the
 // diffraction spot between its first zeros. Paraxial: z / Z = 0.0014 of it is left, and 4.88 is 2 * 2.43934 rounded.
 TEST(Particles, BlurAsMuchAsDiffractionAtTheEndsOfTheDepthOfField) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.lens.f_number = 4;
   double const M = setup.imaging().magnification;
   double const z = 0.5 * 4.88 * std::pow((M + 1) / M, 2) * 16 * 532e-9;
@@ -284,7 +271,7 @@ TEST(Particles, BlurAsMuchAsDiffractionAtTheEndsOfTheDepthOfField) {
 }
 
 TEST(Particles, GiveTheSameBitsOnAnyNumberOfThreads) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = deep_sheet();
   setup.piv->particles.amount = 300;
   setup.piv->flow.flow.uniform = {30, 10, 20};
   setup.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};

@@ -8,6 +8,7 @@
 #include "render/base/parallel.h"
 #include "render/light/laser_sheet.h"
 #include "render/rays/rays_ladder.h"
+#include "tests/scene/piv_setups.h"
 #include "tests/scene/real_lens_setups.h"
 #include "tests/scene/small_scenes.h"
 
@@ -16,21 +17,10 @@ namespace {
 
 constexpr double mm = 1e-3;
 
-/// PIV through the lens of Table 1 at f/8, 750 mm before a sheet of uniform light, 60 mm deep.
-Setup piv_setup() {
-  Setup setup;
-  setup.camera.columns = setup.camera.rows = 128;
+/// White spheres of 1 um in a volume 4 mm deep, in a sheet of 60 mm, at a given exposure.
+Setup exposed_setup() {
+  Setup setup = piv_setup(60 * mm, 4 * mm);
   setup.camera.exposure_e = 20000;
-  setup.lens.f_number = 8;
-  setup.z_d = 0;
-  setup.medium.field = {};
-  PivSetup piv;
-  piv.laser.profile = SheetProfile::top_hat;
-  piv.laser.thickness = 60 * mm;
-  piv.particles.scattering = ParticleScattering::lambert;
-  piv.particles.amount = 50;
-  piv.particles.volume = Vec3d{8 * mm, 8 * mm, 4 * mm};
-  setup.piv = piv;
   return setup;
 }
 
@@ -127,8 +117,9 @@ TEST(StopRule, IntegratesPolynomialsExactly) {
 // The disc of confusion of z is 2 px wide at some 14 mm: in focus four rays do, out of focus it takes more, the more
 // the wider it is beside the spot.
 TEST(RayNeed, IsMoreOutOfFocus) {
-  Scene const scene = scene_with(
-      piv_setup(), {{{0, 0, -0.05 * mm}}, {{2 * mm, 0, 3 * mm}}, {{0, 2 * mm, 12 * mm}}, {{2 * mm, 2 * mm, 25 * mm}}});
+  Scene const scene =
+      scene_with(exposed_setup(),
+                 {{{0, 0, -0.05 * mm}}, {{2 * mm, 0, 3 * mm}}, {{0, 2 * mm, 12 * mm}}, {{2 * mm, 2 * mm, 25 * mm}}});
   std::vector<std::int64_t> const rays = planned(scene);
   EXPECT_EQ(rays[0], 4);
   for (std::size_t i = 1; i < rays.size(); ++i) EXPECT_GT(rays[i], rays[i - 1]) << i;
@@ -141,8 +132,8 @@ TEST(RayNeed, IsLessOfDimParticles) {
   for (int i = 0; i < 12; ++i) places.push_back({{(i - 6) * mm, 1 * mm, (1 + 2 * i) * mm}});
   auto dim = places;
   for (Place& place : dim) place.diameter = 0.02e-6;
-  std::vector<std::int64_t> const of_bright = planned(scene_with(piv_setup(), places)),
-                                  of_dim = planned(scene_with(piv_setup(), dim));
+  std::vector<std::int64_t> const of_bright = planned(scene_with(exposed_setup(), places)),
+                                  of_dim = planned(scene_with(exposed_setup(), dim));
   for (std::size_t i = 0; i < places.size(); ++i) EXPECT_LE(of_dim[i], of_bright[i]) << i;
   auto const sum = [](auto const& rays) { return std::accumulate(rays.begin(), rays.end(), std::int64_t{0}); };
   EXPECT_LT(sum(of_dim), sum(of_bright));
@@ -150,7 +141,7 @@ TEST(RayNeed, IsLessOfDimParticles) {
 
 // What a particle takes and shows is its own alone, to the last bit, at a given exposure.
 TEST(RayNeed, HangsOnNoOtherParticle) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = exposed_setup();
   setup.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
   setup.medium.thickness = 40 * mm;
   std::vector<Place> places;
@@ -175,12 +166,12 @@ TEST(RayNeed, IsEnough) {
   for (int i = 0; i < 30; ++i) {
     places.push_back({{(0.4 * i - 6) * mm, (1.7 * (i % 8) - 6) * mm, (i % 5 - 2) * 2 * mm}, (0.6 + 0.02 * i) * 1e-6});
   }
-  gladstone::Setup blob = piv_setup();
+  gladstone::Setup blob = exposed_setup();
   blob.medium.field = GaussianBlob<double>{{{}, -0.8, 5 * mm}};
   blob.medium.thickness = 40 * mm;
-  gladstone::Setup real = piv_setup();
+  gladstone::Setup real = exposed_setup();
   real.lens = real_lens_setup("double_gauss", 128, 8).lens;
-  for (gladstone::Setup const& setup : {piv_setup(), blob, real}) {
+  for (gladstone::Setup const& setup : {exposed_setup(), blob, real}) {
     Scene const scene = scene_with(setup, places);
     Rendering const found = render(scene), exact = render(of_most_rays(scene));
     std::vector<std::int64_t> const& rays = found.truth.rays_planned;
@@ -201,7 +192,7 @@ TEST(RayNeed, IsEnough) {
 // Turning a rule leaves what it makes wrong of aberrations as it is, all round; the plan, whose every other sample is
 // by the next finer rule, tells it all the same: 1/sqrt(3) of it is the scatter of two of one and two of the other.
 TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = exposed_setup();
   setup.lens = real_lens_setup("achromat", 128, 8).lens;
   std::vector<Place> places;
   for (int i = 0; i < 20; ++i) places.push_back({{(0.5 * i - 5) * mm, (i % 5 - 2) * 2 * mm, (i % 3 - 1) * mm}});
@@ -216,7 +207,7 @@ TEST(RayNeed, PlanTellsWhatARuleLeavesOfAberrations) {
 
 // The same bits on any number of threads, the light of what is taken back and traced again too.
 TEST(RayNeed, IsTheSameOnAnyNumberOfThreads) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = exposed_setup();
   setup.camera.exposure_e.reset();
   setup.medium.field = sinusoid(0.1, 6 * mm);
   setup.medium.thickness = 40 * mm;
@@ -299,7 +290,7 @@ TEST(RayNeed, IsOfTheDotsThatNeedIt) {
 
 // A number that is given is every source's.
 TEST(RayNeed, LeavesAGivenNumber) {
-  gladstone::Setup setup = piv_setup();
+  gladstone::Setup setup = exposed_setup();
   setup.render.rays_per_dot = 48;
   std::vector<std::int64_t> const rays = planned(scene_with(setup, {{{0, 0, 0}}, {{0, 2 * mm, 12 * mm}}}));
   EXPECT_EQ(rays, (std::vector<std::int64_t>{48, 48}));
