@@ -169,20 +169,6 @@ StepPlan plan_step_of(Scene& scene) {
 
 namespace {
 
-/// What a given number of rays leaves, measured by no more than 256 of each dot, which costs less than to render them:
-/// it falls with the square root of their number at least.
-RaysPlan measure_given_rays(Scene const& scene) {
-  constexpr std::uint64_t most = 256;
-  Scene fewer = scene;
-  fewer.rays_per_dot = std::min(scene.rays_per_dot, most);
-  RaysPlan plan = measure_rays_by_rays(fewer);
-  double const gain = std::sqrt(static_cast<double>(fewer.rays_per_dot) / static_cast<double>(scene.rays_per_dot));
-  plan.truth_error_px *= gain;
-  plan.image_error_levels *= gain;
-  plan.rays = scene.rays_per_dot;
-  return plan;
-}
-
 /// The rays of those dots that are left to the general renderer, as far as the field's side faces tell which. Where
 /// their number is given, what it leaves of truth and images is measured all the same.
 void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
@@ -193,7 +179,9 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   bool const seen = std::any_of(by_rays.dots.centre.begin(), by_rays.dots.centre.end(),
                                 [&scene](Vec2d centre) { return scene.in_view(centre); });
   if (given && !seen) return;
-  RaysPlan const at_side_faces = given ? measure_given_rays(by_rays) : plan_rays_by_rays(by_rays, need_of(scene));
+  constexpr std::uint64_t cheap_rays = 256;  // of a dot: to measure by more would cost more than to render them
+  RaysPlan const at_side_faces =
+      given ? measure_rays_by_rays(by_rays, cheap_rays) : plan_rays_by_rays(by_rays, need_of(scene));
   if (seen) {
     plan.side_faces = {at_faces.size(), at_side_faces.rays, at_side_faces.truth_error_px,
                        at_side_faces.image_error_levels, at_side_faces.rays_wanted};

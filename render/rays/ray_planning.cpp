@@ -209,8 +209,7 @@ StepPlan plan_step_by_rays(Scene& scene) {
   return plan;
 }
 
-RaysPlan measure_rays_by_rays(Scene const& scene) {
-  constexpr std::uint64_t most = 4096;
+RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most) {
   Scene fewer = scene;
   fewer.by_need.reset();
   fewer.rays_per_dot = std::min(scene.rays_per_dot, most);

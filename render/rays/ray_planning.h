@@ -8,9 +8,9 @@ namespace gladstone {
 /// choose_step() by chief rays of all dots, and chief and rim rays of those that change most. Sets step and margin.
 StepPlan plan_step_by_rays(Scene& scene);
 
-/// Errors at the scene's present number of rays, of all sources alike, measured with up to 4096, of which more scatter
-/// no more than by chance.
-RaysPlan measure_rays_by_rays(Scene const& scene);
+/// Errors at the scene's present number of rays, of all sources alike, measured with up to `most`, of which more
+/// scatter no more than by chance.
+RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most = 4096);
 
 /// What every source's number of rays is chosen by: the light of a grey level, at the bit depth or at 12 bits if that
 /// is coarser. Where "auto" is to expose the camera, a sample of sources tells the light of the brightest pixel.
