@@ -65,7 +65,7 @@ struct RenderedCase {
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
 
 /// The exposure that a camera takes of this light: its own, or by its brightest pixel [e].
-double exposure_of(Scene const& scene, KeptLight const& light);
+double exposure_of(Scene const& scene, RenderedLight const& light);
 
 /// What the camera records of a rendering.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);

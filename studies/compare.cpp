@@ -138,7 +138,7 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
       window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
   if (rendered) {
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
-    DisplacementField again = correlate_frames(*rendered->rendering->kept->ideal(detector), settings, device).field;
+    DisplacementField again = correlate_frames(*rendered->rendering->in_place->ideal(detector), settings, device).field;
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 

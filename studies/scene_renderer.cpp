@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/focused_dots/focused_dots_renderer.h"
@@ -136,7 +137,7 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   if (all.left.empty()) return all;
   std::vector<std::size_t> const left = all.left;
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
-  if (images == RenderImages::kept) all = focused_dots_->render(scene, sources, lit, theory);
+  if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
   Scene by_rays = with_dots(scene, some_of(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
   if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // no plan foresaw them
     by_rays.by_need = need_of(scene);
@@ -147,8 +148,8 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   // by what the fast renderer traced of them before it left them, they would count twice
   Scene given_up = scene;
   take_back(all, focused_dots_->render(given_up, by_rays.dots, RenderImages::no, RenderTheory::no));
-  if (images == RenderImages::kept) {
-    all.kept = std::make_shared<HostLight const>(std::move(all.light));
+  if (images == RenderImages::in_place) {
+    all.in_place = std::make_shared<HostLight const>(std::move(all.light));
     all.light = {};
   }
   return all;
@@ -160,7 +161,7 @@ StepPlan plan_step_of(Scene& scene) {
     first.second_medium.reset();
     StepPlan const a = plan_step_of(first), b = plan_step_of(second);
     StepPlan plan = b.step_mm < a.step_mm ? b : a;
-    plan.largest_bend = std::max(a.largest_bend, b.largest_bend);
+    plan.largest_shift = std::max(a.largest_shift, b.largest_shift);
     use_step(scene, plan);
     return plan;
   }

@@ -44,7 +44,7 @@ void hash_inputs(CaseSetup& loaded) {
   for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
 }
 
-double exposure_of(Scene const& scene, KeptLight const& light) {
+double exposure_of(Scene const& scene, RenderedLight const& light) {
   CameraSetup const& camera = scene.setup.camera;
   if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
   return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, light.brightest());
@@ -55,16 +55,17 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   RenderedCase rendered;
   Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
   rendered.rendering = std::make_shared<Rendering const>(
-      scene.setup.piv ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::kept)
-                      : renderer.render(scene, scene.dots, RenderImages::kept, theory));
+      scene.setup.piv
+          ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place)
+          : renderer.render(scene, scene.dots, RenderImages::in_place, theory));
   rendered.pupil_margin = scene.pupil_margin;
-  rendered.exposure_e = exposure_of(scene, *rendered.rendering->kept);
+  rendered.exposure_e = exposure_of(scene, *rendered.rendering->in_place);
   rendered.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return rendered;
 }
 
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered) {
-  return rendered.rendering->kept->record(Detector(prepared.scene.setup.camera, rendered.exposure_e));
+  return rendered.rendering->in_place->record(Detector(prepared.scene.setup.camera, rendered.exposure_e));
 }
 
 FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known) {
@@ -120,7 +121,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   std::string const resolved = loaded.document.resolved();
 
   warn_of_saturation(warnings, camera, frames.saturated_reference, frames.saturated_flow,
-                     rendered.exposure_e * rendering.kept->brightest());
+                     rendered.exposure_e * rendering.in_place->brightest());
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};

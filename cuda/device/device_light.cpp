@@ -63,6 +63,11 @@ LightPair DeviceLight::to_host(PinnedBuffer& staging) const {
   return pair;
 }
 
+LightPair DeviceLight::to_host() const {
+  PinnedBuffer staging;
+  return to_host(staging);
+}
+
 double DeviceLight::brightest() const {
   DeviceArray<unsigned long long> key(1, "the images");
   key.zero();

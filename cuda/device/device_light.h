@@ -2,13 +2,13 @@
 
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_frames.h"
-#include "render/scene/kept_light.h"
 #include "render/scene/ray_hit.h"
+#include "render/scene/rendered_light.h"
 
 namespace gladstone::cuda {
 
 /// Light of both frames in the device's memory, and a camera for it there.
-class DeviceLight final : public KeptLight {
+class DeviceLight final : public RenderedLight {
  public:
   /// Light per pixel is for the renderer to write.
   DeviceLight(int columns, int rows);
@@ -19,6 +19,7 @@ class DeviceLight final : public KeptLight {
   /// @param staging that the device copies to; all cores copy one frame on from there while the other is on its way
   LightPair to_host(PinnedBuffer& staging) const;
 
+  LightPair to_host() const override;
   double brightest() const override;
   RecordedFrames record(Detector const& detector) const override;
   std::unique_ptr<FramePair const> ideal(Detector const& detector) const override;

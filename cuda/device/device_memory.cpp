@@ -92,6 +92,10 @@ void copy_to_device(void* to, void const* from, std::size_t bytes) {
   check(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "cudaMemcpy to the device");
 }
 
+void copy_pinned_to_device(void* to, void const* from, std::size_t bytes) {
+  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice), "cudaMemcpyAsync to the device");
+}
+
 void copy_to_host(void* to, void const* from, std::size_t bytes) {
   check(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "cudaMemcpy from the device");
 }

@@ -82,6 +82,8 @@ void release_on_device(void* memory, std::size_t bytes) noexcept;
 /// Copies, and zeroes, in the order of the default stream; copies to the host wait for the work before them.
 /// @throws DeviceError
 void copy_to_device(void* to, void const* from, std::size_t bytes);
+/// Does not wait. @param from page-locked, to stay as it is until the work after it is done
+void copy_pinned_to_device(void* to, void const* from, std::size_t bytes);
 void copy_to_host(void* to, void const* from, std::size_t bytes);
 void zero_on_device(void* memory, std::size_t bytes);
 

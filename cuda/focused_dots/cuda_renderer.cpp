@@ -130,7 +130,7 @@ TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotP
 }  // namespace
 
 struct CudaRenderer::Uploads {
-  KeptMedium medium;
+  MediumCache medium;
   LastDeflections<DeviceDeflections> deflections;
   PinnedBuffer staging;
 };
@@ -166,7 +166,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   rendering.table = uploads_->deflections.state();
   if (light && scene.setup.target.polarity == Polarity::dark) light->take_from(white_light(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
-  if (images == RenderImages::kept) rendering.kept = std::move(light);
+  if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return rendering;
 }
 

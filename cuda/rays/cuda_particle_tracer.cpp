@@ -112,7 +112,7 @@ class BatchPass {
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
       trace_particles(launch, mirrored_, state, batch_.aims().data(), batch_.origins().data(), listed + first,
-                      std::min(most, count - first), {batch_.sums().data(), batch_.bend2().data(), ends_});
+                      std::min(most, count - first), {batch_.sums().data(), batch_.moved2().data(), ends_});
     }
   }
 
@@ -182,18 +182,18 @@ class BatchPass {
   void trace_wider(std::vector<std::uint32_t> aims, int const* step) {
     while (!aims.empty()) {
       throw_if_interrupted();
-      batch_.bend2().zero();
+      batch_.moved2().zero();
       trace_wide(aims, step, 1);
-      std::vector<double> bend2(aims_.size());
-      batch_.bend2().download(bend2.data(), bend2.size());
+      std::vector<double> moved2(aims_.size());
+      batch_.moved2().download(moved2.data(), moved2.size());
       std::vector<std::uint32_t> missed;
       for (std::uint32_t const at : aims) {
-        double const bend = std::sqrt(bend2[at]);
-        if (!host_.sharp.camera.chief_rays_only() && bend > found_[at].margin) missed.push_back(at);
+        double const moved = std::sqrt(moved2[at]);
+        if (!host_.sharp.camera.chief_rays_only() && moved > found_[at].margin) missed.push_back(at);
       }
       trace_wide(missed, step, -1);  // with the aims that are there still
       for (std::uint32_t const at : missed) {
-        found_[at].margin = host_.sharp.wider_margin(std::sqrt(bend2[at]));
+        found_[at].margin = host_.sharp.wider_margin(std::sqrt(moved2[at]));
         place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
       }
       if (!missed.empty()) batch_.aims().upload(aims_.data());
@@ -270,7 +270,7 @@ std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
 }  // namespace
 
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium<double> const& medium, KeptScattering& kept, PinnedBuffer& staging) {
+                                    DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging) {
   std::optional<AiryTable> airy;
   bool const lit = images != RenderImages::no;
   ParticleLaunches const host(scene, lit ? make_spot(scene, airy) : SpotView{}, images);
@@ -301,7 +301,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
     for (std::size_t first = 0; first < particles.size(); first += most) {
       throw_if_interrupted();
       std::size_t const count = std::min(most, particles.size() - first);
-      ParticleBatch batch(particles, first, count, launches.ladder().sums_a_pulse);
+      ParticleBatch batch(particles, first, count, launches.ladder().sums_a_pulse, staging);
       if (scattering.kind == AnyScattering::Kind::mie) scattering.mie = kept.view(first);
       std::vector<ParticlesLaunch> of_batch;
       for (std::size_t step = 0; step < launches.steps(); ++step) {
@@ -331,7 +331,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
   auto made = std::make_shared<DeviceLight>(camera.columns, camera.rows);
   frames->to_light(*made);
   if (images == RenderImages::yes) rendering.light = made->to_host(staging);
-  if (images == RenderImages::kept) rendering.kept = std::move(made);
+  if (images == RenderImages::in_place) rendering.in_place = std::move(made);
   return rendering;
 }
 

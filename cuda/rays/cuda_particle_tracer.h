@@ -10,6 +10,6 @@ namespace gladstone::cuda {
 /// that take 256 MB at most, to which come images, medium and the table of what spheres scatter.
 /// @param kept of the device, from scene to scene @param staging that the device copies to
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
-                                    DeviceMedium<double> const& medium, KeptScattering& kept, PinnedBuffer& staging);
+                                    DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging);
 
 }  // namespace gladstone::cuda

@@ -147,13 +147,13 @@ class Batch {
         sources_(std::move(sources)),
         on_device_(sources_.placed.data(), sources_.placed.size(), "the sources"),
         sums_(sources_.placed.size() * scene.sums_a_source(), "the sums over a batch's rays"),
-        bend2_(sources_.placed.size(), "the sums over a batch's rays"),
+        moved2_(sources_.placed.size(), "the sums over a batch's rays"),
         ends_(frame_count * ray_status_count, "the sums over a batch's rays") {
-    bend2_.zero();
+    moved2_.zero();
     ends_.zero();
     if (sources_.placed.empty()) return;
     trace_sources(scene.launch(sources_.placed, sign), medium, on_device_.data(), sources_.placed.size(),
-                  {sums_.data(), bend2_.data(), ends_.data()});
+                  {sums_.data(), moved2_.data(), ends_.data()});
   }
 
   /// Waits for it. @param sign by which its rays count
@@ -163,15 +163,15 @@ class Batch {
     for (std::size_t i = 0; i < frame_count * ray_status_count; ++i) {
       statuses[i / ray_status_count][i % ray_status_count] += sign * static_cast<std::int64_t>(ends[i]);
     }
-    bends_.resize(sources_.placed.size());
-    bend2_.download(bends_.data(), bends_.size());
+    moved_.resize(sources_.placed.size());
+    moved2_.download(moved_.data(), moved_.size());
     found_.resize(sums_.size());
     sums_.download(found_.data(), found_.size());
   }
 
   AimedSources const& sources() const { return sources_; }
   /// Furthest that the medium moved a ray of a source on the aim plane [m].
-  double bend(std::size_t at) const { return std::sqrt(bends_[at]); }
+  double moved(std::size_t at) const { return std::sqrt(moved_[at]); }
   /// Sums over the rays of a source's scramblings.
   void sum(std::size_t at, RaySums (&of_scramblings)[most_scramblings]) const {
     auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
@@ -185,9 +185,9 @@ class Batch {
   AimedSources sources_;
   DeviceArray<SourceOnDevice> on_device_;
   DeviceArray<RaySums> sums_;
-  DeviceArray<double> bend2_;
+  DeviceArray<double> moved2_;
   DeviceArray<unsigned long long> ends_;
-  std::vector<double> bends_;
+  std::vector<double> moved_;
   std::vector<RaySums> found_;
 };
 
@@ -294,7 +294,7 @@ class SceneTracer {
       SourceAim aim = sources.aims[at];
       RaySums sums[most_scramblings];
       batch.sum(at, sums);
-      bool const beyond = !launch.camera.chief_rays_only() && batch.bend(at) > aim.margin;
+      bool const beyond = !launch.camera.chief_rays_only() && batch.moved(at) > aim.margin;
       std::size_t const next = beyond ? step : ladder_.next(step, RaysSent::clipped, {}, sums, here.light_per_weight());
       if (!beyond && next == step) {
         largest_margin_ = std::max(largest_margin_, aim.margin);
@@ -303,7 +303,7 @@ class SceneTracer {
         continue;
       }
       missed.add(placed, aim);
-      if (beyond) aim.margin = launch.wider_margin(batch.bend(at));
+      if (beyond) aim.margin = launch.wider_margin(batch.moved(at));
       waiting[next].add(on_device(next).place(placed.source, aim), aim);
     }
     if (!missed.placed.empty()) Batch(here, mirrored_, std::move(missed), -1).finish(-1, statuses_);
@@ -324,8 +324,8 @@ class SceneTracer {
 }  // namespace
 
 struct CudaRaysRenderer::Uploads {
-  KeptMedium medium;
-  KeptScattering scattering;
+  MediumCache medium;
+  ScatteringCache scattering;
   PinnedBuffer staging;
 
   /// The scene's medium, on the device.
@@ -372,7 +372,7 @@ Rendering CudaRaysRenderer::render(Scene& scene, DotPattern const& sources, Rend
   frames->to_light(*light);
   if (scene.setup.target.polarity == Polarity::dark) light->take_from(white_picture(scene));
   if (images == RenderImages::yes) rendering.light = light->to_host(uploads_->staging);
-  if (images == RenderImages::kept) rendering.kept = std::move(light);
+  if (images == RenderImages::in_place) rendering.in_place = std::move(light);
   return pass.finish();
 }
 

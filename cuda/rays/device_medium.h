@@ -92,7 +92,7 @@ class MirroredMedium {
 };
 
 /// The medium of the last scene, which often is the next one's too.
-class KeptMedium {
+class MediumCache {
  public:
   /// Whether it is the scene's. Views without a grid cost nothing to mirror: it never is.
   bool serves(Scene const& scene, bool wide) const {

@@ -31,7 +31,7 @@ __device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units
   }
 }
 
-/// Lays down, one after the other, the spots of those of a warp's rays that nothing else took.
+/// Lays down, one after the other, the spots of those of a warp's rays that nothing else took, each in its frame.
 /// @tparam Launch has spot, sign and images
 template <class Launch>
 __device__ void lay_down_spots(Launch const& launch, bool mine, RayHit<double> const& hit, int frame) {
@@ -39,7 +39,8 @@ __device__ void lay_down_spots(Launch const& launch, bool mine, RayHit<double> c
     int const lane = __ffs(static_cast<int>(rest)) - 1;
     Vec2d const p{__shfl_sync(whole_warp, hit.pixel.x, lane), __shfl_sync(whole_warp, hit.pixel.y, lane)};
     double const weight = __shfl_sync(whole_warp, hit.weight, lane);
-    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, frame, launch.images);
+    int const to = __shfl_sync(whole_warp, frame, lane);
+    lay_down_spot(launch.spot, p, launch.sign * weight * launch.images.units_per_weight, to, launch.images);
   }
 }
 

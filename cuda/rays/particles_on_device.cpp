@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/base/parallel.h"
 #include "render/rays/hit_grid.h"
 
 namespace gladstone::cuda {
@@ -12,7 +13,7 @@ constexpr int widest_patch_px = 24;
 
 }  // namespace
 
-void KeptScattering::upload(std::shared_ptr<MieScattering const> const& mie) {
+void ScatteringCache::upload(std::shared_ptr<MieScattering const> const& mie) {
   if (owner_ == mie) return;
   owner_.reset();
   table_of_ = {};
@@ -26,7 +27,7 @@ void KeptScattering::upload(std::shared_ptr<MieScattering const> const& mie) {
   owner_ = mie;
 }
 
-MieScatteringView<double> KeptScattering::view(std::uint64_t first) const {
+MieScatteringView<double> ScatteringCache::view(std::uint64_t first) const {
   MieScatteringView<double> view = owner_->view<double>();
   view.table_of = table_of_.data() + first;
   view.table = tables_.data();
@@ -114,6 +115,36 @@ double LaunchesOnDevice::steps_a_particle(double across_medium, std::size_t step
   int const wide = 2 * launch.spot.half_width() + 1;
   double const light = launch.images.light[0] ? wide * wide / 16.0 : 0;
   return static_cast<double>(frame_count * launch.rays) * (across_medium + 2.0 * launch.camera.count + light);
+}
+
+void ParticleBatch::upload(Particles const& particles, std::size_t first, PinnedBuffer& staging) {
+  struct Column {
+    void* to;
+    char const* from;
+    std::size_t begin, end;  ///< in the staging memory
+  };
+  std::vector<Column> columns;
+  std::size_t bytes = 0;
+  auto const take = [&](auto& to, auto const& from) {
+    std::size_t const here = count_ * sizeof(from[0]);
+    columns.push_back({to.data(), reinterpret_cast<char const*>(from.data() + first), bytes, bytes + here});
+    bytes += here;
+  };
+  take(diameters_, particles.diameter);
+  for (int pulse = 0; pulse < frame_count; ++pulse) {
+    take(places_[pulse], particles.place[pulse]);
+    take(photons_[pulse], particles.photons[pulse]);
+  }
+  auto* const staged = static_cast<char*>(staging.reserve(bytes));
+  parallel_chunks(bytes, std::size_t{1} << 17, [&](std::size_t begin, std::size_t end) {
+    for (Column const& column : columns) {
+      std::size_t const from = std::max(begin, column.begin), to = std::min(end, column.end);
+      if (from < to) std::copy(column.from + (from - column.begin), column.from + (to - column.begin), staged + from);
+    }
+  });
+  for (Column const& column : columns) {
+    copy_pinned_to_device(column.to, staged + column.begin, column.end - column.begin);
+  }
 }
 
 }  // namespace gladstone::cuda

@@ -10,7 +10,7 @@
 namespace gladstone::cuda {
 
 /// What spheres scatter, on the device: the table of the last scene, which often is the next one's too.
-class KeptScattering {
+class ScatteringCache {
  public:
   /// @param mie may be null @throws OutOfDeviceMemory
   void upload(std::shared_ptr<MieScattering const> const& mie);
@@ -56,21 +56,24 @@ class LaunchesOnDevice {
 /// Some particles on the device.
 class ParticleBatch {
  public:
-  ParticleBatch(Particles const& particles, std::size_t first, std::size_t count, std::size_t sums_a_pulse)
+  /// @param staging by way of which they are copied; not to be written to before the batch's first kernel has run
+  ParticleBatch(Particles const& particles, std::size_t first, std::size_t count, std::size_t sums_a_pulse,
+                PinnedBuffer& staging)
       : count_(count),
-        diameters_(particles.diameter.data() + first, count, "the particles"),
+        diameters_(count, "the particles"),
         aims_(frame_count * count, "the particles"),
         origins_(count, "the particles"),
         sums_(frame_count * count * sums_a_pulse, "the sums over a batch's rays"),
-        bend2_(frame_count * count, "the sums over a batch's rays"),
+        moved2_(frame_count * count, "the sums over a batch's rays"),
         truth_(count, "the particles"),
         ambient_(count, "the particles"),
         steps_(3 * count, "the particles"),
         counts_(LadderView::most_steps + 1, "the particles") {
     for (int pulse = 0; pulse < frame_count; ++pulse) {
-      places_[pulse] = DeviceArray<Vec3d>(particles.place[pulse].data() + first, count, "the particles");
-      photons_[pulse] = DeviceArray<double>(particles.photons[pulse].data() + first, count, "the particles");
+      places_[pulse] = DeviceArray<Vec3d>(count, "the particles");
+      photons_[pulse] = DeviceArray<double>(count, "the particles");
     }
+    upload(particles, first, staging);
   }
 
   /// What a particle takes.
@@ -103,12 +106,14 @@ class ParticleBatch {
   std::size_t count() const { return count_; }
   DeviceArray<PulseAim>& aims() { return aims_; }
   DeviceArray<Vec2d>& origins() { return origins_; }
-  DeviceArray<double>& bend2() { return bend2_; }
+  DeviceArray<double>& moved2() { return moved2_; }
   DeviceArray<RaySums>& sums() { return sums_; }
   DeviceArray<DotTruth>& truth() { return truth_; }
   DeviceArray<DotTruth>& ambient() { return ambient_; }
 
  private:
+  void upload(Particles const& particles, std::size_t first, PinnedBuffer& staging);
+
   std::size_t count_;
   DeviceArray<Vec3d> places_[frame_count];
   DeviceArray<double> photons_[frame_count];
@@ -116,7 +121,7 @@ class ParticleBatch {
   DeviceArray<PulseAim> aims_;
   DeviceArray<Vec2d> origins_;
   DeviceArray<RaySums> sums_;
-  DeviceArray<double> bend2_;
+  DeviceArray<double> moved2_;
   DeviceArray<DotTruth> truth_, ambient_;
   DeviceArray<int> steps_;
   DeviceArray<unsigned int> counts_;

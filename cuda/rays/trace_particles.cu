@@ -1,12 +1,13 @@
 #include "cuda/device/block_sum.cuh"
 #include "cuda/device/launch.h"
 #include "cuda/rays/hit_window.cuh"
-#include "cuda/rays/spot_patch.cuh"
+#include "cuda/rays/lay_down_spot.cuh"
+#include "cuda/rays/particle_ray.cuh"
 
 namespace gladstone::cuda {
 namespace {
 
-constexpr int most_threads = source_threads;
+constexpr int threads = source_threads;
 
 /// What a block has of a particle at a pulse.
 struct BlockShare {
@@ -33,57 +34,35 @@ __device__ double weight_expected(ParticlesLaunch const& launch, PulseAim const&
 /// Traces the rays of a block's share. Seen rays are counted and lay down light; the sums are of seen and ambient.
 template <class Medium>
 __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
-                            PulseAim const& aim, BlockShare const& share, HitWindow const& window,
-                            SpotPatch const& patch, unsigned int* counts, RaySums& sums, double& bend2) {
+                            PulseAim const& aim, BlockShare const& share, HitWindow const& window, unsigned int* counts,
+                            RaySums& sums, double& moved2) {
   bool const lit = launch.images.light[0] != nullptr;
-  StopRuleView const rule = aim.state == AimState::filled ? launch.rule : StopRuleView{};
-  auto const& particles = launch.pulses[share.pulse];
-  auto const enter = [&share](RayHit<double> const& hit, CentroidSum<double>& sum) {
-    if (hit.weight != 0) sum.add(hit.pixel - share.origin, hit.weight, reaches_sensor_plane(hit.status));
-  };
   // whole warps go round, for what they lay down together
-  for (std::uint64_t of_block = share.first; of_block < share.last; of_block += blockDim.x) {
+  for (std::uint64_t of_block = share.first; of_block < share.last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
-    RayHit<double> seen;
-    bool alone = false;  // whether neither window nor patch takes its light
+    ParticleRay ray;
+    bool alone = false;  // whether the window does not take its light
     if (j < share.last) {
-      StopPlace const to = place_of_ray(rule, launch.choice, share.key, j);
-      AimedRay<double> const aimed = aimed_ray(launch, particles, aim.seen, share.particle, to.at);
-      seen = trace_ray(camera, medium, launch.tracing, aimed.ray, to.share * aimed.weight);
-      RayHit<double> ambient = seen;
-      if constexpr (!std::is_same_v<Medium, NoMedium<double>>) {
-        AimedRay<double> const straight = aimed_ray(launch, particles, aim.ambient, share.particle, to.at);
-        ambient = trace_ray(camera, NoMedium<double>{}, launch.tracing, straight.ray, to.share * straight.weight);
-        if (seen.status <= RayStatus::vignetted && ambient.status <= RayStatus::vignetted) {
-          Vec2d const bend = seen.at_lens - ambient.at_lens;
-          bend2 = fmax(bend2, dot(bend, bend));
-        }
-      }
-      enter(seen, sums.hits[0]);
-      enter(ambient, sums.hits[1]);
-      atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(seen.status), 1u);
-      alone = lit && seen.weight != 0 && !window.take(seen.pixel, seen.weight);
+      ray = trace_particle_ray(launch, camera, medium, aim, share.pulse, share.particle, share.key, j);
+      ray.enter(share.origin, sums);
+      moved2 = fmax(moved2, ray.moved2);
+      atomicAdd(counts + share.pulse * ray_status_count + static_cast<int>(ray.seen.status), 1u);
+      alone = lit && ray.seen.weight != 0 && !window.take(ray.seen.pixel, ray.seen.weight);
     }
-    if (patch.light) {
-      std::uint64_t const rest = share.last - of_block;
-      alone =
-          !patch.take(launch.spot, seen.pixel, alone ? launch.sign * seen.weight * launch.images.units_per_weight : 0,
-                      rest < warp_size ? static_cast<int>(rest) : warp_size);
-    }
-    if (lit) lay_down_spots(launch, alone, seen, share.pulse);
+    if (lit) lay_down_spots(launch, alone, ray.seen, share.pulse);
   }
 }
 
 template <class Medium>
-__global__ void __launch_bounds__(most_threads, 3)
+__global__ void __launch_bounds__(threads, 3)
     trace_particles_kernel(ParticlesLaunch const __grid_constant__ launch, Medium const __grid_constant__ medium,
                            AimState const state, PulseAim const* const aims, Vec2d const* const origins,
                            std::uint32_t const* const listed, std::uint64_t const count, ParticlesTraced const traced) {
   extern __shared__ __align__(16) unsigned char dynamic[];
   __shared__ unsigned int counts[frame_count * ray_status_count];
-  SharedParts const parts(dynamic, launch, blockDim.x);
+  SharedParts const parts(dynamic, launch, threads);
   if (threadIdx.x < frame_count * ray_status_count) counts[threadIdx.x] = 0;
-  parts.fill(launch, blockDim.x);
+  parts.fill(launch, threads);
   __syncthreads();
   CameraView<double> camera = launch.camera;
   camera.elements = parts.elements;
@@ -103,7 +82,6 @@ __global__ void __launch_bounds__(most_threads, 3)
                            launch.pulses[0].key(particle),
                            origins[particle]};
     HitWindow window;
-    SpotPatch patch;
     LightSquare const square = light_square(launch, aim);
     if (parts.nodes != nullptr && square.side > 0) {
       double const most_weight = weight_expected(launch, aim, share);
@@ -115,18 +93,12 @@ __global__ void __launch_bounds__(most_threads, 3)
                 HitWindow::units_per_weight(most_weight, min(launch.rays, ParticlesLaunch::most_rays_of_block)),
                 most_weight};
       window.clear();
-    } else if (launch.patch_px > 0 && square.side > 0) {
-      patch = SpotPatch(dynamic + SharedParts::bytes(launch, blockDim.x), square);
-      patch.clear();
     }
     __syncthreads();
     RaySums sums;
-    double bend2 = 0;
-    trace_share(launch, camera, medium, aim, share, window, patch, counts, sums, bend2);
-    if (bend2 > 0 && state == AimState::wide) {
-      atomicMax(reinterpret_cast<unsigned long long*>(traced.bend2 + at),
-                static_cast<unsigned long long>(__double_as_longlong(bend2)));
-    }
+    double moved2 = 0;
+    trace_share(launch, camera, medium, aim, share, window, counts, sums, moved2);
+    if (moved2 > 0 && state == AimState::wide) keep_largest(traced.moved2 + at, moved2);
     __syncthreads();
     block_sums(sums, parts.sums, scramblings);
     if (threadIdx.x < scramblings) {
@@ -134,14 +106,8 @@ __global__ void __launch_bounds__(most_threads, 3)
     }
     __syncthreads();
     if (window.nodes) window.flush(spline, parts.rows_seen, launch.images, share.pulse, launch.sign);
-    if (patch.light) patch.flush(launch.images, share.pulse);
   }
-  __syncthreads();
-  if (threadIdx.x < frame_count * ray_status_count && counts[threadIdx.x] > 0) {
-    auto const more = static_cast<long long>(counts[threadIdx.x]);
-    // numbers wrap around where they are taken back
-    atomicAdd(traced.ends + threadIdx.x, static_cast<unsigned long long>(launch.sign < 0 ? -more : more));
-  }
+  add_ends(launch, counts, traced.ends);
 }
 
 constexpr int seeing_threads = 64;
@@ -190,7 +156,7 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double
   if (!launch.spline.share || there < most_bytes) return 0;
   ParticlesLaunch probe = launch;
   for (probe.most_window_px = most_nodes / launch.spline.per_px; probe.most_window_px > 0; --probe.most_window_px) {
-    if (SharedParts::bytes(probe, most_threads) <= most_bytes) break;
+    if (SharedParts::bytes(probe, threads) <= most_bytes) break;
   }
   return probe.most_window_px;
 }
@@ -198,11 +164,11 @@ int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double
 void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
                      PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced) {
+  if (launch.few_rays()) return trace_few_rays(launch, medium, state, aims, origins, listed, count, traced);
   std::visit(
       [&](auto const& held) {
         auto* const kernel = trace_particles_kernel<std::remove_cvref_t<decltype(held)>>;
-        int const threads = launch.threads();
-        std::size_t const shared = SharedParts::bytes(launch, threads) + SpotPatch::bytes(launch.patch_px);
+        std::size_t const shared = SharedParts::bytes(launch, threads);
         allow_shared_bytes(kernel, shared);
         kernel<<<blocks_for(kernel, threads, shared, count * launch.shares()), threads, shared>>>(
             launch, held, state, aims, origins, listed, count, traced);

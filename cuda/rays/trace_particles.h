@@ -96,7 +96,7 @@ struct ParticlesLaunch {
   SpotView spot;
   HitSplineView spline;    ///< on the device; no share: no windows of nodes
   int most_window_px = 0;  ///< of windows of nodes
-  int patch_px = 0;        ///< widest patch of pixels that a warp gathers spots in; 0: none
+  int patch_px = 0;        ///< widest square of pixels that a warp lays spots down in together; 0: none
   DeviceImages images;     ///< may be none
   std::uint64_t rays = 1;
   std::uint64_t sums_a_pulse = 1;  ///< from one aim's sums to the next one's
@@ -108,8 +108,14 @@ struct ParticlesLaunch {
     return (rays + most_rays_of_block - 1) / most_rays_of_block;
   }
   GLADSTONE_HD std::uint64_t shares() const { return shares_of(rays); }
-  /// Threads of a block: a warp does where patches gather the light of few rays.
-  int threads() const { return patch_px > 0 || (!images.light[0] && rays <= 64) ? 32 : 128; }
+  /// Whether a warp traces all rays of a particle: so few that no window of nodes pays for them.
+  bool few_rays() const { return patch_px > 0 || (!images.light[0] && rays <= 64); }
+  /// Lanes of a warp that a particle has then: a power of two.
+  GLADSTONE_HD int lanes() const {
+    int most = 32;
+    while (static_cast<std::uint64_t>(most / 2) >= rays) most /= 2;
+    return most;
+  }
 
   /// Rays of a particle that one block traces; more are shared between several.
   static constexpr std::uint64_t most_rays_of_block = 16384;
@@ -118,7 +124,7 @@ struct ParticlesLaunch {
 /// What a launch gives, on the device.
 struct ParticlesTraced {
   RaySums* sums;  ///< [particle][pulse], of each [share][scrambling]: seen through the medium, and without it
-  double* bend2;  ///< [particle][pulse]: square of the furthest that the medium moved a ray [m^2]
+  double* moved2;  ///< [particle][pulse]: square of the furthest that the medium moved a ray [m^2]
   unsigned long long* ends;  ///< [pulse][status], counted on
 };
 
@@ -186,12 +192,18 @@ void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderVi
 void list_particles(LadderView const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
                     std::uint64_t count, std::uint32_t* listed);
 
-/// Traces all rays of listed particles, a block for each share of a particle at a pulse: sums, ends, light. Sums have
+/// Traces all rays of listed particles, a block for each share of a particle at a pulse, or a warp for several
+/// particles of few rays: sums, ends, light. Sums have
 /// an order and light is in whole units, so that results hang on nothing but the particle.
 /// @param state of the aims that are traced @param listed numbers of the aims, `count` of them
 void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
                      PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced);
+
+/// The same by warps. @pre launch.few_rays()
+void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
+                    PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
+                    ParticlesTraced const& traced);
 
 /// What the camera sees of particles, from the sums over their rays, and which of them need more of these.
 /// @param ambient null: nothing bends rays

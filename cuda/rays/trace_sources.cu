@@ -13,7 +13,7 @@ template <class Medium>
 __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
                             SourceOnDevice const& aim, std::uint64_t first, std::uint64_t last,
                             HitWindow const (&window)[frame_count], unsigned int* counts, RaySums& sums,
-                            double& bend2) {
+                            double& moved2) {
   bool const lit = launch.images.light[0] != nullptr;
   AimedBundle<double> const bundle{aim.centre, aim.a, aim.b, aim.across, launch.choice};
   auto const count = [counts](int frame, RayStatus status) {
@@ -28,11 +28,11 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
       AimedRay<double> const aimed = aim_ray(launch.sources, bundle, aim.source, j);
       hit[0] = trace_ray(camera, NoMedium<double>{}, launch.tracing, aimed.ray, aimed.weight);
       hit[1] = trace_ray(camera, medium, launch.tracing, aimed.ray, aimed.weight);
-      double const moved2 =
+      double const here2 =
           enter_ray(hit[0], hit[1], aim.origin, sums.hits, count, [&](int frame, RayHit<double> const& here) {
             alone[frame] = lit && !window[frame].take(here.pixel, here.weight);
           });
-      bend2 = fmax(bend2, moved2);
+      moved2 = fmax(moved2, here2);
     }
     if (lit) {
       for (int frame = 0; frame < frame_count; ++frame) lay_down_spots(launch, alone[frame], hit[frame], frame);
@@ -76,12 +76,13 @@ __global__ void __launch_bounds__(threads, 3)
     }
     __syncthreads();
     RaySums sums;
-    double bend2 = 0;
-    trace_share(launch, camera, medium, aim, first, last, window, counts, sums, bend2);
-    for (int step = warp_size / 2; step > 0; step /= 2) bend2 = fmax(bend2, __shfl_xor_sync(whole_warp, bend2, step));
-    if (threadIdx.x % warp_size == 0 && bend2 > 0) {
-      atomicMax(reinterpret_cast<unsigned long long*>(traced.bend2 + at),
-                static_cast<unsigned long long>(__double_as_longlong(bend2)));
+    double moved2 = 0;
+    trace_share(launch, camera, medium, aim, first, last, window, counts, sums, moved2);
+    for (int step = warp_size / 2; step > 0; step /= 2)
+      moved2 = fmax(moved2, __shfl_xor_sync(whole_warp, moved2, step));
+    if (threadIdx.x % warp_size == 0 && moved2 > 0) {
+      atomicMax(reinterpret_cast<unsigned long long*>(traced.moved2 + at),
+                static_cast<unsigned long long>(__double_as_longlong(moved2)));
     }
     __syncthreads();
     block_sums(sums, parts.sums, scramblings);

@@ -12,7 +12,7 @@
 #include "render/base/progress.h"
 #include "render/focused_dots/dot_integrator.h"
 #include "render/focused_dots/owned_dot_model.h"
-#include "render/scene/bend_limit.h"
+#include "render/scene/shift_limit.h"
 
 namespace gladstone {
 namespace {
@@ -82,8 +82,8 @@ Rendering FocusedDotsRenderer::render(Scene& scene, DotPattern const& sources, R
   });
   rendering.table = deflections_.state();
   if (images != RenderImages::no) apply_polarity(scene, rendering.light);
-  if (images == RenderImages::kept) {
-    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+  if (images == RenderImages::in_place) {
+    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
     rendering.light = {};
   }
   return rendering;
@@ -94,7 +94,7 @@ Rendering render_within_table(Scene const& scene, std::function<TracingPass(doub
   while (true) {
     TracingPass pass = trace(room);
     if (pass.farthest_aim <= room) return pass.finish();
-    refuse_bend_beyond_any_bench(pass.farthest_aim, scene.setup.z_b());
+    refuse_shift_beyond_any_bench(pass.farthest_aim, scene.setup.z_b());
     room = 1.5 * pass.farthest_aim;
   }
 }

@@ -15,15 +15,26 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t measured_dots = 8;
-constexpr int traced_rays = 2048, tabled_rays = 131072;  ///< a scrambling
+constexpr std::size_t measured_places = 8;
+constexpr int traced_rays = 8192, tabled_rays = 131072;  ///< a scrambling
 constexpr double worth_more_rays = 0.7;                  ///< of the error with a quarter of them
 
-/// One dot of a scene by itself, in a window of pixels about it.
+/// Spread over the view, whatever dots a scene has (the R2 sequence, Roberts 2018).
+std::vector<Vec2d> places_in_view(Scene const& scene) {
+  CameraSetup const& camera = scene.setup.camera;
+  std::vector<Vec2d> places;
+  for (std::size_t i = 0; i < measured_places; ++i) {
+    auto const place = static_cast<double>(i);
+    double const x = std::fmod(0.5 + 0.7548776662466927 * place, 1), y = std::fmod(0.5 + 0.5698402909980532 * place, 1);
+    places.push_back(scene.to_target({x * camera.columns - 0.5, y * camera.rows - 0.5}));
+  }
+  return places;
+}
+
+/// A white dot of a scene by itself, in a window of pixels about it.
 class LoneDot {
  public:
-  LoneDot(Scene const& scene, std::size_t dot, int side)
-      : radiance_(scene.dots.radiance_of(dot)), scene_(alone(scene, dot)) {
+  LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)) {
     FocusedDots const dots = focused_dots(scene_).value();
     Vec2d const centre = scene_.dots.centre[0];
     double room = DeflectionPlan::usual_aim * scene_.imaging.entrance_pupil / 2;
@@ -37,7 +48,7 @@ class LoneDot {
     Vec2d const at = owned_->model.to_pixel(centre);
     owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
     integrator_ = std::make_unique<DotIntegrator>(owned_->model);
-    std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, radiance_); }, scene_.medium.view);
+    std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
     if (left()) return;
     LightImage frames[frame_count] = {{side, side}, {side, side}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
@@ -68,9 +79,9 @@ class LoneDot {
   }
 
  private:
-  static Scene alone(Scene const& scene, std::size_t dot) {
+  static Scene alone(Scene const& scene, Vec2d place) {
     Scene copy = scene;
-    copy.dots.centre = {scene.dots.centre[dot]};
+    copy.dots.centre = {place};
     copy.dots.radiance.clear();
     return copy;
   }
@@ -123,7 +134,6 @@ class LoneDot {
     return tabled.mean() + traced.mean() - also_tabled.mean() - told;
   }
 
-  double radiance_;
   Scene scene_;
   std::unique_ptr<DeflectionMap> table_;
   std::unique_ptr<OwnedDotModel> owned_;
@@ -140,21 +150,23 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   RaysPlan plan;
   plan.rays = scene.rays_per_dot;
   plan.fineness = scene.fineness;
-  std::vector<std::size_t> const in_view = dots_in_view(scene);
-  GreyLevels const levels(scene.setup.camera, in_view.size());
-  plan.bits = levels.bits;
-  std::vector<std::size_t> const sample = choose_sample(in_view, measured_dots);
   double const px = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
-  int const side = 2 * GaussianSpot<double>{scene.spot_sigma_px()}.half_width() + 49 +
-                   static_cast<int>(std::min(2 * scene.dots.half_size * px, 100.0));
-  std::vector<std::unique_ptr<LoneDot>> lone(sample.size());
-  parallel_for(sample.size(), [&](std::size_t i) { lone[i] = std::make_unique<LoneDot>(scene, sample[i], side); });
+  double const pitch_px = 2 * scene.dots.half_size * px;  // of a picture's pixels, which lie side by side
+  GreyLevels const levels(scene.setup.camera, scene.dots.shape == SourceShape::square ? 1 / (pitch_px * pitch_px) : 0);
+  plan.bits = levels.bits;
+  int const side =
+      2 * GaussianSpot<double>{scene.spot_sigma_px()}.half_width() + 49 + static_cast<int>(std::min(pitch_px, 100.0));
+  std::vector<Vec2d> const in_view = places_in_view(scene);
+  std::vector<std::unique_ptr<LoneDot>> lone(in_view.size());
+  parallel_for(lone.size(), [&](std::size_t i) { lone[i] = std::make_unique<LoneDot>(scene, in_view[i], side); });
   std::erase_if(lone, [](auto const& dot) { return dot->left(); });
   if (lone.empty()) return plan;
   std::vector<std::size_t> places(lone.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
   // Four samples that lie s (e + noise) to either side in turn have the variance 4 s^2 e^2 / 3 + s^2 noise^2, with this
-  // s e^2 and noise; four to one side that of the noise alone.
+  // s e^2 and noise; four to one side that of the noise alone. Where e is 0 the two differ by the product of two sums
+  // of two samples over 3, of mean 0 and standard deviation 2 s^2 noise^2 / 3; over n independent values a sqrt(n)th of
+  // it. A resolution is what two of these make. The pixels of a dot count as one value.
   double const share = std::sqrt(0.75);
   auto const scatter_of = [&](double odd) {
     return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
@@ -164,9 +176,11 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   Scatter off = scatter_of(-share);
   Scatter const noise = scatter_of(share);
   auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN stays
+  auto const resolved = [](double by_chance, double n) { return std::sqrt(4.0 / 3 / std::sqrt(n) * by_chance); };
+  auto const dot_count = static_cast<double>(lone.size());
   double const chance = mean_variance(noise.displacements);
-  plan.truth_resolution_px = std::sqrt(chance);
-  plan.image_resolution_levels = levels.error(noise);
+  plan.truth_resolution_px = resolved(chance, 2 * dot_count);
+  plan.image_resolution_levels = resolved(1, dot_count) * levels.error(noise);
   off.light_variance = less(off.light_variance, noise.light_variance);
   plan.truth_error_px = std::sqrt(less(mean_variance(off.displacements), chance));
   plan.image_error_levels = levels.error(off);

@@ -7,14 +7,15 @@
 /// it is.
 namespace gladstone {
 
-/// Errors of truth and images at the scene's present number of rays, measured: eight dots spread over the target, each
-/// by a table of its own, which is the scene's where it lies, are set beside four times 131,072 rays of another choice
-/// each; the table tells where these go, and 2048 of each are traced and tell what it is off by for all. What those
-/// scatter by is taken off. Dots that the table does not cover do not count.
+/// Errors of truth and images at the scene's present number of rays, measured: white dots at eight places spread over
+/// the view, the same whatever dots there are, each by a table of its own, which is the scene's where it lies, are set
+/// beside four times 131,072 rays of another choice each; the table tells where these go, and 8192 of each are traced
+/// and tell what it is off by for all. What those scatter by is taken off. Levels are those of a picture of single dots
+/// (of squares side by side for a picture's). Places that the table does not cover do not count.
 RaysPlan measure_table_error(FocusedDots const& dots);
 
 /// The rays that every dot takes to correct the table, and how fine table and rules are: a given number of rays, else
-/// 32. Where truth is off by more than 1e-3 px rms or images by more than half a grey level, table and rules twice as
+/// 32. Where truth is not known to be within 1e-3 px rms and images within half a grey level, table and rules twice as
 /// fine; then 128 or 512 rays, as long as they take a third off the error. Dots that still scatter take up to 256
 /// (DotModel). Says what it is off by then, and whether that is enough (`converged`).
 RaysPlan plan_rays(FocusedDots const& dots);

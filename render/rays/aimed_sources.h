@@ -103,8 +103,8 @@ GLADSTONE_HD T enter_ray(RayHit<T> const& reference, RayHit<T> const& flow, Vec2
     deposit(frame, here);
   }
   if (reference.status > RayStatus::vignetted || flow.status > RayStatus::vignetted) return T(0);
-  Vec2<T> const bend = flow.at_lens - reference.at_lens;
-  return dot(bend, bend);
+  Vec2<T> const shift = flow.at_lens - reference.at_lens;
+  return dot(shift, shift);
 }
 
 }  // namespace gladstone

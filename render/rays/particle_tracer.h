@@ -169,7 +169,7 @@ class ParticleTracer {
       return [&](Vec2d at) { return ray_to(pulses_[frame], stop_.camera.aim_plane, map, particle, at); };
     };
     if (with_images_) light_[frame]->begin(image, sign * light_per_weight(), launch_->rays);
-    largest_bend2_ = 0;
+    largest_shift2_ = 0;
     all_rays(launch_->rule.view(), [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
       RayHit<double> seen[N], ambient[N];
       trace_through(aimed_by(aim.bent.map), to, stop_.camera, medium_, seen);
@@ -191,7 +191,7 @@ class ParticleTracer {
       AimedBundle<double> const bundle = launch_->bundle(*aim.disc, 0, aim.margin);
       auto const aimed = [&](Vec2d at) { return ray_to(pulses_[frame], bundle, particle, {}, at); };
       if (with_images_) light_[frame]->begin(image, of_light * light_per_weight(), launch_->rays);
-      largest_bend2_ = 0;
+      largest_shift2_ = 0;
       all_rays(StopRuleView{}, [&]<int N>(std::uint64_t const(&ray)[N], StopPlace const(&to)[N]) {
         RayHit<double> seen[N], ambient[N];
         trace_through(aimed, to, view_, NoMedium<double>{}, ambient);
@@ -203,16 +203,16 @@ class ParticleTracer {
         enter(frame, ray, seen, ambient);
       });
       if (with_images_) light_[frame]->finish();
-      return std::sqrt(largest_bend2_);
+      return std::sqrt(largest_shift2_);
     };
     while (true) {
       auto const before = statuses_[static_cast<std::size_t>(frame)];
-      double const bend = trace(sign);
-      if (launch_->camera.chief_rays_only() || !(bend > aim.margin)) break;
+      double const shift = trace(sign);
+      if (launch_->camera.chief_rays_only() || !(shift > aim.margin)) break;
       if (with_images_) trace(-sign);
       statuses_[static_cast<std::size_t>(frame)] = before;
       for (int i = 0; i < most_scramblings; ++i) seen_[i].hits[frame] = ambient_[i].hits[frame] = {};
-      aim.margin = launch_->wider_margin(bend);
+      aim.margin = launch_->wider_margin(shift);
     }
   }
 
@@ -259,8 +259,8 @@ class ParticleTracer {
       ++statuses_[static_cast<std::size_t>(frame)][static_cast<std::size_t>(seen[i].status)];
       if (with_images_ && seen[i].weight != 0) light_[frame]->deposit(seen[i].pixel, seen[i].weight);
       if (std::max(ambient[i].status, seen[i].status) > RayStatus::vignetted) continue;
-      Vec2d const bend = seen[i].at_lens - ambient[i].at_lens;
-      largest_bend2_ = std::max(largest_bend2_, dot(bend, bend));
+      Vec2d const shift = seen[i].at_lens - ambient[i].at_lens;
+      largest_shift2_ = std::max(largest_shift2_, dot(shift, shift));
     }
   }
   void add(RayHit<double> const& hit, CentroidSum<double>& sum) const {
@@ -281,7 +281,7 @@ class ParticleTracer {
   double light_per_photon_ = 0;
   Vec2d origin_{};  ///< whole pixel that sums count from [px]
   StatusCounts statuses_{};
-  double largest_bend2_ = 0, largest_margin_ = 0;
+  double largest_shift2_ = 0, largest_margin_ = 0;
 };
 
 }  // namespace gladstone

@@ -23,7 +23,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
                  double step) {
   Probe probe;
   probe.displacement_px.resize(dots.size());
-  probe.bend.resize(dots.size());
+  probe.shift.resize(dots.size());
   CameraView<double> const camera = scene.camera.view();
   TracingOptions<double> options{step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
                                  scene.setup.medium.faces};
@@ -42,7 +42,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
               RayHit<double> const reference = trace_ray(camera, NoMedium<double>{}, options, ray, 1.0);
               RayHit<double> const flow = trace_ray(camera, medium, options, ray, 1.0);
               if (std::max(reference.status, flow.status) <= RayStatus::vignetted) {
-                probe.bend[i] = std::max(probe.bend[i], length(flow.at_lens - reference.at_lens));
+                probe.shift[i] = std::max(probe.shift[i], length(flow.at_lens - reference.at_lens));
               }
               if (!reaches_sensor_plane(reference.status) || !reaches_sensor_plane(flow.status)) continue;
               sum += flow.pixel - reference.pixel;
@@ -62,7 +62,9 @@ class RayErrors {
   explicit RayErrors(Scene const& scene)
       : scene_(scene), spot_(make_spot(scene, airy_)), levels_(scene.setup.camera, 0) {
     std::vector<std::size_t> const in_view = dots_in_view(scene);
-    levels_ = GreyLevels(scene.setup.camera, in_view.size());
+    CameraSetup const& camera = scene.setup.camera;
+    levels_ =
+        GreyLevels(camera, static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows));
     sample_ = choose_sample(in_view, plan_sample_dots);
     for (std::size_t const dot : sample_) {
       at_.push_back(scene.setup.piv
@@ -197,7 +199,7 @@ StepPlan plan_step_by_rays(Scene& scene) {
     std::iota(probes.dots.begin(), probes.dots.end(), std::size_t{0});
     if (probes.dots.size() > probed_dots) {
       Probe const coarse = probe_dots(scene, probes.dots, chief_ray, step);
-      probes.largest_bend = coarse.largest_bend();
+      probes.largest_shift = coarse.largest_shift();
       probes.dots = largest_of(changes(coarse, probe_dots(scene, probes.dots, chief_ray, step / 2)));
     }
     probes.at = [&](double at) {

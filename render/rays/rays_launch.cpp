@@ -5,7 +5,7 @@
 
 #include "render/base/error.h"
 #include "render/base/units.h"
-#include "render/scene/bend_limit.h"
+#include "render/scene/shift_limit.h"
 
 namespace gladstone {
 
@@ -63,9 +63,9 @@ AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, double reach, d
   return bundle;
 }
 
-double RaysLaunch::wider_margin(double bend) const {
-  double const margin = 1.02 * bend;
-  refuse_bend_beyond_any_bench(margin, z_b);
+double RaysLaunch::wider_margin(double shift) const {
+  double const margin = 1.02 * shift;
+  refuse_shift_beyond_any_bench(margin, z_b);
   return margin;
 }
 

@@ -41,8 +41,8 @@ struct RaysLaunch {
   /// Where its rays go, if it reaches so far about the point, and the medium bends rays aside by `margin` at most [m].
   AimedBundle<double> bundle(WorldAimDisc const& disc, double reach, double margin) const;
   /// The margin for a source of which the medium moved a ray so far on the aim plane [m].
-  /// @throws DataError where no bench has such a bend
-  double wider_margin(double bend) const;
+  /// @throws DataError where no bench has such a shift
+  double wider_margin(double shift) const;
 
  private:
   /// Whether the stop's rim is smoothed.

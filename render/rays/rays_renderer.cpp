@@ -101,8 +101,8 @@ Rendering RaysRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
   if (images != RenderImages::no && scene.setup.target.polarity == Polarity::dark) {
     take_from_white(scene, rendering.light);
   }
-  if (images == RenderImages::kept) {
-    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+  if (images == RenderImages::in_place) {
+    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
     rendering.light = {};
   }
   return rendering;

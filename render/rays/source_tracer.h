@@ -57,7 +57,7 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
     aim.low[frame] = {std::min(aim.low[frame].x, hit.pixel.x), std::min(aim.low[frame].y, hit.pixel.y)};
     aim.high[frame] = {std::max(aim.high[frame].x, hit.pixel.x), std::max(aim.high[frame].y, hit.pixel.y)};
   };
-  double bend = 0;
+  double shift = 0;
   for (Vec3d const off : {Vec3d{}, aim.disc->a, aim.disc->b, -aim.disc->a, -aim.disc->b}) {
     Ray<double> const start{middle, normalized(aim.disc->centre + off - middle)};
     RayHit<double> const reference = trace_ray(view, NoMedium<double>{}, launch.tracing, start, 1.0);
@@ -65,9 +65,9 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
     landed(0, reference);
     landed(1, flow);
     bool const known = std::max(reference.status, flow.status) <= RayStatus::vignetted;
-    if (known) bend = std::max(bend, length(flow.at_lens - reference.at_lens));
+    if (known) shift = std::max(shift, length(flow.at_lens - reference.at_lens));
   }
-  aim.margin = 1.25 * bend;
+  aim.margin = 1.25 * shift;
   return aim;
 }
 
@@ -92,15 +92,15 @@ class SourceTracer {
     if (!aim.disc) return source_truth(nullptr, 0, {});
     while (true) {
       StatusCounts const before = statuses_;
-      double const bend = trace_all(source, aim, images, 1);
-      bool const beyond = !launch_->camera.chief_rays_only() && bend > aim.margin;
+      double const shift = trace_all(source, aim, images, 1);
+      bool const beyond = !launch_->camera.chief_rays_only() && shift > aim.margin;
       std::size_t const next = beyond ? step_
                                       : ladder_.next(step_, RaysSent::clipped, {}, of_scramblings_,
                                                      launch_->light_per_weight(sources_.area()));
       if (!beyond && next == step_) break;
       if (with_images_) trace_all(source, aim, images, -1);
       statuses_ = before;
-      if (beyond) aim.margin = launch_->wider_margin(bend);
+      if (beyond) aim.margin = launch_->wider_margin(shift);
       use(next);
     }
     largest_margin_ = std::max(largest_margin_, aim.margin);
@@ -128,14 +128,14 @@ class SourceTracer {
       light_[frame]->begin(images[frame], light_per_weight, launch_->rays);
     }
     std::fill_n(of_scramblings_, most_scramblings, RaySums{});
-    largest_bend2_ = 0;
+    largest_shift2_ = 0;
     std::uint64_t ray = 0;
     for (; ray + side_by_side <= launch_->rays; ray += side_by_side) {
       trace_some<side_by_side>(bundle, source, ray, aim.origin);
     }
     for (; ray < launch_->rays; ++ray) trace_some<1>(bundle, source, ray, aim.origin);
     for (int frame = 0; with_images_ && frame < frame_count; ++frame) light_[frame]->finish();
-    return std::sqrt(largest_bend2_);
+    return std::sqrt(largest_shift2_);
   }
 
   /// Rays that go side by side: two across a medium, which needs the registers of both.
@@ -163,7 +163,7 @@ class SourceTracer {
     };
     for (int i = 0; i < N; ++i) {
       RaySums& sums = of_scramblings_[(first + static_cast<std::uint64_t>(i)) & mask];
-      largest_bend2_ = std::max(largest_bend2_, enter_ray(hit[0][i], hit[1][i], origin, sums.hits, count, deposit));
+      largest_shift2_ = std::max(largest_shift2_, enter_ray(hit[0][i], hit[1][i], origin, sums.hits, count, deposit));
     }
   }
 
@@ -177,7 +177,7 @@ class SourceTracer {
   std::optional<RayLight> light_[frame_count];
   RaySums of_scramblings_[most_scramblings];
   StatusCounts statuses_{};
-  double largest_bend2_ = 0, largest_margin_ = 0;
+  double largest_shift2_ = 0, largest_margin_ = 0;
 };
 
 }  // namespace gladstone

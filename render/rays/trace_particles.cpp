@@ -1,5 +1,7 @@
 #include "render/rays/trace_particles.h"
 
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -23,12 +25,13 @@ Rendering empty_rendering(Particles const& particles) {
   GroundTruth& truth = rendering.truth;
   std::size_t const count = particles.size();
   truth.resize(count);
-  truth.position_m = particles.place[0];
-  for (auto* const theory : {&truth.eq9_px, &truth.chief_px, &truth.eq9_cone_px}) theory->assign(count, unknown);
-  truth.particles.second_m = particles.place[1];
-  truth.particles.diameter_m = particles.diameter;
-  truth.particles.reference_ambient_px.resize(count);
-  truth.particles.displacement_ambient_px.resize(count);
+  ParticleTruth& seen = truth.particles;
+  std::function<void()> const columns[] = {
+      [&] { truth.position_m = particles.place[0]; },      [&] { seen.second_m = particles.place[1]; },
+      [&] { seen.diameter_m = particles.diameter; },       [&] { seen.reference_ambient_px.resize(count); },
+      [&] { seen.displacement_ambient_px.resize(count); }, [&] { truth.eq9_px.assign(count, unknown); },
+      [&] { truth.chief_px.assign(count, unknown); },      [&] { truth.eq9_cone_px.assign(count, unknown); }};
+  parallel_for(std::size(columns), [&](std::size_t i) { columns[i](); });
   return rendering;
 }
 
@@ -80,8 +83,8 @@ Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLigh
   });
   count_rays(rendering);
   if (lit) rendering.light = {frames[0]->to_light(), frames[1]->to_light()};
-  if (images == RenderImages::kept) {
-    rendering.kept = std::make_shared<HostLight const>(std::move(rendering.light));
+  if (images == RenderImages::in_place) {
+    rendering.in_place = std::make_shared<HostLight const>(std::move(rendering.light));
     rendering.light = {};
   }
   scene.pupil_margin = margin;

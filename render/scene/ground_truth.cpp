@@ -2,19 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+
+#include "render/base/parallel.h"
 
 namespace gladstone {
 
 void GroundTruth::resize(std::size_t count) {
-  position_m.resize(count);
-  for (auto* column : {&reference_px, &displacement_px, &displacement_error_px, &displacement_std_px, &flux, &eq9_px,
-                       &chief_px, &eq9_cone_px}) {
-    column->resize(count);
-  }
-  rays.resize(count);
-  rays_planned.resize(count);
-  path.resize(count);
+  std::vector<Vec2d>* const columns[] = {
+      &reference_px, &displacement_px, &displacement_error_px, &displacement_std_px, &flux, &eq9_px,
+      &chief_px,     &eq9_cone_px};
+  parallel_for(std::size(columns) + 1, [&](std::size_t i) {
+    if (i > 0) return columns[i - 1]->resize(count);
+    position_m.resize(count);
+    rays.resize(count);
+    rays_planned.resize(count);
+    path.resize(count);
+  });
 }
 
 void GroundTruth::copy(GroundTruth const& other, std::size_t from, std::size_t to) {

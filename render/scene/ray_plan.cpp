@@ -37,7 +37,7 @@ std::vector<std::size_t> largest_of(std::vector<double> const& value) {
   return dots;
 }
 
-double Probe::largest_bend() const { return bend.empty() ? 0.0 : *std::max_element(bend.begin(), bend.end()); }
+double Probe::largest_shift() const { return shift.empty() ? 0.0 : *std::max_element(shift.begin(), shift.end()); }
 
 StepPlan choose_step(Scene const& scene,
                      std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare) {
@@ -54,7 +54,7 @@ StepPlan choose_step(Scene const& scene,
       Probe coarse = probes.at(plan.step_mm * unit::millimetre);
       for (int halvings = 0;; ++halvings) {
         Probe fine = probes.at(plan.step_mm / 2 * unit::millimetre);
-        plan.largest_bend = std::max({probes.largest_bend, coarse.largest_bend(), fine.largest_bend()});
+        plan.largest_shift = std::max({probes.largest_shift, coarse.largest_shift(), fine.largest_shift()});
         std::vector<double> const change = changes(coarse, fine);
         if (!change.empty()) {
           auto const most = std::max_element(change.begin(), change.end());
@@ -73,7 +73,7 @@ StepPlan choose_step(Scene const& scene,
 
 void use_step(Scene& scene, StepPlan const& plan) {
   scene.step = plan.step_mm * unit::millimetre;
-  scene.widen_pupil(1.25 * plan.largest_bend);
+  scene.widen_pupil(1.25 * plan.largest_shift);
 }
 
 double ray_seconds(Scene const& scene) {

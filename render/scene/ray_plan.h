@@ -17,7 +17,7 @@ struct StepPlan {
   double step_mm = 0;    ///< [mm], the number that a setup file holds
   double change_px = 0;  ///< largest change of a dot's displacement when the step is halved
   std::size_t limiting_dot = 0;
-  double largest_bend = 0;  ///< on the lens plane, of the probing rays [m]
+  double largest_shift = 0;  ///< on the lens plane, of the probing rays [m]
 };
 
 /// What "auto" asks of truth [px] and of images [grey levels].
@@ -59,7 +59,7 @@ struct RaysPlan {
                                          ///< measured, or of no dot a ray got through
   double image_error_levels = not_told;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:
                                          ///< none was measured, or none was lit
-  double truth_resolution_px = 0;        ///< an error found smaller than this could as well be none
+  double truth_resolution_px = 0;        ///< two standard errors of none: one found smaller could as well be none
   double image_resolution_levels = 0;    ///< likewise
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
@@ -70,7 +70,11 @@ struct RaysPlan {
 
   std::optional<SideFaceErrors> side_faces;  ///< of the fast renderer; none: no dot in view lies there
 
-  double excess() const { return excess_of(truth_error_px, image_error_levels); }
+  /// Of the errors, or of what could be told of them where that is larger.
+  double excess() const {
+    return excess_of(std::fmax(truth_error_px, truth_resolution_px),
+                     std::fmax(image_error_levels, image_resolution_levels));
+  }
 };
 
 /// Processor time that a rendering of the scene takes for one ray of a source in both frames [s]: a count of steps and
@@ -86,9 +90,9 @@ std::uint64_t most_rays_of_source(Scene const& scene);
 /// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
 struct Probe {
   std::vector<Vec2d> displacement_px;
-  std::vector<double> bend;  ///< [m]
+  std::vector<double> shift;  ///< [m]
 
-  double largest_bend() const;
+  double largest_shift() const;
 };
 /// How far each dot moves from one probe to the other [px].
 std::vector<double> changes(Probe const& coarse, Probe const& fine);
@@ -96,7 +100,7 @@ std::vector<double> changes(Probe const& coarse, Probe const& fine);
 /// What tells how good a step is.
 struct StepProbes {
   std::vector<std::size_t> dots;  ///< that are probed
-  double largest_bend = 0;        ///< of rays beside these [m]
+  double largest_shift = 0;       ///< of rays beside these [m]
   std::function<Probe(double step)> at;
 };
 /// Dots that are probed by all rays, of a target with more: those with the largest values.

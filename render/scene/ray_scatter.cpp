@@ -46,9 +46,8 @@ double mean_variance(std::vector<MeanDisplacement> const& displacements) {
 
 int plan_bits(CameraSetup const& camera) { return std::min(camera.bit_depth, 12); }
 
-GreyLevels::GreyLevels(CameraSetup const& camera, std::size_t dots_in_view)
-    : density(static_cast<double>(dots_in_view) / (static_cast<double>(camera.columns) * camera.rows)),
-      bits(plan_bits(camera)) {
+GreyLevels::GreyLevels(CameraSetup const& camera, double dots_a_pixel)
+    : density(dots_a_pixel), bits(plan_bits(camera)) {
   double const full_scale = std::pow(2.0, bits) - 1;
   // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
   level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;

@@ -54,7 +54,7 @@ struct GreyLevels {
   double at_peak = 0;  ///< levels of the brightest pixel
   int bits = 12;
 
-  GreyLevels(CameraSetup const& camera, std::size_t dots_in_view);
+  GreyLevels(CameraSetup const& camera, double dots_a_pixel);
   /// Root mean square over lit pixels of what light scatters by [levels]; NaN where none is lit.
   double error(Scatter const& scatter) const;
 };

@@ -6,7 +6,7 @@
 
 #include "render/base/image.h"
 #include "render/scene/ground_truth.h"
-#include "render/scene/kept_light.h"
+#include "render/scene/rendered_light.h"
 #include "render/scene/scene.h"
 
 namespace gladstone {
@@ -26,8 +26,8 @@ char const* to_string(TableState state);
 
 /// What tracing a scene gives.
 struct Rendering {
-  LightPair light;                        ///< empty where no images were asked for, or where they are kept
-  std::shared_ptr<KeptLight const> kept;  ///< with RenderImages::kept alone
+  LightPair light;                                ///< empty where no images were asked for, or where they stay in place
+  std::shared_ptr<RenderedLight const> in_place;  ///< with RenderImages::in_place alone
   GroundTruth truth;
   StatusCounts statuses{};
   std::int64_t rays = 0;                      ///< traced, both frames
@@ -37,8 +37,8 @@ struct Rendering {
   std::string device;  ///< that rendered it; empty: the renderer's own
 };
 
-/// Whether a rendering has images: in the host's memory, or kept where the renderer makes them.
-enum class RenderImages { yes, no, kept };
+/// Whether a rendering has images: in the host's memory, or where the renderer makes them.
+enum class RenderImages { yes, no, in_place };
 enum class RenderTheory { yes, no };
 /// Light of particles: as they scatter the laser's, or alike into all directions, for virtual ones: a photon per
 /// steradian for each that lights a square metre.

@@ -12,9 +12,9 @@
 #include "render/base/interrupt.h"
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
-#include "render/scene/bend_limit.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/particle_scene.h"
+#include "render/scene/shift_limit.h"
 #include "render/sensor/sensor.h"
 
 namespace gladstone {
@@ -96,16 +96,16 @@ double Scene::steps_across() const {
 
 double Scene::stop_edge(double rays) { return 1.2 / std::pow(rays, 0.25); }
 
-void refuse_bend_beyond_any_bench(double bend, double z_b) {
-  if (bend <= z_b) return;
+void refuse_shift_beyond_any_bench(double shift, double z_b) {
+  if (shift <= z_b) return;
   throw DataError("medium.field",
                   fmt::format("bends rays by more than {:.3g} mm before they reach the lens, {:.6g} mm away, which no "
                               "bench does; reduce its gradients, or check their unit",
-                              bend / unit::millimetre, z_b / unit::millimetre));
+                              shift / unit::millimetre, z_b / unit::millimetre));
 }
 
 void Scene::widen_pupil(double margin) {
-  refuse_bend_beyond_any_bench(margin, setup.z_b());
+  refuse_shift_beyond_any_bench(margin, setup.z_b());
   pupil_margin = margin;
 }
 

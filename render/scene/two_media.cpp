@@ -88,8 +88,8 @@ Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const&
   all.statuses[1] = later.statuses[1];
   all.rays += later.rays;
   all.light.flow = later.light.flow;
-  if (images == RenderImages::kept) {
-    all.kept = std::make_shared<HostLight const>(std::move(all.light));
+  if (images == RenderImages::in_place) {
+    all.in_place = std::make_shared<HostLight const>(std::move(all.light));
     all.light = {};
   }
   scene.pupil_margin = std::max(first.pupil_margin, second.pupil_margin);

@@ -226,7 +226,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);
-  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->kept);
+  rendered.exposure_e = exposure_of(prepared.scene, *rendered.rendering->in_place);
   RecordedFrames const frames = record_frames(prepared, rendered);
   result.seconds_render = seconds_since(start);
 

@@ -31,19 +31,19 @@ constexpr int map_step_px = 4;
 constexpr std::size_t list_chunk = 8192;
 
 /// A case whose folder is there, and how many sources it has.
-struct KeptCase {
+struct CaseWithImages {
   std::string folder;
   std::string sources;  ///< "/dots" or "/particles"
   std::size_t count = 0;
 };
 
-std::optional<KeptCase> kept_case(std::string const& folder) {
+std::optional<CaseWithImages> case_with_images(std::string const& folder) {
   std::error_code error;
   if (!fs::exists(fs::path(folder) / case_file::setup, error)) return std::nullopt;
   Hdf5Reader const truth(in_case(folder, case_file::truth));
   for (char const* sources : {"/dots", "/particles"}) {
     std::string const name = std::string(sources) + "/displacement_px";
-    if (truth.has(name)) return KeptCase{folder, sources, truth.shape(name)[0]};
+    if (truth.has(name)) return CaseWithImages{folder, sources, truth.shape(name)[0]};
   }
   throw DataError((fs::path(folder) / case_file::truth).string(), "has the truth of neither dots nor particles");
 }
@@ -62,7 +62,7 @@ std::vector<std::uint16_t> levels_of(Image<double> const& image) {
 }
 
 /// Both frames of a case, as their files hold them. @throws DataError where they are of another size than the first's
-std::vector<std::uint16_t> read_frames(KeptCase const& one, std::vector<std::size_t> const& size) {
+std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<std::size_t> const& size) {
   std::vector<std::uint16_t> both;
   for (char const* name : {case_file::reference, case_file::flow}) {
     std::string const path = in_case(one.folder, name);
@@ -100,11 +100,11 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
   std::string const manifest = (fs::path(run) / run_file::manifest).string();
   refuse_inputs_as_outputs({path}, {study, manifest, (fs::path(run) / run_file::table).string()});
   StudyTable table = read_study_table(run);
-  std::vector<KeptCase> kept;
+  std::vector<CaseWithImages> kept;
   std::vector<StudyRow> rows;
   for (StudyRow const& row : table.rows) {
     if (row.status != CaseStatus::ok) continue;
-    if (std::optional<KeptCase> one = kept_case(images_folder(run, row.index))) {
+    if (std::optional<CaseWithImages> one = case_with_images(images_folder(run, row.index))) {
       kept.push_back(std::move(*one));
       rows.push_back(row);
     }
@@ -116,7 +116,7 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
   table.rows = std::move(rows);
 
   std::vector<std::int64_t> begin{0};
-  for (KeptCase const& one : kept) begin.push_back(begin.back() + static_cast<std::int64_t>(one.count));
+  for (CaseWithImages const& one : kept) begin.push_back(begin.back() + static_cast<std::int64_t>(one.count));
   Image<double> const sample = read_image(in_case(kept.front().folder, case_file::reference));
   std::vector<std::size_t> const size{static_cast<std::size_t>(sample.rows()),
                                       static_cast<std::size_t>(sample.columns())};
@@ -149,7 +149,7 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
 
   Progress progress("packing", cases);
   for (std::size_t i = 0; i < cases; ++i) {
-    KeptCase const& one = kept[i];
+    CaseWithImages const& one = kept[i];
     file.write_rows<std::uint16_t>("/images", i, read_frames(one, size));
     Hdf5Reader const truth(in_case(one.folder, case_file::truth));
     std::vector<double> const place = truth.read(one.sources + "/reference_px");

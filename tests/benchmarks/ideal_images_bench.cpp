@@ -36,11 +36,11 @@ Rendering render_pair(Setup const& setup) {
   Scene scene = build_scene(setup);
   if (auto const ideal = ideal_images(scene);
       ideal && setup.piv->particles.scattering == ParticleScattering::gaussian) {
-    return render_ideal_images(*ideal, scene.particles, ParticleLight::scattered, RenderImages::kept);
+    return render_ideal_images(*ideal, scene.particles, ParticleLight::scattered, RenderImages::in_place);
   }
   plan_step_by_rays(scene);
   plan_rays_by_rays(scene);
-  return RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::kept);
+  return RaysRenderer().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place);
 }
 
 /// Pairs of other particles every time, seeded, moved, lit and drawn, with their truth; nothing is written.
@@ -56,8 +56,8 @@ void pairs(benchmark::State& state, Setup setup, Record record) {
     auto const start = std::chrono::steady_clock::now();
     Rendering const rendering = render_pair(setup);
     if (record == Record::yes) {
-      double const exposure = Detector::auto_exposure(setup.camera, rendering.kept->brightest());
-      RecordedFrames const frames = rendering.kept->record(Detector(setup.camera, exposure));
+      double const exposure = Detector::auto_exposure(setup.camera, rendering.in_place->brightest());
+      RecordedFrames const frames = rendering.in_place->record(Detector(setup.camera, exposure));
       benchmark::DoNotOptimize(frames.levels.get());
     }
     double const taken = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -93,16 +93,16 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
     for (Polarity const polarity : {Polarity::bright, Polarity::dark}) {
       scene.setup.target.polarity = polarity;
       Rendering const moved = on_device(scene);
-      Rendering const kept = renderer_->render(scene, scene.dots, RenderImages::kept, RenderTheory::no);
-      ASSERT_TRUE(kept.kept);
+      Rendering const kept = renderer_->render(scene, scene.dots, RenderImages::in_place, RenderTheory::no);
+      ASSERT_TRUE(kept.in_place);
       EXPECT_TRUE(kept.light.reference.empty());
       HostLight const host(moved.light);
-      EXPECT_EQ(kept.kept->brightest(), host.brightest());
+      EXPECT_EQ(kept.in_place->brightest(), host.brightest());
       Detector const detector(scene.setup.camera, Detector::auto_exposure(scene.setup.camera, 0.8 * host.brightest()));
-      auto const ideal = kept.kept->ideal(detector), ideal_on_host = host.ideal(detector);
+      auto const ideal = kept.in_place->ideal(detector), ideal_on_host = host.ideal(detector);
       EXPECT_LT(largest_difference(ideal->reference(), ideal_on_host->reference()), 1e-9);
       EXPECT_LT(largest_difference(ideal->flow(), ideal_on_host->flow()), 1e-9);
-      RecordedFrames const recorded = kept.kept->record(detector), on_host = host.record(detector);
+      RecordedFrames const recorded = kept.in_place->record(detector), on_host = host.record(detector);
       EXPECT_EQ(recorded.saturated_reference, on_host.saturated_reference);
       EXPECT_EQ(recorded.saturated_flow, on_host.saturated_flow);
       std::size_t differ = 0;
@@ -114,7 +114,7 @@ TEST_F(CudaRendererTest, RecordsWhereTheLightIsAsTheHostDoes) {
       // where light that differs in its last bits rounds, or counts electrons, to the other side
       EXPECT_LE(largest_difference(recorded.levels->reference(), on_host.levels->reference()), 1);
       EXPECT_LE(largest_difference(recorded.levels->flow(), on_host.levels->flow()), 1);
-      EXPECT_TRUE(same_bits(recorded.levels->flow(), kept.kept->record(detector).levels->flow()));
+      EXPECT_TRUE(same_bits(recorded.levels->flow(), kept.in_place->record(detector).levels->flow()));
 
       // and correlated where they are, as if they had been brought to the host and back
       auto const correlator = cuda::make_correlator({});

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "render/base/vec.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -242,6 +243,61 @@ TEST_F(Piv, MovesParticlesThroughAShock) {
   }
   // a hundred particles in each half and more, of which the one behind the front has 1.86 times as many
   EXPECT_NEAR(downstream / upstream, 1.86, 4 * 1.86 * std::sqrt(1 / upstream + 1 / downstream));
+}
+
+// Through the front of a shock whose plane lies at an angle tau to the line of sight, the particle a way s behind it
+// along that line: |xi| = dn cot(tau) s, and since s changes with x, |d xi / d x| = dn cot(tau)^2 (Elsinga, van
+// Oudheusden & Scarano 2005). Here by the line of sight of every particle: a front of normal n turns a ray of direction
+// d by dn (n / (n . d) - d), so that a particle seems to lie s times that back. dn is 0.862 kg/m^3 of Mach 1.5 times K.
+// A front has a thickness and a lens a stop: 1 % for both.
+TEST_F(Piv, SeesParticlesBehindAShockWhereElsingaSaysTheyAre) {
+  for (double const tau_deg : {30.0, 50.0}) {
+    std::string const front =
+        with(with(with(piv_setup, "[12.0, 12.0, 1.5]", "[12.0, 12.0, 20.0]"), "thickness_mm = 1.0",
+                  "thickness_mm = 20.0\nprofile = \"top_hat\""),
+             "[particles]",
+             "[medium]\nthickness_mm = 60.0\nambient_density_kg_m3 = 1.862068966\n[medium.field]\nkind = "
+             "\"normal_shock\"\nmach = 1.5\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 0.2\ntilt_deg = " +
+                 std::to_string(tau_deg) + "\n[particles]");
+    write("setup.toml", front);
+    std::string const name = "case" + std::to_string(static_cast<int>(tau_deg));
+    render(name);
+    auto const place = dataset(name + "/truth.h5", "/particles/position_m");
+    auto const seen = dataset(name + "/truth.h5", "/particles/reference_px");
+    auto const straight = dataset(name + "/truth.h5", "/particles/reference_ambient_px");
+    auto const moved = dataset(name + "/truth.h5", "/particles/displacement_px");
+    auto const moved_straight = dataset(name + "/truth.h5", "/particles/displacement_ambient_px");
+    double const tau = tau_deg * std::acos(-1.0) / 180, jump = 2.26e-4 * 0.862068966;
+    Vec3d const normal{std::cos(tau), 0, std::sin(tau)}, lens{0, 0, 0.75};
+    auto const way_behind = [&](Vec3d at) { return -dot(normal, at) / dot(normal, normalized(lens - at)); };
+    auto const xi = [&](Vec3d at) {
+      Vec3d const sight = normalized(lens - at);
+      return -way_behind(at) * jump * (normal.x / dot(normal, sight) - sight.x);
+    };
+    int behind = 0, before = 0;
+    for (std::size_t i = 0; i < seen.size() / 2; ++i) {
+      if (std::isnan(moved[2 * i])) continue;
+      Vec3d const at{place[3 * i], place[3 * i + 1], place[3 * i + 2]}, later = at + Vec3d{141.2857e-6, 0, 0};
+      double const px_per_m = 105.0 / 645 / 10e-6 * 0.75 / (0.75 - at.z);
+      double const error_px = seen[2 * i] - straight[2 * i], change_px = moved[2 * i] - moved_straight[2 * i];
+      if (std::abs(dot(normal, at)) < 0.8e-3) continue;  // in the front, or at the second pulse
+      if (way_behind(at) < 0) {
+        EXPECT_NEAR(error_px, 0, 1e-4);
+        EXPECT_NEAR(change_px, 0, 1e-5);
+        ++before;
+        continue;
+      }
+      double const xi_px = xi(at) * px_per_m, xi_change_px = (xi(later) - xi(at)) * px_per_m;
+      EXPECT_NEAR(error_px, xi_px, 0.01 * std::abs(xi_px) + 1e-4) << tau_deg << " degrees, " << way_behind(at);
+      EXPECT_NEAR(change_px, xi_change_px, 0.01 * xi_change_px) << tau_deg << " degrees, " << way_behind(at);
+      // near the axis, where all lines of sight are one
+      double const cot = normal.x / normal.z, of_elsinga = jump * cot * cot * 141.2857e-6 * px_per_m;
+      EXPECT_NEAR(xi_change_px, of_elsinga, 0.1 * of_elsinga);
+      ++behind;
+    }
+    EXPECT_GT(behind, 100);
+    EXPECT_GT(before, 100);
+  }
 }
 
 // The second pulse sees another medium: what is at rest seems to move by what a gradient of 100 kg/m^4 in 40 mm does, g

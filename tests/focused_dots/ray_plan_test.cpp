@@ -45,7 +45,7 @@ TEST(PlanStep, HalvingChangesNoDotByATenThousandthOfAPixel) {
     EXPECT_LT(plan.change_px, 1e-4);
     EXPECT_EQ(scene.step, plan.step_mm * 1e-3);
     EXPECT_LE(scene.step, scene.medium.coarsest_step);
-    EXPECT_GE(scene.pupil_margin, plan.largest_bend);
+    EXPECT_GE(scene.pupil_margin, plan.largest_shift);
     GroundTruth const coarse = truth_at_step(scene, scene.step), fine = truth_at_step(scene, scene.step / 2);
     std::size_t moved = 0;
     for (std::size_t i = 0; i < coarse.size(); ++i) {
@@ -122,6 +122,20 @@ TEST(PlanRays, MakesTableAndRulesFinerWhereFrontsAskForIt) {
   EXPECT_LT(plan.image_error_levels, usual.image_error_levels / 2) << "of " << usual.image_error_levels;
   EXPECT_FALSE(plan.converged);
   EXPECT_GT(plan.image_error_levels, 0.5);
+}
+
+// What is chosen for the table hangs on the view and what lies in it, not on the dots that are there: a dot's truth is
+// the same whatever others there are.
+TEST(PlanRays, HangsOnNoDots) {
+  auto setup = table1_setup(64);
+  setup.medium.field = dns_plane("kepeak");
+  Scene few = scene_with_dots(setup, {{21, 40}}, 1), many = scene_with_dots(setup, lattice(64, 4, 14), 1);
+  RaysPlan const one = plan_rays_anew(few), other = plan_rays_anew(many);
+  EXPECT_EQ(one.fineness, other.fineness);
+  EXPECT_EQ(one.rays, other.rays);
+  EXPECT_EQ(one.truth_error_px, other.truth_error_px);
+  EXPECT_EQ(one.image_error_levels, other.image_error_levels);
+  EXPECT_GT(one.truth_error_px, 0);
 }
 
 // Under a cone of 105 cells, at f/4, it says that it cannot reach what is asked.

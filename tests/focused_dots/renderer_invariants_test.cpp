@@ -111,8 +111,8 @@ TEST(FocusedDotsRenderer, AimsAtADotThatIsBentFarAsideAgain) {
   setup.target.dot_diameter_px = 0;
   setup.medium.field = uniform_gradient(1500, -800);
   Scene scene = scene_with_dots(setup, {{32, 32}}, 32);
-  double const bend = 2.26e-4 * 1700 * 0.01 * 0.75;  // K g L_z Z_A
-  ASSERT_GT(bend, 0.5 * scene.imaging.entrance_pupil / 2);
+  double const shift = 2.26e-4 * 1700 * 0.01 * 0.75;  // K g L_z Z_A
+  ASSERT_GT(shift, 0.5 * scene.imaging.entrance_pupil / 2);
   Rendering const rendering = FocusedDotsRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::yes);
   ASSERT_TRUE(rendering.left.empty());
   GroundTruth const& truth = rendering.truth;

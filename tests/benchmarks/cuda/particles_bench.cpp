@@ -74,7 +74,7 @@ void particles_tomographic(benchmark::State& state) {
   setup.piv->laser.profile = SheetProfile::top_hat;
   setup.piv->particles.amount = 100000;
   Scene scene = droplets_scene(setup, static_cast<std::uint64_t>(state.range(0)));
-  double const seconds = seconds_a_pair(state, scene, RenderImages::kept);
+  double const seconds = seconds_a_pair(state, scene, RenderImages::in_place);
   state.counters["ms_a_frame"] = 1e3 * seconds / frame_count;
   state.counters["Grays/s"] =
       1e-9 * frame_count * static_cast<double>(scene.particles.size()) * state.counters["rays"].value / seconds;
@@ -100,7 +100,7 @@ void particle_pairs(benchmark::State& state, ParticleScattering scattering, Rend
 }
 
 void particle_pairs_lambert(benchmark::State& state) {
-  particle_pairs(state, ParticleScattering::lambert, RenderImages::kept);
+  particle_pairs(state, ParticleScattering::lambert, RenderImages::in_place);
 }
 BENCHMARK(particle_pairs_lambert)->UseManualTime()->Iterations(50)->Unit(benchmark::kMillisecond);
 
@@ -109,7 +109,9 @@ void particle_pairs_lambert_to_host(benchmark::State& state) {
 }
 BENCHMARK(particle_pairs_lambert_to_host)->UseManualTime()->Iterations(50)->Unit(benchmark::kMillisecond);
 
-void particle_pairs_mie(benchmark::State& state) { particle_pairs(state, ParticleScattering::mie, RenderImages::kept); }
+void particle_pairs_mie(benchmark::State& state) {
+  particle_pairs(state, ParticleScattering::mie, RenderImages::in_place);
+}
 BENCHMARK(particle_pairs_mie)->UseManualTime()->Iterations(50)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "render/scene/kept_light.h"
+#include "render/scene/rendered_light.h"
 
 #include <algorithm>
 

@@ -22,9 +22,10 @@ struct RecordedFrames {
 };
 
 /// The light of a rendering where the renderer has made it; what cameras make of it stays there, too.
-class KeptLight {
+class RenderedLight {
  public:
-  virtual ~KeptLight() = default;
+  virtual ~RenderedLight() = default;
+  virtual LightPair to_host() const = 0;
   /// Light of the brightest pixel of both frames.
   virtual double brightest() const = 0;
   /// As Detector::record, the two frames with a noise of their own each.
@@ -34,9 +35,10 @@ class KeptLight {
 };
 
 /// Light in the host's memory.
-class HostLight final : public KeptLight {
+class HostLight final : public RenderedLight {
  public:
   explicit HostLight(LightPair light) : light_(std::move(light)) {}
+  LightPair to_host() const override { return light_; }
   double brightest() const override;
   RecordedFrames record(Detector const& detector) const override;
   std::unique_ptr<FramePair const> ideal(Detector const& detector) const override;
