@@ -9,13 +9,10 @@
 #include <tuple>
 
 #include "analysis/correlation/correlator.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
-
-using testing::ParticlePair;
-using testing::render_particle_pair;
 
 CorrelationSettings one_pass(std::string const& method, std::string const& weighting = "gaussian") {
   CorrelationSettings settings;

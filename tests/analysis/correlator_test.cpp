@@ -11,14 +11,10 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/units.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
-
-using testing::ParticlePair;
-using testing::ParticleSettings;
-using testing::render_particle_pair;
 
 struct Score {
   double rms = 0.0;  // per component, over all vectors
