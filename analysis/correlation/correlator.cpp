@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/optical_flow/optical_flow_correlator.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/window_ops.h"
 
@@ -14,7 +15,9 @@ std::vector<std::string> correlation_methods() {
 }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
-  return make_standard_correlator(settings);
+  CorrelationMethod const& method = correlation_method(settings.method);
+  return method.optical_flow ? make_optical_flow_correlator(settings, method.optical_flow)
+                             : make_standard_correlator(settings);
 }
 
 std::string missing_on_gpu(CorrelationSettings const& settings) {

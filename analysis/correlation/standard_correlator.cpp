@@ -22,7 +22,7 @@ class StandardCorrelator final : public Correlator {
   explicit StandardCorrelator(CorrelationSettings const& settings)
       : settings_(settings),
         schedule_(settings),
-        correlate_(correlation_method(settings.method)),
+        correlate_(correlation_method(settings.method).correlate),
         fit_(subpixel_fit(settings.subpixel)) {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
