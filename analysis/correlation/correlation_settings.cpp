@@ -34,9 +34,9 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  settings.uncertainty =
-      table.word("uncertainty", settings.uncertainty,
-                 {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation"});
+  settings.uncertainty = table.word(
+      "uncertainty", settings.uncertainty,
+      {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation", "combination"});
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =
