@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "studies/benchmark/benchmark_run.h"
 #include "studies/version_text.h"
@@ -10,10 +11,18 @@
 namespace gladstone {
 namespace {
 
+bool is_of_curve(std::string const& name) {
+  std::vector<BenchmarkEstimator> const& ours = benchmark_estimators();
+  return std::any_of(ours.begin(), ours.end(),
+                     [&](BenchmarkEstimator const& one) { return one.name == name && one.of_curve; });
+}
+
+/// Without what is only of the curve of settings.
 std::vector<std::string> codes_of(BenchmarkResult const& result) {
   std::vector<std::string> codes;
   for (BenchmarkRow const& row : result.rows)
-    if (std::find(codes.begin(), codes.end(), row.estimator) == codes.end()) codes.push_back(row.estimator);
+    if (!is_of_curve(row.estimator) && std::find(codes.begin(), codes.end(), row.estimator) == codes.end())
+      codes.push_back(row.estimator);
   return codes;
 }
 
@@ -52,6 +61,25 @@ std::string with_error(SeedMean const& mean) {
                                    : fmt::format("{:.3f}", mean.mean);
 }
 
+/// Noise and gain of every code that was run on both of their cases, by gain.
+std::optional<TextTable> curve_table(BenchmarkResult const& result) {
+  TextTable table{"Noise against gain",
+                  {"code", fmt::format("rms error in {} [px]", noise_case), fmt::format("gain in {}", gain_case),
+                   fmt::format("rms error in {} [px]", gain_case)},
+                  {}};
+  for (BenchmarkRow const& row : result.rows) {
+    BenchmarkRow const* const quiet = find_row(result, row.estimator, noise_case);
+    if (row.of_case != gain_case || !quiet) continue;
+    table.rows.push_back({{row.estimator},
+                          fixed(quiet->score.errors.rms_without_gross_px, 4),
+                          fixed(row.score.gain, 4),
+                          fixed(row.score.errors.rms_without_gross_px, 4)});
+  }
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [](auto const& a, auto const& b) { return a[2].number.value_or(0.0) < b[2].number.value_or(0.0); });
+  return table.rows.empty() ? std::nullopt : std::optional(std::move(table));
+}
+
 ReportSection error_section(BenchmarkResult const& result) {
   ReportSection section{"Errors", {}};
   section.blocks.push_back(
@@ -67,10 +95,11 @@ ReportSection error_section(BenchmarkResult const& result) {
   section.blocks.push_back(table_of(
       result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
       [](CaseRecord const& one) { return one.of.name.starts_with("sine") || one.of.refracted(); }));
-  section.blocks.push_back(table_of(result, "bias of u / of v [px]", [](BenchmarkScore const& s) {
+  section.blocks.push_back(table_of(result, "bias of u / of v, gross errors counted [px]", [](BenchmarkScore const& s) {
     double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
     return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
   }));
+  if (std::optional<TextTable> curve = curve_table(result)) section.blocks.push_back(std::move(*curve));
   return section;
 }
 
@@ -112,7 +141,7 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
   return section;
 }
 
-/// Who has the least rms on most cases that several were run on, and what the default reaches.
+/// What each code reaches in the vortex, in noise and at fine structures.
 std::vector<std::string> findings_of(BenchmarkResult const& result) {
   std::vector<std::string> findings;
   for (std::string const& code : codes_of(result)) {
