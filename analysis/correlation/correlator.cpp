@@ -23,6 +23,7 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
 std::string missing_on_gpu(CorrelationSettings const& settings) {
   for (CorrelationMethod const& method : all_correlation_methods())
     if (settings.method == method.name && !method.on_gpu) return fmt::format("method = \"{}\"", method.name);
+  if (settings.deformation == "sinc") return "deformation = \"sinc\"";
   return subpixel_fit_on_gpu(settings.subpixel) ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
 }
 

@@ -133,6 +133,9 @@ TEST(MissingOnGpu, IsEverythingButScc) {
   EXPECT_EQ(missing_on_gpu(settings), "");
   settings.subpixel = "gauss2d";
   EXPECT_EQ(missing_on_gpu(settings), "subpixel = \"gauss2d\"");
+  settings = {};
+  settings.deformation = "sinc";
+  EXPECT_EQ(missing_on_gpu(settings), "deformation = \"sinc\"");
   for (std::string const& method : correlation_methods())
     EXPECT_EQ(missing_on_gpu(one_pass(method)), method == "scc" ? "" : "method = \"" + method + "\"");
 }

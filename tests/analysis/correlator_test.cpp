@@ -253,6 +253,16 @@ TEST(MultiPass, CubicDeformationStaysBelowOneAndAHalfHundredths) {
   EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).rms, 0.015);
 }
 
+// Eight pixels' sinc errs less than the quintic (0.0023 against 0.0030 px on 1024 x 1024 px), half as much again for
+// 256.
+TEST(MultiPass, SincDeformationErrsByThousandths) {
+  CorrelationSettings settings;
+  settings.deformation = "sinc";
+  auto const truth = constant(0.3, -0.3);
+  ParticlePair const pair = render_particle_pair({}, truth);
+  EXPECT_LT(score(make_correlator(settings)->correlate(pair.reference, pair.flow), truth).rms, 0.0035);
+}
+
 // Cramer & Rao's bound for 16 px windows at 5 % noise is 0.039 px.
 TEST(MultiPass, HasNoGrossErrorsAtFivePercentNoise) {
   auto const truth = constant(0.4, -0.4);
