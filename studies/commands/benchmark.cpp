@@ -83,9 +83,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
                  "Folder for the cases and benchmark.html, .md, .json, .csv")
       ->required();
   app.add_option("--vectors", arguments->vectors,
-                 "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)")
-      ->expected(1)
-      ->take_all();
+                 "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
   app.add_option("--cases", arguments->benchmark.cases, "Only these cases")->check(one_of(names_of_cases()));
   app.add_option("--estimators", arguments->benchmark.estimators, "Only these of ours; none: only --vectors")
       ->check(one_of(names_of_estimators()));

@@ -36,7 +36,7 @@ TEST_F(Benchmark, ScoresTheVectorsOfAnyCode) {
     write("openpiv/" + name + ".txt", text);
   }
   auto const others = json_of({"benchmark", "-o", "b", "--cases", "noise_5", "vortex", "--estimators", "none",
-                               "--vectors", "mine=mine", "--vectors", "other=openpiv"});
+                               "--vectors", "mine=mine", "other=openpiv"});
   for (std::string const name : {"vortex", "noise_5"}) {
     auto const inside = score_of(ours, "one_pass", name);
     for (char const* code : {"mine", "other"}) {
