@@ -69,6 +69,11 @@ nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
           is_count ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
     }
   }
+  json["bins"] = nlohmann::ordered_json::array();
+  for (UncertaintyBin const& bin : uncertainty_bins(measured.displacement_px, comparison.window.displacement_px,
+                                                    measured.sigma_px, comparison.mask))
+    json["bins"].push_back(
+        {{"count", bin.count}, {"rms_sigma_px", bin.rms_sigma_px}, {"rms_error_px", bin.rms_error_px}});
   return json;
 }
 

@@ -45,6 +45,8 @@ constexpr std::array commands{
             attach_sweep},
     Command{"report", "Write one file that tells what a study or a case found, with charts and every setting",
             "gladstone report out/run -o report.html", attach_report},
+    Command{"benchmark", "Score estimators of displacement, ours and your own, on published cases",
+            "gladstone benchmark -o out/benchmark --vectors mine=my_vectors", attach_benchmark},
     Command{"demo", "Run the seed's experiment, from setup to error report", "gladstone demo -o out/demo", attach_demo},
     Command{"gallery", "Render particle images as they should be, and with what spoils them",
             "gladstone gallery -o out/gallery", attach_gallery},

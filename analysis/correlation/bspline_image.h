@@ -12,6 +12,9 @@
 
 namespace gladstone {
 
+/// In place of a B-spline's degree: a windowed sinc of eight pixels, which needs no coefficients but the pixels.
+inline constexpr int windowed_sinc = 7;
+
 /// Weights of the degree + 1 B-splines that are not zero at `t` past a node, 0 <= t < 1, from the leftmost on.
 /// Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821, eq. 2.3, written out in powers of t.
 /// @tparam T a number, or several side by side @tparam Number that such are made of
@@ -37,6 +40,46 @@ GLADSTONE_HD void bspline_weights(T t, T* w) {
   }
 }
 
+/// sin(pi d)/(pi d) for |d| <= 1 by its series, to 1e-8. @tparam T, Number as bspline_weights()
+template <class T, class Number = T>
+GLADSTONE_HD T sinc_near_zero(T d) {
+  constexpr Number pi2 = Number(9.8696044010893586);
+  T const x2 = pi2 * d * d;
+  T sum = T{} + Number(1);
+  for (int n = 9; n >= 1; --n) sum = Number(1) - x2 / Number(2 * n * (2 * n + 1)) * sum;
+  return sum;
+}
+
+/// Weights of eight pixels at `t` past the fourth of them, 0 <= t < 1, by a sinc that another of four times its width
+/// windows (Lanczos; Duchon, J. Appl. Meteorol. 18 (1979) 1016), over their sum, so that constants pass unchanged.
+template <class T, class Number = T>
+GLADSTONE_HD void windowed_sinc_weights(T t, T* w) {
+  using N = Number;
+  constexpr N half_turn = N(3.14159265358979324);
+  // sin(pi (t - k)) is sin(pi t), with the sign of k's parity
+  T const sine = half_turn * t * sinc_near_zero<T, N>(t);
+  T sum{};
+  for (int i = 0; i < 8; ++i) {
+    T const d = t - N(i - 3);
+    T const window = sinc_near_zero<T, N>(N(0.25) * d);
+    if (i == 3 || i == 4)
+      w[i] = sinc_near_zero<T, N>(d) * window;
+    else
+      w[i] = ((i - 3) % 2 == 0 ? N(1) : N(-1)) * sine / (half_turn * d) * window;
+    sum += w[i];
+  }
+  for (int i = 0; i < 8; ++i) w[i] = w[i] / sum;
+}
+
+/// Weights of the degree + 1 values that count, from the leftmost on: B-splines, or for degree 7 the windowed sinc.
+template <int degree, class T, class Number = T>
+GLADSTONE_HD void interpolation_weights(T t, T* w) {
+  if constexpr (degree == windowed_sinc)
+    windowed_sinc_weights<T, Number>(t, w);
+  else
+    bspline_weights<degree, T, Number>(t, w);
+}
+
 /// Index of the pixel that reflection at the centres of the outermost pixels puts at i.
 GLADSTONE_HD inline int mirrored_index(int i, int count) {
   if (count == 1) return 0;
@@ -46,8 +89,9 @@ GLADSTONE_HD inline int mirrored_index(int i, int count) {
 }
 
 /// Poles of the recursive filter that turns samples into B-spline coefficients, Unser et al. (1993), table 1.
-/// @param degree 3 or 5
+/// @param degree 3 or 5; none for windowed_sinc
 inline std::vector<double> bspline_poles(int degree) {
+  if (degree == windowed_sinc) return {};
   if (degree == 3) return {-0.26794919243112270647};  // sqrt(3) - 2
   return {-0.43057534709997377, -0.04309628820326465};
 }
@@ -91,8 +135,8 @@ struct BsplineView {
     int const base_x = clamp(column + static_cast<int>(floor_x), columns);
     int const base_y = clamp(row + static_cast<int>(floor_y), rows);
     T weight_x[lanes] = {}, weight_y[degree + 1];
-    bspline_weights<degree>(dx - floor_x, weight_x);
-    bspline_weights<degree>(dy - floor_y, weight_y);
+    interpolation_weights<degree>(dx - floor_x, weight_x);
+    interpolation_weights<degree>(dy - floor_y, weight_y);
     constexpr int before = (degree - 1) / 2;
     T const* c = coefficients + static_cast<long long>(base_y - before + margin_before) * stride +
                  (base_x - before + margin_before);
@@ -113,11 +157,11 @@ struct BsplineView {
 template <class T>
 class BsplineImage {
  public:
-  /// @param pixel value at (column, row), called once each @param degree 3 or 5
+  /// @param pixel value at (column, row), called once each @param degree 3, 5 or windowed_sinc
   template <class Pixel>
   BsplineImage(int columns, int rows, int degree, Pixel const& pixel)
       : columns_(columns), rows_(rows), stride_(columns + View::margin_before + View::margin_after) {
-    GLADSTONE_EXPECTS(columns > 0 && rows > 0 && (degree == 3 || degree == 5));
+    GLADSTONE_EXPECTS(columns > 0 && rows > 0 && (degree == 3 || degree == 5 || degree == windowed_sinc));
     coefficients_.resize(static_cast<std::size_t>(stride_) * (rows + View::margin_before + View::margin_after));
     filter_rows(degree, pixel);
     filter_columns(degree);

@@ -9,23 +9,25 @@ namespace {
 
 /// Every correlation method, one row each.
 constexpr std::array rows{
-    CorrelationMethod{"scc", correlate_scc, true},
-    CorrelationMethod{"rpc", correlate_rpc},
-    CorrelationMethod{"spc", correlate_spc},
-    CorrelationMethod{"zncc", correlate_zncc},
-    CorrelationMethod{"mqd", correlate_mqd},
+    CorrelationMethod{.name = "scc", .correlate = correlate_scc, .on_gpu = true},
+    CorrelationMethod{.name = "rpc", .correlate = correlate_rpc},
+    CorrelationMethod{.name = "spc", .correlate = correlate_spc},
+    CorrelationMethod{.name = "zncc", .correlate = correlate_zncc},
+    CorrelationMethod{.name = "mqd", .correlate = correlate_mqd},
     CorrelationMethod{.name = "opencv", .correlate = correlate_by_opencv, .in_ensembles = false},
+    CorrelationMethod{.name = "dis", .optical_flow = dense_inverse_search, .in_ensembles = false},
+    CorrelationMethod{.name = "horn_schunck", .optical_flow = horn_schunck_flow, .in_ensembles = false},
 };
 
 }  // namespace
 
 std::span<CorrelationMethod const> all_correlation_methods() { return rows; }
 
-CorrelateWindows correlation_method(std::string const& name) {
+CorrelationMethod const& correlation_method(std::string const& name) {
   for (CorrelationMethod const& row : rows)
-    if (name == row.name) return row.correlate;
+    if (name == row.name) return row;
   GLADSTONE_EXPECTS(!"the name of a correlation method");
-  return nullptr;
+  return rows.front();
 }
 
 }  // namespace gladstone

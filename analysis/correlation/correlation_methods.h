@@ -4,6 +4,7 @@
 #include <string>
 
 #include "analysis/correlation/interrogation_job.h"
+#include "analysis/correlation/optical_flow/dense_flow.h"
 
 namespace gladstone {
 
@@ -24,18 +25,19 @@ std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
 /// The planes of scc by OpenCV's transforms in double precision: the reference that others are compared with.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
 
-/// One way of correlating windows.
+/// One way of measuring displacement: by windows, or pixel by pixel.
 struct CorrelationMethod {
   char const* name;
-  CorrelateWindows correlate;
-  bool on_gpu = false;       ///< whether the correlator of CUDA has it, too
-  bool in_ensembles = true;  ///< whether it heeds a job's ensemble
+  CorrelateWindows correlate = nullptr;
+  EstimateFlow optical_flow = nullptr;  ///< instead of correlating windows
+  bool on_gpu = false;                  ///< whether the correlator of CUDA has it, too
+  bool in_ensembles = true;             ///< whether it heeds a job's ensemble
 };
 
 /// Every method.
 std::span<CorrelationMethod const> all_correlation_methods();
 
 /// The method of that name. @pre it is known
-CorrelateWindows correlation_method(std::string const& name);
+CorrelationMethod const& correlation_method(std::string const& name);
 
 }  // namespace gladstone

@@ -23,7 +23,7 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.method = table.word("method", settings.method, correlation_methods());
   settings.subpixel = table.word("subpixel", settings.subpixel, subpixel_fits());
   settings.weighting = table.word("weighting", settings.weighting, {"gaussian", "uniform"});
-  settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic"});
+  settings.deformation = table.word("deformation", settings.deformation, {"cubic", "quintic", "sinc"});
   settings.final_passes = static_cast<int>(table.integer("final_passes", settings.final_passes, 1, 5));
   settings.max_displacement_px =
       table.number_or_word("max_displacement_px", {{}, "none"}, {"none", "off"}, Range::positive(512.0)).number;
@@ -34,9 +34,9 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  settings.uncertainty =
-      table.word("uncertainty", settings.uncertainty,
-                 {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation"});
+  settings.uncertainty = table.word(
+      "uncertainty", settings.uncertainty,
+      {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation", "combination"});
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =

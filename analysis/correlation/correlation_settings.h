@@ -16,8 +16,9 @@ struct CorrelationSettings {
   std::string method = "scc";                      ///< a name of correlation_methods()
   std::string subpixel = "gauss3";                 ///< a name of subpixel_fits()
   std::string weighting = "gaussian";              ///< "gaussian" over twice the window, or "uniform" over the window
-  std::string deformation = "quintic";  ///< B-spline that deforms the images between passes: "cubic" or "quintic"
-  int final_passes = 1;                 ///< times the last pass is run, 1 .. 5; more sharpen detail and noise alike
+  std::string deformation =
+      "quintic";         ///< of the images between passes: B-splines, "cubic" or "quintic", or a windowed "sinc"
+  int final_passes = 1;  ///< times the last pass is run, 1 .. 5; more sharpen detail and noise alike
   std::optional<double> max_displacement_px;     ///< largest along either axis, (0, 512]; none: what the windows permit
   std::optional<double> median_threshold = 2.0;  ///< normalised median residual of a spurious vector; none: no test
   double median_epsilon_px = 0.2;                ///< noise level in that residual [px]

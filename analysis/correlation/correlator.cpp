@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/optical_flow/optical_flow_correlator.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/window_ops.h"
 
@@ -14,12 +15,15 @@ std::vector<std::string> correlation_methods() {
 }
 
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings) {
-  return make_standard_correlator(settings);
+  CorrelationMethod const& method = correlation_method(settings.method);
+  return method.optical_flow ? make_optical_flow_correlator(settings, method.optical_flow)
+                             : make_standard_correlator(settings);
 }
 
 std::string missing_on_gpu(CorrelationSettings const& settings) {
   for (CorrelationMethod const& method : all_correlation_methods())
     if (settings.method == method.name && !method.on_gpu) return fmt::format("method = \"{}\"", method.name);
+  if (settings.deformation == "sinc") return "deformation = \"sinc\"";
   return subpixel_fit_on_gpu(settings.subpixel) ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
 }
 

@@ -16,8 +16,8 @@ struct LanePositions {
 
   LanePositions(int first, int j, FloatLanes x, FloatLanes y)
       : column(first), row(j), dx(x), dy(y), whole_x(floor_lanes(x)), whole_y(floor_lanes(y)) {
-    bspline_weights<degree, FloatLanes, float>(dx - __builtin_convertvector(whole_x, FloatLanes), weight_x);
-    bspline_weights<degree, FloatLanes, float>(dy - __builtin_convertvector(whole_y, FloatLanes), weight_y);
+    interpolation_weights<degree, FloatLanes, float>(dx - __builtin_convertvector(whole_x, FloatLanes), weight_x);
+    interpolation_weights<degree, FloatLanes, float>(dy - __builtin_convertvector(whole_y, FloatLanes), weight_y);
   }
 
   /// The spline where all lanes are moved by as many whole pixels as one of them.
@@ -95,6 +95,8 @@ void LaneDeformation::row(int degree, int j, std::span<float const> u, std::span
                           DeformedRow const& out) const {
   if (degree == 3)
     deform_row<3>(*this, j, u, v, out);
+  else if (degree == windowed_sinc)
+    deform_row<windowed_sinc>(*this, j, u, v, out);
   else
     deform_row<5>(*this, j, u, v, out);
 }

@@ -21,7 +21,7 @@ struct LaneDeformation {
   BsplineView<float> flow;
   std::vector<float> const& available;  ///< 1 where both images are known, 0 elsewhere; empty: everywhere
 
-  /// @param degree of the splines, 3 or 5
+  /// @param degree of the splines, 3 or 5, or windowed_sinc
   /// @param u, v   displacement of every pixel of row j [px]
   void row(int degree, int j, std::span<float const> u, std::span<float const> v, DeformedRow const& out) const;
 };

@@ -22,7 +22,7 @@ class StandardCorrelator final : public Correlator {
   explicit StandardCorrelator(CorrelationSettings const& settings)
       : settings_(settings),
         schedule_(settings),
-        correlate_(correlation_method(settings.method)),
+        correlate_(correlation_method(settings.method).correlate),
         fit_(subpixel_fit(settings.subpixel)) {}
 
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
@@ -119,7 +119,9 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
                  settings.least_peak_ratio.value_or(0.0),
                  settings.least_correlation.value_or(0.0)},
       weighting_(window_weighting(settings)),
-      spline_degree_(settings.deformation == "cubic" ? 3 : 5) {
+      spline_degree_(settings.deformation == "sinc"    ? windowed_sinc
+                     : settings.deformation == "cubic" ? 3
+                                                       : 5) {
   GLADSTONE_EXPECTS(!windows_.empty() && settings.final_passes >= 1);
   windows_.insert(windows_.end(), static_cast<std::size_t>(settings.final_passes - 1), settings.window_px.back());
 }

@@ -84,7 +84,7 @@ GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, B
 /// in the two deformed images, and what is left over is measured at mid-position, to second order in time.
 class PairDeformer {
  public:
-  /// @param degree of the B-spline, 3 or 5. Pixels that are not finite count as unknown.
+  /// @param degree of the B-spline, 3 or 5, or windowed_sinc. Pixels that are not finite count as unknown.
   PairDeformer(Image<double> const& reference, Image<double> const& flow, int degree);
 
   /// The pair: reference(x - d(x)/2) and flow(x + d(x)/2) with d the predictor [px].

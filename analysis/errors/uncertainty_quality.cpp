@@ -1,43 +1,78 @@
 #include "analysis/errors/uncertainty_quality.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/base/contracts.h"
 
 namespace gladstone {
+namespace {
 
-UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
-                                       std::span<Vec2d const> sigma, VectorMask const& mask) {
+/// Calls visit(error, sigma) for every component that counts. @return vectors left out for a gross error
+template <class Visit>
+std::size_t visit_components(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
+                             std::span<Vec2d const> sigma, VectorMask const& mask, Visit const& visit) {
   GLADSTONE_EXPECTS(measured.size() == truth.size() && measured.size() == sigma.size());
   GLADSTONE_EXPECTS(mask.empty() || mask.size() == measured.size());
-  UncertaintyQuality quality{};
-  double n = 0.0, within_1 = 0.0, within_2 = 0.0, e = 0.0, s = 0.0, ee = 0.0, ss = 0.0, es = 0.0;
+  std::size_t gross = 0;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     Vec2d const difference = measured[i] - truth[i], sigmas = sigma[i];
     bool const counts = mask.empty() || mask[i] != 0;
     if (!counts || !std::isfinite(length(difference)) || !std::isfinite(length(sigmas))) continue;
     if (length(difference) > gross_error_px) {
-      ++quality.gross;
+      ++gross;
       continue;
     }
-    for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
-      double const error = std::abs(difference.*axis), deviation = sigmas.*axis;
-      n += 1.0;
-      within_1 += error <= deviation;
-      within_2 += error <= 2.0 * deviation;
-      e += error;
-      s += deviation;
-      ee += error * error;
-      ss += deviation * deviation;
-      es += error * deviation;
-    }
+    for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) visit(std::abs(difference.*axis), sigmas.*axis);
   }
+  return gross;
+}
+
+}  // namespace
+
+UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
+                                       std::span<Vec2d const> sigma, VectorMask const& mask) {
+  UncertaintyQuality quality{};
+  double n = 0.0, within_1 = 0.0, within_2 = 0.0, e = 0.0, s = 0.0, ee = 0.0, ss = 0.0, es = 0.0;
+  quality.gross = visit_components(measured, truth, sigma, mask, [&](double error, double deviation) {
+    n += 1.0;
+    within_1 += error <= deviation;
+    within_2 += error <= 2.0 * deviation;
+    e += error;
+    s += deviation;
+    ee += error * error;
+    ss += deviation * deviation;
+    es += error * deviation;
+  });
   quality.count = static_cast<std::size_t>(n);
   quality.coverage_1 = within_1 / n;  // 0/0: NaN of nothing
   quality.coverage_2 = within_2 / n;
   quality.rms_ratio = std::sqrt(ss / ee);
   quality.correlation = (n * es - e * s) / std::sqrt((n * ee - e * e) * (n * ss - s * s));
+  quality.sharpness_px = std::sqrt(ss / n);
   return quality;
+}
+
+std::vector<UncertaintyBin> uncertainty_bins(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
+                                             std::span<Vec2d const> sigma, VectorMask const& mask, std::size_t bins) {
+  constexpr std::size_t fewest = 50;
+  std::vector<std::pair<double, double>> pairs;  // sigma, error
+  visit_components(measured, truth, sigma, mask,
+                   [&](double error, double deviation) { pairs.emplace_back(deviation, error); });
+  std::sort(pairs.begin(), pairs.end());
+  std::size_t const used = pairs.empty() ? 0 : std::max<std::size_t>(1, std::min(bins, pairs.size() / fewest));
+  std::vector<UncertaintyBin> result;
+  for (std::size_t bin = 0; bin < used; ++bin) {
+    std::size_t const begin = bin * pairs.size() / used, end = (bin + 1) * pairs.size() / used;
+    double ss = 0.0, ee = 0.0;
+    for (std::size_t k = begin; k < end; ++k) {
+      ss += pairs[k].first * pairs[k].first;
+      ee += pairs[k].second * pairs[k].second;
+    }
+    double const count = static_cast<double>(end - begin);
+    result.push_back({end - begin, std::sqrt(ss / count), std::sqrt(ee / count)});
+  }
+  return result;
 }
 
 std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQuality const& quality) {
@@ -46,7 +81,8 @@ std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQua
           {"coverage_1", quality.coverage_1},
           {"coverage_2", quality.coverage_2},
           {"rms_ratio", quality.rms_ratio},
-          {"correlation", quality.correlation}};
+          {"correlation", quality.correlation},
+          {"sharpness_px", quality.sharpness_px}};
 }
 
 }  // namespace gladstone

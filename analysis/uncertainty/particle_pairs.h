@@ -16,8 +16,9 @@ struct ParticleImagePair {
 /// placed by three points (Sciacchitano et al. 2013, section 2).
 void find_particle_pairs(MatchedWindow const& window, std::vector<ParticleImagePair>& pairs);
 
-/// Leaves out pairs whose disparity along either axis is further from the median than 2.5 deviations, which 1.4826 times
-/// the median distance from it stands for: where dots overlap, the maxima of the frames may belong to different ones.
+/// Leaves out pairs whose disparity along either axis is further from the median than 2.5 deviations, which 1.4826
+/// times the median distance from it stands for: where dots overlap, the maxima of the frames may belong to different
+/// ones.
 void leave_out_mismatches(std::vector<ParticleImagePair>& pairs);
 
 /// How many dots of equal weight scatter as much as these: (sum c)^2 / sum c^2.

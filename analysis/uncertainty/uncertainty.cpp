@@ -7,6 +7,7 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/vector_validation.h"
+#include "analysis/uncertainty/combination.h"
 #include "render/base/contracts.h"
 
 namespace gladstone {
@@ -23,6 +24,7 @@ constexpr std::array uncertainties{
     NamedUncertainty{"image_matching", image_matching},
     NamedUncertainty{"peak_ratio", peak_ratio_uncertainty},
     NamedUncertainty{"moment_of_correlation", moment_of_correlation},
+    NamedUncertainty{"combination", combined_uncertainty},
 };
 
 /// Both frames deformed by the whole field, its gaps filled.
@@ -40,6 +42,24 @@ ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const
 }
 
 }  // namespace
+
+std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
+  UncertaintyCombination const& combination = shipped_combination();
+  std::vector<std::vector<Vec2d>> sigmas(combination.terms.size());
+  for (std::size_t k = 0; k < sigmas.size(); ++k)
+    for (NamedUncertainty const& row : uncertainties)
+      if (combination.terms[k].method == row.name && combination.terms[k].weight != 0.0)
+        sigmas[k] = row.estimate(input);
+  std::vector<Vec2d> result(input.field.size());
+  std::vector<double> logarithms(sigmas.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
+      for (std::size_t k = 0; k < sigmas.size(); ++k)
+        if (!sigmas[k].empty()) logarithms[k] = std::log(sigmas[k][i].*axis);
+      result[i].*axis = std::exp(combination.log_sigma(logarithms));
+    }
+  return result;
+}
 
 std::vector<std::string> uncertainty_methods() {
   std::vector<std::string> names;

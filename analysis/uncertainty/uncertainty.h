@@ -38,6 +38,10 @@ std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input);
 /// (2018) 115301, eqs. 6 to 11.
 std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input);
 
+/// From the methods before, by weights that were learnt where errors are known: shipped_combination(). Where one of
+/// them tells nothing the combination does not either.
+std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input);
+
 /// Names of the methods, in the order of their table, without "none".
 std::vector<std::string> uncertainty_methods();
 

@@ -56,6 +56,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_views(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options);
+CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_report(CLI::App& app, GlobalOptions const& options);
 
 /// Of `gladstone sweep`: its own commands.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "analysis/errors/error_summary.h"
+#include "analysis/errors/uncertainty_quality.h"
 #include "render/base/image_file.h"
 #include "render/base/text_file.h"
 #include "studies/budget_stages.h"
@@ -19,8 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_frame_px = 1024;    ///< of a picture in a report, across and down
-constexpr std::size_t bin_count = 10;  ///< of the uncertainty
+constexpr int most_frame_px = 1024;  ///< of a picture in a report, across and down
 
 /// The displacements of the budget's chain, and what each cause adds to them.
 void add_maps(CaseView& view) {
@@ -50,27 +50,11 @@ void add_maps(CaseView& view) {
 
 /// rms of the error over bins of equal count of the estimated uncertainty.
 nlohmann::json reliability_of(Comparison const& all) {
-  std::vector<std::pair<double, double>> both;
-  for (std::size_t i = 0; i < all.measured.sigma_px.size(); ++i) {
-    Vec2d const sigma = all.measured.sigma_px[i];
-    Vec2d const error = all.measured.displacement_px[i] - all.window.displacement_px[i];
-    if (!all.mask[i] || length(error) > gross_error_px) continue;
-    if (std::isfinite(sigma.x) && std::isfinite(error.x)) both.emplace_back(sigma.x, error.x);
-    if (std::isfinite(sigma.y) && std::isfinite(error.y)) both.emplace_back(sigma.y, error.y);
-  }
-  std::sort(both.begin(), both.end());
   nlohmann::json bins = nlohmann::json::array();
-  if (both.size() < 10 * bin_count) return bins;
-  for (std::size_t k = 0; k < bin_count; ++k) {
-    std::size_t const begin = k * both.size() / bin_count, end = (k + 1) * both.size() / bin_count;
-    double sigma = 0, error = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      sigma += both[i].first * both[i].first;
-      error += both[i].second * both[i].second;
-    }
-    auto const n = static_cast<double>(end - begin);
-    bins.push_back({{"sigma", std::sqrt(sigma / n)}, {"error", std::sqrt(error / n)}, {"n", end - begin}});
-  }
+  if (all.measured.sigma_px.empty()) return bins;
+  for (UncertaintyBin const& bin :
+       uncertainty_bins(all.measured.displacement_px, all.window.displacement_px, all.measured.sigma_px, all.mask))
+    bins.push_back({{"sigma", bin.rms_sigma_px}, {"error", bin.rms_error_px}, {"n", bin.count}});
   return bins;
 }
 

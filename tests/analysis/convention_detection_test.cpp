@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "render/base/units.h"
 
 namespace gladstone {
 namespace {
@@ -264,6 +267,23 @@ TEST(DetectConventions, DoesNotHangOnAFewWildVectors) {
   DetectedConventions const found = detect_conventions(file, waves, 200);
   EXPECT_NE(found.verdict, Verdict::fits_none) << found.report;
   EXPECT_EQ(found.conventions, VectorConventions{});
+}
+
+// Files of OpenPIV 0.26.1 (extended_search_area_piv of 32 px; windef with 64, 32, 16 px) for render_particle_pair() of
+// 160 x 160 px, 1 % noise, seed 77 and this displacement. Both write x = ws/2. One pass measures half a pixel from
+// there; windef deforms the images at those very places, where its vectors then belong: the file's name is all that
+// tells them apart, and the displacement.
+TEST(DetectConventions, TellsOnePassOfOpenPivFromItsDeformingOne) {
+  auto const flow = [](Vec2d p) { return Vec2d{1.5 + std::sin(2.0 * pi * p.y / 160.0), 0.02 * (p.x - 79.5)}; };
+  std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/fuzz/corpus/vector_text/openpiv_0.26_";
+  for (auto const& [name, offset] : {std::pair{"windef", 0.0}, {"one_pass", -0.5}}) {
+    VectorFile const file = read_vectors(folder + name + ".txt");
+    EXPECT_EQ(file.format, "OpenPIV");
+    DetectedConventions const found = detect_conventions(file, flow, 160);
+    EXPECT_EQ(found.verdict, Verdict::fits) << found.report;
+    EXPECT_EQ(describe(found.conventions), std::string("y-up,v-up,offset=") + (offset == 0.0 ? "0" : "-0.5"))
+        << found.report;
+  }
 }
 
 }  // namespace

@@ -9,13 +9,10 @@
 #include <tuple>
 
 #include "analysis/correlation/correlator.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
-
-using testing::ParticlePair;
-using testing::render_particle_pair;
 
 CorrelationSettings one_pass(std::string const& method, std::string const& weighting = "gaussian") {
   CorrelationSettings settings;
@@ -136,6 +133,9 @@ TEST(MissingOnGpu, IsEverythingButScc) {
   EXPECT_EQ(missing_on_gpu(settings), "");
   settings.subpixel = "gauss2d";
   EXPECT_EQ(missing_on_gpu(settings), "subpixel = \"gauss2d\"");
+  settings = {};
+  settings.deformation = "sinc";
+  EXPECT_EQ(missing_on_gpu(settings), "deformation = \"sinc\"");
   for (std::string const& method : correlation_methods())
     EXPECT_EQ(missing_on_gpu(one_pass(method)), method == "scc" ? "" : "method = \"" + method + "\"");
 }

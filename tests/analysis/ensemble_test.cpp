@@ -7,18 +7,18 @@
 
 #include "analysis/correlation/correlator.h"
 #include "render/base/error.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
 
 constexpr Vec2d ensemble_shift{2.3, -1.6};
 
-PairSequence sequence_of(std::size_t pairs, testing::ParticleSettings const& settings) {
+PairSequence sequence_of(std::size_t pairs, ParticleSettings const& settings) {
   return {pairs, [settings](std::size_t k) {
-            testing::ParticleSettings one = settings;
+            ParticleSettings one = settings;
             one.seed = settings.seed + k;
-            testing::ParticlePair pair = testing::render_particle_pair(one, [](Vec2d) { return ensemble_shift; });
+            ParticlePair pair = render_particle_pair(one, [](Vec2d) { return ensemble_shift; });
             return HostFrames(std::move(pair.reference), std::move(pair.flow));
           }};
 }
@@ -70,7 +70,7 @@ TEST(Ensemble, OfOnePairIsThePair) {
 // come from independent particles and noise: lower by that root, too, a quarter of 16 pairs, if not by as much as 1.5
 // more for what they share, the three-point fit's own error.
 TEST(Ensemble, FindsWhatNoSinglePairShows) {
-  testing::ParticleSettings const seeding{.particles_per_px = 2.0 / 256.0, .noise = 0.1, .seed = 11};
+  ParticleSettings const seeding{.particles_per_px = 2.0 / 256.0, .noise = 0.1, .seed = 11};
   CorrelationSettings const settings = settings_of({16});
   EnsembleErrors const alone = errors_of(correlate_ensemble(sequence_of(1, seeding), settings));
   EnsembleErrors const together = errors_of(correlate_ensemble(sequence_of(16, seeding), settings));

@@ -12,7 +12,7 @@
 #include "render/base/error.h"
 #include "render/base/image_file.h"
 #include "render/base/units.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
@@ -132,8 +132,7 @@ TEST(IntensityCap, IsTheMedianAndSomeDeviations) {
 
 // Illumination as a gain and an offset drops out of both, up to the 16 bits that CLAHE works in.
 TEST(LocalContrast, DoesNotDependOnTheLight) {
-  testing::ParticlePair const pair =
-      testing::render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
+  ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   Image<double> bright = pair.flow;
   for (double& level : bright) level = 7.0 * level + 30.0;
   for (auto const& [kind, tolerance] : {std::pair("min_max", 1e-12), std::pair("clahe", 700.0)}) {
@@ -158,8 +157,7 @@ double contrast_of(Image<double> const& frame, int first, int end) {
 
 // A half with an eighth of the other's light: afterwards its contrast is at least twice that part of the other's.
 TEST(LocalContrast, BringsUpWhatIsFaint) {
-  testing::ParticlePair pair =
-      testing::render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
+  ParticlePair pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{}; });
   for (int j = 0; j < 128; ++j)
     for (int i = 64; i < 128; ++i) pair.flow(i, j) /= 8.0;
   for (char const* settings :
@@ -174,14 +172,14 @@ TEST(LocalContrast, BringsUpWhatIsFaint) {
 // it the dots. The smallest level of a sequence is the pattern alone where no dot is always.
 TEST(Background, TakesOffWhatStandsStill) {
   auto const moved = [](std::uint64_t seed, Vec2d by) {
-    return testing::render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = seed}, [by](Vec2d) { return by; });
+    return render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = seed}, [by](Vec2d) { return by; });
   };
-  testing::ParticlePair const still = testing::render_particle_pair({.seed = 99}, [](Vec2d) { return Vec2d{}; });
+  ParticlePair const still = render_particle_pair({.seed = 99}, [](Vec2d) { return Vec2d{}; });
   std::string const folder = ::testing::TempDir();
   std::string list;
   Image<double> first[2];
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    testing::ParticlePair const dots = moved(seed, {2.0, -1.0});
+    ParticlePair const dots = moved(seed, {2.0, -1.0});
     std::string const names[2] = {"gladstone_a" + std::to_string(seed) + ".tif",
                                   "gladstone_b" + std::to_string(seed) + ".tif"};
     for (int k = 0; k < 2; ++k) {
@@ -216,7 +214,7 @@ TEST(Background, TakesOffWhatStandsStill) {
 
 // Windows that are masked by half or more have no vector, and the others the vectors of the frames as they are.
 TEST(Mask, LeavesTheOtherVectorsAsTheyAre) {
-  testing::ParticlePair const pair = testing::render_particle_pair({}, [](Vec2d) { return Vec2d{1.3, -0.4}; });
+  ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{1.3, -0.4}; });
   CorrelationSettings settings;
   settings.window_px = {32};
   settings.weighting = "uniform";

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "render/base/units.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
@@ -18,9 +18,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using testing::ParticlePair;
-using testing::ParticleSettings;
-using testing::render_particle_pair;
 
 auto everywhere(double u, double v) {
   return [u, v](Vec2d) { return Vec2d{u, v}; };

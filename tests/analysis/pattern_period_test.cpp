@@ -4,13 +4,13 @@
 
 #include <random>
 
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
 
-Image<double> picture_of_dots(testing::ParticleSettings const& settings) {
-  return testing::render_particle_pair(settings, [](Vec2d) { return Vec2d{}; }).reference;
+Image<double> picture_of_dots(ParticleSettings const& settings) {
+  return render_particle_pair(settings, [](Vec2d) { return Vec2d{}; }).reference;
 }
 
 /// Grey levels that have nothing in common.

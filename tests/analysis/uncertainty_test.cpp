@@ -9,13 +9,10 @@
 #include "analysis/correlation/correlator.h"
 #include "analysis/errors/uncertainty_quality.h"
 #include "render/base/error.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
-
-using testing::ParticlePair;
-using testing::render_particle_pair;
 
 class TestFrames final : public FramePair {
  public:
@@ -63,6 +60,34 @@ TEST(UncertaintyQuality, IsThatOfNormalErrors) {
   EXPECT_NEAR(quality.coverage_2, 0.9545, 0.0028);
   EXPECT_NEAR(quality.rms_ratio, 1.0, 0.014);
   EXPECT_NEAR(quality.correlation, 0.386, 0.014);
+}
+
+// Sigma 0.01 to 0.1 and errors twice as large: each bin says so, and the bins follow one another. Half the components
+// are gross or masked and nowhere to be seen.
+TEST(UncertaintyBins, FollowTheErrors) {
+  std::vector<Vec2d> measured, truth, sigma;
+  VectorMask mask;
+  for (int i = 0; i < 2000; ++i) {
+    double const s = 0.01 + 0.09 * ((i * 7919) % 2000) / 2000.0;
+    bool const right = i % 2 == 0;
+    truth.push_back({1.0, 2.0});
+    sigma.push_back({s, s});
+    measured.push_back(truth.back() + (right ? 2.0 * s : 5.0) * Vec2d{1.0, -1.0});
+    mask.push_back(i % 4 != 3);
+  }
+  std::vector<UncertaintyBin> const bins = uncertainty_bins(measured, truth, sigma, mask);
+  ASSERT_EQ(bins.size(), 10u);
+  for (std::size_t k = 0; k < bins.size(); ++k) {
+    EXPECT_EQ(bins[k].count, 200u);
+    EXPECT_NEAR(bins[k].rms_error_px / bins[k].rms_sigma_px, 2.0, 1e-9);
+    if (k > 0) {
+      EXPECT_GT(bins[k].rms_sigma_px, bins[k - 1].rms_sigma_px);
+    }
+  }
+  double const mean_square = uncertainty_quality(measured, truth, sigma, mask).sharpness_px;
+  // s is uniform on 0.01 .. 0.1: sqrt((0.1^3 - 0.01^3)/(3 0.09)) = 0.0608, to the lattice's 1/1000
+  EXPECT_NEAR(mean_square, 0.0608, 2e-4);
+  EXPECT_TRUE(uncertainty_bins({}, {}, {}, {}).empty());
 }
 
 // Half of all normal errors lie within 0.67 sigma; what each method gives on 1024 px stands in docs/estimators.md.

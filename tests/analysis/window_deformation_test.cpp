@@ -55,6 +55,26 @@ TEST(BsplineImage, ShiftsAWaveWithoutSteps) {
     EXPECT_NEAR(image.view().sample<5>(64, 8, shift, 0.0), wave(64.0 + shift), 2e-5);
 }
 
+// Eight pixels by Lanczos' window pass constants and the pixels themselves. Of a wave of 8 px the sum of its eight
+// terms is off by 0.00593 of its height at most, over all phases and shifts.
+TEST(WindowedSinc, PassesThroughPixelsAndShiftsAWave) {
+  auto const pixel = [](int i, int j) { return static_cast<double>((i * 37 + j * 101) % 256); };
+  BsplineImage<double> const image(13, 9, windowed_sinc, pixel),
+      flat(9, 9, windowed_sinc, [](int, int) { return 7.0; });
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 13; ++i) EXPECT_NEAR(image.view().sample<windowed_sinc>(i, j, 0.0, 0.0), pixel(i, j), 1e-7);
+  for (double const far : {-1e6, -3.0, 0.3, 2.5, 1e6})
+    EXPECT_NEAR(flat.view().sample<windowed_sinc>(4, 4, far, far), 7.0, 1e-12);
+  auto const wave = [](double x) { return std::sin(2.0 * pi * x / 8.0); };
+  BsplineImage<double> const waves(128, 16, windowed_sinc, [&](int i, int) { return wave(i); });
+  double worst = 0.0;
+  for (double shift = 0.0; shift < 1.0; shift += 0.01)
+    for (int i = 60; i < 68; ++i)
+      worst = std::max(worst, std::abs(waves.view().sample<windowed_sinc>(i, 8, shift, 0.0) - wave(i + shift)));
+  EXPECT_LT(worst, 0.00594);
+  EXPECT_GT(worst, 0.004);
+}
+
 TEST(DensePredictor, ReproducesALinearFieldUpToTheCorners) {
   InterrogationGrid const grid = make_interrogation_grid(100, 90, 16, 0.5);
   auto const field = [](Vec2d p) { return Vec2d{1.0 + 0.02 * p.x - 0.03 * p.y, -2.0 + 0.01 * p.y}; };

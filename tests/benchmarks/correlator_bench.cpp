@@ -2,17 +2,17 @@
 
 #include "analysis/correlation/correlator.h"
 #include "render/base/parallel.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone::bench {
 namespace {
 
 /// Vectors per second on a pair of 1024 x 1024 px with 20 particles a 32 px window and a smooth displacement.
 void correlate(benchmark::State& state, CorrelationSettings const& settings) {
-  static testing::ParticlePair const pair = [] {
-    testing::ParticleSettings particles;
+  static ParticlePair const pair = [] {
+    ParticleSettings particles;
     particles.columns = particles.rows = 1024;
-    return testing::render_particle_pair(particles, [](Vec2d p) {
+    return render_particle_pair(particles, [](Vec2d p) {
       return Vec2d{1.7 + std::sin(0.01 * p.y), 0.8 * std::cos(0.012 * p.x)};
     });
   }();

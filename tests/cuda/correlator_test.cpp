@@ -9,14 +9,10 @@
 
 #include "cuda/backend.h"
 #include "render/base/error.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone::cuda {
 namespace {
-
-using testing::ParticlePair;
-using testing::ParticleSettings;
-using testing::render_particle_pair;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 

@@ -14,7 +14,7 @@
 #include "cuda/focused_dots/dot_cones.h"
 #include "render/base/error.h"
 #include "render/focused_dots/deflection_map.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone::cuda {
@@ -205,11 +205,11 @@ TEST_F(SmallDevice, RefusesAVolumeThatIsLargerThanItBeforeAnyAllocation) {
   expect_same(expected, render(before));
 }
 
-testing::ParticlePair particles(int columns, int rows) {
-  testing::ParticleSettings settings;
+ParticlePair particles(int columns, int rows) {
+  ParticleSettings settings;
   settings.columns = columns;
   settings.rows = rows;
-  return testing::render_particle_pair(settings, [](Vec2d p) { return Vec2d{1.7, 0.02 * p.x}; });
+  return render_particle_pair(settings, [](Vec2d p) { return Vec2d{1.7, 0.02 * p.x}; });
 }
 
 void expect_same(DisplacementField const& a, DisplacementField const& b) {
@@ -224,7 +224,7 @@ void expect_same(DisplacementField const& a, DisplacementField const& b) {
 
 // At whichever allocation it fails.
 TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
-  testing::ParticlePair const pair = particles(256, 256);
+  ParticlePair const pair = particles(256, 256);
   auto const field_of = [&](Correlator const& correlator) { return correlator.correlate(pair.reference, pair.flow); };
   std::size_t most = 0;
   DisplacementField const expected = [&] {
@@ -248,7 +248,7 @@ TEST_F(SmallDevice, RefusesACorrelationThatDoesNotFitAndThenGoesOn) {
 // Windows of 94 px have supports of 188 px, 2 * 189 * 188 floats each, which lie in the device's memory: fewer of them
 // are worked on at a time.
 TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
-  testing::ParticlePair const pair = particles(300, 260);
+  ParticlePair const pair = particles(300, 260);
   CorrelationSettings settings;
   settings.window_px = {94};
   auto const with_limit = [&](std::size_t bytes, std::size_t& most) {
@@ -268,7 +268,7 @@ TEST_F(SmallDevice, CorrelatesFewerLargeWindowsAtATime) {
 // A support of 128 px (windows of 64) lies in shared memory where there is room for it, else in the device's; one of
 // 800 px has fewer warps, whose sums of floats have another order.
 TEST_F(SmallDevice, CorrelatesWithLessSharedMemory) {
-  testing::ParticlePair const pair = particles(420, 410);
+  ParticlePair const pair = particles(420, 410);
   for (int const window : {64, 400}) {
     CorrelationSettings settings;
     settings.window_px = {window};

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "studies/benchmark/particle_pair.h"
 #include "studies/correlate.h"
-#include "tests/analysis/support/particle_pair.h"
 
 namespace gladstone {
 namespace {
@@ -18,9 +18,7 @@ class NominalGpu final : public Renderer {
 // What the GPU's correlator does not have, --device auto gives to the CPU: the result is to name what measured it.
 TEST(Measurement, NamesTheDeviceThatCorrelated) {
   Device const device{std::make_unique<NominalGpu>(), make_correlator};
-  testing::ParticlePair const pair = testing::render_particle_pair({.columns = 64, .rows = 64}, [](Vec2d) {
-    return Vec2d{0.5, 0.0};
-  });
+  ParticlePair const pair = render_particle_pair({.columns = 64, .rows = 64}, [](Vec2d) { return Vec2d{0.5, 0.0}; });
   CorrelationSettings settings;
   settings.window_px = {32};
   auto const device_of = [&] {

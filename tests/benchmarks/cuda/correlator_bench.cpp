@@ -9,7 +9,7 @@
 #include "cuda/correlation/cuda_correlator.h"
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_timer.h"
-#include "tests/analysis/support/particle_pair.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone::bench {
 namespace {
@@ -17,13 +17,13 @@ namespace {
 using cuda::DeviceArray;
 using cuda::DeviceImage;
 
-testing::ParticlePair const& particle_pair(int size) {
-  static std::vector<std::pair<int, testing::ParticlePair>> made;
+ParticlePair const& particle_pair(int size) {
+  static std::vector<std::pair<int, ParticlePair>> made;
   for (auto const& [there, pair] : made)
     if (there == size) return pair;
-  testing::ParticleSettings particles;
+  ParticleSettings particles;
   particles.columns = particles.rows = size;
-  made.emplace_back(size, testing::render_particle_pair(particles, [](Vec2d p) {
+  made.emplace_back(size, render_particle_pair(particles, [](Vec2d p) {
                       return Vec2d{1.7 + std::sin(0.01 * p.y), 0.8 * std::cos(0.012 * p.x)};
                     }));
   return made.back().second;

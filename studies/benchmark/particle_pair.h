@@ -5,16 +5,21 @@
 #include <cstdint>
 #include <functional>
 #include <random>
+#include <vector>
 
 #include "render/base/image.h"
 #include "render/base/vec.h"
 
-namespace gladstone::testing {
+namespace gladstone {
 
 /// Two images of particles with a displacement known everywhere.
 struct ParticlePair {
   Image<double> reference;
   Image<double> flow;
+  /// Of the particles that both frames show, as window_truth() takes them: place in the reference, displacement [px],
+  /// and the peak of either image, in parts of the brightest, as a geometric mean.
+  std::vector<Vec2d> dot_reference_px = {}, dot_displacement_px = {};
+  std::vector<double> dot_light = {};
 };
 
 struct ParticleSettings {
@@ -25,6 +30,9 @@ struct ParticleSettings {
   double noise = 0.0;  ///< standard deviation over the peak of the brightest particle
   std::uint64_t seed = 1;
   double pitch_px = 0.0;  ///< of a square lattice of equal particles in their place; 0: at random, of any brightness
+  double lost = 0.0;      ///< part of the particles of either frame that the other does not show, others in their place
+  double flow_light = 1.0;   ///< of the flow frame over that of the reference, background too
+  double light_slope = 0.0;  ///< by how much that ratio grows from the left to the right, in parts of itself
 };
 
 /// 8-bit images of Gaussian particles integrated over the pixels. Particles stand at -d/2 in the reference and +d/2 in
@@ -51,10 +59,16 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
       for (int i = std::max(0, column - half); i <= std::min(image.columns() - 1, column + half); ++i)
         image(i, j) += amplitude * x[i - column + half] * y[j - row + half];
   };
+  auto const light = [&](double x) {
+    return settings.flow_light * (1.0 + settings.light_slope * (x / settings.columns - 0.5));
+  };
   auto const draw_in_both = [&](Vec2d at, double amplitude) {
-    Vec2d const half_way = 0.5 * displacement(at);
+    Vec2d const whole = displacement(at), half_way = 0.5 * whole;
     draw(pair.reference, at - half_way, amplitude);
     draw(pair.flow, at + half_way, amplitude);
+    pair.dot_reference_px.push_back(at - half_way);
+    pair.dot_displacement_px.push_back(whole);
+    pair.dot_light.push_back(amplitude / peak * std::sqrt(light(at.x)));
   };
   if (settings.pitch_px > 0.0) {
     for (double y = -margin; y < settings.rows + margin; y += settings.pitch_px)
@@ -66,9 +80,18 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
       double const x = uniform() * (settings.columns + 2.0 * margin) - margin - 0.5;
       double const y = uniform() * (settings.rows + 2.0 * margin) - margin - 0.5;
       double const amplitude = peak * (0.5 + 0.5 * uniform());
+      if (settings.lost > 0.0 && uniform() < settings.lost) {
+        draw(pair.reference, {x, y}, amplitude);
+        double const other_x = uniform() * (settings.columns + 2.0 * margin) - margin - 0.5;
+        draw(pair.flow, {other_x, uniform() * (settings.rows + 2.0 * margin) - margin - 0.5}, amplitude);
+        continue;
+      }
       draw_in_both({x, y}, amplitude);
     }
   }
+  if (settings.flow_light != 1.0 || settings.light_slope != 0.0)
+    for (int j = 0; j < settings.rows; ++j)
+      for (int i = 0; i < settings.columns; ++i) pair.flow(i, j) *= light(i);
   for (Image<double>* image : {&pair.reference, &pair.flow})
     for (double& value : *image) {
       // Box & Muller
@@ -80,4 +103,4 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
   return pair;
 }
 
-}  // namespace gladstone::testing
+}  // namespace gladstone

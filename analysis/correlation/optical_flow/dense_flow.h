@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/correlation/bspline_image.h"
+#include "analysis/correlation/window_deformation.h"
+#include "render/base/vec.h"
+
+/// Optical flow: a displacement for every pixel instead of one for every window. It is here to be compared with.
+namespace gladstone {
+
+/// Grey levels in float, row by row; beyond the border its outermost pixels go on.
+struct GreyImage {
+  int columns = 0, rows = 0;
+  std::vector<float> level;
+
+  float operator()(int x, int y) const {
+    int const i = x < 0 ? 0 : (x < columns ? x : columns - 1), j = y < 0 ? 0 : (y < rows ? y : rows - 1);
+    return level[static_cast<std::size_t>(j) * columns + i];
+  }
+};
+
+/// A displacement at every pixel's centre [px].
+struct DenseFlow {
+  int columns = 0, rows = 0;
+  std::vector<float> u, v;
+
+  DenseFlow() = default;
+  DenseFlow(int width, int height)
+      : columns(width), rows(height), u(static_cast<std::size_t>(width) * height), v(u.size()) {}
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * columns + x; }
+  /// Bilinear between pixels; beyond the outermost as there.
+  Vec2d at(Vec2d position) const;
+  /// Of an image twice as fine: twice as large, bilinear.
+  DenseFlow finer(int width, int height) const;
+};
+
+/// A frame and its halves: each level blurred by (1 4 6 4 1)/16 along either axis, every other pixel taken, so that
+/// pixel i of a level is pixel 2 i of the one before. The finest first; no side below 24 px, but for the finest's.
+std::vector<GreyImage> pyramid_of(GreyImage finest);
+
+/// The frames less their local mean (Gaussian, 8 px), over their own rms: light that differs between them does no harm.
+GreyImage normalised_frame(int columns, int rows, std::vector<float> const& level);
+
+/// A displacement for every pixel, that belongs to the mid-position as a correlation's does.
+using EstimateFlow = DenseFlow (*)(GreyImage const& reference, GreyImage const& flow);
+
+/// Horn & Schunck, Artif. Intell. 17 (1981) 185, from coarse to fine: each level deforms both frames by half of what is
+/// known in opposite directions (cubic B-splines), and finds the smooth displacement whose remainder explains what is
+/// left. For background oriented schlieren: Atcheson, Heidrich & Ihrke, Exp. Fluids 46 (2009) 467.
+DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow);
+/// Dense inverse search: patches of 8 x 8 px, 4 px apart, each moved until it fits, from coarse to fine, and averaged
+/// by how well they fit. Kroeger, Timofte, Dai & Van Gool, ECCV 2016, sections 2.1 and 2.2, down to the finest level,
+/// which they leave out for speed, and without their variational refinement. OpenCV's DISOpticalFlow has both.
+DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow);
+
+}  // namespace gladstone

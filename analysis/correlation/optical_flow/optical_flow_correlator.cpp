@@ -1,0 +1,70 @@
+#include "analysis/correlation/optical_flow/optical_flow_correlator.h"
+
+#include <cmath>
+#include <limits>
+
+#include "analysis/correlation/standard_correlator.h"
+
+namespace gladstone {
+namespace {
+
+class OpticalFlowCorrelator final : public Correlator {
+ public:
+  OpticalFlowCorrelator(CorrelationSettings const& settings, EstimateFlow estimate)
+      : settings_(settings), estimate_(estimate) {}
+
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
+    check_image_sizes(settings_, reference.columns(), reference.rows(), flow.columns(), flow.rows());
+    ImagePair const pair = make_image_pair(reference, flow);
+    InterrogationGrid const grid = final_grid(settings_, pair.columns, pair.rows);
+    bool const any_contrast = pair.contrast > 0.0f;
+    DenseFlow dense(pair.columns, pair.rows);
+    if (any_contrast)
+      dense = estimate_(normalised_frame(pair.columns, pair.rows, pair.reference),
+                        normalised_frame(pair.columns, pair.rows, pair.flow));
+    double const limit = CorrelationSchedule(settings_).limit_px(), nan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<MeasuredVector> vectors(grid.size());
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      Vec2d const value = dense.at(grid.centre(i));
+      MeasuredVector& vector = vectors[i];
+      vector = {value, value, nan, nan, VectorStatus::valid, VectorReason::measured, Ambiguity::none};
+      auto const take_out = [&](VectorStatus status, VectorReason reason) {
+        vector.displacement = vector.raw = {nan, nan};
+        vector.status = status;
+        vector.reason = reason;
+      };
+      if (known_part(pair, grid, i) < smallest_known_part)
+        take_out(VectorStatus::masked, VectorReason::masked);
+      else if (!any_contrast)
+        take_out(VectorStatus::invalid, VectorReason::no_signal);
+      else if (!is_within(value, limit))
+        take_out(VectorStatus::invalid, VectorReason::beyond_limit);
+    }
+    return displacement_field(grid, vectors);
+  }
+
+ private:
+  /// Of a window's own pixels.
+  static double known_part(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
+    if (pair.available.empty()) return 1.0;
+    Vec2d const centre = grid.centre(vector);
+    int const x = static_cast<int>(std::lround(centre.x - 0.5 * (grid.window_px - 1)));
+    int const y = static_cast<int>(std::lround(centre.y - 0.5 * (grid.window_px - 1)));
+    double known = 0.0;
+    for (int j = y; j < y + grid.window_px; ++j)
+      for (int i = x; i < x + grid.window_px; ++i)
+        known += pair.available[static_cast<std::size_t>(j) * pair.columns + i];
+    return known / (static_cast<double>(grid.window_px) * grid.window_px);
+  }
+
+  CorrelationSettings settings_;
+  EstimateFlow estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<Correlator> make_optical_flow_correlator(CorrelationSettings const& settings, EstimateFlow estimate) {
+  return std::make_unique<OpticalFlowCorrelator>(settings, estimate);
+}
+
+}  // namespace gladstone

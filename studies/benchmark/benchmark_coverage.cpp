@@ -1,0 +1,89 @@
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "analysis/uncertainty/uncertainty.h"
+#include "studies/benchmark/benchmark_run.h"
+#include "studies/correlate.h"
+
+namespace gladstone {
+namespace {
+
+constexpr int pixels = RefractedTurbulence::pixels;
+constexpr double noises[] = {0.01, 0.05, 0.1};
+/// Seeds from here on are used for nothing else.
+constexpr std::uint64_t first_seed = 7001;
+
+struct TestedFlow {
+  char const* name;
+  DisplacementAt displacement;  ///< empty: refracted turbulence
+};
+
+/// What one seed gives.
+struct Sample {
+  double window, total, rms_ratio;
+};
+
+SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
+  double sum = 0.0, squares = 0.0;
+  double const n = static_cast<double>(samples.size());
+  for (Sample const& sample : samples) sum += sample.*value;
+  double const mean = sum / n;
+  for (Sample const& sample : samples) squares += (sample.*value - mean) * (sample.*value - mean);
+  return {mean, std::sqrt(squares / (n - 1.0) / n)};  // of one seed: NaN
+}
+
+}  // namespace
+
+std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
+  TestedFlow const flows[] = {{"uniform", uniform_flow({0.3, -0.3})},
+                              {"shear", shear_flow(0.02, pixels)},
+                              {"vortex", vortex_flow(100.0, pixels)},
+                              {"turbulence", {}}};
+  std::map<std::tuple<std::string, std::string, double>, std::vector<Sample>> samples;
+  for (TestedFlow const& flow : flows) {
+    DisplacementAt truth = flow.displacement;
+    for (int k = 0; k < seeds; ++k) {
+      std::uint64_t const seed = first_seed + static_cast<std::uint64_t>(k);
+      spdlog::info("coverage: {}, seed {} of {}", flow.name, k + 1, seeds);
+      std::optional<RefractedTurbulence> turbulence;
+      if (!flow.displacement) {
+        turbulence.emplace(seed, *device.renderer);
+        if (!truth) truth = turbulence->truth();
+      }
+      for (double const noise : noises) {
+        ParticlePair pair =
+            turbulence ? turbulence->frames(noise, seed)
+                       : render_particle_pair({.columns = pixels, .rows = pixels, .noise = noise, .seed = seed}, truth);
+        CorrelationSettings settings;
+        HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
+        DisplacementField field = correlate_frames(frames, settings, device).field;
+        std::vector<Vec2d> const point = truth_at_vectors(field, truth),
+                                 window = window_truth_of(field, pair, settings);
+        VectorMask mask = benchmark_mask(field, pixels, pixels);
+        for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && field.status[i] == VectorStatus::valid;
+        for (std::string const& method : uncertainty_methods()) {
+          settings.uncertainty = method;
+          estimate_uncertainty(field, frames, settings);
+          UncertaintyQuality const on_window = uncertainty_quality(field.displacement_px, window, field.sigma_px, mask);
+          UncertaintyQuality const total = uncertainty_quality(field.displacement_px, point, field.sigma_px, mask);
+          samples[{method, flow.name, noise}].push_back({on_window.coverage_1, total.coverage_1, on_window.rms_ratio});
+        }
+      }
+    }
+  }
+  std::vector<CoverageRow> rows;
+  for (std::string const& method : uncertainty_methods())
+    for (TestedFlow const& flow : flows)
+      for (double const noise : noises) {
+        std::vector<Sample> const& of = samples[{method, flow.name, noise}];
+        rows.push_back({method, flow.name, noise, mean_of(of, &Sample::window), mean_of(of, &Sample::total),
+                        mean_of(of, &Sample::rms_ratio)});
+      }
+  return rows;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "studies/benchmark/benchmark_run.h"
+#include "studies/version_text.h"
+
+namespace gladstone {
+namespace {
+
+bool is_of_curve(std::string const& name) {
+  std::vector<BenchmarkEstimator> const& ours = benchmark_estimators();
+  return std::any_of(ours.begin(), ours.end(),
+                     [&](BenchmarkEstimator const& one) { return one.name == name && one.of_curve; });
+}
+
+/// Without what is only of the curve of settings.
+std::vector<std::string> codes_of(BenchmarkResult const& result) {
+  std::vector<std::string> codes;
+  for (BenchmarkRow const& row : result.rows)
+    if (!is_of_curve(row.estimator) && std::find(codes.begin(), codes.end(), row.estimator) == codes.end())
+      codes.push_back(row.estimator);
+  return codes;
+}
+
+BenchmarkRow const* find_row(BenchmarkResult const& result, std::string const& code, std::string const& of_case) {
+  for (BenchmarkRow const& row : result.rows)
+    if (row.estimator == code && row.of_case == of_case) return &row;
+  return nullptr;
+}
+
+/// One measure of every code on every case it was run on.
+TextTable table_of(BenchmarkResult const& result, std::string const& caption,
+                   std::function<TableCell(BenchmarkScore const&)> const& cell,
+                   std::function<bool(CaseRecord const&)> const& shown = {}) {
+  std::vector<std::string> const codes = codes_of(result);
+  TextTable table{caption, {"case"}, {}};
+  table.header.insert(table.header.end(), codes.begin(), codes.end());
+  for (CaseRecord const& one : result.cases) {
+    if (shown && !shown(one)) continue;
+    std::vector<TableCell> row{{one.of.name}};
+    for (std::string const& code : codes) {
+      BenchmarkRow const* const found = find_row(result, code, one.of.name);
+      row.push_back(found ? cell(found->score) : TableCell{"-"});
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+TableCell fixed(double value, int digits) {
+  if (!std::isfinite(value)) return {"unknown"};
+  return {fmt::format("{:.{}f}", value, digits), value};
+}
+
+std::string with_error(SeedMean const& mean) {
+  return std::isfinite(mean.error) ? fmt::format("{:.3f} ± {:.3f}", mean.mean, mean.error)
+                                   : fmt::format("{:.3f}", mean.mean);
+}
+
+/// Noise and gain of every code that was run on both of their cases, by gain.
+std::optional<TextTable> curve_table(BenchmarkResult const& result) {
+  TextTable table{"Noise against gain",
+                  {"code", fmt::format("rms error in {} [px]", noise_case), fmt::format("gain in {}", gain_case),
+                   fmt::format("rms error in {} [px]", gain_case)},
+                  {}};
+  for (BenchmarkRow const& row : result.rows) {
+    BenchmarkRow const* const quiet = find_row(result, row.estimator, noise_case);
+    if (row.of_case != gain_case || !quiet) continue;
+    table.rows.push_back({{row.estimator},
+                          fixed(quiet->score.errors.rms_without_gross_px, 4),
+                          fixed(row.score.gain, 4),
+                          fixed(row.score.errors.rms_without_gross_px, 4)});
+  }
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [](auto const& a, auto const& b) { return a[2].number.value_or(0.0) < b[2].number.value_or(0.0); });
+  return table.rows.empty() ? std::nullopt : std::optional(std::move(table));
+}
+
+ReportSection error_section(BenchmarkResult const& result) {
+  ReportSection section{"Errors", {}};
+  section.blocks.push_back(
+      Paragraph{"Errors per component against the displacement at the vector's place, vectors closer than 32 px to the "
+                "border left out. Gross: an error above 1 px. Gain: the share of the displacement that the vectors "
+                "follow. Read rms together with gain: large windows are quiet and blind."});
+  section.blocks.push_back(table_of(result, "rms error without gross ones [px]",
+                                    [](BenchmarkScore const& s) { return fixed(s.errors.rms_without_gross_px, 4); }));
+  section.blocks.push_back(table_of(result, "gross errors, and vectors that are missing or invalid", [](auto const& s) {
+    return TableCell{fmt::format("{} + {} of {}", s.gross, s.vectors - s.errors.count, s.vectors),
+                     static_cast<double>(s.gross + s.vectors - s.errors.count)};
+  }));
+  section.blocks.push_back(table_of(
+      result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
+      [](CaseRecord const& one) { return one.of.name.starts_with("sine") || one.of.refracted(); }));
+  section.blocks.push_back(table_of(result, "bias of u / of v, gross errors counted [px]", [](BenchmarkScore const& s) {
+    double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
+    return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
+  }));
+  if (std::optional<TextTable> curve = curve_table(result)) section.blocks.push_back(std::move(*curve));
+  return section;
+}
+
+ReportSection uncertainty_section(BenchmarkResult const& result) {
+  ReportSection section{"Uncertainty", {}};
+  TextTable table{"What sigma of our default passes tells of their errors",
+                  {"case", "method", "within sigma (0.68)", "within 2 sigma (0.95)", "rms(sigma)/rms(error)",
+                   "correlation with |error|", "rms(sigma) [px]", "total error within sigma"},
+                  {},
+                  true};
+  for (UncertaintyRow const& row : result.uncertainties)
+    table.rows.push_back({{row.of_case},
+                          {row.method},
+                          fixed(row.window.coverage_1, 3),
+                          fixed(row.window.coverage_2, 3),
+                          fixed(row.window.rms_ratio, 3),
+                          fixed(row.window.correlation, 3),
+                          fixed(row.window.sharpness_px, 4),
+                          fixed(row.point.coverage_1, 3)});
+  section.blocks.push_back(
+      Paragraph{"Both components pooled, gross errors left out, against the truth that the windows average; the last "
+                "column is against the truth at the place, whose difference no method knows of."});
+  section.blocks.push_back(std::move(table));
+  if (!result.coverage.empty()) {
+    TextTable coverage{
+        fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
+        {"method", "flow", "noise [%]", "within sigma", "total error within sigma", "rms(sigma)/rms(error)"},
+        {},
+        true};
+    for (CoverageRow const& row : result.coverage)
+      coverage.rows.push_back({{row.method},
+                               {row.flow},
+                               {fmt::format("{:.0f}", 100.0 * row.noise), row.noise},
+                               {with_error(row.window), row.window.mean},
+                               {with_error(row.total), row.total.mean},
+                               {with_error(row.rms_ratio), row.rms_ratio.mean}});
+    section.blocks.push_back(std::move(coverage));
+  }
+  return section;
+}
+
+/// What each code reaches in the vortex, in noise and at fine structures.
+std::vector<std::string> findings_of(BenchmarkResult const& result) {
+  std::vector<std::string> findings;
+  for (std::string const& code : codes_of(result)) {
+    std::string text;
+    auto const tell = [&](char const* of_case, char const* in_words) {
+      if (BenchmarkRow const* const row = find_row(result, code, of_case))
+        text +=
+            fmt::format("{}{:.4f} px {}", text.empty() ? "" : ", ", row->score.errors.rms_without_gross_px, in_words);
+    };
+    tell("vortex", "in the vortex");
+    tell(noise_case, "at 5 % noise");
+    if (BenchmarkRow const* const row = find_row(result, code, gain_case))
+      text += fmt::format("{}a gain of {:.3f} at sines of 64 px", text.empty() ? "" : ", ", row->score.gain);
+    if (!text.empty()) findings.push_back(code + ": " + text + '.');
+  }
+  return findings;
+}
+
+}  // namespace
+
+ReportPage benchmark_page(BenchmarkResult const& result, std::string const& folder) {
+  ReportPage page;
+  page.title = "How well displacement is measured";
+  page.question = "What do estimators make of image pairs whose every displacement is known?";
+  page.findings = findings_of(result);
+  page.sections.push_back(error_section(result));
+  if (!result.uncertainties.empty() || !result.coverage.empty()) page.sections.push_back(uncertainty_section(result));
+  TextTable cases{"Cases: reference.tif, flow.tif and truth.csv stand in a folder of each",
+                  {"case", "what it shows", "SHA-256 of reference", "of flow"},
+                  {}};
+  for (CaseRecord const& one : result.cases)
+    cases.rows.push_back({{one.of.name}, {one.of.what}, {one.reference_sha256}, {one.flow_sha256}});
+  ReportSection made{"Cases, and how to score your own code", {std::move(cases)}};
+  made.blocks.push_back(Paragraph{
+      "Frames are 8-bit grey levels, mostly of 1024 x 1024 px. Particles stand at -d/2 in the reference and +d/2 in "
+      "the "
+      "flow frame, d at their mid-position. Measure every pair with your code, write the vectors of each into a file "
+      "named after its case (vortex.csv, .txt or .h5: ours, OpenPIV's, PIVlab's, or columns x, y, u, v in px), and "
+      "give "
+      "the folder. Axes and offsets are found by the vortex, where it is among the files."});
+  made.blocks.push_back(Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
+  if (!result.conventions.empty()) made.blocks.push_back(TextList{result.conventions});
+  made.blocks.push_back(Paragraph{"gladstone " + build_text() + ", on " + result.device + "."});
+  page.sections.push_back(std::move(made));
+  page.data = nlohmann::json::object();
+  return page;
+}
+
+}  // namespace gladstone

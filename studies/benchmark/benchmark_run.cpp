@@ -1,0 +1,242 @@
+#include "studies/benchmark/benchmark_run.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "analysis/correlation/correlator.h"
+#include "analysis/errors/window_truth.h"
+#include "analysis/uncertainty/uncertainty.h"
+#include "analysis/vectors/convention_detection.h"
+#include "analysis/vectors/vector_file.h"
+#include "analysis/vectors/vector_screening.h"
+#include "render/base/error.h"
+#include "render/base/image_file.h"
+#include "render/base/interrupt.h"
+#include "render/base/output_file.h"
+#include "render/base/output_folder.h"
+#include "render/base/source_files.h"
+#include "studies/case_files.h"
+#include "studies/correlate.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char const* truth_name = "truth.csv";
+constexpr int truth_spacing_px = 8;
+
+/// A case as it is measured.
+struct MadeCase {
+  CaseRecord record;
+  HostFrames frames;
+  ParticlePair dots;  ///< without images
+  DisplacementAt truth;
+  std::string setup;  ///< of the refracted case
+
+  int columns() const { return frames.reference().columns(); }
+  int rows() const { return frames.reference().rows(); }
+};
+
+Image<std::uint16_t> levels_of(Image<double> const& image) {
+  Image<std::uint16_t> levels(image.columns(), image.rows());
+  std::transform(image.begin(), image.end(), levels.begin(), [](double v) { return static_cast<std::uint16_t>(v); });
+  return levels;
+}
+
+MadeCase make_case(BenchmarkCase const& one, Device const& device) {
+  ParticlePair pair;
+  DisplacementAt truth = one.flow;
+  std::string setup;
+  if (one.refracted()) {
+    RefractedTurbulence const turbulence(one.particles.seed, *device.renderer);
+    pair = turbulence.frames(one.particles.noise, one.particles.seed);
+    truth = turbulence.truth();
+    setup = turbulence.resolved();
+  } else {
+    pair = render_particle_pair(one.particles, one.flow);
+  }
+  CaseRecord record{one, pixel_sha256(levels_of(pair.reference)), pixel_sha256(levels_of(pair.flow))};
+  HostFrames frames(std::move(pair.reference), std::move(pair.flow));
+  return {std::move(record), std::move(frames), std::move(pair), std::move(truth), std::move(setup)};
+}
+
+std::string truth_text(MadeCase const& made) {
+  std::string text = "x_px,y_px,u_px,v_px\n";
+  for (int y = 0; y < made.rows(); y += truth_spacing_px)
+    for (int x = 0; x < made.columns(); x += truth_spacing_px) {
+      Vec2d const d = made.truth({static_cast<double>(x), static_cast<double>(y)});
+      text += fmt::format("{},{},{:.17g},{:.17g}\n", x, y, d.x, d.y);
+    }
+  return text;
+}
+
+void write_case_folder(MadeCase const& made, std::string const& folder) {
+  OutputFolder output(folder, FolderContent{truth_name, {case_file::setup}});
+  output.fill([&](std::string const& place) {
+    auto const in_place = [&](char const* name) { return (fs::path(place) / name).string(); };
+    ImageMetadata const metadata{8, 0.0, "gladstone benchmark, " + made.record.of.name + ": " + made.record.of.what};
+    write_tiff(in_place(case_file::reference), levels_of(made.frames.reference()), metadata);
+    write_tiff(in_place(case_file::flow), levels_of(made.frames.flow()), metadata);
+    if (!made.setup.empty()) OutputFile::write_text(in_place(case_file::setup), made.setup);
+    OutputFile::write_text(in_place(truth_name), truth_text(made));
+  });
+  output.commit();
+}
+
+/// One code's files by case, and how they are to be read.
+struct ForeignCode {
+  std::string name;
+  std::map<std::string, std::string> files;  ///< by case
+  std::optional<VectorConventions> conventions;
+};
+
+ForeignCode find_files(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases) {
+  ForeignCode code{given.name, {}, {}};
+  std::error_code error;
+  bool const is_folder = fs::is_directory(given.path, error);
+  for (BenchmarkCase const& one : cases)
+    for (char const* ending : {".csv", ".txt", ".h5"}) {
+      fs::path const path = is_folder ? fs::path(given.path) / (one.name + ending) : fs::path(given.path);
+      if (path.filename() == one.name + ending && fs::exists(path, error)) code.files.emplace(one.name, path.string());
+    }
+  if (code.files.empty())
+    throw DataError(given.path, fmt::format("holds no vectors of a case that is run (files named after cases, such as "
+                                            "{0}.csv, {0}.txt or {0}.h5); name them so",
+                                            cases.front().name));
+  return code;
+}
+
+/// A file's vectors in our conventions. The first file of a code that tells them tells them for all.
+DisplacementField foreign_field(ForeignCode& code, MadeCase const& made, std::vector<std::string>& told) {
+  std::string const& path = code.files.at(made.record.of.name);
+  VectorFile file = read_vectors(path);
+  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, made.columns(), made.rows());
+  if (std::string const refusal = refusal_of_places(file.field, left_out, made.columns(), made.rows());
+      !refusal.empty())
+    throw DataError(path, refusal);
+  if (file.foreign && !code.conventions) {
+    DetectedConventions const detected = detect_conventions(file, made.truth, made.rows());
+    if (detected.verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, detected.report);
+    code.conventions = detected.conventions;
+    told.push_back(fmt::format("{}, by {}: {}", code.name, made.record.of.name, detected.report));
+  }
+  return apply_conventions(std::move(file.field), file.foreign ? *code.conventions : file.conventions, made.rows());
+}
+
+/// The case whose flow tells axes, signs and offsets of a code best comes first.
+std::vector<BenchmarkCase> in_order_of_telling(std::vector<BenchmarkCase> cases) {
+  std::stable_sort(cases.begin(), cases.end(), [](BenchmarkCase const& a, BenchmarkCase const& b) {
+    auto const rank = [](BenchmarkCase const& c) { return c.name == "vortex" ? 0 : c.name == "sine_128" ? 1 : 2; };
+    return rank(a) < rank(b);
+  });
+  return cases;
+}
+
+bool is_wanted(std::vector<std::string> const& wanted, std::string const& name) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+bool runs_on(BenchmarkEstimator const& estimator, std::string const& of_case) {
+  return !estimator.of_curve || of_case == noise_case || of_case == gain_case;
+}
+
+}  // namespace
+
+std::vector<Vec2d> window_truth_of(DisplacementField const& field, ParticlePair const& dots,
+                                   CorrelationSettings const& settings) {
+  WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
+                            window_support_px(settings)};
+  return window_truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px, weight)
+      .displacement_px;
+}
+
+std::vector<BenchmarkEstimator> const& benchmark_estimators() {
+  static std::vector<BenchmarkEstimator> const all = [] {
+    std::vector<BenchmarkEstimator> list{{"default", {}}};
+    auto const add = [&](std::string const& name, std::vector<int> windows, double overlap, std::string const& method,
+                         std::string const& subpixel, bool of_curve = false) {
+      CorrelationSettings settings;
+      settings.window_px = std::move(windows);
+      settings.overlap = overlap;
+      settings.method = method;
+      settings.subpixel = subpixel;
+      list.push_back({name, settings, of_curve});
+    };
+    add("default_gauss2d", CorrelationSettings{}.window_px, 0.6, "scc", "gauss2d");
+    add("default_spc", CorrelationSettings{}.window_px, 0.6, "spc", "gauss3");
+    add("one_pass", {32}, 0.5, "scc", "gauss3");
+    add("one_pass_gauss2d", {32}, 0.5, "scc", "gauss2d");
+    add("one_pass_rpc", {32}, 0.5, "rpc", "gauss3");
+    for (char const* method : {"dis", "horn_schunck"})
+      add(method, CorrelationSettings{}.window_px, 0.6, method, "gauss3");
+    add("to_48_px", {64, 48}, 0.6, "scc", "gauss3", true);
+    add("to_32_px", {64, 48, 32}, 0.6, "scc", "gauss3", true);
+    add("to_24_px", {64, 48, 32, 24}, 0.6, "scc", "gauss3", true);
+    add("to_16_px", {64, 48, 32, 24, 16}, 0.6, "scc", "gauss3", true);
+    add("to_12_px", {64, 48, 32, 24, 16, 12}, 0.6, "scc", "gauss3", true);
+    return list;
+  }();
+  return all;
+}
+
+BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device) {
+  std::vector<BenchmarkCase> cases;
+  for (BenchmarkCase const& one : benchmark_cases())
+    if (is_wanted(options.cases, one.name)) cases.push_back(one);
+  std::vector<ForeignCode> codes;
+  for (ForeignVectors const& given : options.vectors) codes.push_back(find_files(given, cases));
+  BenchmarkResult result;
+  result.device = device.name();
+  for (BenchmarkCase const& one : in_order_of_telling(cases)) {
+    spdlog::info("{}: {}", one.name, one.what);
+    MadeCase const made = make_case(one, device);
+    write_case_folder(made, (fs::path(options.folder) / one.name).string());
+    result.cases.push_back(made.record);
+    auto const score = [&](std::string const& name, DisplacementField const& field, std::optional<double> seconds) {
+      result.rows.push_back({name, one.name,
+                             score_vectors(field, truth_at_vectors(field, made.truth), made.columns(), made.rows()),
+                             seconds});
+    };
+    for (BenchmarkEstimator const& estimator : benchmark_estimators()) {
+      if (!is_wanted(options.estimators, estimator.name) || !runs_on(estimator, one.name)) continue;
+      Measurement measured = correlate_frames(made.frames, estimator.settings, device);
+      score(estimator.name, measured.field, measured.seconds);
+      if (estimator.name != "default") continue;
+      std::vector<Vec2d> const point = truth_at_vectors(measured.field, made.truth),
+                               window = window_truth_of(measured.field, made.dots, estimator.settings);
+      VectorMask const mask = benchmark_mask(measured.field, made.columns(), made.rows());
+      for (std::string const& method : uncertainty_methods()) {
+        CorrelationSettings settings = estimator.settings;
+        settings.uncertainty = method;
+        estimate_uncertainty(measured.field, made.frames, settings);
+        auto const& [displacement, sigma] = std::tie(measured.field.displacement_px, measured.field.sigma_px);
+        result.uncertainties.push_back({method, one.name, uncertainty_quality(displacement, window, sigma, mask),
+                                        uncertainty_quality(displacement, point, sigma, mask),
+                                        uncertainty_bins(displacement, window, sigma, mask)});
+      }
+    }
+    for (ForeignCode& code : codes)
+      if (code.files.contains(one.name)) score(code.name, foreign_field(code, made, result.conventions), {});
+  }
+  // as they stand in the list
+  auto const place = [&](std::string const& name) {
+    return std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& c) { return c.name == name; }) -
+           cases.begin();
+  };
+  auto const by_case = [&](auto const& a, auto const& b) { return place(a.of_case) < place(b.of_case); };
+  std::stable_sort(result.rows.begin(), result.rows.end(), by_case);
+  std::stable_sort(result.uncertainties.begin(), result.uncertainties.end(), by_case);
+  std::stable_sort(result.cases.begin(), result.cases.end(),
+                   [&](CaseRecord const& a, CaseRecord const& b) { return place(a.of.name) < place(b.of.name); });
+  result.seeds = options.seeds;
+  if (options.seeds > 0) result.coverage = measure_coverage(options.seeds, device);
+  return result;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,68 @@
+#include "studies/benchmark/benchmark_score.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+bool is_inside(Vec2d at, int columns, int rows) {
+  return at.x >= benchmark_border_px && at.y >= benchmark_border_px && at.x <= columns - 1 - benchmark_border_px &&
+         at.y <= rows - 1 - benchmark_border_px;
+}
+
+}  // namespace
+
+VectorMask benchmark_mask(DisplacementField const& field, int columns, int rows) {
+  VectorMask mask(field.size());
+  for (std::size_t i = 0; i < field.size(); ++i)
+    mask[i] = is_inside(field.position_px[i], columns, rows) && field.counts(i) &&
+              std::isfinite(length(field.displacement_px[i]));
+  return mask;
+}
+
+std::vector<Vec2d> truth_at_vectors(DisplacementField const& field, DisplacementAt const& truth) {
+  std::vector<Vec2d> result;
+  result.reserve(field.size());
+  for (Vec2d const& at : field.position_px) result.push_back(truth(at));
+  return result;
+}
+
+BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> const& truth, int columns, int rows) {
+  GLADSTONE_EXPECTS(truth.size() == field.size());
+  BenchmarkScore score;
+  score.vectors = static_cast<std::size_t>(std::count_if(field.position_px.begin(), field.position_px.end(),
+                                                         [&](Vec2d at) { return is_inside(at, columns, rows); }));
+  VectorMask const mask = benchmark_mask(field, columns, rows);
+  score.errors = summarize_errors(field.displacement_px, truth, mask, score.vectors);
+  double product = 0.0, signal = 0.0;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!mask[i]) continue;
+    if (length(field.displacement_px[i] - truth[i]) > gross_error_px) {
+      ++score.gross;
+      continue;
+    }
+    product += dot(field.displacement_px[i], truth[i]);
+    signal += dot(truth[i], truth[i]);
+  }
+  score.gain = product / signal;  // 0/0: NaN of nothing
+  return score;
+}
+
+std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score) {
+  ErrorSummary const& errors = score.errors;
+  return {{"vectors", static_cast<double>(score.vectors)},
+          {"count", static_cast<double>(errors.count)},
+          {"valid_fraction", errors.valid_fraction},
+          {"gross", static_cast<double>(score.gross)},
+          {"bias_u_px", errors.bias_u_px},
+          {"bias_v_px", errors.bias_v_px},
+          {"rms_px", errors.rms_px},
+          {"rms_without_gross_px", errors.rms_without_gross_px},
+          {"p95_px", errors.p95_px},
+          {"gain", score.gain}};
+}
+
+}  // namespace gladstone

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "render/base/error.h"
+#include "render/base/output_file.h"
+#include "render/base/output_place.h"
+#include "render/base/text_file.h"
+#include "studies/benchmark/benchmark_run.h"
+#include "studies/commands/arguments.h"
+#include "studies/commands/command.h"
+#include "studies/figures/gnuplot.h"
+#include "studies/json_text.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// NAME=F. @throws DataError
+ForeignVectors parse_vectors(std::string const& given) {
+  auto const equals = given.find('=');
+  ForeignVectors vectors{given.substr(0, equals), equals == std::string::npos ? "" : given.substr(equals + 1)};
+  if (vectors.name.empty() || vectors.path.empty())
+    throw DataError("--vectors " + given,
+                    "is not of the form NAME=F (a name for the code, and its folder of vectors); "
+                    "write --vectors mine=FOLDER");
+  if (vectors.name.find_first_of(",\n\"") != std::string::npos)
+    throw DataError("--vectors " + given,
+                    "has a comma, a quotation mark or a line break in its name, which "
+                    "benchmark.csv separates by; take another name");
+  std::error_code error;
+  if (!fs::exists(vectors.path, error)) throw DataError(vectors.path, "is not there; give the folder of vectors");
+  for (BenchmarkEstimator const& ours : benchmark_estimators())
+    if (ours.name == vectors.name)
+      throw DataError("--vectors " + given, "has the name of one of our estimators; take another name");
+  return vectors;
+}
+
+std::vector<std::string> names_of_cases() {
+  std::vector<std::string> names;
+  for (BenchmarkCase const& one : benchmark_cases()) names.push_back(one.name);
+  return names;
+}
+
+std::vector<std::string> names_of_estimators() {
+  std::vector<std::string> names{"none"};
+  for (BenchmarkEstimator const& one : benchmark_estimators()) names.push_back(one.name);
+  return names;
+}
+
+/// The page with its figures as files beside it, where there are any.
+std::string page_text(ReportPage page, std::vector<std::string> const& figures, bool markdown) {
+  ReportSection drawn{"Curves", {}};
+  for (std::string const& name : figures)
+    drawn.blocks.push_back(
+        FigureFile{name, name.starts_with("noise") ? "noise against gain" : "error against uncertainty"});
+  if (!figures.empty()) page.sections.insert(page.sections.begin() + 1, std::move(drawn));
+  return markdown ? markdown_page(page) : html_page(page);
+}
+
+std::string summary_of(BenchmarkResult const& result, std::string const& folder) {
+  std::string text;
+  for (std::string const& finding : benchmark_page(result, folder).findings) text += finding + '\n';
+  for (std::string const& told : result.conventions) text += told + '\n';
+  return text + fmt::format("{} cases, {} scores: {}", result.cases.size(), result.rows.size(),
+                            (fs::path(folder) / "benchmark.html").string());
+}
+
+}  // namespace
+
+CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
+  struct Arguments {
+    BenchmarkOptions benchmark;
+    std::vector<std::string> vectors;
+    bool no_figures = false, learn = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("-o,--output", arguments->benchmark.folder,
+                 "Folder for the cases and benchmark.html, .md, .json, .csv")
+      ->required();
+  app.add_option("--vectors", arguments->vectors,
+                 "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
+  app.add_option("--cases", arguments->benchmark.cases, "Only these cases")->check(one_of(names_of_cases()));
+  app.add_option("--estimators", arguments->benchmark.estimators, "Only these of ours; none: only --vectors")
+      ->check(one_of(names_of_estimators()));
+  app.add_option("--seeds", arguments->benchmark.seeds,
+                 "Also the coverage of every uncertainty method over so many seeds; 0: not")
+      ->check(whole_number(0, 1000));
+  app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
+  app.add_flag("--learn", arguments->learn,
+               "Instead, learn how uncertainty methods are best combined, into combination.csv (as "
+               "data/uncertainty/combination.csv, which is built in)");
+  return [arguments, &options] {
+    BenchmarkOptions benchmark = arguments->benchmark;
+    for (std::string const& given : arguments->vectors) benchmark.vectors.push_back(parse_vectors(given));
+    fs::path const folder = benchmark.folder;
+    auto const in_place = [&](char const* name) { return (folder / name).string(); };
+    std::vector<std::string> inputs, outputs;
+    for (ForeignVectors const& given : benchmark.vectors) inputs.push_back(given.path);
+    for (char const* name : {"benchmark.html", "benchmark.md", "benchmark.json", "benchmark.csv",
+                             "noise_against_gain.png", "error_against_uncertainty.png"})
+      outputs.push_back(in_place(name));
+    refuse_inputs_as_outputs(outputs, inputs);
+    Device const device = options.open_device();
+    if (arguments->learn) {
+      OutputFile file(in_place("combination.csv"));
+      UncertaintyCombination const combination = learn_combination(device);
+      std::string const text = combination_text(combination);
+      file.write(text.data(), text.size());
+      file.commit();
+      nlohmann::ordered_json json{{"constant", combination.constant}};
+      for (auto const& [method, weight] : combination.terms) json[method] = weight;
+      print_result(options, json_text(json), text);
+      return ok;
+    }
+    OutputFile html(in_place("benchmark.html"));  // shows that the place can be written
+    BenchmarkResult const result = run_benchmark(benchmark, device);
+    std::vector<std::string> figures;
+    if (!arguments->no_figures) {
+      try {
+        figures = draw_benchmark(result, benchmark.folder);
+      } catch (GnuplotMissing const& missing) {
+        spdlog::warn("{}", missing.what());
+      }
+    }
+    ReportPage const page = benchmark_page(result, benchmark.folder);
+    std::string const json = benchmark_json(result), text = page_text(page, figures, false);
+    OutputFile::write_text(in_place("benchmark.json"), json);
+    OutputFile::write_text(in_place("benchmark.csv"), benchmark_csv(result));
+    OutputFile::write_text(in_place("benchmark.md"), page_text(page, figures, true));
+    html.write(text.data(), text.size());
+    html.commit();
+    print_result(options, json, summary_of(result, benchmark.folder));
+    return ok;
+  };
+}
+
+}  // namespace gladstone

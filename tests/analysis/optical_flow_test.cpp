@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "analysis/correlation/correlator.h"
+#include "analysis/correlation/ensemble.h"
+#include "analysis/correlation/optical_flow/dense_flow.h"
+#include "render/base/error.h"
+#include "studies/benchmark/particle_pair.h"
+
+namespace gladstone {
+namespace {
+
+constexpr char const* flows[] = {"dis", "horn_schunck"};
+
+CorrelationSettings by_flow(std::string const& method) {
+  CorrelationSettings settings;
+  settings.method = method;
+  return settings;
+}
+
+// (1 4 6 4 1)/16 keeps straight lines, and every other pixel is taken from 0 on: x becomes 2 x.
+TEST(Pyramid, PutsPixelIWherePixelTwoIWas) {
+  GreyImage ramp{97, 60, {}};
+  for (int j = 0; j < ramp.rows; ++j)
+    for (int i = 0; i < ramp.columns; ++i) ramp.level.push_back(static_cast<float>(i + 3 * j));
+  std::vector<GreyImage> const levels = pyramid_of(ramp);
+  ASSERT_EQ(levels.size(), 2u);  // half of 60 is 30: another half would be below 24
+  EXPECT_EQ(levels[1].columns, 49);
+  EXPECT_EQ(levels[1].rows, 30);
+  for (int j = 1; j + 1 < 29; ++j)
+    for (int i = 1; i + 1 < 48; ++i) EXPECT_NEAR(levels[1](i, j), 2 * i + 6 * j, 1e-4);
+}
+
+// What each reaches on 1024 px stands in docs/estimators.md, with half as much again for 256 px.
+TEST(EveryOpticalFlow, MeasuresAShift) {
+  for (char const* method : flows)
+    for (Vec2d const shift : {Vec2d{0.3, -0.3}, Vec2d{6.4, 2.2}}) {
+      ParticlePair const pair = render_particle_pair({}, [shift](Vec2d) { return shift; });
+      DisplacementField const field = make_correlator(by_flow(method))->correlate(pair.reference, pair.flow);
+      double squares = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        Vec2d const at = field.position_px[i];
+        if (std::min(at.x, at.y) < 32.0 || std::max(at.x, at.y) > 223.0) continue;
+        EXPECT_EQ(field.status[i], VectorStatus::valid);
+        Vec2d const e = field.displacement_px[i] - shift;
+        squares += 0.5 * dot(e, e);
+        count += 1.0;
+      }
+      EXPECT_LT(std::sqrt(squares / count), 0.04) << method << ' ' << shift.x;
+    }
+}
+
+// u = 0.06 (x - 127.5): at a place c of the reference stands u(c + u/2) = 0.0619 (c - 127.5), 3 % more than at c. A
+// slope of 256 px is known to sqrt(12) 0.06/(256 sqrt(700)) = 3e-5 by some 700 vectors; patches of 16 px that
+// stretch by 1 px fit a little worse on one side. Half of the difference, 0.0009, tells the one from the other.
+TEST(EveryOpticalFlow, BelongsToMidPosition) {
+  for (char const* method : flows) {
+    ParticlePair const pair = render_particle_pair({}, [](Vec2d p) { return Vec2d{0.06 * (p.x - 127.5), 0.0}; });
+    DisplacementField const field = make_correlator(by_flow(method))->correlate(pair.reference, pair.flow);
+    double xx = 0.0, xu = 0.0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      Vec2d const at = field.position_px[i];
+      if (std::min(at.x, at.y) < 48.0 || std::max(at.x, at.y) > 207.0) continue;
+      xx += (at.x - 127.5) * (at.x - 127.5);
+      xu += (at.x - 127.5) * field.displacement_px[i].x;
+    }
+    EXPECT_NEAR(xu / xx, 0.06, 9e-4) << method;
+  }
+}
+
+TEST(EveryOpticalFlow, SaysWhatItDoesNotKnow) {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  ParticlePair pair = render_particle_pair({}, [](Vec2d) { return Vec2d{0.3, 0.1}; });
+  for (int j = 0; j < 256; ++j)
+    for (int i = 0; i < 100; ++i) pair.flow(i, j) = nan;
+  Image<double> const dark(256, 256, 7.0);
+  for (char const* method : flows) {
+    DisplacementField const half = make_correlator(by_flow(method))->correlate(pair.reference, pair.flow);
+    for (std::size_t i = 0; i < half.size(); ++i) {
+      // windows are 20 px wide: half of one is unknown where its centre is less than pixel 99.5
+      bool const unknown = half.position_px[i].x <= 99.5;
+      EXPECT_EQ(half.status[i], unknown ? VectorStatus::masked : VectorStatus::valid) << half.position_px[i].x;
+      EXPECT_EQ(std::isnan(half.displacement_px[i].x), unknown);
+      EXPECT_TRUE(std::isnan(half.peak_ratio[i]));
+      EXPECT_TRUE(std::isnan(half.correlation[i]));
+    }
+    DisplacementField const nothing = make_correlator(by_flow(method))->correlate(dark, dark);
+    for (std::size_t i = 0; i < nothing.size(); ++i) EXPECT_EQ(nothing.reason[i], VectorReason::no_signal);
+    CorrelationSettings tight = by_flow(method);
+    tight.max_displacement_px = 0.1;
+    ParticlePair const moved = render_particle_pair({}, [](Vec2d) { return Vec2d{0.5, 0.0}; });
+    DisplacementField const beyond = make_correlator(tight)->correlate(moved.reference, moved.flow);
+    EXPECT_EQ(beyond.reason[beyond.size() / 2], VectorReason::beyond_limit) << method;
+  }
+}
+
+TEST(EveryOpticalFlow, IsOfSinglePairs) {
+  ParticlePair const pair = render_particle_pair({}, [](Vec2d) { return Vec2d{}; });
+  PairSequence const pairs{2, [&](std::size_t) { return HostFrames(pair.reference, pair.flow); }};
+  for (char const* method : flows) EXPECT_THROW(correlate_ensemble(pairs, by_flow(method)), DataError);
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "studies/benchmark/benchmark_run.h"
+
+namespace gladstone {
+namespace {
+
+/// Vectors every 8 px of an image of 256 x 256 px.
+DisplacementField lattice() {
+  DisplacementField field;
+  for (int y = 4; y < 256; y += 8)
+    for (int x = 4; x < 256; x += 8) {
+      field.position_px.push_back({static_cast<double>(x), static_cast<double>(y)});
+      field.displacement_px.push_back({});
+      field.status.push_back(VectorStatus::valid);
+    }
+  return field;
+}
+
+// Places 4, 12, ... 252: 36 to 220 lie within 32 .. 223, 24 along either axis.
+TEST(BenchmarkScore, IsThatOfKnownErrors) {
+  DisplacementField field = lattice();
+  std::vector<Vec2d> const truth = truth_at_vectors(field, sine_flow(64.0));
+  for (std::size_t i = 0; i < field.size(); ++i) field.displacement_px[i] = 0.8 * truth[i];
+  BenchmarkScore const followed = score_vectors(field, truth, 256, 256);
+  EXPECT_EQ(followed.vectors, 576u);
+  EXPECT_EQ(followed.errors.count, 576u);
+  EXPECT_EQ(followed.gross, 0u);
+  EXPECT_NEAR(followed.gain, 0.8, 1e-12);
+  // 24 places 8 px apart are three whole waves of 64 px: the mean square of a sine is 1/2
+  EXPECT_NEAR(followed.errors.rms_px, 0.2 * std::sqrt(0.5), 1e-12);
+
+  field.status[5 * 32 + 5] = VectorStatus::invalid;
+  field.displacement_px[6 * 32 + 6] += Vec2d{1.5, 0.0};
+  field.displacement_px[0] += Vec2d{9.0, 0.0};  // at the border: of no account
+  BenchmarkScore const spoilt = score_vectors(field, truth, 256, 256);
+  EXPECT_EQ(spoilt.vectors, 576u);
+  EXPECT_EQ(spoilt.errors.count, 575u);
+  EXPECT_EQ(spoilt.gross, 1u);
+  EXPECT_NEAR(spoilt.gain, 0.8, 1e-12);
+  EXPECT_GT(spoilt.errors.rms_px, spoilt.errors.rms_without_gross_px);
+}
+
+TEST(BenchmarkCases, AreOneListOfSeedsOfTheirOwn) {
+  std::set<std::string> names;
+  std::set<std::uint64_t> seeds;
+  for (BenchmarkCase const& one : benchmark_cases()) {
+    names.insert(one.name);
+    seeds.insert(one.particles.seed);
+    EXPECT_EQ(one.particles.columns, one.refracted() ? RefractedTurbulence::pixels : 1024) << one.name;
+  }
+  EXPECT_EQ(names.size(), benchmark_cases().size());
+  EXPECT_EQ(seeds.size(), benchmark_cases().size());
+  for (char const* name : {"uniform", "shear", "vortex", "sine_32", noise_case, gain_case, "loss_40", "dots_1.5",
+                           "density_5", "light", "regular", "turbulence"})
+    EXPECT_TRUE(names.contains(name)) << name;
+}
+
+// Lamb & Oseen: the swirl is greatest, 5 px, at 1.1209 radii (2 s = exp(s) - 1 at s = 1.2564), and falls off as 1/r.
+TEST(BenchmarkFlows, AreWhatTheirNamesSay) {
+  DisplacementAt const vortex = vortex_flow(100.0, 1024);
+  EXPECT_NEAR(vortex({511.5 + 112.09, 511.5}).y, 5.0, 1e-3);
+  EXPECT_NEAR(vortex({511.5, 511.5 + 112.09}).x, -5.0, 1e-3);
+  EXPECT_NEAR(vortex({511.5 + 450.0, 511.5}).y / vortex({511.5 + 500.0, 511.5}).y, 500.0 / 450.0, 1e-6);
+  EXPECT_NEAR(shear_flow(0.02, 1024)({7.0, 611.5}).x, 2.0, 1e-12);
+  EXPECT_NEAR(sine_flow(64.0)({0.0, 16.0}).x, 1.0, 1e-12);
+}
+
+// 40 % of some 1500 particles are lost: a binomial share, whose standard deviation is 0.013; four of them.
+TEST(ParticlePair, LosesThePartOfItsPairsThatItIsAskedTo) {
+  auto const still = [](Vec2d) { return Vec2d{}; };
+  ParticlePair const all = render_particle_pair({.columns = 192, .rows = 192}, still);
+  ParticlePair const some = render_particle_pair({.columns = 192, .rows = 192, .lost = 0.4}, still);
+  double const kept = static_cast<double>(some.dot_light.size()) / static_cast<double>(all.dot_light.size());
+  EXPECT_NEAR(kept, 0.6, 0.052);
+  // others stand in their place: as much light in either frame, to what 1500 particles scatter by
+  auto const light = [](Image<double> const& image) {
+    return std::accumulate(image.begin(), image.end(), 0.0, [](double sum, double v) { return sum + v - 25.5; });
+  };
+  EXPECT_NEAR(light(some.flow) / light(some.reference), 1.0, 0.1);
+  EXPECT_NE(light(some.flow), light(some.reference));
+}
+
+// A still scene: the flow frame is the reference's times the light, rounded to whole levels.
+TEST(ParticlePair, ChangesTheLightFromLeftToRight) {
+  ParticlePair const pair = render_particle_pair({.columns = 200, .rows = 64, .flow_light = 0.5, .light_slope = 0.6},
+                                                 [](Vec2d) { return Vec2d{}; });
+  for (int i : {0, 50, 100, 150, 199})
+    for (int j = 0; j < 64; j += 7)
+      EXPECT_NEAR(pair.flow(i, j), 0.5 * (1.0 + 0.6 * (i / 200.0 - 0.5)) * pair.reference(i, j), 1.0);
+}
+
+}  // namespace
+}  // namespace gladstone
