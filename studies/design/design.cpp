@@ -36,12 +36,16 @@ void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double
   draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
 }
 
-AnsweredQuestion answered(SetupDocument const& document, DesignQuestion question) {
-  AnsweredQuestion result{std::move(question), {}, {}};
+AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
+  AnsweredQuestion result{std::move(question), {}, {}, {}};
   result.variants = design_variants(document, result.question);
   std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
   Requirements const& requirements = result.question.requirements;
   result.answer = recommend(requirements.objective, required_limits(requirements), branches);
+  if (request.verify > 0 && result.answer.feasible()) {
+    result.verification = verify(result.question, result.variants, branches, result.answer,
+                                 static_cast<std::size_t>(request.verify), request.open_device());
+  }
   return result;
 }
 
@@ -66,11 +70,11 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, bool draws
 
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 std::optional<OutputFile>& applied, DesignReport& report) {
-  AnsweredQuestion const result = answered(document, std::move(question));
+  AnsweredQuestion const result = answered(request, document, std::move(question));
   report.json.update(answer_json(result));
   report.text += answer_text(result);
-  report.feasible = result.answer.feasible();
-  if (!report.feasible) return;
+  report.feasible = result.feasible();
+  if (!result.answer.feasible()) return;
   Bench<double> const best = result.best();
   if (!request.figures.empty()) {
     Requirements const& requirements = result.question.requirements;
@@ -80,8 +84,8 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
            [&](std::string const& path) { write_design_front(path, result.answer, requirements.objective); });
     }
   }
-  if (applied) {
-    DesignVariant const& variant = result.variants[result.answer.outcomes.front().branch.variant];
+  if (applied && report.feasible) {
+    DesignVariant const& variant = result.variants[result.chosen().branch.variant];
     std::string const text = applied_setup(variant, result.question, best);
     applied->write(text.data(), text.size());
     applied->commit();

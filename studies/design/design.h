@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "studies/device.h"
 
 namespace gladstone {
 
@@ -13,6 +16,8 @@ struct DesignRequest {
   std::string figures;  ///< folder; empty: none are drawn
   std::string figure_format = "png";
   std::string apply;  ///< file for the recommended setup; empty: none
+  int verify = 3;     ///< of the best combinations, how many are rendered and correlated; 0: the formulas are believed
+  std::function<Device()> open_device;  ///< that does so
 };
 
 /// What it answers.
@@ -20,7 +25,7 @@ struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
   std::vector<std::string> warnings;
-  bool feasible = true;  ///< or nothing was required
+  bool feasible = true;  ///< by formula and, where it was simulated, in simulation; or nothing was required
 };
 
 /// The sheet of a setup and, where it has [requirements], the recommended setup or why none exists. Writes the figures

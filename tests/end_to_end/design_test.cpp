@@ -61,7 +61,7 @@ TEST_F(Design, DrawsLayoutAndMap) {
 // What is recommended keeps what was asked, and the setup that is written is that bench: its own sheet says so.
 TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   write("tunnel.toml", tunnel);
-  auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml"});
+  auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml", "--verify", "0"});
   EXPECT_TRUE(json["feasible"]);
   auto const& predicted = json["predicted"];
   EXPECT_LE(predicted["resolution_mm"], 12.0 * (1 + 1e-6));
@@ -69,6 +69,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_LE(predicted["z_total_mm"], 2000.0 * (1 + 1e-6));
   EXPECT_FALSE(json["binding"].empty());
   EXPECT_EQ(json["choices"].size(), 4u);
+  EXPECT_FALSE(json.contains("verification"));
   std::string const applied = read("out.toml");
   for (char const* const table : {"requirements", "limits", "inventory", "free"}) {
     EXPECT_THAT(applied, testing::Not(HasSubstr(std::string("[") + table)));
@@ -78,6 +79,33 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_NEAR(sheet["gradient_min_kg_m4"], predicted["gradient_min_kg_m4"], 1e-9);
   render("case", {"--set", "render.rays_per_dot=4"}, "out.toml");
   EXPECT_THAT(names("case"), testing::Contains("flow.tif"));
+}
+
+// One lens and one stop: dots of a size that exposure = "auto" lights to 90 % of the full well, which is what the
+// pixels in the middle of their images hold. The pattern has its own seeds, so that the answer is the same each time.
+TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
+  std::string text = tunnel;
+  text.replace(text.find("focal_lengths_mm = [50, 105]"), 28, "focal_lengths_mm = [50]");
+  text.replace(text.find("f_numbers = [8, 16]"), 19, "f_numbers = [16]");
+  write("tunnel.toml", text);
+  auto const json = json_of({"design", "tunnel.toml", "--verify", "1", "--device", "cpu", "--apply", "out.toml"});
+  EXPECT_TRUE(json["feasible"]);
+  ASSERT_EQ(json["verification"].size(), 1u);
+  auto const& bench = json["verification"][0];
+  EXPECT_TRUE(bench["kept"]);
+  EXPECT_EQ(bench["pixels"], nlohmann::json({128, 128}));
+  for (auto const& row : bench["quantities"]) {
+    std::string const key = row["key"];
+    EXPECT_EQ(json["simulated"][key], row["simulated"]) << key;
+    EXPECT_EQ(row["agrees"].get<bool>(), row["why"].get<std::string>().empty()) << key;
+  }
+  double const peak = json["simulated"]["peak_electrons"];
+  EXPECT_NEAR(peak, json["predicted"]["peak_electrons"], 0.02 * peak);
+  // passes that deform the images resolve what one window does, or more
+  EXPECT_LT(json["simulated"]["resolution_mm"], 1.02 * json["predicted"]["resolution_mm"].get<double>());
+  EXPECT_GT(json["simulated"]["resolution_mm"], 0.5 * json["predicted"]["resolution_mm"].get<double>());
+  EXPECT_GT(json["simulated"]["random_px"], 0);
+  EXPECT_TRUE(std::filesystem::exists(in("out.toml")));
 }
 
 TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
