@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/design/verification.h"
 #include "studies/device.h"
 
 namespace gladstone {
@@ -15,8 +16,8 @@ struct DesignRequest {
   std::vector<std::string> overrides;
   std::string figures;  ///< folder; empty: none are drawn
   std::string figure_format = "png";
-  std::string apply;  ///< file for the recommended setup; empty: none
-  int verify = 3;     ///< of the best combinations, how many are rendered and correlated; 0: the formulas are believed
+  std::string apply;                    ///< file for the recommended setup; empty: none
+  VerificationPlan verification;        ///< of no bench: the formulas are believed
   std::function<Device()> open_device;  ///< that does so
 };
 

@@ -35,7 +35,7 @@ AxisValue value_of(char const* label, SetupNode node) {
 }
 
 /// The bench's setup with the middle of its camera alone, once with its own medium and once with each wave.
-StudyFile study_of(std::string const& setup, Bench<double> const& bench, std::uint64_t seed) {
+StudyFile study_of(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed) {
   SetupDocument base = SetupDocument::from_text(setup, "recommended setup");
   CameraSetup const& camera = bench.given->camera;
   int const side =
@@ -58,7 +58,7 @@ StudyFile study_of(std::string const& setup, Bench<double> const& bench, std::ui
   study.path = study.base_path = "recommended setup";
   study.base_text = base.written();
   study.axes.push_back(std::move(medium));
-  study.repeats = simulated_repeats;
+  study.repeats = repeats;
   study.seed = seed;
   return study;
 }
@@ -253,10 +253,11 @@ struct Peaks {
 
 }  // namespace
 
-SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::uint64_t seed, CaseRunner& runner,
-                        std::string const& device, std::function<void()> const& finished) {
+SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeat_count,
+                        std::uint64_t seed, CaseRunner& runner, std::string const& device,
+                        std::function<void()> const& finished) {
   SimulatedBench simulated;
-  StudyPlan const plan = plan_study(study_of(setup, bench, seed), device);
+  StudyPlan const plan = plan_study(study_of(setup, bench, repeat_count, seed), device);
   std::size_t const media = plan.study().points();
   int const window_px = bench.given->window.window_px();
   std::vector<Repeats> repeats(media);
@@ -274,7 +275,7 @@ SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, st
   Repeats const& own = repeats.front();
   simulated.columns = own.setup->camera.columns;
   simulated.rows = own.setup->camera.rows;
-  simulated.repeats = simulated_repeats;
+  simulated.repeats = repeat_count;
   simulated.magnification = own.magnification;
   simulated.displacement_px = own.displacement_px;
   simulated.peak_electrons = peaks.mean();

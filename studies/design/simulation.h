@@ -52,17 +52,17 @@ struct SimulatedBench {
 /// Of the camera's middle that is simulated, across or down: as many last windows as tell a random error to some per
 /// cent, and no more than cost a minute.
 inline constexpr int simulated_windows = 12, least_simulated_px = 192, most_simulated_px = 384;
-inline constexpr std::size_t simulated_repeats = 2;  ///< of every medium
-/// Cases that a bench takes: its own medium and two waves.
-inline constexpr std::size_t simulated_cases = 3 * simulated_repeats;
+/// Cases that a bench takes: its own medium and two waves, each of them as often as is repeated.
+constexpr std::size_t simulated_cases(std::size_t repeats) { return 3 * repeats; }
 
 /// Renders a bench, correlates and compares it, as a study of three media: the setup's own, and waves of the wavelength
 /// that the formulas resolve and of less.
 /// @param setup    as applied_setup() writes it
-/// @param seed     of dots, rays and noise
+/// @param repeats  of every medium, 2 at least, with other dots, rays and noise
+/// @param seed     that theirs derive from
 /// @param finished called after every case
 /// @throws as CaseRunner::run; what a case cannot have is `failed`
-SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::uint64_t seed, CaseRunner& runner,
-                        std::string const& device, std::function<void()> const& finished);
+SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed,
+                        CaseRunner& runner, std::string const& device, std::function<void()> const& finished);
 
 }  // namespace gladstone

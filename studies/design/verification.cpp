@@ -109,11 +109,9 @@ std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBe
 
 bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
-std::uint64_t constexpr first_seed = 20260101;  ///< of the repeats; a setup's own seeds are used for nothing here
-
 VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
-                              BranchOutcome const& outcome, CaseRunner& runner, std::string const& device,
-                              Progress& progress) {
+                              BranchOutcome const& outcome, VerificationPlan const& plan, CaseRunner& runner,
+                              std::string const& device, Progress& progress) {
   VerifiedBench verified;
   verified.outcome = outcome;
   verified.name = branch_name(outcome.branch, variants, question);
@@ -124,14 +122,14 @@ VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<Design
     progress.advance();
   };
   try {
-    verified.simulated = simulate(applied_setup(variants[outcome.branch.variant], question, bench), bench, first_seed,
-                                  runner, device, finished);
+    verified.simulated = simulate(applied_setup(variants[outcome.branch.variant], question, bench), bench, plan.repeats,
+                                  plan.seed, runner, device, finished);
   } catch (SetupError const& error) {
     verified.simulated.failed = error.what();
   } catch (DataError const& error) {
     verified.simulated.failed = error.what();
   }
-  progress.advance(simulated_cases - cases);
+  progress.advance(simulated_cases(plan.repeats) - cases);
   compare_with_formulas(verified, required_limits(question.requirements));
   return verified;
 }
@@ -198,18 +196,18 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
 }
 
 Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
-                    std::vector<DesignBranch> const& branches, Recommendation const& answer, std::size_t most,
-                    Device device) {
+                    std::vector<DesignBranch> const& branches, Recommendation const& answer,
+                    VerificationPlan const& plan, Device device) {
   std::string const device_name = device.name();
   Verification verification;
   CaseRunner runner(std::move(device));
   std::vector<BranchOutcome> best;
   for (BranchOutcome const& outcome : answer.outcomes) {
-    if (outcome.solution.feasible() && best.size() < most) best.push_back(outcome);
+    if (outcome.solution.feasible() && best.size() < plan.benches) best.push_back(outcome);
   }
-  Progress progress("verifying", best.size() * simulated_cases);
+  Progress progress("verifying", best.size() * simulated_cases(plan.repeats));
   for (BranchOutcome const& outcome : best) {
-    verification.benches.push_back(simulated_bench(question, variants, outcome, runner, device_name, progress));
+    verification.benches.push_back(simulated_bench(question, variants, outcome, plan, runner, device_name, progress));
     if (!verification.chosen && verification.benches.back().kept()) {
       verification.chosen = verification.benches.size() - 1;
     }
@@ -223,9 +221,9 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
     limits = tightened(std::move(limits), *missed);
     BranchOutcome const next = solve_branches({question.requirements.objective, limits}, branches).front();
     if (!next.solution.feasible()) break;
-    Progress again("verifying stricter ones", simulated_cases);
+    Progress again("verifying stricter ones", simulated_cases(plan.repeats));
     VerifiedBench& verified =
-        verification.benches.emplace_back(simulated_bench(question, variants, next, runner, device_name, again));
+        verification.benches.emplace_back(simulated_bench(question, variants, next, plan, runner, device_name, again));
     verified.tightened = true;
     if (verified.kept()) verification.chosen = verification.benches.size() - 1;
     missed = verified;

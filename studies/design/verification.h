@@ -54,6 +54,13 @@ struct Verification {
   bool any() const;
 };
 
+/// What is to be simulated.
+struct VerificationPlan {
+  std::size_t benches = 3;        ///< of the feasible combinations, the best first
+  std::size_t repeats = 2;        ///< of every medium of each
+  std::uint64_t seed = 20260101;  ///< of dots, rays and noise; a setup's own seeds are not used
+};
+
 inline constexpr int most_tightened = 2;  ///< times that limits are made stricter for the simulation to keep them
 
 /// Compares what a bench was predicted to do with what its simulation came to.
@@ -62,10 +69,9 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
 /// Renders and correlates the best few of the feasible combinations. Where none keeps what is required, the limits that
 /// the best one misses are made stricter by as much as the simulation is worse than the formula, and what is best then
 /// is simulated.
-/// @param most of the feasible combinations, the best first
 /// @pre answer.feasible()
 Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
-                    std::vector<DesignBranch> const& branches, Recommendation const& answer, std::size_t most,
-                    Device device);
+                    std::vector<DesignBranch> const& branches, Recommendation const& answer,
+                    VerificationPlan const& plan, Device device);
 
 }  // namespace gladstone

@@ -137,6 +137,44 @@ TEST_F(Design, LightExposesWhatIsRendered) {
   EXPECT_NEAR(twice / once, 2, 1e-12);
 }
 
+// An uncertain Z_D of 1 in 250 mm: of g ~ (Z_B - f) / Z_D the logarithm changes by (Z_D / (Z_B - f) - 1) / 250.
+TEST_F(Design, PropagatesWhatASetupIsUncertainBy) {
+  write("bench.toml", R"(schema = 1
+[camera]
+pixels = [64, 64]
+[lens]
+focal_length_mm = 105.0
+[geometry]
+z_a_mm = 750.0
+z_d_mm = { value = 250.0, sigma = 1.0 }
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [10.0, 0.0, 0.0]
+[correlate]
+window_px = [32, 16]
+)");
+  auto const json = json_of({"design", "bench.toml", "--device", "cpu"});
+  auto const& inputs = json["uncertainty"]["inputs"];
+  ASSERT_EQ(inputs.size(), 2u);
+  EXPECT_EQ(inputs[1]["key"], "geometry.z_d_mm");
+  auto const& gradient = json["uncertainty"]["results"][0];
+  EXPECT_NEAR(gradient["value"], 10, 1e-9);
+  auto const& part = gradient["contributions"][1];
+  EXPECT_NEAR(part["log_derivative"], (250.0 / 895 - 1) / 250, 1e-12);
+  EXPECT_NEAR(part["standard_uncertainty"], 10 * (1 - 250.0 / 895) / 250, 1e-9);
+  EXPECT_TRUE(part["agrees_with_rays"]);
+  EXPECT_TRUE(gradient["linear"]);
+  EXPECT_THAT(succeed({"design", "bench.toml", "--device", "cpu"}), HasSubstr("combined standard uncertainty"));
+  // all else reads the value, and a case keeps what it is worth
+  render("case", {}, "bench.toml");
+  succeed({"correlate", "case", "--quiet"});
+  succeed({"compare", "case", "--quiet"});
+  EXPECT_THAT(read("case/setup.toml"), HasSubstr("sigma = 1.0"));
+  EXPECT_EQ(json_of({"design", "case/setup.toml", "--device", "cpu"})["uncertainty"]["inputs"].size(), 2u);
+  write("wrong.toml", "schema = 1\n[geometry]\nz_d_mm = { value = 250.0, sigma = -1 }\n");
+  expect_refused({"design", "wrong.toml"}, 2, {"wrong.toml:3:1: geometry.z_d_mm", "write a number of 0 or more"});
+}
+
 TEST_F(Design, RefusesWhatItCannotAnswer) {
   expect_refused({"design", "setup.toml", "--apply", "out.toml"}, 2, {"has no [requirements]"});
   expect_refused({"design", "setup.toml", "--set", "lens.f_number=inf"}, 2, {"has no stop"});
