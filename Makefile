@@ -41,7 +41,7 @@ space := $(subst ,, )
 TIDY_SOURCES = sed -n 's|^ *"file": "$(CURDIR)/\(.*\.cpp\)".*|\1|p' $(BUILD)/compile_commands.json | \
 	grep -E '^($(subst $(space),|,$(strip $(ROOMS))))/'
 
-.PHONY: build test demo gallery studies bench fuzz soak lint format install clean help packages configure
+.PHONY: build test demo gallery studies bench fuzz soak check-long lint format install clean help packages configure
 .DEFAULT_GOAL := build
 
 build: configure  ## build/bin/gladstone, after installing the Debian packages that are missing
@@ -86,6 +86,9 @@ fuzz:  ## give every reader made-up files, under sanitizers, into out/fuzz; long
 soak: build  ## kill, starve and confuse the program, and check what is left: SOAK_RUNS=300, SOAK_SEED=1
 	python3 -B tests/soak/soak.py --program $(BUILD)/bin/gladstone --seed $(SOAK_SEED) --runs $(SOAK_RUNS)
 
+check-long: build  ## simulate ten recommended designs with eight fresh seeds each: SETS=10 SEEDS=8; some minutes each
+	python3 -B tests/long/designs.py --program $(BUILD)/bin/gladstone --sets $(or $(SETS),10) --seeds $(or $(SEEDS),8)
+
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)
 	clang-format --dry-run -Werror $(SOURCES)
@@ -110,6 +113,6 @@ configure: packages
 	@cmake --preset $(PRESET) -DGLADSTONE_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) $(CMAKE_OPTIONS)
 
 help:  ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "make %-8s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' Makefile
 	@echo 'PRESET=default|cuda|dev picks the build (build, build/cuda, build/dev); JOBS=N its parallel jobs;'
 	@echo 'CMAKE_OPTIONS="-D..." goes to CMake.'

@@ -14,6 +14,7 @@
 #include "studies/case_warnings.h"
 #include "studies/light_exposure.h"
 #include "studies/scene_renderer.h"
+#include "studies/uncertain_inputs.h"
 
 namespace gladstone {
 namespace {
@@ -127,6 +128,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
+  take_uncertain_inputs(document);  // who wants to know of them takes them before
   CaseSetup loaded{with_own_lens(std::move(document)), {}, {}, {}, {}};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);

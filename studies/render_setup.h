@@ -8,6 +8,7 @@
 
 #include "studies/cameras.h"
 #include "studies/case.h"
+#include "studies/uncertain_inputs.h"
 
 namespace gladstone {
 
@@ -48,6 +49,7 @@ class SetupRendering {
   struct OneCamera {
     std::string name;  ///< empty: the only one
     CaseSetup loaded;
+    std::vector<UncertainInput> uncertain;  ///< numbers of its setup that are written with their uncertainty
   };
   /// Renders one camera's case into its place in a folder. @return what its summary.json holds
   nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known, BuiltMedium& medium,

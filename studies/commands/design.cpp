@@ -23,7 +23,18 @@ CommandBody attach_design(CLI::App& app, GlobalOptions const& options) {
   app.add_option("--figures", request->figures, "Folder to draw the layout, the design map and the front in");
   app.add_option("--figure-format", request->figure_format, "png, svg or pdf")->check(one_of({"png", "svg", "pdf"}));
   app.add_option("--apply", request->apply, "File (TOML) to write the recommended setup to, ready to render");
+  app.add_option("--verify", request->verification.benches,
+                 "How many of the best combinations to render and correlate (some minutes); 0: believe the formulas")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  app.add_option("--repeats", request->verification.repeats, "How often each is simulated, with other dots and noise")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  app.add_option("--seed", request->verification.seed, "Seed of these dots and of the noise")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+      ->capture_default_str();
   return [request, &options] {
+    request->open_device = [&options] { return options.open_device(); };
     DesignReport const report = design(*request);
     for (std::string const& warning : report.warnings) spdlog::warn("{}", warning);
     print_result(options, json_text(report.json), report.text);

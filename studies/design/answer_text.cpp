@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "studies/design/verification_text.h"
+
 namespace gladstone {
 namespace {
 
@@ -77,7 +79,7 @@ std::string feasible_text(AnsweredQuestion const& answered) {
   for (auto const& [key, value] : recommended(answered.question, best)) {
     text += fmt::format("  {:<28}{:.6g}\n", key, value);
   }
-  DesignVariant const& variant = answered.variants[answered.answer.outcomes.front().branch.variant];
+  DesignVariant const& variant = answered.variants[answered.chosen().branch.variant];
   if (!variant.camera.empty()) text += fmt::format("  {:<28}{}\n", "camera", variant.camera);
   if (!variant.lens.empty()) text += fmt::format("  {:<28}{}\n", "lens", variant.lens);
   text += "predicted by formula\n";
@@ -137,6 +139,7 @@ Json feasible_json(AnsweredQuestion const& answered) {
 
 std::string answer_text(AnsweredQuestion const& answered) {
   std::string text = answered.answer.feasible() ? feasible_text(answered) : infeasible_text(answered);
+  if (answered.verification) text += verification_text(*answered.verification, answered.question);
   text += fmt::format("choices tried: {}, the best first\n", answered.answer.outcomes.size());
   for (std::size_t i = 0; i < std::min(most_alternatives, answered.answer.outcomes.size()); ++i) {
     text += outcome_text(answered, answered.answer.outcomes[i]);
@@ -150,7 +153,8 @@ std::string answer_text(AnsweredQuestion const& answered) {
 Json answer_json(AnsweredQuestion const& answered) {
   Recommendation const& answer = answered.answer;
   Json json = answer.feasible() ? feasible_json(answered) : Json::object();
-  json["feasible"] = answer.feasible();
+  json["feasible"] = answered.feasible();
+  if (answered.verification) json.update(verification_json(*answered.verification));
   json["conflicts"] = Json::array();
   for (Bound const bound : answer.conflicts) json["conflicts"].push_back(bound_name(bound));
   json["relaxations"] = Json::array();

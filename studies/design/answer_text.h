@@ -5,6 +5,7 @@
 
 #include "studies/design/branches.h"
 #include "studies/design/recommend.h"
+#include "studies/design/verification.h"
 
 namespace gladstone {
 
@@ -13,11 +14,17 @@ struct AnsweredQuestion {
   DesignQuestion question;
   std::vector<DesignVariant> variants;
   Recommendation answer;
+  std::optional<Verification> verification;  ///< nothing: not asked for, or nothing is feasible
 
-  /// The recommended bench. @pre answer.feasible()
-  Bench<double> best() const {
-    return bench_at(answer.outcomes.front().branch, answer.outcomes.front().solution.logarithms);
+  /// What is recommended: the best that the simulation keeps to, or the best by formula where none was simulated.
+  /// @pre answer.feasible()
+  BranchOutcome const& chosen() const {
+    bool const simulated = verification && verification->chosen;
+    return simulated ? verification->benches[*verification->chosen].outcome : answer.outcomes.front();
   }
+  Bench<double> best() const { return bench_at(chosen().branch, chosen().solution.logarithms); }
+  /// Whether the formulas have a design and no simulation says that it is none.
+  bool feasible() const { return answer.feasible() && (!verification || verification->chosen || !verification->any()); }
 };
 
 /// The answer to read: what is recommended, what it will do, what binds, what each requirement costs; or what

@@ -20,11 +20,6 @@ constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
 constexpr char const* seed = "Rajendran, Bane & Vlachos";
 constexpr char const* derived = "derived in docs/design.md";
 
-/// The gradient that rows about a displacement are of [kg/m^4].
-double shown_gradient(BenchGiven const& given) {
-  return given.largest_gradient > 0 ? given.largest_gradient : gradient_without_field;
-}
-
 void add_imaging(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) {
   CameraSetup const& camera = b.given->camera;
   auto& rows = sheet.rows;
@@ -200,6 +195,10 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
 }
 
 }  // namespace
+
+double shown_gradient(BenchGiven const& given) {
+  return given.largest_gradient > 0 ? given.largest_gradient : gradient_without_field;
+}
 
 DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench) {
   DesignSheet sheet;

@@ -8,6 +8,7 @@
 
 #include "studies/design/sheet.h"
 #include "studies/light_exposure.h"
+#include "studies/uncertain_inputs.h"
 
 namespace gladstone {
 namespace {
@@ -147,7 +148,9 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
                                         [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
   // loaded once more: it is a setup that renders, and its file names are absolute then
-  SetupNode root = parse_toml(load_case_setup(std::move(document)).document.written(), "setup");
+  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  CaseSetup const loaded = load_case_setup(std::move(document));
+  SetupNode root = parse_toml(with_uncertain_inputs(loaded.document.written(), uncertain), "setup");
   std::erase_if(root.members, [](SetupMember const& member) {
     return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
   });

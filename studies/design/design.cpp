@@ -9,6 +9,7 @@
 #include "render/base/error.h"
 #include "render/base/output_file.h"
 #include "studies/design/answer_text.h"
+#include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
 #include "studies/design/sheet_text.h"
 #include "studies/figures/design_map.h"
@@ -36,22 +37,28 @@ void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double
   draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
 }
 
-AnsweredQuestion answered(SetupDocument const& document, DesignQuestion question) {
-  AnsweredQuestion result{std::move(question), {}, {}};
+AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
+  AnsweredQuestion result{std::move(question), {}, {}, {}};
   result.variants = design_variants(document, result.question);
   std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
   Requirements const& requirements = result.question.requirements;
   result.answer = recommend(requirements.objective, required_limits(requirements), branches);
+  if (request.verification.benches > 0 && result.answer.feasible()) {
+    result.verification =
+        verify(result.question, result.variants, branches, result.answer, request.verification, request.open_device());
+  }
   return result;
 }
 
 /// The sheet of a setup; of a BOS bench with its figures.
-void add_sheet(DesignRequest const& request, CaseSetup const& loaded, bool draws, DesignReport& report) {
+void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+               bool draws, DesignReport& report) {
   if (!std::isfinite(loaded.setup.lens.f_number)) {
     throw DataError(request.setup, "has no stop (lens.f_number); a design needs the cone of light, so give a number");
   }
   report.warnings = beyond_closed_forms(loaded.setup);
   DesignSheet sheet;
+  std::optional<MeasurementUncertainty> uncertainty;
   if (loaded.setup.piv) {
     sheet = piv_sheet(loaded);
   } else {
@@ -59,18 +66,25 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, bool draws
     Bench<double> const bench = bench_of(loaded.setup, given);
     sheet = bos_sheet(loaded.setup, bench);
     if (draws) draw_bench(request, report, bench, std::nullopt);
+    if (!uncertain.empty()) {
+      Device const device = request.open_device();
+      uncertainty = measurement_uncertainty(loaded, uncertain, bench, shown_gradient(given), *device.renderer);
+    }
   }
   report.json["sheet"] = sheet_json(sheet);
   report.text += fmt::format("{}\n{}", request.setup, sheet_text(sheet));
+  if (!uncertainty) return;
+  report.json["uncertainty"] = uncertainty_json(*uncertainty);
+  report.text += uncertainty_text(*uncertainty);
 }
 
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 std::optional<OutputFile>& applied, DesignReport& report) {
-  AnsweredQuestion const result = answered(document, std::move(question));
+  AnsweredQuestion const result = answered(request, document, std::move(question));
   report.json.update(answer_json(result));
   report.text += answer_text(result);
-  report.feasible = result.answer.feasible();
-  if (!report.feasible) return;
+  report.feasible = result.feasible();
+  if (!result.answer.feasible()) return;
   Bench<double> const best = result.best();
   if (!request.figures.empty()) {
     Requirements const& requirements = result.question.requirements;
@@ -80,8 +94,8 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
            [&](std::string const& path) { write_design_front(path, result.answer, requirements.objective); });
     }
   }
-  if (applied) {
-    DesignVariant const& variant = result.variants[result.answer.outcomes.front().branch.variant];
+  if (applied && report.feasible) {
+    DesignVariant const& variant = result.variants[result.chosen().branch.variant];
     std::string const text = applied_setup(variant, result.question, best);
     applied->write(text.data(), text.size());
     applied->commit();
@@ -94,6 +108,7 @@ DesignReport design(DesignRequest const& request) {
   SetupDocument document = SetupDocument::from_file(request.setup);
   for (std::string const& assignment : request.overrides) document.override_key(assignment);
   SetupDocument const written = document.copy();
+  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
   CaseSetup const loaded = load_case_setup(std::move(document));  // problems of the question among its own
   if (loaded.setup.calibration()) {
@@ -106,7 +121,7 @@ DesignReport design(DesignRequest const& request) {
   if (!request.figures.empty()) report.json["figures"] = nlohmann::ordered_json::array();
   std::optional<OutputFile> applied;
   if (!request.apply.empty()) applied.emplace(request.apply);
-  add_sheet(request, loaded, !request.figures.empty() && !question, report);
+  add_sheet(request, loaded, uncertain, !request.figures.empty() && !question, report);
   if (question) add_answer(request, written, std::move(*question), applied, report);
   return report;
 }

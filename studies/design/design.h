@@ -1,8 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "studies/design/verification.h"
+#include "studies/device.h"
 
 namespace gladstone {
 
@@ -12,7 +16,9 @@ struct DesignRequest {
   std::vector<std::string> overrides;
   std::string figures;  ///< folder; empty: none are drawn
   std::string figure_format = "png";
-  std::string apply;  ///< file for the recommended setup; empty: none
+  std::string apply;                    ///< file for the recommended setup; empty: none
+  VerificationPlan verification;        ///< of no bench: the formulas are believed
+  std::function<Device()> open_device;  ///< that does so
 };
 
 /// What it answers.
@@ -20,7 +26,7 @@ struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
   std::vector<std::string> warnings;
-  bool feasible = true;  ///< or nothing was required
+  bool feasible = true;  ///< by formula and, where it was simulated, in simulation; or nothing was required
 };
 
 /// The sheet of a setup and, where it has [requirements], the recommended setup or why none exists. Writes the figures

@@ -53,6 +53,9 @@ Bench<double> bench_of(Setup const& setup, BenchGiven const& given);
 /// What closed forms leave out of a setup, as warnings: dots out of focus, a posed camera, windows.
 std::vector<std::string> beyond_closed_forms(Setup const& setup);
 
+/// The gradient that the sheet's displacements are of: the largest in view, or 10 kg/m^4 where there is none.
+double shown_gradient(BenchGiven const& given);
+
 /// Sheet of a BOS bench: F1 to F27. Gradients and deflections for which none is given are of 10 kg/m^4.
 DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench);
 

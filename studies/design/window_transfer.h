@@ -28,6 +28,8 @@ class WindowTransfer {
   }
 
   int window_px() const { return window_px_; }
+  /// Share of the pixels to one side, the i-th i + 1/2 px from the middle; they and those of the other side sum to 2.
+  std::vector<double> const& side() const { return weights_; }
 
   /// Share of the amplitude. @param cycles_per_px pixels over the wavelength on the sensor
   template <class T>

@@ -51,11 +51,15 @@ std::string write_report(ReportOptions const& options, Device const& device) {
   bool const run = fs::exists(fs::path(options.source) / run_file::manifest);
   if (!run && !fs::exists(fs::path(options.source) / case_file::setup)) {
     throw DataError(options.source, fmt::format("is neither a study (no {} in it) nor a case (no {}); give the folder "
-                                                "of a planned and computed study, or of a rendered case",
+                                                "of a planned and computed study, of a rendered case, or of a "
+                                                "measurement with its setup and vectors",
                                                 run_file::manifest, case_file::setup));
   }
   OutputFile output(options.output);  // shows that the place can be written
-  ReportPage const page = run ? run_report(options) : case_report(options, device);
+  bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
+  ReportPage const page = run        ? run_report(options)
+                          : measured ? measured_report(options, device)
+                                     : case_report(options, device);
   std::string const text = options.markdown ? markdown_page(page) : html_page(page);
   output.write(text.data(), text.size());
   output.commit();

@@ -18,6 +18,8 @@ struct ReportOptions {
   std::string figures;        ///< folder for the figures of a paper; empty: none
   std::string figure_format;  ///< "png", "svg" or "pdf"
   std::string vectors;        ///< of a CASE: file; empty: its own
+  std::string
+      conventions;  ///< of a measured case's foreign vectors, as parse_conventions() reads them; empty: their format's
 };
 
 /// Writes the report of a study or of a case, and its figures. @return the findings, a line each
@@ -29,6 +31,11 @@ ReportPage run_report(ReportOptions const& options);
 
 /// The report of a CASE, which is compared with truth and theory anew.
 ReportPage case_report(ReportOptions const& options, Device const& device);
+
+/// The uncertainty report of a measurement: a folder with the setup that describes it and its vectors, and frames or
+/// not, but no truth. Gradients of density with what they are uncertain by, and the errors of a simulated twin.
+/// @throws SetupError, DataError
+ReportPage measured_report(ReportOptions const& options, Device const& device);
 
 /// The figures of a paper, as blocks that name them: what `draw` draws into a folder in a format, without gnuplot none.
 /// Empty where none are wanted.

@@ -237,7 +237,7 @@
         values.forEach((v, i) => { const c = known(v) ? d3.rgb(colour(Math.max(low, Math.min(top, v)))) : { r: 128, g: 128, b: 128 }; picture.data.set([c.r, c.g, c.b, known(v) ? 255 : 60], 4 * i); });
         pen.putImageData(picture, 0, 0);
         let at = 0;
-        const words = (i) => "x " + shown(grid.x[i]) + ", y " + shown(grid.y[i]) + " px\n" + of.map((one) => (one.name === f.name ? "> " : "") + one.title + ": " + shown(one.u[i]) + ", " + shown(one.v[i]) + " px").join("\n");
+        const words = (i) => "x " + shown(grid.x[i]) + ", y " + shown(grid.y[i]) + " px\n" + of.map((one) => (one.name === f.name ? "> " : "") + one.title + ": " + shown(one.u[i]) + ", " + shown(one.v[i]) + " " + (one.unit || "px")).join("\n");
         canvas.on("mousemove", function () {
           const [px, py] = d3.mouse(this), box = this.getBoundingClientRect();
           const c = Math.min(grid.columns - 1, Math.max(0, Math.floor((px / box.width) * grid.columns))), r = Math.min(grid.rows - 1, Math.max(0, Math.floor((py / box.height) * grid.rows)));
@@ -250,7 +250,7 @@
         const bar = plot.append("svg").attr("viewBox", "0 0 460 44").style("max-width", "32rem").attr("aria-hidden", "true");
         d3.range(100).forEach((i) => bar.append("rect").attr("x", 20 + 4.2 * i).attr("y", 2).attr("width", 4.4).attr("height", 14).attr("fill", colour(low + ((top - low) * i) / 99)));
         bar.append("g").attr("transform", "translate(0,16)").call(d3.axisBottom(d3.scaleLinear().domain([low, top]).range([20, 440])).ticks(6, "~g"));
-        plot.append("p").attr("class", "hint").text(f.title + " [px], " + chosen.part + ". Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
+        plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ". Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
       };
       choice(controls, "show", of.map((f) => ({ value: f.name, text: f.title })), chosen.name, (v) => { chosen.name = v; draw(); });
       choice(controls, "component", ["magnitude", "u", "v"].map((p) => ({ value: p, text: p })), chosen.part, (v) => { chosen.part = v; draw(); });

@@ -153,7 +153,7 @@ void CaseRunner::check_inputs(ManifestCase const& one) {
   }
 }
 
-CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
+CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, CaseObserver const& observe) {
   check_inputs(one);
   if (sharing_ == Sharing::no) {
     auto files = std::move(shared_->files);
@@ -169,12 +169,12 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   QuietLog const quiet;
   try {
     try {
-      compute(one, keep, result);
+      compute(one, keep, observe, result);
     } catch (std::exception const& error) {
       if (!wants_memory(error)) throw;
       shared_ = std::make_unique<Shared>();  // once more without what is kept for other cases
       result = fresh;
-      compute(one, keep, result);
+      compute(one, keep, observe, result);
     }
   } catch (std::exception const& error) {
     bool const no_memory = wants_memory(error);
@@ -185,7 +185,8 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep) {
   return result;
 }
 
-void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseResult& result) {
+void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe,
+                         CaseResult& result) {
   auto start = std::chrono::steady_clock::now();
   Shared& shared = *shared_;
   CaseSetup loaded =
@@ -270,6 +271,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseR
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
   result.vectors = vector_errors(comparison);
+  if (observe) observe({prepared, rendered, frames, comparison});
   result.seconds_compare = seconds_since(start);
 
   if (!folder) return;

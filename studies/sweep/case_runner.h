@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -15,6 +16,15 @@ namespace gladstone {
 /// Whether a runner takes over from the cases before what this one agrees with them on.
 enum class Sharing { yes, no };
 
+/// A case in memory, before it is let go.
+struct ObservedCase {
+  PreparedCase const& prepared;
+  RenderedCase const& rendered;
+  RecordedFrames const& frames;
+  Comparison const& comparison;
+};
+using CaseObserver = std::function<void(ObservedCase const&)>;
+
 /// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends on its manifest
 /// line alone: what is shared between cases (fields and their splines, planned steps and rays, renderings, truth at
 /// vectors) is what the case itself would have computed, to the last bit. A reference frame is traced with the rays of
@@ -27,15 +37,16 @@ class CaseRunner {
   /// Computes a case. What goes wrong in computing it is its result (`failed`).
   /// @param keep folder to write the whole CASE to, as render, correlate and compare would, without figures; empty:
   /// nothing is written
+  /// @param observe told of the case once it is compared; empty: nobody
   /// @throws DataError where an input is not what it was when the study was planned; Interrupted, OutputError,
   ///         DeviceError (but a device without enough memory fails the case alone)
-  CaseResult run(ManifestCase const& one, std::string const& keep = "");
+  CaseResult run(ManifestCase const& one, std::string const& keep = "", CaseObserver const& observe = {});
 
  private:
   struct Shared;
 
   void check_inputs(ManifestCase const& one);
-  void compute(ManifestCase const& one, std::string const& keep, CaseResult& result);
+  void compute(ManifestCase const& one, std::string const& keep, CaseObserver const& observe, CaseResult& result);
 
   Device device_;
   Sharing sharing_;

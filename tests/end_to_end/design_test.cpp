@@ -61,7 +61,7 @@ TEST_F(Design, DrawsLayoutAndMap) {
 // What is recommended keeps what was asked, and the setup that is written is that bench: its own sheet says so.
 TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   write("tunnel.toml", tunnel);
-  auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml"});
+  auto const json = json_of({"design", "tunnel.toml", "--apply", "out.toml", "--verify", "0"});
   EXPECT_TRUE(json["feasible"]);
   auto const& predicted = json["predicted"];
   EXPECT_LE(predicted["resolution_mm"], 12.0 * (1 + 1e-6));
@@ -69,6 +69,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_LE(predicted["z_total_mm"], 2000.0 * (1 + 1e-6));
   EXPECT_FALSE(json["binding"].empty());
   EXPECT_EQ(json["choices"].size(), 4u);
+  EXPECT_FALSE(json.contains("verification"));
   std::string const applied = read("out.toml");
   for (char const* const table : {"requirements", "limits", "inventory", "free"}) {
     EXPECT_THAT(applied, testing::Not(HasSubstr(std::string("[") + table)));
@@ -78,6 +79,33 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_NEAR(sheet["gradient_min_kg_m4"], predicted["gradient_min_kg_m4"], 1e-9);
   render("case", {"--set", "render.rays_per_dot=4"}, "out.toml");
   EXPECT_THAT(names("case"), testing::Contains("flow.tif"));
+}
+
+// One lens and one stop: dots of a size that exposure = "auto" lights to 90 % of the full well, which is what the
+// pixels in the middle of their images hold. The pattern has its own seeds, so that the answer is the same each time.
+TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
+  std::string text = tunnel;
+  text.replace(text.find("focal_lengths_mm = [50, 105]"), 28, "focal_lengths_mm = [50]");
+  text.replace(text.find("f_numbers = [8, 16]"), 19, "f_numbers = [16]");
+  write("tunnel.toml", text);
+  auto const json = json_of({"design", "tunnel.toml", "--verify", "1", "--device", "cpu", "--apply", "out.toml"});
+  EXPECT_TRUE(json["feasible"]);
+  ASSERT_EQ(json["verification"].size(), 1u);
+  auto const& bench = json["verification"][0];
+  EXPECT_TRUE(bench["kept"]);
+  EXPECT_EQ(bench["pixels"], nlohmann::json({128, 128}));
+  for (auto const& row : bench["quantities"]) {
+    std::string const key = row["key"];
+    EXPECT_EQ(json["simulated"][key], row["simulated"]) << key;
+    EXPECT_EQ(row["agrees"].get<bool>(), row["why"].get<std::string>().empty()) << key;
+  }
+  double const peak = json["simulated"]["peak_electrons"];
+  EXPECT_NEAR(peak, json["predicted"]["peak_electrons"], 0.02 * peak);
+  // passes that deform the images resolve what one window does, or more
+  EXPECT_LT(json["simulated"]["resolution_mm"], 1.02 * json["predicted"]["resolution_mm"].get<double>());
+  EXPECT_GT(json["simulated"]["resolution_mm"], 0.5 * json["predicted"]["resolution_mm"].get<double>());
+  EXPECT_GT(json["simulated"]["random_px"], 0);
+  EXPECT_TRUE(std::filesystem::exists(in("out.toml")));
 }
 
 TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
@@ -107,6 +135,44 @@ TEST_F(Design, LightExposesWhatIsRendered) {
   render("brighter", {}, "brighter.toml");
   double const once = summary["exposure"], twice = nlohmann::json::parse(read("brighter/summary.json"))["exposure"];
   EXPECT_NEAR(twice / once, 2, 1e-12);
+}
+
+// An uncertain Z_D of 1 in 250 mm: of g ~ (Z_B - f) / Z_D the logarithm changes by (Z_D / (Z_B - f) - 1) / 250.
+TEST_F(Design, PropagatesWhatASetupIsUncertainBy) {
+  write("bench.toml", R"(schema = 1
+[camera]
+pixels = [64, 64]
+[lens]
+focal_length_mm = 105.0
+[geometry]
+z_a_mm = 750.0
+z_d_mm = { value = 250.0, sigma = 1.0 }
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [10.0, 0.0, 0.0]
+[correlate]
+window_px = [32, 16]
+)");
+  auto const json = json_of({"design", "bench.toml", "--device", "cpu"});
+  auto const& inputs = json["uncertainty"]["inputs"];
+  ASSERT_EQ(inputs.size(), 2u);
+  EXPECT_EQ(inputs[1]["key"], "geometry.z_d_mm");
+  auto const& gradient = json["uncertainty"]["results"][0];
+  EXPECT_NEAR(gradient["value"], 10, 1e-9);
+  auto const& part = gradient["contributions"][1];
+  EXPECT_NEAR(part["log_derivative"], (250.0 / 895 - 1) / 250, 1e-12);
+  EXPECT_NEAR(part["standard_uncertainty"], 10 * (1 - 250.0 / 895) / 250, 1e-9);
+  EXPECT_TRUE(part["agrees_with_rays"]);
+  EXPECT_TRUE(gradient["linear"]);
+  EXPECT_THAT(succeed({"design", "bench.toml", "--device", "cpu"}), HasSubstr("combined standard uncertainty"));
+  // all else reads the value, and a case keeps what it is worth
+  render("case", {}, "bench.toml");
+  succeed({"correlate", "case", "--quiet"});
+  succeed({"compare", "case", "--quiet"});
+  EXPECT_THAT(read("case/setup.toml"), HasSubstr("sigma = 1.0"));
+  EXPECT_EQ(json_of({"design", "case/setup.toml", "--device", "cpu"})["uncertainty"]["inputs"].size(), 2u);
+  write("wrong.toml", "schema = 1\n[geometry]\nz_d_mm = { value = 250.0, sigma = -1 }\n");
+  expect_refused({"design", "wrong.toml"}, 2, {"wrong.toml:3:1: geometry.z_d_mm", "write a number of 0 or more"});
 }
 
 TEST_F(Design, RefusesWhatItCannotAnswer) {

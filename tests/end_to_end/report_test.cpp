@@ -68,6 +68,62 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   EXPECT_THAT(read("case/report.html"), HasSubstr("expanded uncertainty"));
 }
 
+// Frames and vectors that somebody measured, with a setup that describes the bench and no truth: what is told rests on
+// the vectors. A uniform gradient of 40 kg/m^4 integrates to a ramp, which the twin displaces by as much again.
+TEST_F(Reports, OfAMeasurementTellItsUncertaintyFromATwin) {
+  std::string const setup = R"(schema = 1
+[camera]
+pixels = [128, 128]
+bit_depth = 12
+[camera.noise]
+full_well_e = 30000
+[geometry]
+z_a_mm = 750.0
+z_d_mm = { value = 250.0, sigma = 2.5 }
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [40.0, 0.0, 0.0]
+[correlate]
+window_px = [32, 16]
+)";
+  write("bench.toml", setup);
+  render("case", {}, "bench.toml");
+  std::filesystem::create_directories(in("measured"));
+  for (char const* const name : {"reference.tif", "flow.tif"}) {
+    std::filesystem::copy_file(in(std::string("case/") + name), in(std::string("measured/") + name));
+  }
+  std::string without_field = setup;
+  without_field.erase(without_field.find("[medium.field]"), setup.find("[correlate]") - setup.find("[medium.field]"));
+  write("measured/setup.toml", without_field);
+  succeed({"correlate", "measured/reference.tif", "measured/flow.tif", "-o", "measured/vectors.h5", "--config",
+           "measured/setup.toml", "--quiet"});
+  std::string const findings = json_of({"report", "measured", "--device", "cpu"})["findings"];
+  EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
+  EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
+  EXPECT_THAT(findings, HasSubstr("In the simulated twin"));
+  std::string const html = read("measured/report.html");
+  EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
+  EXPECT_THAT(html, HasSubstr("geometry.z_d_mm"));
+  nlohmann::json const data = data_of("measured/report.html");
+  auto const mean_of = [&](std::string const& name, char const* component) {
+    for (nlohmann::json const& one : data["fields"]) {
+      if (one["name"] != name) continue;
+      double sum = 0;
+      for (nlohmann::json const& value : one[component]) sum += value.is_null() ? 0 : value.get<double>();
+      return sum / static_cast<double>(one[component].size());
+    }
+    return std::nan("");
+  };
+  // in one px there are 150.9 kg/m^4; the bias of a vector, 0.002 px, is 0.3
+  EXPECT_NEAR(mean_of("gradient", "u"), 40, 0.5);
+  EXPECT_NEAR(mean_of("gradient", "v"), 0, 0.5);
+  // Z_D alone: (1 - Z_D / (Z_B - f)) 1 % of 40 kg/m^4, and the displacement's part on top
+  double const common = (1 - 250.0 / 895) * 0.01 * 40;
+  EXPECT_GT(mean_of("combined", "u"), common);
+  EXPECT_NEAR(mean_of("combined", "u"), std::hypot(common, mean_of("random", "u")), 0.1 * common);
+  expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv"});
+}
+
 TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {
   render("case");
   succeed({"correlate", "case", "--quiet"});

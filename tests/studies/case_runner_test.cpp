@@ -50,6 +50,25 @@ TEST_F(CaseRunners, SharedPartsGiveTheSameBitsAsNoneInAnyOrder) {
   for (std::size_t step : {1, 2, 4, 8, 16, 32}) EXPECT_NE(shared[0].measures, shared[step].measures) << step;
 }
 
+// What is told of a case in memory is what its numbers were made of.
+TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
+  std::size_t told = 0;
+  double rms = 0;
+  CaseResult const result = runner(Sharing::yes).run(cases[0], "", [&](ObservedCase const& seen) {
+    ++told;
+    rms = summarize_errors(seen.comparison.measured.displacement_px, seen.comparison.point.eq9_px, seen.comparison.mask)
+              .rms_px;
+    EXPECT_EQ(seen.frames.levels->reference().columns(), 64);
+  });
+  EXPECT_EQ(told, 1u);
+  for (auto const& [name, value] : result.measures) {
+    if (name == "eq9.rms_px") {
+      EXPECT_EQ(value, rms);
+    }
+  }
+}
+
 // What "auto" comes to depends on the camera's grey levels, and the frames on what it comes to.
 TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
   auto const cases = plan(R"(base = "base.toml"

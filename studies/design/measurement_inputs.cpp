@@ -1,0 +1,224 @@
+#include "studies/design/measurement_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/medium/gladstone_dale.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double step_share = 1e-3;      ///< of a value, that it is moved by either way
+constexpr double traced_gradient = 1.0;  ///< uniform, that rays are traced through [kg/m^4]
+constexpr int traced_px = 96;            ///< of the camera's middle
+/// By how much derivative by formula and by tracing may differ, d ln / d ln: what lies off the axis, and differences.
+constexpr double traced_tolerance = 0.02;
+
+struct FormulaKey {
+  char const* key;
+  GradientInput input;
+  double unit;
+};
+constexpr std::array<FormulaKey, 7> formula_keys{{
+    {"camera.pixel_pitch_um", GradientInput::pixel_pitch, unit::micrometre},
+    {"lens.focal_length_mm", GradientInput::focal_length, unit::millimetre},
+    {"geometry.z_a_mm", GradientInput::z_a, unit::millimetre},
+    {"geometry.z_d_mm", GradientInput::z_d, unit::millimetre},
+    {"medium.gladstone_dale", GradientInput::gladstone_dale, 1},
+    {"medium.thickness_mm", GradientInput::thickness, unit::millimetre},
+    {"medium.ambient_density_kg_m3", GradientInput::ambient_density, 1},
+}};
+
+SetupNode steady_gradient() {
+  SetupNode field;
+  field.members.push_back({"kind", setup_text("uniform_gradient")});
+  field.members.push_back(
+      {"gradient_kg_m4", setup_array({setup_number(traced_gradient), setup_number(0), setup_number(0)})});
+  return field;
+}
+
+/// Mean displacement along the gradient, of the dots of a setup with a key at a value [px].
+double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {
+  SetupNode root = parse_toml(loaded.document.written(), "setup");
+  std::erase_if(root.members, [](SetupMember const& member) {  // none of these changes what a gradient displaces
+    return member.key == "light" || member.key == "correlate" || member.key == "render";
+  });
+  SetupDocument changed = SetupDocument::from_text(toml_document(root), "setup", loaded.document.folder());
+  int const columns = std::min(loaded.setup.camera.columns, traced_px),
+            rows = std::min(loaded.setup.camera.rows, traced_px);
+  changed.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
+  changed.set({"correlate", "window_px"}, setup_array({setup_integer(std::min({columns, rows, 32}) / 2 * 2)}));
+  changed.set({"medium", "field"}, steady_gradient());
+  changed.set({"lens", "f_number"}, setup_number(std::numeric_limits<double>::infinity()));
+  changed.set(input.path, setup_number(value));
+  CaseSetup moved = load_case_setup(std::move(changed));
+  PreparedCase prepared = prepare_case(moved);
+  GroundTruth const truth =
+      renderer.render(prepared.scene, prepared.scene.dots, RenderImages::no, RenderTheory::no).truth;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (!std::isfinite(truth.displacement_px[i].x)) continue;
+    sum += truth.displacement_px[i].x;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : std::nan("");
+}
+
+MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) {
+  MeasurementInput one{input.key, input.value, input.sigma, input.distribution, input.degrees_of_freedom, {}, 1, 1, {}};
+  if (!loaded.setup.on_bench()) return one;
+  for (FormulaKey const& known : formula_keys) {
+    if (input.key != known.key) continue;
+    one.enters = known.input;
+    one.unit = known.unit;
+  }
+  SetupNode const* const constant = loaded.document.find({"medium", "gladstone_dale"});
+  if (input.key == "medium.wavelength_nm" && constant && constant->kind == SetupNode::Kind::text) {
+    one.enters = GradientInput::gladstone_dale;
+    one.unit = unit::nanometre;
+    double const lambda = loaded.setup.medium.wavelength, step = 1e-4 * lambda;
+    auto const k = [&](double at) {
+      return constant->text == "ciddor" ? gladstone_dale_ciddor(at) : gladstone_dale_merzkirch(at);
+    };
+    one.chain = (k(lambda + step) - k(lambda - step)) / (2 * step) * lambda / k(lambda);
+  }
+  return one;
+}
+
+std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
+
+/// Whether formula and tracing have the same derivative.
+bool same(MeasurementInput const& input, Contribution const& contribution) {
+  double const scale = input.value != 0 ? std::abs(input.value) : input.sigma;
+  return !input.traced || std::abs(-*input.traced - contribution.log_derivative) * scale <= traced_tolerance;
+}
+
+}  // namespace
+
+std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
+  if (loaded.setup.lens.prescription || input.key == "lens.f_number") return std::nullopt;
+  double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
+  if (step == 0) return std::nullopt;
+  try {
+    double const more = traced_displacement(loaded, input, input.value + step, renderer);
+    double const less = traced_displacement(loaded, input, input.value - step, renderer);
+    double const slope = std::log(more / less) / (2 * step);
+    return std::isfinite(slope) ? std::optional(slope) : std::nullopt;
+  } catch (SetupError const&) {  // a key of the field, of the correlation: it changes no displacement per gradient
+    return std::nullopt;
+  }
+}
+
+GradientMeasurement<double> gradient_measurement(Setup const& setup, int window_px, double displacement_px) {
+  GradientMeasurement<double> at;
+  at.window_px = window_px;
+  at.value = {displacement_px, setup.camera.pixel_pitch,    setup.lens.focal_length, setup.z_a,
+              setup.z_d,       setup.medium.gladstone_dale, setup.medium.thickness,  setup.medium.ambient_density};
+  return at;
+}
+
+std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+                                                 Renderer& renderer) {
+  std::vector<MeasurementInput> inputs;
+  for (UncertainInput const& input : uncertain) {
+    inputs.push_back(of_setup(input, loaded));
+    inputs.back().traced = traced_log_derivative(loaded, input, renderer);
+  }
+  return inputs;
+}
+
+MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
+                                               Bench<double> const& bench, double gradient, Renderer& renderer) {
+  MeasurementUncertainty told;
+  told.random_px = bench.random_error();
+  told.inputs.push_back({"displacement_px", bench.sensitivity() * gradient, told.random_px, InputDistribution::normal,
+                         std::numeric_limits<double>::infinity(), GradientInput::displacement, 1, 1, std::nullopt});
+  for (MeasurementInput& input : measurement_inputs(loaded, uncertain, renderer)) {
+    told.traced = told.traced || input.traced;
+    told.inputs.push_back(std::move(input));
+  }
+  told.results = propagate(
+      gradient_measurement(loaded.setup, bench.given->window.window_px(), told.inputs.front().value), told.inputs);
+  told.share_resolved = bench.transfer(2 * resolved_wavelength(bench));
+  return told;
+}
+
+std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
+  std::string text =
+      "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
+      "inputs "
+      "of type B, independent)\n";
+  text += fmt::format("  {:<30}{:>12}{:>11} {:<12}{:>6}{:>14}{:>12}{:>10}\n", "input", "value", "sigma", "distribution",
+                      "nu", "u(gradient)", "d ln/d ln", "traced");
+  PropagatedResult const& gradient = uncertainty.results.front();
+  for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
+    MeasurementInput const& input = uncertainty.inputs[i];
+    Contribution const& part = gradient.contributions[i];
+    text += fmt::format("  {:<30}{:>12.6g}{:>11.4g} {:<12}{:>6}{:>7.2g} {:>5.1f} %{:>12.4f}{:>10}{}\n", input.key,
+                        input.value, input.sigma, to_string(input.distribution), degrees_text(input.degrees_of_freedom),
+                        part.standard, 100 * part.share, part.log_derivative * input.value,
+                        input.traced ? fmt::format("{:.4f}", -*input.traced * input.value) : "",
+                        same(input, part) ? "" : "  formula and rays differ");
+  }
+  for (PropagatedResult const& result : uncertainty.results) {
+    text += fmt::format(
+        "  {}: {:.6g}, combined standard uncertainty {:.3g}, effective degrees of freedom {}\n"
+        "    expanded uncertainty {:.3g}, coverage factor {:.3f}, coverage probability 95.45 %\n"
+        "    {} samples (JCGM 101:2008): mean {:.6g}, standard uncertainty {:.3g}, 95.45 % from {:.6g} to {:.6g}; {}\n",
+        result.key, result.value, result.standard, degrees_text(result.degrees_of_freedom), result.expanded(),
+        result.coverage_factor, propagation_samples, result.sampled_mean, result.sampled_standard, result.sampled_low,
+        result.sampled_high,
+        result.linear ? "the first order holds" : "not linear, or not normal: take the samples' interval");
+  }
+  text +=
+      fmt::format("  not in it: the uncorrected bias; {:.2g} % of a wave twice as long as the resolved one is lost\n",
+                  100 * (1 - uncertainty.share_resolved));
+  return text;
+}
+
+nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertainty) {
+  using Json = nlohmann::ordered_json;
+  auto const finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json json;
+  json["inputs"] = Json::array();
+  for (MeasurementInput const& input : uncertainty.inputs) {
+    json["inputs"].push_back({{"key", input.key},
+                              {"value", input.value},
+                              {"sigma", input.sigma},
+                              {"distribution", to_string(input.distribution)},
+                              {"degrees_of_freedom", finite(input.degrees_of_freedom)},
+                              {"traced_log_derivative", input.traced ? Json(-*input.traced) : Json(nullptr)}});
+  }
+  json["results"] = Json::array();
+  for (PropagatedResult const& result : uncertainty.results) {
+    Json row{{"key", result.key},
+             {"value", result.value},
+             {"standard_uncertainty", result.standard},
+             {"effective_degrees_of_freedom", finite(result.degrees_of_freedom)},
+             {"coverage_factor", result.coverage_factor},
+             {"expanded_uncertainty", result.expanded()},
+             {"sampled_mean", result.sampled_mean},
+             {"sampled_standard_uncertainty", result.sampled_standard},
+             {"sampled_interval", {result.sampled_low, result.sampled_high}},
+             {"linear", result.linear},
+             {"contributions", Json::array()}};
+    for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
+      Contribution const& part = result.contributions[i];
+      row["contributions"].push_back({{"key", uncertainty.inputs[i].key},
+                                      {"log_derivative", part.log_derivative},
+                                      {"standard_uncertainty", part.standard},
+                                      {"share", part.share},
+                                      {"agrees_with_rays", same(uncertainty.inputs[i], part)}});
+    }
+    json["results"].push_back(std::move(row));
+  }
+  json["uncorrected_bias"] = {{"wave", "twice the resolved wavelength"},
+                              {"share_lost", 1 - uncertainty.share_resolved}};
+  return json;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,152 @@
+#include "studies/design/propagation.h"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/random_variates.h"
+
+namespace gladstone {
+namespace {
+
+using Jet = ceres::Jet<double, static_cast<int>(gradient_inputs)>;
+
+/// Probability between -t and t.
+double student_coverage(double t, double degrees) {
+  // with t = sqrt(nu) tan(a): the integral of cos^(nu - 1), by Simpson's rule
+  constexpr int steps = 2000;
+  double const end = std::atan(t / std::sqrt(degrees)), h = end / steps;
+  double sum = 0;
+  for (int i = 0; i <= steps; ++i) {
+    double const weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+    sum += weight * std::pow(std::cos(i * h), degrees - 1);
+  }
+  double const norm = std::exp(std::lgamma((degrees + 1) / 2) - std::lgamma(degrees / 2)) / std::sqrt(pi);
+  return 2 * norm * sum * h / 3;
+}
+
+GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at) {
+  GradientMeasurement<Jet> jets;
+  jets.window_px = at.window_px;
+  for (std::size_t i = 0; i < gradient_inputs; ++i) jets.value[i] = Jet(at.value[i], static_cast<int>(i));
+  return jets;
+}
+
+/// d ln(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the
+/// displacement a gradient makes and so of the opposite sign.
+double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result) {
+  if (!input.enters) return input.traced ? -*input.traced : 0;
+  auto const i = static_cast<std::size_t>(*input.enters);
+  return input.chain * result.v[static_cast<Eigen::Index>(i)] * at.value[i] / (result.a * input.value);
+}
+
+/// One draw of an input less its value.
+double drawn(MeasurementInput const& input, KeyedEngine& engine) {
+  bool const normal = input.distribution == InputDistribution::normal;
+  return input.sigma * (normal ? normal_variate(engine) : std::sqrt(3.0) * (2 * to_unit(engine()) - 1));
+}
+
+/// The results of a sample: of what the formula has not, by what its logarithm changes.
+std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vector<MeasurementInput> const& inputs,
+                             KeyedEngine& engine) {
+  double factor = 1;
+  for (MeasurementInput const& input : inputs) {
+    double const off = drawn(input, engine);
+    if (!input.enters) {
+      factor *= std::exp(input.traced ? -*input.traced * off : 0);
+    } else {
+      double const ratio = 1 + off / input.value;
+      measurement[*input.enters] *= input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+    }
+  }
+  return {measurement.gradient() * factor, measurement.density_step() * factor};
+}
+
+double at_fraction(std::vector<double> const& sorted, double fraction) {
+  double const place = fraction * static_cast<double>(sorted.size() - 1);
+  auto const i = std::min(static_cast<std::size_t>(place), sorted.size() - 2);
+  double const part = place - static_cast<double>(i);
+  return (1 - part) * sorted[i] + part * sorted[i + 1];
+}
+
+constexpr double covered = 0.954499736;  ///< of a normal distribution within two standard deviations
+
+void add_samples(PropagatedResult& result, std::vector<double> samples) {
+  double sum = 0, squares = 0;
+  for (double const one : samples) sum += one;
+  result.sampled_mean = sum / static_cast<double>(samples.size());
+  for (double const one : samples) squares += (one - result.sampled_mean) * (one - result.sampled_mean);
+  result.sampled_standard = std::sqrt(squares / static_cast<double>(samples.size() - 1));
+  std::sort(samples.begin(), samples.end());
+  result.sampled_low = at_fraction(samples, (1 - covered) / 2);
+  result.sampled_high = at_fraction(samples, (1 + covered) / 2);
+  if (result.standard == 0) return;
+  // JCGM 101, 7.9.2 with one significant digit: u = c 10^l, c from 1 to 9, delta = 10^l / 2
+  double const delta = 0.5 * std::pow(10.0, std::floor(std::log10(result.standard)));
+  double const reach = 2 * result.standard;
+  result.linear = std::abs(result.value - reach - result.sampled_low) <= delta &&
+                  std::abs(result.value + reach - result.sampled_high) <= delta;
+}
+
+PropagatedResult first_order(std::string key, GradientMeasurement<double> const& at,
+                             std::vector<MeasurementInput> const& inputs, Jet const& result) {
+  PropagatedResult out;
+  out.key = std::move(key);
+  out.value = result.a;
+  double variance = 0, over_degrees = 0;
+  for (MeasurementInput const& input : inputs) {
+    Contribution one;
+    one.log_derivative = log_derivative_of(input, at, result);
+    one.standard = std::abs(one.log_derivative * result.a * input.sigma);
+    double const square = one.standard * one.standard;
+    variance += square;
+    over_degrees += square * square / input.degrees_of_freedom;
+    out.contributions.push_back(one);
+  }
+  out.standard = std::sqrt(variance);
+  for (Contribution& one : out.contributions) one.share = variance > 0 ? one.standard * one.standard / variance : 0;
+  out.degrees_of_freedom =
+      over_degrees > 0 ? variance * variance / over_degrees : std::numeric_limits<double>::infinity();
+  out.coverage_factor = coverage_factor(out.degrees_of_freedom);
+  return out;
+}
+
+}  // namespace
+
+double coverage_factor(double degrees_of_freedom) {
+  if (!(degrees_of_freedom < 1e4)) return 2;
+  double low = 1.9, high = 20;  // nu = 1 has 13.97
+  while (high - low > 1e-9) {
+    double const middle = (low + high) / 2;
+    (student_coverage(middle, degrees_of_freedom) < covered ? low : high) = middle;
+  }
+  return high;
+}
+
+std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
+                                        std::vector<MeasurementInput> const& inputs) {
+  GradientMeasurement<Jet> const jets = with_derivatives(at);
+  std::vector<PropagatedResult> results{first_order("gradient_kg_m4", at, inputs, jets.gradient()),
+                                        first_order("density_step_kg_m3", at, inputs, jets.density_step())};
+  std::array<std::vector<double>, 2> samples;
+  for (int i = 0; i < propagation_samples; ++i) {
+    KeyedEngine engine(1, RandomStream::sensor, static_cast<std::uint64_t>(i));
+    std::array<double, 2> const one = sample(at, inputs, engine);
+    for (std::size_t k = 0; k < results.size(); ++k) samples[k].push_back(one[k]);
+  }
+  for (std::size_t k = 0; k < results.size(); ++k) add_samples(results[k], std::move(samples[k]));
+  return results;
+}
+
+double common_relative_uncertainty(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient) {
+  double variance = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (inputs[i].enters == GradientInput::displacement) continue;
+    double const relative = gradient.contributions[i].standard / gradient.value;
+    variance += relative * relative;
+  }
+  return std::sqrt(variance);
+}
+
+}  // namespace gladstone

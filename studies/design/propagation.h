@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/base/units.h"
+#include "studies/uncertain_inputs.h"
+
+namespace gladstone {
+
+/// What a density gradient is measured from.
+enum class GradientInput {
+  displacement,
+  pixel_pitch,
+  focal_length,
+  z_a,
+  z_d,
+  gladstone_dale,
+  thickness,
+  ambient_density
+};
+inline constexpr std::size_t gradient_inputs = 8;
+
+/// The measurement as a formula, F6 solved for the gradient: T is double, or a Jet that carries derivatives. In SI,
+/// displacements in px.
+template <class T>
+struct GradientMeasurement {
+  std::array<T, gradient_inputs> value;
+  double window_px = 32;
+
+  T const& operator[](GradientInput input) const { return value[static_cast<std::size_t>(input)]; }
+  T& operator[](GradientInput input) { return value[static_cast<std::size_t>(input)]; }
+  T z_b() const { return (*this)[GradientInput::z_a] + (*this)[GradientInput::z_d]; }
+  T magnification() const {
+    return (*this)[GradientInput::focal_length] / (z_b() - (*this)[GradientInput::focal_length]);
+  }
+  /// Density gradient, averaged over the thickness: Delta p n0 / (M Z_D K L_z), n0 = 1 + K rho_ambient [kg/m^4].
+  T gradient() const {
+    using I = GradientInput;
+    T const n0 = 1.0 + (*this)[I::gladstone_dale] * (*this)[I::ambient_density];
+    return (*this)[I::displacement] * (*this)[I::pixel_pitch] * n0 /
+           (magnification() * (*this)[I::z_d] * (*this)[I::gladstone_dale] * (*this)[I::thickness]);
+  }
+  /// Density that it makes across one window, the step of an integration: the gradient times N_w p / M_A [kg/m^3].
+  T density_step() const {
+    return gradient() * window_px * (*this)[GradientInput::pixel_pitch] * (*this)[GradientInput::z_a] /
+           (magnification() * z_b());
+  }
+};
+
+/// An input of the measurement, with what is known of it. In the key's own unit.
+struct MeasurementInput {
+  std::string key;
+  double value = 0, sigma = 0;
+  InputDistribution distribution = InputDistribution::normal;
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();
+  std::optional<GradientInput> enters;  ///< where the formula has it; nothing: it has not
+  double unit = 1;                      ///< of the key [SI]
+  /// Times the derivative of the formula's input by the key, both relative: 1, or of a wavelength that of K.
+  double chain = 1;
+  /// d ln(displacement per gradient) / d(key) by tracing, in the key's own unit; nothing: not traced.
+  std::optional<double> traced;
+};
+
+/// How an input adds to a result.
+struct Contribution {
+  double log_derivative = 0;  ///< d ln(result) / d(input), in the input's unit
+  double standard = 0;        ///< |derivative| times sigma, in the result's unit
+  double share = 0;           ///< of the combined variance
+};
+
+/// A result with its uncertainty, in the words of the GUM (JCGM 100:2008) and, by samples, of its Supplement 1 (JCGM
+/// 101:2008).
+struct PropagatedResult {
+  std::string key;  ///< with its unit as suffix
+  double value = 0;
+  double standard = 0;                      ///< combined standard uncertainty, first order
+  double degrees_of_freedom = 0;            ///< effective, after Welch and Satterthwaite; infinite where all are
+  double coverage_factor = 2;               ///< for 95.45 %
+  std::vector<Contribution> contributions;  ///< of the inputs, in their order
+  double sampled_mean = 0, sampled_standard = 0;
+  double sampled_low = 0, sampled_high = 0;  ///< 95.45 % of the samples, as many below as above
+  bool linear = true;  ///< the ends of both intervals agree within half of the first digit of `standard` (JCGM 101, 8)
+
+  double expanded() const { return coverage_factor * standard; }
+};
+
+inline constexpr int propagation_samples = 100'000;
+
+/// Coverage factor of Student's t distribution for 95.45 %, 2 for infinitely many degrees of freedom.
+double coverage_factor(double degrees_of_freedom);
+
+/// Propagates the inputs, which are taken for independent, to density gradient and density by exact derivatives and by
+/// samples.
+/// @param at the values of all inputs of the formula
+std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
+                                        std::vector<MeasurementInput> const& inputs);
+
+/// Relative uncertainty of a gradient that all inputs but the displacement make together, first order: what is the same
+/// at all vectors.
+double common_relative_uncertainty(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient);
+
+}  // namespace gladstone

@@ -1,0 +1,234 @@
+#include "studies/design/verification.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/progress.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double mm = unit::millimetre;
+constexpr double coverage = 2;  ///< standard errors that two numbers may differ by
+/// What the formula of the random error is from the study that it was fitted to, and closed forms from what they leave
+/// out in first order (docs/design.md), relative.
+constexpr double random_error_accuracy = 0.2, closed_form_accuracy = 0.02;
+
+/// The cause whose simulated part is farthest from the predicted one.
+std::string why_biased(SimulatedBench const& simulated) {
+  SystematicCause const* farthest = nullptr;
+  auto const off = [](SystematicCause const& cause) { return std::abs(cause.simulated - cause.predicted); };
+  for (SystematicCause const& cause : simulated.causes) {
+    if (std::isfinite(off(cause)) && (!farthest || off(cause) > off(*farthest))) farthest = &cause;
+  }
+  if (!farthest) return "no cause is known";
+  std::string text = fmt::format("{}: {:.3g} px", farthest->name, farthest->simulated);
+  if (farthest->predicted == 0) return text + ", which no formula has";
+  text += fmt::format(" instead of {:.3g} px", farthest->predicted);
+  bool const less = farthest->simulated < farthest->predicted;
+  if (farthest->name == "window") {
+    text += less ? " (passes that deform the images win some of it back)" : " (correlation is not an average)";
+  }
+  return text;
+}
+
+/// Which share of the wave is farthest from its formula, and what it is instead.
+std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& bench) {
+  WaveShares const& wave = simulated.waves.front();
+  double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, bench.given->thickness, wave.wavelength) *
+                      disc_transfer(bench.dot_diameter * bench.z_a / bench.z_b(), wave.wavelength);
+  double const window = bench.given->window.share(bench.pixel_at_medium() / wave.wavelength);
+  struct Share {
+    char const* name;
+    double simulated, predicted;
+    char const* because;
+  };
+  std::vector<Share> const shares{
+      {"cone", wave.cone, cone, "of a field that is not alike over its thickness"},
+      {"refraction", wave.refraction / wave.cone, 1, "the stop admits other rays in the flow"},
+      {"aberration", wave.lens / wave.refraction, 1, "the lens is none of the ideal ones"},
+      {"window", wave.measured.value / wave.lens, window, "passes that deform the images win some of it back"}};
+  auto const farthest = std::max_element(shares.begin(), shares.end(), [](Share const& a, Share const& b) {
+    return std::abs(a.simulated - a.predicted) < std::abs(b.simulated - b.predicted);
+  });
+  return fmt::format("{}: passes {:.3f} instead of {:.3f} at {:.4g} mm ({})", farthest->name, farthest->simulated,
+                     farthest->predicted, wave.wavelength / mm, farthest->because);
+}
+
+/// The formula's study moved dots by this much either way, through every fraction of a pixel [px].
+constexpr double studied_displacement_px = 0.5;
+
+std::string why_random(SimulatedBench const& simulated) {
+  if (simulated.displacement_px < studied_displacement_px) {
+    return fmt::format("displacements reach {:.2g} px here; the formula is of all fractions of a pixel",
+                       simulated.displacement_px);
+  }
+  return "noise, dots or strain other than in the formula's study";
+}
+
+std::string why_lit(Bench<double> const& bench) {
+  bool const automatic = !bench.given->light && !bench.given->camera.exposure_e;
+  return automatic ? "exposure = \"auto\" follows the brightest pixel, where dots are close to one another"
+                   : "light of neighbouring dots, or what the lens cuts off";
+}
+
+/// Smallest gradient seen at two standard deviations, by the simulated error and magnification.
+Estimate gradient_seen(SimulatedBench const& simulated, Bench<double> const& bench) {
+  double const per_px = 2 / (bench.sensitivity() * simulated.magnification / bench.magnification());
+  return {simulated.random_px.value * per_px, simulated.random_px.standard_error * per_px};
+}
+
+Estimate view_of(SimulatedBench const& simulated, Bench<double> const& bench, int pixels) {
+  double const at_medium = simulated.magnification * bench.z_b() / bench.z_a;
+  return {pixels * bench.given->camera.pixel_pitch / at_medium, 0};
+}
+
+/// What the simulation says of a limit; nothing where it cannot tell more than the limit itself.
+std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBench const& simulated,
+                                                        Bench<double> const& bench) {
+  CameraSetup const& camera = bench.given->camera;
+  switch (bound) {
+    case Bound::gradient_min:
+      return {{bench.smallest_gradient(), gradient_seen(simulated, bench)}};
+    case Bound::resolution:
+      return {{resolved_wavelength(bench), simulated.resolution}};
+    case Bound::displacement_max:
+      return {{bench.largest_displacement_px(), Estimate{simulated.displacement_px, 0}}};
+    case Bound::uncertainty_max:
+      return {{bench.random_error(), simulated.random_px}};
+    case Bound::view_width:
+      return {{camera.columns * bench.pixel_at_medium(), view_of(simulated, bench, camera.columns)}};
+    case Bound::view_height:
+      return {{camera.rows * bench.pixel_at_medium(), view_of(simulated, bench, camera.rows)}};
+    default:
+      return std::nullopt;
+  }
+}
+
+bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
+
+VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
+                              BranchOutcome const& outcome, VerificationPlan const& plan, CaseRunner& runner,
+                              std::string const& device, Progress& progress) {
+  VerifiedBench verified;
+  verified.outcome = outcome;
+  verified.name = branch_name(outcome.branch, variants, question);
+  Bench<double> const bench = bench_at(outcome.branch, outcome.solution.logarithms);
+  std::size_t cases = 0;
+  auto const finished = [&] {
+    ++cases;
+    progress.advance();
+  };
+  try {
+    verified.simulated = simulate(applied_setup(variants[outcome.branch.variant], question, bench), bench, plan.repeats,
+                                  plan.seed, runner, device, finished);
+  } catch (SetupError const& error) {
+    verified.simulated.failed = error.what();
+  } catch (DataError const& error) {
+    verified.simulated.failed = error.what();
+  }
+  progress.advance(simulated_cases(plan.repeats) - cases);
+  compare_with_formulas(verified, required_limits(question.requirements));
+  return verified;
+}
+
+/// The limits, those that were missed stricter by what the simulation is worse than the formula.
+std::vector<Limit> tightened(std::vector<Limit> limits, VerifiedBench const& missed) {
+  for (VerifiedRequirement const& requirement : missed.requirements) {
+    if (requirement.kept()) continue;
+    for (Limit& limit : limits) {
+      if (limit.bound == requirement.bound) limit.value *= requirement.predicted / requirement.simulated.value;
+    }
+  }
+  return limits;
+}
+
+}  // namespace
+
+bool VerifiedQuantity::agrees() const {
+  double const error =
+      std::hypot(predicted_error, std::isfinite(simulated.standard_error) ? simulated.standard_error : 0);
+  return std::abs(simulated.value - predicted) <= coverage * error;
+}
+
+bool VerifiedRequirement::kept() const {
+  double const slack = coverage * simulated.standard_error + 1e-6 * required;
+  return from_below(bound) ? simulated.value >= required - slack : simulated.value <= required + slack;
+}
+
+bool VerifiedBench::kept() const {
+  return simulated.failed.empty() && std::all_of(requirements.begin(), requirements.end(),
+                                                 [](VerifiedRequirement const& one) { return one.kept(); });
+}
+
+bool Verification::any() const {
+  return std::any_of(benches.begin(), benches.end(),
+                     [](VerifiedBench const& one) { return one.simulated.failed.empty(); });
+}
+
+void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& required) {
+  SimulatedBench const& simulated = verified.simulated;
+  if (!simulated.failed.empty()) return;
+  Bench<double> const bench = bench_at(verified.outcome.branch, verified.outcome.solution.logarithms);
+  auto const add = [&](char const* key, double predicted, double accuracy, Estimate found, double unit,
+                       std::string const& why) {
+    VerifiedQuantity quantity{key,
+                              predicted / unit,
+                              accuracy * std::abs(predicted) / unit,
+                              {found.value / unit, found.standard_error / unit},
+                              why};
+    if (quantity.agrees()) quantity.why.clear();
+    verified.quantities.push_back(std::move(quantity));
+  };
+  add("random_px", bench.random_error(), random_error_accuracy, simulated.random_px, 1, why_random(simulated));
+  add("bias_px", simulated.predicted_bias_px, closed_form_accuracy, simulated.bias_px, 1, why_biased(simulated));
+  add("resolution_mm", resolved_wavelength(bench), closed_form_accuracy, simulated.resolution, mm,
+      std::isfinite(simulated.resolution.value) ? why_resolved(simulated, bench)
+                                                : "the waves were not told from one another");
+  add("peak_electrons", bench.peak_electrons(), closed_form_accuracy, simulated.peak_electrons, 1, why_lit(bench));
+  for (Limit const& limit : required) {
+    if (auto const told = simulated_of(limit.bound, simulated, bench)) {
+      verified.requirements.push_back({limit.bound, limit.value, told->first, told->second});
+    }
+  }
+}
+
+Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
+                    std::vector<DesignBranch> const& branches, Recommendation const& answer,
+                    VerificationPlan const& plan, Device device) {
+  std::string const device_name = device.name();
+  Verification verification;
+  CaseRunner runner(std::move(device));
+  std::vector<BranchOutcome> best;
+  for (BranchOutcome const& outcome : answer.outcomes) {
+    if (outcome.solution.feasible() && best.size() < plan.benches) best.push_back(outcome);
+  }
+  Progress progress("verifying", best.size() * simulated_cases(plan.repeats));
+  for (BranchOutcome const& outcome : best) {
+    verification.benches.push_back(simulated_bench(question, variants, outcome, plan, runner, device_name, progress));
+    if (!verification.chosen && verification.benches.back().kept()) {
+      verification.chosen = verification.benches.size() - 1;
+    }
+  }
+  std::vector<Limit> limits = required_limits(question.requirements);
+  std::optional<VerifiedBench> missed;
+  for (VerifiedBench const& one : verification.benches) {
+    if (!missed && one.simulated.failed.empty()) missed = one;
+  }
+  for (int round = 0; round < most_tightened && !verification.chosen && missed; ++round) {
+    limits = tightened(std::move(limits), *missed);
+    BranchOutcome const next = solve_branches({question.requirements.objective, limits}, branches).front();
+    if (!next.solution.feasible()) break;
+    Progress again("verifying stricter ones", simulated_cases(plan.repeats));
+    VerifiedBench& verified =
+        verification.benches.emplace_back(simulated_bench(question, variants, next, plan, runner, device_name, again));
+    verified.tightened = true;
+    if (verified.kept()) verification.chosen = verification.benches.size() - 1;
+    missed = verified;
+  }
+  return verification;
+}
+
+}  // namespace gladstone

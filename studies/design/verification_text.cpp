@@ -1,0 +1,122 @@
+#include "studies/design/verification_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace gladstone {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+std::string bench_text(VerifiedBench const& one, DesignQuestion const& question) {
+  std::string text = fmt::format("  {}{}\n", one.name, one.tightened ? ", for stricter limits" : "");
+  Bench<double> const bench = bench_at(one.outcome.branch, one.outcome.solution.logarithms);
+  std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
+                                               bench.dot_diameter};
+  std::string place;
+  for (FreeChoice const& free : question.free) {
+    ChoiceKey const& key = key_of(free.choice);
+    place += fmt::format("{}{} {:.6g}", place.empty() ? "" : ", ", key.limit,
+                         value[static_cast<std::size_t>(free.choice)] / key.unit);
+  }
+  text += "    " + place + '\n';
+  if (!one.simulated.failed.empty()) return text + "    could not be simulated: " + one.simulated.failed + '\n';
+  for (VerifiedQuantity const& quantity : one.quantities) {
+    text += fmt::format("    {:<18}{:>12.5g}{:>12.5g} +- {:<9.2g}{}\n", quantity.key, quantity.predicted,
+                        quantity.simulated.value, quantity.simulated.standard_error,
+                        quantity.why.empty() ? "" : quantity.why);
+  }
+  for (VerifiedRequirement const& requirement : one.requirements) {
+    if (requirement.kept()) continue;
+    double const unit = bound_key(requirement.bound).unit;
+    text += fmt::format("    misses {} = {:.6g}: {:.5g} in simulation\n", bound_name(requirement.bound),
+                        requirement.required / unit, requirement.simulated.value / unit);
+  }
+  if (one.kept()) text += "    keeps what is required\n";
+  return text;
+}
+
+Json quantities_json(VerifiedBench const& one) {
+  Json rows = Json::array();
+  for (VerifiedQuantity const& quantity : one.quantities) {
+    rows.push_back({{"key", quantity.key},
+                    {"predicted", number(quantity.predicted)},
+                    {"predicted_error", number(quantity.predicted_error)},
+                    {"simulated", number(quantity.simulated.value)},
+                    {"standard_error", number(quantity.simulated.standard_error)},
+                    {"agrees", quantity.agrees()},
+                    {"why", quantity.why}});
+  }
+  return rows;
+}
+
+Json requirements_json(VerifiedBench const& one) {
+  Json rows = Json::array();
+  for (VerifiedRequirement const& requirement : one.requirements) {
+    double const unit = bound_key(requirement.bound).unit;
+    rows.push_back({{"key", bound_name(requirement.bound)},
+                    {"required", requirement.required / unit},
+                    {"simulated", number(requirement.simulated.value / unit)},
+                    {"standard_error", number(requirement.simulated.standard_error / unit)},
+                    {"kept", requirement.kept()}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string verification_text(Verification const& verification, DesignQuestion const& question) {
+  if (verification.benches.empty()) return "";
+  SimulatedBench const& first = verification.benches.front().simulated;
+  std::string text = fmt::format(
+      "verified by rendering and correlating the middle {} x {} px, {} patterns of dots and noise\n"
+      "    {:<18}{:>12}{:>12} +- {:<9}{}\n",
+      first.columns, first.rows, first.repeats, "", "predicted", "simulated", "error", "where they disagree");
+  for (VerifiedBench const& one : verification.benches) text += bench_text(one, question);
+  if (!verification.any()) return text + "  none could be simulated: the formulas alone recommend\n";
+  if (!verification.chosen) {
+    text += "  infeasible in simulation: none of them keeps what is required (--verify 0 believes the formulas)\n";
+  } else if (*verification.chosen > 0) {
+    text += fmt::format("  recommended: {}, the best that keeps what is required\n",
+                        verification.benches[*verification.chosen].name);
+  }
+  return text;
+}
+
+Json verification_json(Verification const& verification) {
+  Json json;
+  if (verification.chosen) {
+    VerifiedBench const& chosen = verification.benches[*verification.chosen];
+    for (VerifiedQuantity const& quantity : chosen.quantities) {
+      json["simulated"][quantity.key] = number(quantity.simulated.value);
+    }
+  }
+  json["verification"] = Json::array();
+  for (VerifiedBench const& one : verification.benches) {
+    Json row{{"name", one.name}, {"tightened", one.tightened}};
+    if (one.simulated.failed.empty()) {
+      row["pixels"] = {one.simulated.columns, one.simulated.rows};
+      row["repeats"] = one.simulated.repeats;
+      row["vectors"] = one.simulated.vectors;
+      row["quantities"] = quantities_json(one);
+      row["requirements"] = requirements_json(one);
+      row["causes"] = Json::array();
+      for (SystematicCause const& cause : one.simulated.causes) {
+        row["causes"].push_back({{"name", cause.name},
+                                 {"predicted_px", number(cause.predicted)},
+                                 {"simulated_px", number(cause.simulated)}});
+      }
+      row["kept"] = one.kept();
+    } else {
+      row["failed"] = one.simulated.failed;
+    }
+    json["verification"].push_back(std::move(row));
+  }
+  return json;
+}
+
+}  // namespace gladstone

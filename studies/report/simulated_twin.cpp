@@ -1,0 +1,120 @@
+#include "studies/report/simulated_twin.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/base/progress.h"
+#include "render/base/units.h"
+#include "studies/report/measured_density.h"
+#include "studies/sweep/case_runner.h"
+#include "studies/sweep/plan.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t twin_repeats = 2;
+constexpr int margin_nodes = 16;  ///< of the density beyond the vectors: what cones and dots out of view see
+
+/// A file that is gone with its owner.
+class ScratchFile {
+ public:
+  explicit ScratchFile(std::string const& name)
+      : path_((fs::temp_directory_path() / fmt::format("gladstone_{}_{}", ::getpid(), name)).string()) {}
+  ~ScratchFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  ScratchFile(ScratchFile const&) = delete;
+  ScratchFile& operator=(ScratchFile const&) = delete;
+  std::string const& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
+  double const mm = unit::millimetre;
+  auto const numbers = [](double a, double b, double c) {
+    return setup_array({setup_number(a), setup_number(b), setup_number(c)});
+  };
+  SetupNode yes;
+  yes.kind = SetupNode::Kind::boolean;
+  yes.boolean = true;
+  SetupNode field;
+  field.members.push_back({"kind", setup_text("file")});
+  field.members.push_back({"file", setup_text(file)});
+  field.members.push_back({"quantity", setup_text("density")});
+  field.members.push_back({"spacing_mm", numbers(spacing / mm, spacing / mm, spacing / mm)});
+  field.members.push_back({"center_mm", numbers(centre.x / mm, centre.y / mm, 0)});
+  field.members.push_back({"extrude", yes});
+  return field;
+}
+
+StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
+  SetupDocument base = SetupDocument::from_text(loaded.document.written(), "twin", loaded.document.folder());
+  CameraSetup const& camera = loaded.setup.camera;
+  base.set({"camera", "pixels"}, setup_array({setup_integer(std::min(camera.columns, most_twin_px)),
+                                              setup_integer(std::min(camera.rows, most_twin_px))}));
+  AxisPlan medium;
+  medium.key = "medium.field";
+  medium.path = {"medium", "field"};
+  AxisValue& value = medium.list.emplace_back();
+  value.parameter.label = "as measured";
+  value.node = std::move(field);
+  StudyFile study;
+  study.path = study.base_path = "twin";
+  study.base_text = base.written();
+  study.axes.push_back(std::move(medium));
+  study.repeats = twin_repeats;
+  return study;
+}
+
+}  // namespace
+
+SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,
+                            Device device) {
+  SimulatedTwin twin;
+  try {
+    ScratchFile const file("density.nrrd");
+    write_density_plane(file.path(), density, margin_nodes, loaded.setup.medium.ambient_density);
+    StudyPlan const plan = plan_study(study_of(loaded, field_of(file.path(), spacing, centre)), device.name());
+    CaseRunner runner(std::move(device));
+    std::vector<std::vector<Vec2d>> errors;
+    Progress progress("simulating the twin", plan.size());
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+      CaseResult const result = runner.run(plan[i], "", [&](ObservedCase const& seen) {
+        Comparison const& all = seen.comparison;
+        std::vector<Vec2d>& error = errors.emplace_back(all.mask.size(), Vec2d{std::nan(""), std::nan("")});
+        for (std::size_t k = 0; k < all.mask.size(); ++k) {
+          if (all.mask[k]) error[k] = all.measured.displacement_px[k] - all.point.eq9_px[k];
+        }
+        if (i == 0) {
+          twin.comparison = all;
+          twin.columns = seen.prepared.scene.setup.camera.columns;
+          twin.rows = seen.prepared.scene.setup.camera.rows;
+        }
+      });
+      progress.advance();
+      if (result.status == CaseStatus::ok) continue;
+      twin.failed = result.error;
+      return twin;
+    }
+    RepeatSplit const split = split_repeats(errors);
+    twin.repeats = errors.size();
+    twin.random_px = split.scatter_px;
+    twin.bias_px = split.systematic_px;
+  } catch (SetupError const& error) {
+    twin.failed = error.what();
+  } catch (DataError const& error) {
+    twin.failed = error.what();
+  }
+  return twin;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,155 @@
+#include "studies/uncertain_inputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "render/base/nearest_name.h"
+
+namespace gladstone {
+namespace {
+
+constexpr std::array<char const*, 4> known_keys{"value", "sigma", "distribution", "degrees_of_freedom"};
+
+/// Whether a table is a number with its uncertainty: it has a value and a sigma, or would have.
+bool is_uncertain(SetupNode const& node) {
+  return node.kind == SetupNode::Kind::table && node.find("value") && node.find("value")->is_number() &&
+         !node.find("kind") && !node.find("label");
+}
+
+std::string dotted(std::vector<std::string> const& path) {
+  std::string text;
+  for (std::string const& part : path) text += (text.empty() || part.front() == '[' ? "" : ".") + part;
+  return text;
+}
+
+class Reader {
+ public:
+  explicit Reader(SetupDocument& document) : document_(document) {}
+
+  /// @return whether anything below was replaced
+  bool take(SetupNode& node) {
+    bool changed = false;
+    for (SetupMember& member : node.members) changed |= take_at(member.key, member.value);
+    for (std::size_t i = 0; i < node.elements.size(); ++i) {
+      changed |= take_at("[" + std::to_string(i) + "]", node.elements[i]);
+    }
+    return changed;
+  }
+  bool take_at(std::string const& step, SetupNode& node) {
+    path_.push_back(step);
+    bool const changed = is_uncertain(node) ? (replace(node), true) : take(node);
+    path_.pop_back();
+    return changed;
+  }
+  std::vector<UncertainInput> inputs;
+
+ private:
+  /// Adds a problem at the key that has the number; what stands in an array, at the array.
+  void problem(std::string const& message) {
+    SetupTable table = document_.root();
+    std::size_t i = 0;
+    while (i + 1 < path_.size() && path_[i + 1].front() != '[') table = table.table(path_[i++]);
+    table.problem(path_[i], message);
+  }
+
+  void replace(SetupNode& node) {
+    UncertainInput input{
+        path_, dotted(path_), node.find("value")->as_double(), 0, {}, UncertainInput{}.degrees_of_freedom, node};
+    for (SetupMember const& member : node.members) {
+      bool const known = std::find(known_keys.begin(), known_keys.end(), member.key) != known_keys.end();
+      if (known) continue;
+      std::vector<std::string> const names(known_keys.begin(), known_keys.end());
+      auto const nearest = nearest_name(member.key, names);
+      problem("has the unknown key " + member.key + " beside its value" +
+              (nearest ? "; did you mean " + *nearest + "?" : "; it may have " + quoted_list(names)));
+    }
+    read_sigma(node, input);
+    read_distribution(node, input);
+    read_degrees(node, input);
+    SetupNode number = *node.find("value");
+    number.place = node.place;
+    inputs.push_back(std::move(input));
+    node = std::move(number);
+  }
+
+  void read_sigma(SetupNode const& node, UncertainInput& input) {
+    SetupNode const* const sigma = node.find("sigma");
+    if (!sigma) {
+      problem("has a value without its uncertainty; write { value = ..., sigma = ... }, or the number alone");
+    } else if (!sigma->is_number() || !(sigma->as_double() >= 0) || !std::isfinite(sigma->as_double())) {
+      problem("has a sigma that is no standard uncertainty (" + toml_text(*sigma) + "); write a number of 0 or more");
+    } else {
+      input.sigma = sigma->as_double();
+    }
+  }
+  void read_distribution(SetupNode const& node, UncertainInput& input) {
+    SetupNode const* const word = node.find("distribution");
+    if (!word) return;
+    if (word->kind == SetupNode::Kind::text && word->text == "rectangular") {
+      input.distribution = InputDistribution::rectangular;
+    } else if (word->kind != SetupNode::Kind::text || word->text != "normal") {
+      problem("has the unknown distribution " + toml_text(*word) + "; use \"normal\" or \"rectangular\"");
+    }
+  }
+  void read_degrees(SetupNode const& node, UncertainInput& input) {
+    SetupNode const* const degrees = node.find("degrees_of_freedom");
+    if (!degrees) return;
+    if (!degrees->is_number() || !(degrees->as_double() >= 1)) {
+      problem("has degrees_of_freedom of " + toml_text(*degrees) + "; write a number of 1 or more, or leave it out");
+    } else {
+      input.degrees_of_freedom = degrees->as_double();
+    }
+  }
+
+  SetupDocument& document_;
+  std::vector<std::string> path_;
+};
+
+/// The node at a path of keys and "[i]"; null where there is none.
+SetupNode* node_at(SetupNode& root, std::vector<std::string> const& path) {
+  SetupNode* node = &root;
+  for (std::string const& step : path) {
+    if (step.front() == '[') {
+      std::size_t const i = std::stoul(step.substr(1));
+      if (node->kind != SetupNode::Kind::array || i >= node->elements.size()) return nullptr;
+      node = &node->elements[i];
+      continue;
+    }
+    if (node->kind == SetupNode::Kind::array && node->elements.size() == 1) node = &node->elements.front();
+    node = node->find(step);
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
+}  // namespace
+
+char const* to_string(InputDistribution distribution) {
+  return distribution == InputDistribution::normal ? "normal" : "rectangular";
+}
+
+std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document) {
+  Reader reader(document);
+  SetupNode const root = *document.find({});
+  for (SetupMember const& member : root.members) {
+    bool const question =
+        member.key == "requirements" || member.key == "limits" || member.key == "inventory" || member.key == "free";
+    if (question) continue;
+    SetupNode value = member.value;
+    if (reader.take_at(member.key, value)) document.set({member.key}, value);
+  }
+  return reader.inputs;
+}
+
+std::string with_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs) {
+  if (inputs.empty()) return text;
+  SetupNode root = parse_toml(text, "setup");
+  for (UncertainInput const& input : inputs) {
+    SetupNode* const node = node_at(root, input.path);
+    if (node && node->is_number() && node->as_double() == input.value) *node = input.node;
+  }
+  return toml_document(root);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,60 @@
+#include "studies/report/measured_density.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gladstone {
+namespace {
+
+constexpr int columns = 9, rows = 7;
+constexpr double spacing = 0.5e-3;
+
+/// Of rho = 3 x + 200 x^2 + 100 x y - 50 y^2, X right and Y up, about the middle of the lattice.
+double density_at(double x, double y) { return 3 * x + 200 * x * x + 100 * x * y - 50 * y * y; }
+std::vector<Vec2d> gradients() {
+  std::vector<Vec2d> gradient;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      double const x = spacing * (column - (columns - 1) / 2.0), y = -spacing * (row - (rows - 1) / 2.0);
+      gradient.push_back({3 + 400 * x + 100 * y, 100 * x - 100 * y});
+    }
+  }
+  return gradient;
+}
+
+double quadratic(int column, int row) {
+  return density_at(spacing * (column - (columns - 1) / 2.0), -spacing * (row - (rows - 1) / 2.0));
+}
+
+// Between two nodes the mean of the gradients at both is exact for a quadratic field; its level is the border's mean.
+TEST(MeasuredDensity, IntegratesAQuadraticFieldExactly) {
+  Image<double> const density = integrated_density(gradients(), columns, rows, spacing);
+  double const level = density(4, 3) - quadratic(4, 3);
+  double border = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      EXPECT_NEAR(density(column, row), quadratic(column, row) + level, 1e-10);
+      bool const edge = row == 0 || column == 0 || row == rows - 1 || column == columns - 1;
+      border += edge ? density(column, row) : 0;
+    }
+  }
+  EXPECT_NEAR(border, 0, 1e-10);
+}
+
+// A vector that is not known leaves its four differences out: the ways round it tell the same.
+TEST(MeasuredDensity, GoesRoundVectorsThatAreNotKnown) {
+  std::vector<Vec2d> gradient = gradients();
+  gradient[3 * columns + 4] = {std::nan(""), std::nan("")};
+  Image<double> const density = integrated_density(gradient, columns, rows, spacing);
+  double const level = density(0, 0) - quadratic(0, 0);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      if (row == 3 && column == 4) continue;
+      EXPECT_NEAR(density(column, row), quadratic(column, row) + level, 1e-8);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gladstone

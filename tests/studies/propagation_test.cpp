@@ -1,0 +1,168 @@
+#include "studies/design/propagation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "studies/design/measurement_inputs.h"
+#include "studies/device.h"
+
+namespace gladstone {
+namespace {
+
+/// Table 1: f = 105 mm, Z_A = 750 mm, Z_D = 250 mm, 10 um pixels; 0.0663 px are 10 kg/m^4 (physics: 0.006626657 px
+/// each).
+GradientMeasurement<double> measured_at_table1() {
+  GradientMeasurement<double> at;
+  at.value = {0.06626657, 10e-6, 0.105, 0.75, 0.25, 2.26e-4, 0.01, 1.225};
+  at.window_px = 16;
+  return at;
+}
+
+MeasurementInput input(GradientInput enters, double value, double sigma,
+                       InputDistribution distribution = InputDistribution::normal) {
+  MeasurementInput one;
+  one.key = "input";
+  one.value = value;
+  one.sigma = sigma;
+  one.distribution = distribution;
+  one.enters = enters;
+  return one;
+}
+
+// The gradient solves F6, so that Table 1's sensitivity gives back 10 kg/m^4. With M = f / (Z_B - f) it is
+// Delta p n0 (Z_B - f) / (f Z_D K L_z): its derivatives are those of a product of powers, by hand.
+TEST(Propagation, HasTheDerivativesOfTheFormula) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  EXPECT_NEAR(at.gradient(), 10, 1e-5);
+  double const f = 0.105, z_a = 0.75, z_d = 0.25, rest = z_a + z_d - f, k_rho = 2.26e-4 * 1.225;
+  std::vector<MeasurementInput> const inputs{input(GradientInput::displacement, at.value[0], 1e-3),
+                                             input(GradientInput::pixel_pitch, 10, 1e-2),
+                                             input(GradientInput::focal_length, 105, 1),
+                                             input(GradientInput::z_a, 750, 1),
+                                             input(GradientInput::z_d, 250, 1),
+                                             input(GradientInput::gladstone_dale, 2.26e-4, 1e-6),
+                                             input(GradientInput::thickness, 10, 0.1),
+                                             input(GradientInput::ambient_density, 1.225, 0.01)};
+  std::vector<double> const by_hand{
+      1, 1, -f / rest - 1, z_a / rest, z_d / rest - 1, -1 + k_rho / (1 + k_rho), -1, k_rho / (1 + k_rho)};
+  PropagatedResult const gradient = propagate(at, inputs)[0];
+  double variance = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    EXPECT_NEAR(gradient.contributions[i].log_derivative * inputs[i].value, by_hand[i], 1e-12) << i;
+    double const part = by_hand[i] * inputs[i].sigma / inputs[i].value * gradient.value;
+    EXPECT_NEAR(gradient.contributions[i].standard, std::abs(part), 1e-12 * gradient.value) << i;
+    variance += part * part;
+  }
+  EXPECT_NEAR(gradient.standard, std::sqrt(variance), 1e-12);
+}
+
+// The density across a window has p once more and 1 / M_A = Z_A (Z_B - f) / (f Z_B) beside the gradient: the pitch
+// counts twice, the focal length -f / (Z_B - f) - 1 twice.
+TEST(Propagation, OfTheDensityCountsTheImagingTwice) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  auto const results =
+      propagate(at, {input(GradientInput::pixel_pitch, 10, 0.01), input(GradientInput::focal_length, 105, 1)});
+  EXPECT_NEAR(results[1].value, results[0].value * 16 * 10e-6 * 0.75 / (0.105 / 0.895), 1e-12);
+  EXPECT_NEAR(results[1].contributions[0].log_derivative * 10, 2, 1e-12);
+  EXPECT_NEAR(results[1].contributions[1].log_derivative * 105, 2 * (-0.105 / 0.895 - 1), 1e-12);
+}
+
+// Inputs of 0.5 % and less: the second order is (0.005)^2 of the uncertainty. The standard deviation of 10^5 samples
+// has a standard error of 1 / sqrt(2 10^5) = 0.22 %; three of them.
+TEST(Propagation, EqualsMonteCarloWhereItIsLinear) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  auto const results =
+      propagate(at, {input(GradientInput::displacement, at.value[0], 3e-4),
+                     input(GradientInput::focal_length, 105, 0.3), input(GradientInput::z_d, 250, 1),
+                     input(GradientInput::gladstone_dale, 2.26e-4, 1e-6, InputDistribution::rectangular)});
+  for (PropagatedResult const& result : results) {
+    EXPECT_NEAR(result.sampled_standard / result.standard, 1, 0.0067) << result.key;
+    EXPECT_NEAR(result.sampled_mean, result.value, 3 * result.standard / std::sqrt(1e5) + 1e-4 * result.value);
+    EXPECT_TRUE(result.linear);
+    EXPECT_EQ(result.coverage_factor, 2);
+  }
+}
+
+// 1 / L_z of a thickness that is known to 25 %: the mean of the gradient is 1 + 0.25^2 times as large in second order,
+// and its distribution has a long tail.
+TEST(Propagation, SaysWhereItIsNotLinear) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  PropagatedResult const result = propagate(at, {input(GradientInput::thickness, 10, 2.5)})[0];
+  EXPECT_FALSE(result.linear);
+  EXPECT_GT(result.sampled_mean, 1.05 * result.value);
+  EXPECT_GT(result.sampled_high - result.value, 1.5 * (result.value - result.sampled_low));
+}
+
+// A rectangle of half width sqrt(3) sigma holds 95.45 % within 1.6532 sigma, not 2: its own interval is shorter. With
+// u = 0.9 the ends are 0.31 apart, and half of the first digit is 0.05.
+TEST(Propagation, SaysWhereARectangleIsNoNormalDistribution) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  PropagatedResult const result =
+      propagate(at, {input(GradientInput::displacement, 1, 0.09, InputDistribution::rectangular)})[0];
+  EXPECT_NEAR(result.standard, 0.9, 1e-4);
+  EXPECT_NEAR(result.sampled_standard, 0.9, 0.9 * 0.0067);
+  EXPECT_NEAR(result.sampled_high - result.value, std::sqrt(3.0) * 0.954499736 * 0.9, 0.005);
+  EXPECT_FALSE(result.linear);
+}
+
+// JCGM 100:2008, table G.2, the column for 95.45 %.
+TEST(Propagation, TakesTheCoverageFactorFromStudentsDistribution) {
+  for (auto const& [degrees, factor] : {std::pair{1.0, 13.97},
+                                        {2.0, 4.53},
+                                        {3.0, 3.31},
+                                        {5.0, 2.65},
+                                        {10.0, 2.28},
+                                        {20.0, 2.13},
+                                        {50.0, 2.05},
+                                        {HUGE_VAL, 2.0}}) {
+    EXPECT_NEAR(coverage_factor(degrees), factor, 0.006) << degrees;
+  }
+}
+
+// Welch and Satterthwaite: of two equal contributions with four degrees of freedom each, (2 u^2)^2 / (2 u^4 / 4) = 8.
+TEST(Propagation, CombinesDegreesOfFreedom) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  std::vector<MeasurementInput> inputs{input(GradientInput::displacement, 1, 0.01),
+                                       input(GradientInput::pixel_pitch, 10, 0.1)};
+  for (MeasurementInput& one : inputs) one.degrees_of_freedom = 4;
+  PropagatedResult const result = propagate(at, inputs)[0];
+  EXPECT_NEAR(result.degrees_of_freedom, 8, 1e-9);
+  EXPECT_NEAR(result.coverage_factor, 2.37, 0.005);
+  EXPECT_NEAR(common_relative_uncertainty(inputs, result), 0.01, 1e-12);
+}
+
+// Chief rays through a uniform gradient, which no stop clips: the displacement per gradient is S, the gradient's
+// derivative its inverse. Off the axis it differs by theta^2 = (48 px p / z_i)^2 = 2e-5.
+TEST(Propagation, HasTheSameDerivativesByTracingRays) {
+  SetupDocument document = SetupDocument::from_text(R"(schema = 1
+[camera]
+pixels = [128, 128]
+pixel_pitch_um = { value = 10.0, sigma = 0.01 }
+[lens]
+focal_length_mm = { value = 105.0, sigma = 0.5 }
+[geometry]
+z_a_mm = { value = 750.0, sigma = 1.0 }
+z_d_mm = { value = 250.0, sigma = 1.0, distribution = "rectangular" }
+[medium]
+gladstone_dale = { value = 2.26e-4, sigma = 1e-6 }
+thickness_mm = { value = 10.0, sigma = 0.1 }
+[correlate]
+window_px = [32]
+)",
+                                                    "table1");
+  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  CaseSetup const loaded = load_case_setup(std::move(document));
+  ASSERT_EQ(uncertain.size(), 6u);
+  Device device = open_device("cpu");
+  std::vector<MeasurementInput> const inputs = measurement_inputs(loaded, uncertain, *device.renderer);
+  PropagatedResult const gradient = propagate(gradient_measurement(loaded.setup, 32, 0.1), inputs)[0];
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    ASSERT_TRUE(inputs[i].traced) << inputs[i].key;
+    EXPECT_NEAR(-*inputs[i].traced * inputs[i].value, gradient.contributions[i].log_derivative * inputs[i].value, 1e-3)
+        << inputs[i].key;
+  }
+}
+
+}  // namespace
+}  // namespace gladstone

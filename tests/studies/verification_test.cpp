@@ -1,0 +1,145 @@
+#include "studies/design/verification.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "studies/design/predicted_blur.h"
+#include "studies/design/sheet.h"
+#include "studies/design/verification_text.h"
+#include "tests/studies/support/table1_bench.h"
+
+namespace gladstone {
+namespace {
+
+using testing::HasSubstr;
+
+// A wave of density 8 mm long through Table 1: cone, dot and window pass the product of their transfers (F10 to F12),
+// which is a closed form. The lattice interpolates linearly between nodes h = 2 px apart, which takes (pi h / l)^2 / 2
+// of a wave of l = 107 px, 0.0017, and the recurrence's 512 points leave 0.002.
+TEST(PredictedBlur, PassesOfAWaveWhatTheFormulasPass) {
+  CaseSetup const loaded = load_case_setup(SetupDocument::from_text(R"(schema = 1
+[camera]
+pixels = [256, 256]
+[medium.field]
+kind = "sinusoid"
+amplitude_kg_m3 = 0.01
+wavelength_mm = 8.0
+[correlate]
+window_px = [64, 32]
+)",
+                                                                    "wave"));
+  BenchGiven const given = bench_given(loaded);
+  Bench<double> const bench = bench_of(loaded.setup, given);
+  double const wavelength = 8e-3, pixel = bench.pixel_at_medium();
+  double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, given.thickness, wavelength) *
+                      disc_transfer(bench.dot_diameter * bench.z_a / bench.z_b(), wavelength);
+  double const all = bench.transfer(wavelength);
+  EXPECT_LT(all, cone - 0.05);
+  double const amplitude = bench.sensitivity() * 0.01 * 2 * pi / wavelength;
+  std::vector<Vec2d> places;
+  for (int i = 0; i < 16; ++i) places.push_back({40.0 + 11 * i, 128.0});
+  PredictedBlur const blur = predicted_blur(loaded.setup, bench, places);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    double const x = (places[i].x - 127.5) * pixel;
+    double const eq9 = -amplitude * std::cos(2 * pi * x / wavelength);
+    EXPECT_NEAR(blur.cone_px[i].x, (cone - 1) * eq9, 0.004 * amplitude);
+    EXPECT_NEAR(blur.whole_px[i].x, (all - 1) * eq9, 0.004 * amplitude);
+    EXPECT_NEAR(blur.whole_px[i].y, 0, 1e-12);
+  }
+}
+
+/// Table 1's bench, simulated as the formulas have it.
+VerifiedBench as_predicted(BenchGiven const& given) {
+  Bench<double> const bench = table1_bench(given);
+  VerifiedBench verified;
+  verified.outcome.branch.given = &given;
+  verified.outcome.branch.value = {0.105, 11, 0.75, 0.25, bench.dot_diameter};
+  SimulatedBench& simulated = verified.simulated;
+  simulated.columns = simulated.rows = 384;
+  simulated.repeats = 2;
+  simulated.random_px = {bench.random_error(), 1e-5};
+  simulated.predicted_bias_px = 0.010;
+  simulated.bias_px = {0.010, 1e-5};
+  simulated.magnification = bench.magnification();
+  simulated.peak_electrons = {bench.peak_electrons(), 1};
+  double const wavelength = resolved_wavelength(bench);
+  simulated.resolution = {wavelength, 1e-3 * wavelength};
+  double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, given.thickness, wavelength) *
+                      disc_transfer(bench.dot_diameter * bench.z_a / bench.z_b(), wavelength);
+  simulated.waves = {{wavelength, cone, cone, cone, {transfer_at_resolution, 1e-3}}};
+  simulated.causes = {{"cone", 0.007, 0.007}, {"window", 0.003, 0.003}, {"refraction", 0, 0}};
+  return verified;
+}
+
+VerifiedQuantity const& quantity(VerifiedBench const& verified, std::string const& key) {
+  for (VerifiedQuantity const& one : verified.quantities) {
+    if (one.key == key) return one;
+  }
+  throw std::out_of_range(key);
+}
+
+TEST(Verification, HasNothingToSayWhereSimulationAndFormulaAgree) {
+  BenchGiven const given = table1_given();
+  VerifiedBench verified = as_predicted(given);
+  compare_with_formulas(verified, {{Bound::resolution, 1.0}, {Bound::uncertainty_max, 1.0}});
+  ASSERT_EQ(verified.quantities.size(), 4u);
+  for (VerifiedQuantity const& one : verified.quantities) {
+    EXPECT_TRUE(one.agrees()) << one.key;
+    EXPECT_EQ(one.why, "") << one.key;
+  }
+  EXPECT_EQ(verified.requirements.size(), 2u);
+  EXPECT_TRUE(verified.kept());
+}
+
+TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
+  BenchGiven const given = table1_given();
+  VerifiedBench verified = as_predicted(given);
+  verified.simulated.bias_px.value = 0.014;
+  verified.simulated.causes[2].simulated = 0.004;  // refraction
+  verified.simulated.resolution.value *= 0.8;
+  verified.simulated.waves[0].measured.value = 0.85;  // the window's share is the farthest then
+  compare_with_formulas(verified, {});
+  EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("refraction: 0.004 px, which no formula has"));
+  EXPECT_THAT(quantity(verified, "resolution_mm").why, testing::StartsWith("window: passes "));
+  EXPECT_EQ(quantity(verified, "random_px").why, "");
+  verified = as_predicted(given);
+  verified.simulated.bias_px.value = 0.014;
+  verified.simulated.causes[0].simulated = 0.012;
+  compare_with_formulas(verified, {});
+  EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("cone: 0.012 px instead of 0.007 px"));
+}
+
+TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
+  BenchGiven const given = table1_given();
+  double const wavelength = resolved_wavelength(table1_bench(given));  // with a standard error of 0.1 %
+  for (auto const& [required, kept] : {std::pair{0.9985 * wavelength, true}, {0.997 * wavelength, false}}) {
+    VerifiedBench verified = as_predicted(given);
+    compare_with_formulas(verified, {{Bound::resolution, required}});
+    EXPECT_EQ(verified.kept(), kept);
+  }
+  // a view is to be no smaller
+  double const view = 512 * table1_bench(given).pixel_at_medium();
+  for (auto const& [required, kept] : {std::pair{0.99 * view, true}, {1.01 * view, false}}) {
+    VerifiedBench verified = as_predicted(given);
+    compare_with_formulas(verified, {{Bound::view_width, required}});
+    EXPECT_EQ(verified.kept(), kept);
+  }
+}
+
+TEST(Verification, SaysWhatNoneKeeps) {
+  BenchGiven const given = table1_given();
+  Verification verification;
+  verification.benches.push_back(as_predicted(given));
+  compare_with_formulas(verification.benches[0], {{Bound::resolution, 1e-3}});
+  EXPECT_TRUE(verification.any());
+  std::string const text = verification_text(verification, {});
+  EXPECT_THAT(text, HasSubstr("misses requirements.resolution_mm = 1: "));
+  EXPECT_THAT(text, HasSubstr("infeasible in simulation"));
+  EXPECT_FALSE(verification_json(verification).contains("simulated"));
+  EXPECT_FALSE(verification_json(verification)["verification"][0]["kept"]);
+}
+
+}  // namespace
+}  // namespace gladstone
