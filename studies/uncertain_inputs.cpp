@@ -1,5 +1,7 @@
 #include "studies/uncertain_inputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +34,7 @@ class Reader {
     bool changed = false;
     for (SetupMember& member : node.members) changed |= take_at(member.key, member.value);
     for (std::size_t i = 0; i < node.elements.size(); ++i) {
-      changed |= take_at("[" + std::to_string(i) + "]", node.elements[i]);
+      changed |= take_at(fmt::format("[{}]", i), node.elements[i]);
     }
     return changed;
   }

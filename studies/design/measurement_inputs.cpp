@@ -1,6 +1,7 @@
 #include "studies/design/measurement_inputs.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace {
 constexpr double step_share = 1e-3;      ///< of a value, that it is moved by either way
 constexpr double traced_gradient = 1.0;  ///< uniform, that rays are traced through [kg/m^4]
 constexpr int traced_px = 96;            ///< of the camera's middle
+constexpr int traced_rays = 16;          ///< of a dot: where they begin on it, since all go through the pupil's middle
 /// By how much derivative by formula and by tracing may differ, d ln / d ln: what lies off the axis, and differences.
 constexpr double traced_tolerance = 0.02;
 
@@ -40,6 +42,18 @@ SetupNode steady_gradient() {
   return field;
 }
 
+/// Says nothing on the log below errors while it lives: what is warned of is no setup of the user's.
+class QuietLog {
+ public:
+  QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
+  ~QuietLog() { spdlog::set_level(level_); }
+  QuietLog(QuietLog const&) = delete;
+  QuietLog& operator=(QuietLog const&) = delete;
+
+ private:
+  spdlog::level::level_enum level_;
+};
+
 /// Mean displacement along the gradient, of the dots of a setup with a key at a value [px].
 double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {
   SetupNode root = parse_toml(loaded.document.written(), "setup");
@@ -52,6 +66,7 @@ double traced_displacement(CaseSetup const& loaded, UncertainInput const& input,
   changed.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
   changed.set({"correlate", "window_px"}, setup_array({setup_integer(std::min({columns, rows, 32}) / 2 * 2)}));
   changed.set({"medium", "field"}, steady_gradient());
+  changed.set({"render", "rays_per_dot"}, setup_integer(traced_rays));
   changed.set({"lens", "f_number"}, setup_number(std::numeric_limits<double>::infinity()));
   changed.set(input.path, setup_number(value));
   CaseSetup moved = load_case_setup(std::move(changed));
@@ -101,6 +116,7 @@ bool same(MeasurementInput const& input, Contribution const& contribution) {
 
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
   if (loaded.setup.lens.prescription || input.key == "lens.f_number") return std::nullopt;
+  QuietLog const quiet;
   double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
   if (step == 0) return std::nullopt;
   try {
@@ -152,13 +168,13 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
       "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
       "inputs "
       "of type B, independent)\n";
-  text += fmt::format("  {:<30}{:>12}{:>11} {:<12}{:>6}{:>14}{:>12}{:>10}\n", "input", "value", "sigma", "distribution",
+  text += fmt::format("  {:<30}{:>12}{:>11} {:<12}{:>6}{:>16}{:>12}{:>10}\n", "input", "value", "sigma", "distribution",
                       "nu", "u(gradient)", "d ln/d ln", "traced");
   PropagatedResult const& gradient = uncertainty.results.front();
   for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
     MeasurementInput const& input = uncertainty.inputs[i];
     Contribution const& part = gradient.contributions[i];
-    text += fmt::format("  {:<30}{:>12.6g}{:>11.4g} {:<12}{:>6}{:>7.2g} {:>5.1f} %{:>12.4f}{:>10}{}\n", input.key,
+    text += fmt::format("  {:<30}{:>12.6g}{:>11.4g} {:<12}{:>6}{:>9.2g} {:>5.1f} %{:>12.4f}{:>10}{}\n", input.key,
                         input.value, input.sigma, to_string(input.distribution), degrees_text(input.degrees_of_freedom),
                         part.standard, 100 * part.share, part.log_derivative * input.value,
                         input.traced ? fmt::format("{:.4f}", -*input.traced * input.value) : "",
