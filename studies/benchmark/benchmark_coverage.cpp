@@ -24,7 +24,7 @@ struct TestedFlow {
 
 /// What one seed gives.
 struct Sample {
-  double window, total, rms_ratio;
+  double window, total, rms_ratio, rms_ratio_total;
 };
 
 SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
@@ -70,7 +70,8 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
           estimate_uncertainty(field, frames, settings);
           UncertaintyQuality const on_window = uncertainty_quality(field.displacement_px, window, field.sigma_px, mask);
           UncertaintyQuality const total = uncertainty_quality(field.displacement_px, point, field.sigma_px, mask);
-          samples[{method, flow.name, noise}].push_back({on_window.coverage_1, total.coverage_1, on_window.rms_ratio});
+          samples[{method, flow.name, noise}].push_back(
+              {on_window.coverage_1, total.coverage_1, on_window.rms_ratio, total.rms_ratio});
         }
       }
     }
@@ -81,7 +82,7 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
       for (double const noise : noises) {
         std::vector<Sample> const& of = samples[{method, flow.name, noise}];
         rows.push_back({method, flow.name, noise, mean_of(of, &Sample::window), mean_of(of, &Sample::total),
-                        mean_of(of, &Sample::rms_ratio)});
+                        mean_of(of, &Sample::rms_ratio), mean_of(of, &Sample::rms_ratio_total)});
       }
   return rows;
 }

@@ -124,18 +124,19 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
                 "column is against the truth at the place, whose difference no method knows of."});
   section.blocks.push_back(std::move(table));
   if (!result.coverage.empty()) {
-    TextTable coverage{
-        fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
-        {"method", "flow", "noise [%]", "within sigma", "total error within sigma", "rms(sigma)/rms(error)"},
-        {},
-        true};
+    TextTable coverage{fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
+                       {"method", "flow", "noise [%]", "within sigma", "total error within sigma",
+                        "rms(sigma)/rms(error)", "rms(sigma)/rms(total error)"},
+                       {},
+                       true};
     for (CoverageRow const& row : result.coverage)
       coverage.rows.push_back({{row.method},
                                {row.flow},
                                {fmt::format("{:.0f}", 100.0 * row.noise), row.noise},
                                {with_error(row.window), row.window.mean},
                                {with_error(row.total), row.total.mean},
-                               {with_error(row.rms_ratio), row.rms_ratio.mean}});
+                               {with_error(row.rms_ratio), row.rms_ratio.mean},
+                               {with_error(row.rms_ratio_total), row.rms_ratio_total.mean}});
     section.blocks.push_back(std::move(coverage));
   }
   return section;

@@ -68,7 +68,8 @@ std::string benchmark_json(BenchmarkResult const& result) {
                                 {"seeds", result.seeds},
                                 {"coverage_1_window", mean_json(row.window)},
                                 {"coverage_1_total", mean_json(row.total)},
-                                {"rms_ratio", mean_json(row.rms_ratio)}});
+                                {"rms_ratio_window", mean_json(row.rms_ratio)},
+                                {"rms_ratio_total", mean_json(row.rms_ratio_total)}});
   json["conventions"] = result.conventions;
   return json_text(json) + '\n';
 }

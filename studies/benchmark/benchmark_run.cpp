@@ -218,7 +218,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
         auto const& [displacement, sigma] = std::tie(measured.field.displacement_px, measured.field.sigma_px);
         result.uncertainties.push_back({method, one.name, uncertainty_quality(displacement, window, sigma, mask),
                                         uncertainty_quality(displacement, point, sigma, mask),
-                                        uncertainty_bins(displacement, window, sigma, mask)});
+                                        uncertainty_bins(displacement, point, sigma, mask)});
       }
     }
     for (ForeignCode& code : codes)

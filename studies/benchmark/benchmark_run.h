@@ -48,7 +48,7 @@ struct BenchmarkRow {
 struct UncertaintyRow {
   std::string method, of_case;
   UncertaintyQuality window, point;  ///< against truth on the window, and at the point: the total error
-  std::vector<UncertaintyBin> bins;  ///< against truth on the window
+  std::vector<UncertaintyBin> bins;  ///< against truth at the point
 };
 
 /// A mean over seeds with its standard error.
@@ -59,7 +59,8 @@ struct SeedMean {
 struct CoverageRow {
   std::string method, flow;
   double noise = 0.0;
-  SeedMean window, total, rms_ratio;
+  SeedMean window, total;               ///< coverage_1 against truth on the window, and at the point
+  SeedMean rms_ratio, rms_ratio_total;  ///< likewise
 };
 
 struct CaseRecord {
