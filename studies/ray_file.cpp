@@ -55,7 +55,8 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
   }
   traced = {RayStatus::alive, ray.position, ray.direction, account.optical_path, {nan, nan}};
   if (through == Through::medium) return traced;
-  if (camera.aim_plane.point_inwards(ray.position).z > 0) return dead(RayStatus::missed_lens);
+  bool const behind = camera.aim_plane.point_inwards(ray.position).z > 0;
+  if (behind || !(camera.aim_plane.direction_inwards(ray.direction).z > 0)) return dead(RayStatus::missed_lens);
   for (int i = camera.before_medium; i < camera.count; ++i) {
     RayStatus const status = pass_element(camera.elements[i], ray, account);
     if (status != RayStatus::alive) return dead(status);

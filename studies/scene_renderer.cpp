@@ -226,11 +226,15 @@ RaysPlan plan_rays_of(Scene& scene) {
       plan.method = RenderMethod::focused_dots;
     }
     if (plan.excess() > 1) {  // is the other way better?
-      Scene other = scene;
-      RaysPlan by_rays = plan_rays_by_rays(other);
-      if (given) by_rays = measure_rays_by_rays(other);
-      by_rays.method = RenderMethod::rays;
-      if (by_rays.excess() < plan.excess()) plan = by_rays;
+      auto const by_rays_of = [&](Scene other) {
+        RaysPlan const by_rays = plan_rays_by_rays(other);
+        return given ? measure_rays_by_rays(other) : by_rays;
+      };
+      // told by the same dots, so that the choice hangs on no others
+      if (by_rays_of(with_dots(scene, measured_places(scene), scene.rays_per_dot)).excess() < plan.excess()) {
+        plan = by_rays_of(scene);
+        plan.method = RenderMethod::rays;
+      }
     }
     scene.setup.render.method = plan.method;
   }

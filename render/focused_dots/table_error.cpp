@@ -15,23 +15,18 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t measured_places = 8;
+constexpr std::size_t place_count = 8;
 constexpr int traced_rays = 8192, tabled_rays = 131072;  ///< a scrambling
 constexpr double worth_more_rays = 0.7;                  ///< of the error with a quarter of them
 
-/// Spread over the view, whatever dots a scene has (the R2 sequence, Roberts 2018).
-std::vector<Vec2d> places_in_view(Scene const& scene) {
-  CameraSetup const& camera = scene.setup.camera;
-  std::vector<Vec2d> places;
-  for (std::size_t i = 0; i < measured_places; ++i) {
-    auto const place = static_cast<double>(i);
-    double const x = std::fmod(0.5 + 0.7548776662466927 * place, 1), y = std::fmod(0.5 + 0.5698402909980532 * place, 1);
-    places.push_back(scene.to_target({x * camera.columns - 0.5, y * camera.rows - 0.5}));
-  }
-  return places;
+/// The bits of a whole number below 2^3 in turn, mirrored at the point (van der Corput 1935).
+double mirrored(std::size_t i) {
+  double found = 0;
+  for (double digit = 0.5; i > 0; i /= 2, digit /= 2) found += digit * static_cast<double>(i % 2);
+  return found;
 }
 
-/// A white dot of a scene by itself, in a window of pixels about it.
+/// A white dot of a scene by itself, in windows of pixels about where each frame has it.
 class LoneDot {
  public:
   LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)) {
@@ -44,16 +39,10 @@ class LoneDot {
       aim_ = aim_dot(owned_->model, centre);
       room *= 2;
     } while (aim_.kind == DotKind::left && 2 * aim_.farthest > room && room < scene_.setup.z_b());
-    // pixels are counted from the window's corner
-    Vec2d const at = owned_->model.to_pixel(centre);
-    owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
-    integrator_ = std::make_unique<DotIntegrator>(owned_->model);
-    std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
+    take_frame(0, side, {});
     if (left()) return;
-    LightImage frames[frame_count] = {{side, side}, {side, side}};
-    LightImage* const images[frame_count] = {&frames[0], &frames[1]};
-    integrator_->lay_down(images);
-    for (LightImage const& frame : frames) append(as_seen_.light, frame.to_light());
+    Vec2d const moved = seen_.truth.hits[1].mean() - seen_.truth.hits[0].mean();
+    take_frame(1, side, std::isfinite(moved.x) ? moved : Vec2d{});
     for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
       LightImage beside(side, side);
       Sampled& off = off_[scrambling];
@@ -86,8 +75,18 @@ class LoneDot {
     return copy;
   }
 
-  static void append(std::vector<double>& to, Image<double> const& light) {
-    to.insert(to.end(), light.begin(), light.end());
+  /// Sees the dot anew, pixels counted from the corner of a window about so far from its place, and takes one frame.
+  void take_frame(std::size_t frame, int side, Vec2d moved) {
+    Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
+    owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
+    integrator_ = std::make_unique<DotIntegrator>(owned_->model);
+    std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
+    if (left()) return;
+    LightImage frames[frame_count] = {{side, side}, {side, side}};
+    LightImage* const images[frame_count] = {&frames[0], &frames[1]};
+    integrator_->lay_down(images);
+    Image<double> const light = frames[frame].to_light();
+    as_seen_.light.insert(as_seen_.light.end(), light.begin(), light.end());
   }
 
   /// By what truth [px] and the light in the flow would be more by rays of another choice alone. Many rays are told by
@@ -145,6 +144,18 @@ class LoneDot {
 
 }  // namespace
 
+DotPattern measured_places(Scene const& scene) {
+  CameraSetup const& camera = scene.setup.camera;
+  DotPattern white = scene.dots;
+  white.radiance.clear();
+  white.centre.clear();
+  for (std::size_t i = 0; i < place_count; ++i) {
+    double const x = (static_cast<double>(i) + 0.5) / place_count, y = mirrored(i) + 0.5 / place_count;
+    white.centre.push_back(scene.to_target({x * camera.columns - 0.5, y * camera.rows - 0.5}));
+  }
+  return white;
+}
+
 RaysPlan measure_table_error(FocusedDots const& dots) {
   Scene const& scene = dots.scene();
   RaysPlan plan;
@@ -156,7 +167,7 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   plan.bits = levels.bits;
   int const side =
       2 * GaussianSpot<double>{scene.spot_sigma_px()}.half_width() + 49 + static_cast<int>(std::min(pitch_px, 100.0));
-  std::vector<Vec2d> const in_view = places_in_view(scene);
+  std::vector<Vec2d> const in_view = measured_places(scene).centre;
   std::vector<std::unique_ptr<LoneDot>> lone(in_view.size());
   parallel_for(lone.size(), [&](std::size_t i) { lone[i] = std::make_unique<LoneDot>(scene, in_view[i], side); });
   std::erase_if(lone, [](auto const& dot) { return dot->left(); });

@@ -7,6 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/parallel.h"
+#include "render/base/progress.h"
 #include "render/base/random_variates.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
@@ -212,12 +213,14 @@ Particles seed_particles(ParticleSetup const& setup, double count, FlowSetup con
     }
   });
   particles.path = plan_paths(setup, flow, middle, particles.diameter, flow.dt / 2, tolerance);
+  Progress progress("moving particles", seeded);
   parallel_chunks(seeded, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       ParticleVelocity const velocity = velocity_of(setup, flow, particles.diameter[i]);
       particles.place[1][i] = moved(velocity, middle[i], flow.dt / 2, particles.path.steps);
       middle[i] = moved(velocity, middle[i], -flow.dt / 2, particles.path.steps);
     }
+    progress.advance(end - begin);
   });
   light_particles(setup, sheet, particles);
   std::size_t kept = 0;

@@ -15,6 +15,9 @@ namespace {
 
 constexpr double not_in_picture = std::numeric_limits<double>::quiet_NaN();
 
+/// Widest that windows are made for what images are wide and move, each.
+constexpr double most_window_px = 100;
+
 /// Rays from the middle of a source to points of the unit disc that its aim disc is.
 std::vector<Vec2d> const chief_ray{{0, 0}};
 std::vector<Vec2d> const cone{{0, 0}, {0.95, 0}, {0, 0.95}, {-0.95, 0}, {0, -0.95}};
@@ -66,12 +69,21 @@ class RayErrors {
     levels_ =
         GreyLevels(camera, static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows));
     sample_ = choose_sample(in_view, plan_sample_dots);
+    double farthest = 0;  // from a window's middle, of what a dot is seen at in either frame
     for (std::size_t const dot : sample_) {
-      at_.push_back(scene.setup.piv
-                        ? scene.camera.project(scene.source_place(dot)).value_or(Vec2d{not_in_picture, not_in_picture})
-                        : scene.to_pixel(scene.dots.centre[dot]));
+      Vec2d at = scene.setup.piv
+                     ? scene.camera.project(scene.source_place(dot)).value_or(Vec2d{not_in_picture, not_in_picture})
+                     : scene.to_pixel(scene.dots.centre[dot]);
+      if (auto const moved = place_in_flow(dot)) {
+        Vec2d const half = 0.5 * (*moved - at);
+        if (length(half) < most_window_px / 2) {
+          at += half;
+          farthest = std::max(farthest, length(half));
+        }
+      }
+      at_.push_back(at);
     }
-    side_ = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(widest_image_px(), 100.0));
+    side_ = 2 * spot_.half_width() + 49 + static_cast<int>(std::min(widest_image_px(), most_window_px) + 2 * farthest);
   }
 
   RaysPlan measure() {
@@ -156,6 +168,21 @@ class RayErrors {
                             rays = tracer.rays();
                             return twice ? tracer.trace(source, images, light, tracer.step() + 1).truth : found.truth;
                           });
+  }
+
+  /// Where the chief ray of a source ends in the flow [px].
+  std::optional<Vec2d> place_in_flow(std::size_t source) const {
+    Vec3d const start = scene_.setup.piv ? scene_.particles.place[1][source] : scene_.source_place(source);
+    auto const disc = scene_.camera.aim_disc(start);
+    if (!disc) return {};
+    CameraView<double> const camera = scene_.camera.view();
+    TracingOptions<double> const tracing = RaysLaunch(scene_, spot_).tracing;
+    RayHit<double> const hit = std::visit(
+        [&](auto const& medium) {
+          return trace_ray(camera, medium, tracing, {start, normalized(disc->centre - start)}, 1.0);
+        },
+        scene_.medium.view);
+    return reaches_sensor_plane(hit.status) ? std::optional(hit.pixel) : std::nullopt;
   }
 
   /// Width of the sample's images without diffraction and medium [px].

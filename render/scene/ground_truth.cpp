@@ -13,13 +13,16 @@ void GroundTruth::resize(std::size_t count) {
   std::vector<Vec2d>* const columns[] = {
       &reference_px, &displacement_px, &displacement_error_px, &displacement_std_px, &flux, &eq9_px,
       &chief_px,     &eq9_cone_px};
-  parallel_for(std::size(columns) + 1, [&](std::size_t i) {
+  auto const resize_some = [&](std::size_t i) {
     if (i > 0) return columns[i - 1]->resize(count);
     position_m.resize(count);
     rays.resize(count);
     rays_planned.resize(count);
     path.resize(count);
-  });
+  };
+  constexpr std::size_t worth_waking_threads = 1 << 15;
+  if (count >= worth_waking_threads) return parallel_for(1 + std::size(columns), resize_some);
+  for (std::size_t i = 0; i <= std::size(columns); ++i) resize_some(i);
 }
 
 void GroundTruth::copy(GroundTruth const& other, std::size_t from, std::size_t to) {

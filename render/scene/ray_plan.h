@@ -59,8 +59,9 @@ struct RaysPlan {
                                          ///< measured, or of no dot a ray got through
   double image_error_levels = not_told;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:
                                          ///< none was measured, or none was lit
-  double truth_resolution_px = 0;        ///< two standard errors of none: one found smaller could as well be none
-  double image_resolution_levels = 0;    ///< likewise
+  double truth_resolution_px =
+      0;  ///< two standard errors where the table leaves nothing: a smaller one is not told from none
+  double image_resolution_levels = 0;  ///< likewise
   int bits = 0;
   bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
   bool converged = true;      ///< false: the errors are larger than is asked

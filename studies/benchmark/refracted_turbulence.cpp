@@ -38,7 +38,7 @@ RefractedTurbulence::RefractedTurbulence(std::uint64_t seed, Renderer& renderer)
 ParticlePair RefractedTurbulence::frames(double noise, std::uint64_t noise_seed) const {
   constexpr double background = 25.5, peak = 153.0;  // as render_particle_pair()
   Detector const detector(prepared_.scene.setup.camera, rendered_.exposure_e);
-  std::unique_ptr<FramePair const> const ideal = rendered_.rendering->kept->ideal(detector);
+  std::unique_ptr<FramePair const> const ideal = rendered_.rendering->in_place->ideal(detector);
   ParticlePair pair{ideal->reference(), ideal->flow()};
   double const brightest = std::max(*std::max_element(pair.reference.begin(), pair.reference.end()),
                                     *std::max_element(pair.flow.begin(), pair.flow.end()));

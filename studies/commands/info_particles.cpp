@@ -60,8 +60,8 @@ std::string particles_text(ExpectedParticles const& expected, CaseSetup const& l
   line("depth of field", fmt::format("{:.4g} mm (the sheet is {:.4g} mm thick)", expected.depth_of_field * 1e3,
                                      loaded.setup.piv->laser.thickness * 1e3));
   if (std::isfinite(expected.per_pixel)) {
-    line("particles per pixel",
-         fmt::format("{:.4g} (source density {:.3g})", expected.per_pixel, expected.source_density));
+    line("particles per pixel", fmt::format("{:.4g} within the sheet's thickness (source density {:.3g})",
+                                            expected.per_pixel, expected.source_density));
     std::string windows;
     for (int const window : loaded.correlate.window_px) {
       windows +=

@@ -144,6 +144,8 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
     file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
                            "source, component (x right, y down)");
   }
+  file.make_rows<double>("/truth/flux", {all, 2}, {chunk, 2}, "fully lit px, of particles photons",
+                         "light of every dot or particle, case by case", "source, frame");
   file.write("/truth/begin", begin, {begin.size()}, "1", "sources of case i are rows begin[i] to begin[i + 1] - 1",
              "case");
 
@@ -154,12 +156,14 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
     Hdf5Reader const truth(in_case(one.folder, case_file::truth));
     std::vector<double> const place = truth.read(one.sources + "/reference_px");
     std::vector<double> const displacement = truth.read(one.sources + "/displacement_px");
-    if (place.size() != 2 * one.count || displacement.size() != place.size()) {
+    std::vector<double> const flux = truth.read(one.sources + "/flux");
+    if (place.size() != 2 * one.count || displacement.size() != place.size() || flux.size() != place.size()) {
       throw DataError(in_case(one.folder, case_file::truth), "was replaced while it was read; pack the study again");
     }
     auto const row = static_cast<std::size_t>(begin[i]);
     file.write_rows<double>("/truth/reference_px", row, place);
     file.write_rows<double>("/truth/displacement_px", row, displacement);
+    file.write_rows<double>("/truth/flux", row, flux);
     file.write_rows<double>("/displacement_px", i, map_of(pairs_of(place), pairs_of(displacement), nodes));
     progress.advance(1);
   }

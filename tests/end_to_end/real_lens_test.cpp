@@ -116,7 +116,7 @@ TEST_F(RealLens, AberratesMoreWideOpen) {
 TEST_F(RealLens, TracesGivenRays) {
   write("lens.toml", with(double_gauss_setup(), "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
                           "kind = \"none\""));
-  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n0,0,-250,1,0,1\n");
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n0,0,-250,1,0,1\n0,0,-20,0,0,-1\n");
   for (std::string const through : {"optics", "all"}) {
     succeed({"trace", "lens.toml", "--rays", "rays.csv", "-o", through + ".csv", "--through", through});
   }
@@ -125,6 +125,10 @@ TEST_F(RealLens, TracesGivenRays) {
   EXPECT_THAT(optics, HasSubstr("missed_lens,nan"));
   EXPECT_THAT(all, HasSubstr("alive,0,0,"));
   EXPECT_THAT(all, HasSubstr(",31.5,31.5\n"));
+  // the second goes past the lens, the third away from it
+  for (std::string const& rows : {optics, all}) {
+    EXPECT_THAT(rows, HasSubstr("missed_lens,nan,nan,nan,nan,nan,nan,nan,nan,nan\nmissed_lens,nan"));
+  }
 }
 
 // Both methods give the same case to within what their rays know; and the setup may say which.

@@ -515,7 +515,8 @@ TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
   ASSERT_EQ(begin.size(), 3u);
   EXPECT_EQ(set.read_integers("/parameters/case"), (std::vector<std::int64_t>{0, 7}));
   auto const images = set.read("/images"), place = set.read("/truth/reference_px"),
-             displacement = set.read("/truth/displacement_px"), map = set.read("/displacement_px");
+             displacement = set.read("/truth/displacement_px"), flux = set.read("/truth/flux"),
+             map = set.read("/displacement_px");
   std::size_t next = 0;
   for (int i = 0; i < 2; ++i) {
     std::string const folder = i == 0 ? "run/cases/0" : "run/cases/7";
@@ -527,6 +528,7 @@ TEST_F(Sweeps, ADatasetHoldsImagesAndTruthOfTheKeptCases) {
     EXPECT_TRUE(std::equal(place.begin() + from, place.begin() + to, truth.read("/dots/reference_px").begin()));
     EXPECT_TRUE(std::equal(displacement.begin() + from, displacement.begin() + to,
                            truth.read("/dots/displacement_px").begin()));
+    EXPECT_TRUE(std::equal(flux.begin() + from, flux.begin() + to, truth.read("/dots/flux").begin()));
   }
   EXPECT_EQ(next, images.size());
   EXPECT_EQ(set.shape("/displacement_px"),

@@ -290,6 +290,20 @@ TEST(MeasureTableError, TellsWhatItCanResolve) {
   EXPECT_LT(told.truth_error_px, 2 * told.truth_resolution_px);
 }
 
+// A uniform gradient moves all dots alike, by 2.6 px or by 60: what is told of their images is the same to what rays of
+// another choice scatter by.
+TEST(MeasureTableError, FollowsDotsThatMoveFar) {
+  double told[2] = {};
+  for (double const gradient : {400.0, 9000.0}) {
+    auto setup = table1_setup(64);
+    setup.medium.field = uniform_gradient(gradient, 10);
+    Scene const scene = scene_with_dots(setup, lattice(64, 3, 20), 32);
+    told[gradient > 400 ? 1 : 0] = measure_table_error(focused_dots(scene).value()).image_resolution_levels;
+  }
+  EXPECT_GT(told[0], 0);
+  EXPECT_GT(told[1], told[0] / 2);
+}
+
 // A dot that no scrambling shows tells nothing; one that some of them show moves from there to nowhere, which scatters.
 TEST(RayScatter, ADotThatIsNotSeenTellsNothing) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
