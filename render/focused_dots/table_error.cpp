@@ -15,11 +15,11 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t place_count = 8;
-constexpr int traced_rays = 8192, tabled_rays = 131072;  ///< a scrambling
-constexpr double worth_more_rays = 0.7;                  ///< of the error with a quarter of them
+constexpr std::size_t place_count = 16;
+constexpr int traced_rays = 8192, tabled_rays = 65536;  ///< a scrambling
+constexpr double worth_more_rays = 0.7;                 ///< of the error with a quarter of them
 
-/// The bits of a whole number below 2^3 in turn, mirrored at the point (van der Corput 1935).
+/// The bits of a whole number mirrored at the point (van der Corput 1935).
 double mirrored(std::size_t i) {
   double found = 0;
   for (double digit = 0.5; i > 0; i /= 2, digit /= 2) found += digit * static_cast<double>(i % 2);
