@@ -1,13 +1,13 @@
 #include "studies/design/measurement_inputs.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "render/medium/gladstone_dale.h"
+#include "studies/quiet_log.h"
 
 namespace gladstone {
 namespace {
@@ -41,18 +41,6 @@ SetupNode steady_gradient() {
       {"gradient_kg_m4", setup_array({setup_number(traced_gradient), setup_number(0), setup_number(0)})});
   return field;
 }
-
-/// Says nothing on the log below errors while it lives: what is warned of is no setup of the user's.
-class QuietLog {
- public:
-  QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-  ~QuietLog() { spdlog::set_level(level_); }
-  QuietLog(QuietLog const&) = delete;
-  QuietLog& operator=(QuietLog const&) = delete;
-
- private:
-  spdlog::level::level_enum level_;
-};
 
 /// Mean displacement along the gradient, of the dots of a setup with a key at a value [px].
 double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {

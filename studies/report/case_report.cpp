@@ -81,23 +81,6 @@ TextTable errors_table(CaseView const& view) {
   return table;
 }
 
-TextTable budget_table(ErrorBudget const& budget) {
-  TextTable table{"The error budget [px]; the terms correlate, so that their squares do not add up",
-                  {"cause", "bias u", "bias v", "random u", "random v", "rms"},
-                  {}};
-  auto const add = [&](BudgetTerm const& term) {
-    table.rows.push_back({{term.name},
-                          TableCell::of(term.bias_u_px),
-                          TableCell::of(term.bias_v_px),
-                          TableCell::of(term.random_u_px),
-                          TableCell::of(term.random_v_px),
-                          TableCell::of(term.rms_px)});
-  };
-  for (BudgetTerm const& term : budget.terms) add(term);
-  add(budget.total);
-  return table;
-}
-
 nlohmann::json budget_json(ErrorBudget const& budget) {
   nlohmann::json json = nlohmann::json::array();
   auto const add = [&](BudgetTerm const& term) {
@@ -129,6 +112,21 @@ std::string png_of(Image<double> const& frame, double black, double white) {
 }
 
 }  // namespace
+
+TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
+  TextTable table{title, {"cause", "bias u", "bias v", "random u", "random v", "rms"}, {}};
+  auto const add = [&](BudgetTerm const& term) {
+    table.rows.push_back({{term.name},
+                          TableCell::of(term.bias_u_px),
+                          TableCell::of(term.bias_v_px),
+                          TableCell::of(term.random_u_px),
+                          TableCell::of(term.random_v_px),
+                          TableCell::of(term.rms_px)});
+  };
+  for (BudgetTerm const& term : budget.terms) add(term);
+  add(budget.total);
+  return table;
+}
 
 FramePictures frame_pictures(std::string const& folder, std::string const& title) {
   Image<double> const reference = read_image((fs::path(folder) / case_file::reference).string());
@@ -174,7 +172,9 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   page.sections.push_back(
       {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
   page.sections.push_back(
-      {"Causes of error", {Chart{"budget", "rms of every cause", largest_term(all.budget)}, budget_table(all.budget)}});
+      {"Causes of error",
+       {Chart{"budget", "rms of every cause", largest_term(all.budget)},
+        budget_table("The error budget [px]; the terms correlate, so that their squares do not add up", all.budget)}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
     uncertainty.blocks.push_back(Chart{

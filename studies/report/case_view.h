@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "studies/compare.h"
+#include "studies/report/report_page.h"
 
 namespace gladstone {
 
@@ -54,6 +55,9 @@ struct CaseView {
     add_field(name, "error " + title, values);
   }
 };
+
+/// The terms of a budget, and their total.
+TextTable budget_table(std::string const& title, ErrorBudget const& budget);
 
 /// What the budget's largest term is, in a sentence; empty where none is known.
 std::string largest_term(ErrorBudget const& budget);

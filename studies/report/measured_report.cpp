@@ -157,24 +157,6 @@ TextTable inputs_table(std::vector<MeasurementInput> const& inputs, PropagatedRe
   return table;
 }
 
-TextTable twin_budget(SimulatedTwin const& twin) {
-  ErrorBudget const& budget = twin.comparison.budget;
-  TextTable table{"Budget by cause, of the simulated twin and not of the measurement itself [px]",
-                  {"cause", "bias u", "bias v", "random u", "random v", "rms"},
-                  {}};
-  auto const add = [&](BudgetTerm const& term) {
-    table.rows.push_back({{term.name},
-                          TableCell::of(term.bias_u_px),
-                          TableCell::of(term.bias_v_px),
-                          TableCell::of(term.random_u_px),
-                          TableCell::of(term.random_v_px),
-                          TableCell::of(term.rms_px)});
-  };
-  for (BudgetTerm const& term : budget.terms) add(term);
-  add(budget.total);
-  return table;
-}
-
 DisplacementField read_measured(std::string const& path, ReportOptions const& options, CameraSetup const& camera) {
   VectorFile file = read_vectors(path);
   if (!options.conventions.empty()) file.conventions = parse_conventions(options.conventions, file.conventions);
@@ -262,7 +244,8 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
                               "its noise {} times, and measured again. Random error between repeats {:.3g} px, "
                               "systematic error {:.3g} px rms.",
                               twin->columns, twin->rows, twin->repeats, twin->random_px, twin->bias_px)});
-    causes.blocks.push_back(twin_budget(*twin));
+    causes.blocks.push_back(budget_table(
+        "Budget by cause, of the simulated twin and not of the measurement itself [px]", twin->comparison.budget));
   } else {
     causes.blocks.push_back(Paragraph{twin ? "There is no simulated twin: " + twin->failed
                                            : "There is no simulated twin: the vectors are no complete lattice."});

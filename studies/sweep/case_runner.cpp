@@ -1,7 +1,6 @@
 #include "studies/sweep/case_runner.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -19,6 +18,7 @@
 #include "render/base/setup_node.h"
 #include "render/focused_dots/focused_dots.h"
 #include "studies/correlate.h"
+#include "studies/quiet_log.h"
 #include "studies/scene_renderer.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
@@ -60,18 +60,6 @@ double largest(Image<double> const& map) {
   for (double const value : map) most = std::max(most, std::isnan(value) ? 0 : value);
   return most;
 }
-
-/// Says nothing on the log below errors while it lives: a study's warnings stand in its results.
-class QuietLog {
- public:
-  QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }
-  ~QuietLog() { spdlog::set_level(level_); }
-  QuietLog(QuietLog const&) = delete;
-  QuietLog& operator=(QuietLog const&) = delete;
-
- private:
-  spdlog::level::level_enum level_;
-};
 
 std::string hash_of_input(std::string const& path, ManifestCase const& one) {
   try {
