@@ -11,11 +11,11 @@ namespace gladstone {
 /// its width or height.
 DotPattern measured_places(Scene const& scene);
 
-/// Errors of truth and images at the scene's present number of rays, measured: the dots of
-/// measured_places, each by a table of its own, which is the scene's where it lies, are set
-/// beside four times 65,536 rays of another choice each; the table tells where these go, and 8192 of each are traced
-/// and tell what it is off by for all. What those scatter by is taken off. Levels are those of a picture of single dots
-/// (of squares side by side for a picture's). Places that the table does not cover do not count.
+/// Errors of truth and images at the scene's present number of rays, measured: the dots of measured_places, each by a
+/// table of its own, which is the scene's where it lies, are set beside four times 65,536 rays of another choice each;
+/// the table tells where these go, and 8192 of each are traced and tell what it is off by for all. What those scatter
+/// by is taken off. Levels are those of a picture of single dots (of squares side by side for a picture's). Places that
+/// the table does not cover do not count.
 RaysPlan measure_table_error(FocusedDots const& dots);
 
 /// The rays that every dot takes to correct the table, and how fine table and rules are: a given number of rays, else
