@@ -10,7 +10,7 @@ namespace {
 /// Every correlation method, one row each.
 constexpr std::array rows{
     CorrelationMethod{.name = "scc", .correlate = correlate_scc, .on_gpu = true},
-    CorrelationMethod{.name = "rpc", .correlate = correlate_rpc},
+    CorrelationMethod{.name = "rpc", .correlate = correlate_rpc, .on_gpu = true},
     CorrelationMethod{.name = "spc", .correlate = correlate_spc},
     CorrelationMethod{.name = "zncc", .correlate = correlate_zncc},
     CorrelationMethod{.name = "mqd", .correlate = correlate_mqd},

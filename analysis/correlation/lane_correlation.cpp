@@ -69,9 +69,12 @@ LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView co
 
 int LaneCorrelation::transform_size(InterrogationJob const& job, bool with_margin) {
   int const window = job.grid.window_px, radius = job.search_radius_px;
-  int const side = job.weighting == WindowWeighting::uniform ? window : 2 * window;
-  if (with_margin) return lane_fourier_size(side + 2 * radius + 2);
-  if (job.weighting == WindowWeighting::gaussian) return lane_fourier_size(side);
+  return with_margin ? lane_fourier_size(window_side_px(job.weighting, window) + 2 * radius + 2)
+                     : plane_transform_size(job.weighting, window, radius);
+}
+
+int plane_transform_size(WindowWeighting weighting, int window, int radius) {
+  if (weighting == WindowWeighting::gaussian) return lane_fourier_size(window_side_px(weighting, window));
   // at one pixel beyond the search range, which only the fit of a peak at its rim reads, one line of pixels would wrap:
   // of large windows it is too small a part to lengthen the transform for
   return lane_fourier_size(window + radius + (window < 32 ? 1 : 0));

@@ -86,6 +86,9 @@ struct PlaneMethod {
   bool falls_off = true;     ///< its planes fall off with the shift as the windows' common weight does
 };
 
+/// Least length of the transforms that give the plane of a window without the margin. @param radius of the search [px]
+int plane_transform_size(WindowWeighting weighting, int window_px, int radius);
+
 /// What is done with the planes of windows first .. first + count - 1.
 /// They may be changed by it.
 using VisitPlanes = std::function<void(std::size_t first, int count, LaneCorrelation& work, LanePlane& plane)>;

@@ -16,7 +16,7 @@ struct NamedFit {
 /// Every subpixel fit, one row each.
 constexpr std::array fits{
     NamedFit{"gauss3", fit_gauss3, true},
-    NamedFit{"gauss2d", fit_gauss2d},
+    NamedFit{"gauss2d", fit_gauss2d, true},
     NamedFit{"parabola", fit_parabola},
     NamedFit{"centroid", fit_centroid},
 };

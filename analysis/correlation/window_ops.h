@@ -23,6 +23,11 @@ GLADSTONE_HD T window_half_support(WindowWeighting weighting, T window_px) {
   return weighting == WindowWeighting::gaussian ? window_px : window_px / T(2);
 }
 
+/// Side of the square of pixels that a window of nominal size window_px gives weight [px].
+GLADSTONE_HD constexpr int window_side_px(WindowWeighting weighting, int window_px) {
+  return weighting == WindowWeighting::gaussian ? 2 * window_px : window_px;
+}
+
 /// Weight along one axis; the weight of a pixel is the product over both axes. The Gaussian has the area of the nominal
 /// window, exp(-pi (offset/window_px)^2), so that as many particles count (Eckstein & Vlachos, Meas. Sci. Technol. 20
 /// (2009) 055401), and is cut where it has fallen to exp(-pi) = 0.043.

@@ -10,6 +10,7 @@
 #include "analysis/correlation/vector_validation.h"
 #include "analysis/correlation/window_measurement.h"
 #include "cuda/correlation/cuda_correlator.h"
+#include "cuda/correlation/small_transform.h"
 
 /// The launches that a correlation consists of, in the order of their calls. All pointers are device addresses; all
 /// work is queued on the default stream, checked at its launch.
@@ -39,13 +40,12 @@ struct DevicePair {
 void prepare_pair(DeviceImage const& reference, DeviceImage const& flow, LevelKeys* keys, float* contrast,
                   DevicePair const& pair);
 
-/// B-spline coefficients of one image of a pair, unknown pixels taken as 0.
-/// @param image        first value of that image, one every two
+/// B-spline coefficients of both images, unknown pixels taken as 0.
 /// @param taps         of bspline_taps, `tap_count` of them
 /// @param scratch      columns * rows values
-/// @param coefficients (columns + 12) * (rows + 12) values, as BsplineView lays them out
-BsplineView<float> filter_image(float const* image, int columns, int rows, double const* taps, int tap_count,
-                                float* scratch, float* coefficients);
+/// @param coefficients of each image (columns + 12) * (rows + 12) values, as BsplineView lays them out
+void filter_pair(DevicePair const& pair, float const* taps, int tap_count, GreyPair* scratch,
+                 float* const (&coefficients)[2], BsplineView<float> (&spline)[2]);
 
 /// All windows of a pass.
 struct WindowJob {
@@ -54,15 +54,19 @@ struct WindowJob {
   InterrogationGrid grid;
   AxisWeightsView x;
   AxisWeightsView y;
+  int side;                ///< of the pixels that have weight [px]
+  int margin;              ///< of the support, beside them: (x.size - side)/2
+  int size;                ///< length of the transforms
+  Complex const* roots;    ///< unit_roots(size)
+  float const* particles;  ///< of rpc: the spectrum that weighs the phases, along one axis; null: scc
   int search_radius_px;
-  WindowCorrelation* results;
 };
 
-/// A peak of a correlation plane: its highest sample and the four beside it.
+/// A peak of a correlation plane: its highest sample and those around it.
 struct PeakSample {
   int x, y;
-  float height;  ///< between the samples
-  float centre, left, right, above, below;
+  float height;       ///< between the samples
+  float value[3][3];  ///< rows downwards
 };
 
 /// What a window's plane leaves behind to be measured.
@@ -73,14 +77,16 @@ struct WindowPeaks {
   PeakSample peak[3];
 };
 
-/// Whether windows of this support have a kernel of their own.
-bool has_own_kernel(int size);
-/// Windows that have: their planes stay on the processor. @param peaks scratch: a place for every window
-/// @pre has_own_kernel(job.x.size)
-void correlate_small_windows(WindowJob const& job, WindowPeaks* peaks);
+/// Whether job has a kernel of its own: scc of supports of 32 and 64 px.
+bool has_own_kernel(WindowJob const& job);
 /// Finds the peaks of every window of such a support, to be measured.
 void correlate_windows_of_32(WindowJob const& job, WindowPeaks* peaks);
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks);
+
+/// The smallest length of a transform with factors that are known to the compiler, 32 to 128, that is no less; 0: none.
+int factored_size(int least);
+/// @pre factored_size(job.size) == job.size
+void correlate_windows_by_factors(WindowJob const& job, WindowPeaks* peaks);
 
 /// Transforms of any size, line by line in shared memory.
 struct LinePlan {
@@ -95,12 +101,14 @@ struct LinePlan {
   std::size_t window_values() const { return 2 * static_cast<std::size_t>(pitch()) * static_cast<std::size_t>(size); }
 };
 LinePlan make_line_plan(int size);
-/// exp(-2 pi i k / size), real and imaginary parts in turn.
-std::vector<float> unit_roots(int size);
-/// @param roots   of unit_roots
+/// exp(-2 pi i k / size).
+std::vector<Complex> unit_roots(int size);
 /// @param scratch plan.window_values() for each of `slots` windows that are worked on together
-void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float const* roots, float* scratch,
-                                int slots);
+void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float* scratch, int slots,
+                                WindowPeaks* peaks);
+
+/// Turns the peaks into shifts between the pixels by three points along either axis (gauss3) or nine (gauss2d).
+void measure_peaks(WindowJob const& job, WindowPeaks const* peaks, bool nine_points, WindowCorrelation* results);
 
 /// A vector or node that is being replaced.
 struct Replacement {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <mutex>
 
-#include "analysis/correlation/lane_fourier.h"
+#include "analysis/correlation/lane_correlation.h"
+#include "analysis/correlation/methods/robust_phase.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/device_array.h"
@@ -46,23 +47,28 @@ class DeviceAxisWeights {
 /// Device memory and tables for pairs of one size.
 class CorrelationPlan {
  public:
-  CorrelationPlan(CorrelationSchedule const& schedule, int columns, int rows)
-      : schedule_(schedule), columns_(columns), rows_(rows) {
+  CorrelationPlan(CorrelationSettings const& settings, int columns, int rows)
+      : schedule_(settings),
+        phase_only_(settings.method == "rpc"),
+        nine_points_(settings.subpixel == "gauss2d"),
+        columns_(columns),
+        rows_(rows) {
     std::size_t const pixels = static_cast<std::size_t>(columns) * rows;
     original_ = Pair(pixels);
-    if (schedule.passes() > 1) {
+    if (schedule_.passes() > 1) {
       deformed_ = Pair(pixels);
       constexpr int margin = BsplineView<float>::margin_before + BsplineView<float>::margin_after;
       std::size_t const coefficients = static_cast<std::size_t>(columns + margin) * (rows + margin);
       for (DeviceArray<float>& spline : spline_) spline = DeviceArray<float>(coefficients, purpose);
-      taps_ = on_device(bspline_taps(schedule.spline_degree()));
+      std::vector<double> const taps = bspline_taps(schedule_.spline_degree());
+      taps_ = on_device(std::vector<float>(taps.begin(), taps.end()));
     }
     std::size_t most_vectors = 0, most_nodes = 0;
-    for (int pass = 0; pass < schedule.passes(); ++pass) {
+    for (int pass = 0; pass < schedule_.passes(); ++pass) {
       passes_.push_back(make_pass(pass));
       Pass const& made = passes_.back();
       most_vectors = std::max(most_vectors, made.grid.size());
-      if (!schedule.is_last(pass))
+      if (!schedule_.is_last(pass))
         most_nodes = std::max(most_nodes, static_cast<std::size_t>(made.predictor.columns) * made.predictor.rows);
     }
     windows_ = DeviceArray<WindowCorrelation>(most_vectors, purpose);
@@ -72,7 +78,7 @@ class CorrelationPlan {
     measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
     measured_.zero();  // the gaps between its members are copied to the host, too
     list_ = DeviceArray<Replacement>(most_vectors, purpose);
-    if (schedule.passes() > 1) {
+    if (schedule_.passes() > 1) {
       nodes_ = DeviceArray<Vec2d>(most_vectors, purpose);
       smoothed_ = DeviceArray<Vec2d>(most_vectors, purpose);
       known_ = DeviceArray<char>(most_vectors, purpose);
@@ -96,12 +102,9 @@ class CorrelationPlan {
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
     prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
     BsplineView<float> spline[2] = {};
-    if (schedule_.passes() > 1) {
-      float const* const first = &original.pixels->reference;
-      for (int k = 0; k < 2; ++k)  // the deformed pair is not needed yet: scratch
-        spline[k] = filter_image(first + k, columns_, rows_, taps_.data(), static_cast<int>(taps_.size()),
-                                 &deformed.pixels->reference, spline_[k].data());
-    }
+    if (schedule_.passes() > 1)  // the deformed pair is not needed yet: scratch
+      filter_pair(original, taps_.data(), static_cast<int>(taps_.size()), deformed.pixels,
+                  {spline_[0].data(), spline_[1].data()}, spline);
     for (int pass = 0;; ++pass) {
       throw_if_interrupted();
       Pass const& now = passes_[pass];
@@ -130,21 +133,31 @@ class CorrelationPlan {
     int search_radius_px;
     PredictorView predictor;  ///< made of this pass' vectors
     DeviceAxisWeights x, y;
+    int side, size;  ///< of a window's pixels and of its transform
     LinePlan lines;
-    DeviceArray<float> roots;
+    DeviceArray<Complex> roots;
+    DeviceArray<float> particles;  ///< of rpc
   };
 
   Pass make_pass(int pass) const {
     InterrogationGrid const grid = schedule_.grid(pass, columns_, rows_);
-    int const ghosts = ghost_nodes(grid, columns_, rows_), size = lane_fourier_size(2 * grid.window_px);
+    int const ghosts = ghost_nodes(grid, columns_, rows_), side = window_side_px(schedule_.weighting(), grid.window_px);
+    int const radius = schedule_.search_radius_px(pass);
+    int const least = plane_transform_size(schedule_.weighting(), grid.window_px, radius),
+              factored = factored_size(least);
+    // zeros behind uniform windows change no correlation, but the phases' wave numbers
+    int const size = side < least && factored != 0 && !phase_only_ ? factored : least;
     PredictorView const predictor{grid, ghosts, grid.columns + 2 * ghosts, grid.rows + 2 * ghosts, nullptr};
     return {grid,
-            schedule_.search_radius_px(pass),
+            radius,
             predictor,
             DeviceAxisWeights(AxisWeights(grid, grid.columns, columns_, schedule_.weighting())),
             DeviceAxisWeights(AxisWeights(grid, grid.rows, rows_, schedule_.weighting())),
+            side,
+            size,
             make_line_plan(size),
-            on_device(unit_roots(size))};
+            on_device(unit_roots(size)),
+            phase_only_ ? on_device(particle_spectrum(size)) : DeviceArray<float>()};
   }
 
   PredictorView predictor(int pass) const {
@@ -167,7 +180,7 @@ class CorrelationPlan {
   void make_scratch() {
     std::size_t values = 0, windows = 0;
     for (Pass const& pass : passes_)
-      if (!has_own_kernel(pass.lines.size) && !pass.lines.window_in_shared) {
+      if (factored_size(pass.size) != pass.size && !pass.lines.window_in_shared) {
         values = std::max(values, pass.lines.window_values());
         windows = std::max(windows, pass.grid.size());
       }
@@ -182,12 +195,24 @@ class CorrelationPlan {
   }
 
   void correlate_windows(Pass const& pass, DevicePair const& pair) {
-    WindowJob const job{pair,          contrast_.data(),      pass.grid,      pass.x.view(),
-                        pass.y.view(), pass.search_radius_px, windows_.data()};
-    if (has_own_kernel(pass.lines.size))
-      correlate_small_windows(job, peaks_.data());
+    WindowJob const job{.pair = pair,
+                        .contrast = contrast_.data(),
+                        .grid = pass.grid,
+                        .x = pass.x.view(),
+                        .y = pass.y.view(),
+                        .side = pass.side,
+                        .margin = (pass.x.view().size - pass.side) / 2,
+                        .size = pass.size,
+                        .roots = pass.roots.data(),
+                        .particles = pass.particles.data(),
+                        .search_radius_px = pass.search_radius_px};
+    if (has_own_kernel(job))
+      job.size == 64 ? correlate_windows_of_64(job, peaks_.data()) : correlate_windows_of_32(job, peaks_.data());
+    else if (factored_size(job.size) == job.size)
+      correlate_windows_by_factors(job, peaks_.data());
     else
-      correlate_windows_by_lines(job, pass.lines, pass.roots.data(), scratch_.data(), slots_);
+      correlate_windows_by_lines(job, pass.lines, scratch_.data(), slots_, peaks_.data());
+    measure_peaks(job, peaks_.data(), nine_points_, windows_.data());
   }
 
   DisplacementField download(InterrogationGrid const& grid) {
@@ -198,6 +223,7 @@ class CorrelationPlan {
   }
 
   CorrelationSchedule schedule_;
+  bool phase_only_, nine_points_;
   int columns_;
   int rows_;
   std::vector<Pass> passes_;
@@ -206,7 +232,7 @@ class CorrelationPlan {
   Pair original_, deformed_;
   DeviceArray<double> uploaded_[2];
   DeviceArray<float> spline_[2];
-  DeviceArray<double> taps_;
+  DeviceArray<float> taps_;
   DeviceArray<WindowCorrelation> windows_;
   DeviceArray<WindowPeaks> peaks_;
   DeviceArray<GridVector> vectors_;
@@ -221,19 +247,18 @@ class CorrelationPlan {
 };
 
 struct CudaCorrelator::State {
-  explicit State(CorrelationSettings const& wanted) : settings(wanted), schedule(wanted) {}
+  explicit State(CorrelationSettings const& wanted) : settings(wanted) {}
 
   /// The plan for images of that size. @throws DataError, OutOfDeviceMemory
   CorrelationPlan& plan_for(int columns, int rows) {
     if (!plan || !plan->suits(columns, rows)) {
       plan.reset();  // first gives its memory back
-      plan = std::make_unique<CorrelationPlan>(schedule, columns, rows);
+      plan = std::make_unique<CorrelationPlan>(settings, columns, rows);
     }
     return *plan;
   }
 
   CorrelationSettings settings;
-  CorrelationSchedule schedule;
   std::mutex busy;
   std::unique_ptr<CorrelationPlan> plan;
 };

@@ -46,41 +46,47 @@ __global__ void remove_level(double const* reference, double const* flow, long l
                finite(flow[i]) ? static_cast<float>((flow[i] - level) * scale) : unknown};
 }
 
-/// Sample k of a line of `count`, reflected at its ends; 0 where it is not known.
-__device__ double sample_of(float const* line, int step, int k) {
-  float const value = line[static_cast<long long>(k) * step];
-  return isnan(value) ? 0.0 : static_cast<double>(value);
+/// Pixel k of a line, 0 where an image is not known.
+__device__ GreyPair sample_of(GreyPair const* line, int step, int k) {
+  GreyPair const value = line[static_cast<long long>(k) * step];
+  return {isnan(value.reference) ? 0.0f : value.reference, isnan(value.flow) ? 0.0f : value.flow};
 }
 
-/// Coefficient i of a line.
-__device__ float filtered(float const* line, int step, int count, int i, double const* taps, int tap_count) {
-  double sum = taps[0] * sample_of(line, step, i);
+/// Coefficients i of a line of both images, reflected at its ends.
+__device__ GreyPair filtered(GreyPair const* line, int step, int count, int i, float const* taps, int tap_count) {
+  GreyPair const middle = sample_of(line, step, i);
+  GreyPair sum{taps[0] * middle.reference, taps[0] * middle.flow};
+  auto const add = [&](float tap, GreyPair before, GreyPair behind) {
+    sum = {sum.reference + tap * (before.reference + behind.reference), sum.flow + tap * (before.flow + behind.flow)};
+  };
   if (i >= tap_count && i + tap_count < count)
-    for (int k = 1; k < tap_count; ++k) sum += taps[k] * (sample_of(line, step, i - k) + sample_of(line, step, i + k));
+    for (int k = 1; k < tap_count; ++k) add(taps[k], sample_of(line, step, i - k), sample_of(line, step, i + k));
   else
     for (int k = 1; k < tap_count; ++k)
-      sum += taps[k] * (sample_of(line, step, mirrored_index(i - k, count)) +
-                        sample_of(line, step, mirrored_index(i + k, count)));
-  return static_cast<float>(sum);
+      add(taps[k], sample_of(line, step, mirrored_index(i - k, count)),
+          sample_of(line, step, mirrored_index(i + k, count)));
+  return sum;
 }
 
-__global__ void filter_rows(float const* image, int columns, int rows, double const* taps, int tap_count, float* out) {
+__global__ void filter_rows(DevicePair pair, float const* taps, int tap_count, GreyPair* out) {
   long long const at = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
-  if (at >= static_cast<long long>(columns) * rows) return;
-  int const column = static_cast<int>(at % columns);
-  out[at] = filtered(image + 2 * (at - column), 2, columns, column, taps, tap_count);
+  if (at >= static_cast<long long>(pair.columns) * pair.rows) return;
+  int const column = static_cast<int>(at % pair.columns);
+  out[at] = filtered(pair.pixels + (at - column), 1, pair.columns, column, taps, tap_count);
 }
 
 /// Filters the columns and lays the margin round the coefficients.
-__global__ void filter_columns(float const* image, int columns, int rows, double const* taps, int tap_count,
-                               float* coefficients) {
+__global__ void filter_columns(GreyPair const* image, int columns, int rows, float const* taps, int tap_count,
+                               float* reference, float* flow) {
   using View = BsplineView<float>;
   int const stride = columns + View::margin_before + View::margin_after;
   long long const at = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
   if (at >= static_cast<long long>(stride) * (rows + View::margin_before + View::margin_after)) return;
   int const column = mirrored_index(static_cast<int>(at % stride) - View::margin_before, columns);
   int const row = mirrored_index(static_cast<int>(at / stride) - View::margin_before, rows);
-  coefficients[at] = filtered(image + column, columns, rows, row, taps, tap_count);
+  GreyPair const coefficient = filtered(image + column, columns, rows, row, taps, tap_count);
+  reference[at] = coefficient.reference;
+  flow[at] = coefficient.flow;
 }
 
 unsigned blocks(long long count) { return static_cast<unsigned>((count + threads - 1) / threads); }
@@ -99,17 +105,17 @@ void prepare_pair(DeviceImage const& reference, DeviceImage const& flow, LevelKe
   check_launch("remove_level");
 }
 
-BsplineView<float> filter_image(float const* image, int columns, int rows, double const* taps, int tap_count,
-                                float* scratch, float* coefficients) {
+void filter_pair(DevicePair const& pair, float const* taps, int tap_count, GreyPair* scratch,
+                 float* const (&coefficients)[2], BsplineView<float> (&spline)[2]) {
   using View = BsplineView<float>;
   constexpr int margin = View::margin_before + View::margin_after;
-  filter_rows<<<blocks(static_cast<long long>(columns) * rows), threads>>>(image, columns, rows, taps, tap_count,
-                                                                           scratch);
+  int const columns = pair.columns, rows = pair.rows;
+  filter_rows<<<blocks(static_cast<long long>(columns) * rows), threads>>>(pair, taps, tap_count, scratch);
   check_launch("filter_rows");
   filter_columns<<<blocks(static_cast<long long>(columns + margin) * (rows + margin)), threads>>>(
-      scratch, columns, rows, taps, tap_count, coefficients);
+      scratch, columns, rows, taps, tap_count, coefficients[0], coefficients[1]);
   check_launch("filter_columns");
-  return {coefficients, columns + margin, columns, rows};
+  for (int k = 0; k < 2; ++k) spline[k] = {coefficients[k], columns + margin, columns, rows};
 }
 
 }  // namespace gladstone::cuda

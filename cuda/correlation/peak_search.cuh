@@ -218,36 +218,4 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   return peaks;
 }
 
-/// Writes what hangs on the heights in the plane alone.
-__device__ inline void write_outcome(int count, float const (&height)[3], double scale, WindowCorrelation& result) {
-  result.outcome = count > 0 ? WindowCorrelation::Outcome::measured : WindowCorrelation::Outcome::no_peak;
-  result.peaks = count;
-  result.peak_ratio = count > 0 ? peak_ratio(scale * height[0], count > 1 ? scale * height[1] : 0.0,
-                                             count > 2 ? scale * height[2] : 0.0)
-                                : 0.0;
-}
-
-/// Writes what the peaks say about window (column, row). By one full warp.
-/// @param scale makes the plane a correlation coefficient
-template <class Plane>
-__device__ void write_peaks(Plane const& plane, PeakList<float> const& found, double scale, AxisWeightsView const& x,
-                            int column, AxisWeightsView const& y, int row, WindowCorrelation& result) {
-  int const lane = static_cast<int>(threadIdx.x % 32u);
-  if (lane < PeakList<float>::capacity) {
-    MeasuredPeak peak{};
-    if (lane < found.count)
-      peak = measured_peak(plane, found.peak[lane].x, found.peak[lane].y, scale, x, column, y, row);
-    result.shift[lane] = peak.shift;
-    result.coefficient[lane] = peak.coefficient;
-  }
-  if (lane == 31)
-    write_outcome(found.count, {found.peak[0].height, found.peak[1].height, found.peak[2].height}, scale, result);
-}
-
-/// Writes that there is nothing to measure. By one thread.
-__device__ inline void write_nothing(WindowCorrelation::Outcome why, WindowCorrelation& result) {
-  result = WindowCorrelation();
-  result.outcome = why;
-}
-
 }  // namespace gladstone::cuda

@@ -2,8 +2,8 @@
 
 #include "render/base/host_device.h"
 
-/// Fourier transforms of four or eight values, roots of unity to join them by, and what two real lines transformed as
-/// one come to.
+/// Fourier transforms of three to sixteen values, roots of unity to join them by, and what two real lines transformed
+/// as one come to.
 namespace gladstone::cuda {
 
 struct alignas(8) Complex {
@@ -74,18 +74,60 @@ GLADSTONE_HD constexpr Complex quarter_turn(Complex a) {
   return sign > 0 ? Complex{-a.im, a.re} : Complex{a.im, -a.re};
 }
 
+/// exp(sign 2 pi i k / size), size 6, 12 or 16.
+template <int size, int sign>
+GLADSTONE_HD constexpr Complex small_root(int k) {
+  if constexpr (size == 16) return unit_root<64, sign>(4 * k);
+  constexpr float half_root_3 = 0.86602540378443865f;
+  constexpr float cosine[12] = {1.0f,  half_root_3,  0.5f,  0.0f, -0.5f, -half_root_3,
+                                -1.0f, -half_root_3, -0.5f, 0.0f, 0.5f,  half_root_3};
+  int const m = k * (12 / size) % 12;
+  return {cosine[m], sign * cosine[(m + 9) % 12]};
+}
+
 /// Transform of z[0], z[stride], .. in place and in natural order.
 template <int radix, int sign, int stride>
 GLADSTONE_HD void small_transform(Complex* z) {
-  static_assert(radix == 4 || radix == 8);
-  if constexpr (radix == 4) {
+  static_assert(radix == 2 || radix == 3 || radix == 4 || radix == 5 || radix == 6 || radix == 8 || radix == 12 ||
+                radix == 16);
+  if constexpr (radix == 2) {
+    Complex const a = z[0], b = z[stride];
+    z[0] = a + b;
+    z[stride] = a - b;
+  } else if constexpr (radix == 3) {
+    constexpr float sine = 0.86602540378443865f;
+    Complex const sum = z[stride] + z[2 * stride], turned = quarter_turn<sign>(z[stride] - z[2 * stride]);
+    Complex const mean{z[0].re - 0.5f * sum.re, z[0].im - 0.5f * sum.im};
+    z[0] = z[0] + sum;
+    z[stride] = {mean.re + sine * turned.re, mean.im + sine * turned.im};
+    z[2 * stride] = {mean.re - sine * turned.re, mean.im - sine * turned.im};
+  } else if constexpr (radix == 4) {
     Complex const a = z[0] + z[2 * stride], b = z[0] - z[2 * stride];
     Complex const c = z[stride] + z[3 * stride], d = quarter_turn<sign>(z[stride] - z[3 * stride]);
     z[0] = a + c;
     z[stride] = b + d;
     z[2 * stride] = a - c;
     z[3 * stride] = b - d;
-  } else {
+  } else if constexpr (radix == 5) {
+    constexpr float cosine_1 = 0.30901699437494742f, cosine_2 = -0.80901699437494742f;
+    constexpr float sine_1 = 0.95105651629515357f, sine_2 = 0.58778525229247313f;
+    Complex const near = z[stride] + z[4 * stride], far = z[2 * stride] + z[3 * stride];
+    Complex const near_turned = quarter_turn<sign>(z[stride] - z[4 * stride]);
+    Complex const far_turned = quarter_turn<sign>(z[2 * stride] - z[3 * stride]);
+    auto const even = [&](float n, float f) {
+      return Complex{z[0].re + n * near.re + f * far.re, z[0].im + n * near.im + f * far.im};
+    };
+    auto const odd = [&](float n, float f) {
+      return Complex{n * near_turned.re + f * far_turned.re, n * near_turned.im + f * far_turned.im};
+    };
+    Complex const first = even(cosine_1, cosine_2), second = even(cosine_2, cosine_1);
+    Complex const u = odd(sine_1, sine_2), v = odd(sine_2, -sine_1);
+    z[0] = z[0] + near + far;
+    z[stride] = first + u;
+    z[4 * stride] = first - u;
+    z[2 * stride] = second + v;
+    z[3 * stride] = second - v;
+  } else if constexpr (radix == 8) {
     Complex even[4] = {z[0], z[2 * stride], z[4 * stride], z[6 * stride]};
     Complex odd[4] = {z[stride], z[3 * stride], z[5 * stride], z[7 * stride]};
     small_transform<4, sign, 1>(even);
@@ -102,6 +144,21 @@ GLADSTONE_HD void small_transform(Complex* z) {
     z[6 * stride] = even[2] - w;
     z[3 * stride] = {even[3].re + c * v.re, even[3].im + c * v.im};
     z[7 * stride] = {even[3].re - c * v.re, even[3].im - c * v.im};
+  } else {  // 6, 12 and 16: a few transforms, turned, then others across them
+    constexpr int outer = radix == 6 ? 2 : 4, inner = radix / outer;
+    Complex natural[radix];
+    for (int n = 0; n < inner; ++n) {
+      small_transform<outer, sign, inner * stride>(z + n * stride);
+      for (int k = 1; n > 0 && k < outer; ++k) {
+        Complex& value = z[(inner * k + n) * stride];
+        value = value * small_root<radix, sign>(n * k);
+      }
+    }
+    for (int k = 0; k < outer; ++k) {
+      small_transform<inner, sign, stride>(z + inner * k * stride);
+      for (int n = 0; n < inner; ++n) natural[k + outer * n] = z[(inner * k + n) * stride];
+    }
+    for (int k = 0; k < radix; ++k) z[k * stride] = natural[k];
   }
 }
 

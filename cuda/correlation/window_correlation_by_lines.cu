@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include "cuda/correlation/block_sums.cuh"
 #include "cuda/correlation/correlation_kernels.h"
-#include "cuda/correlation/peak_search.cuh"
-#include "cuda/correlation/register_fourier.cuh"
+#include "cuda/correlation/phase_spectrum.cuh"
+#include "cuda/correlation/window_peaks.cuh"
 #include "cuda/device/launch.h"
 #include "render/base/contracts.h"
 #include "render/base/units.h"
@@ -80,28 +81,12 @@ __device__ void transform_lines(LinePlan const& plan, Complex const* roots, bool
   __syncthreads();
 }
 
-/// Sums over all threads of a block, in a fixed order. @param slots 32 * count values of shared memory
-template <int count>
-__device__ void block_sums(double (&value)[count], double* slots) {
-  int const lane = static_cast<int>(threadIdx.x % 32u), warp = static_cast<int>(threadIdx.x / 32u);
-  for (int k = 0; k < count; ++k) {
-    for (int offset = 16; offset > 0; offset /= 2) value[k] += __shfl_xor_sync(all_lanes, value[k], offset);
-    if (lane == 0) slots[warp * count + k] = value[k];
-  }
-  __syncthreads();
-  for (int k = 0; k < count; ++k) {
-    value[k] = 0.0;
-    for (int w = 0; w < static_cast<int>(blockDim.x / 32u); ++w) value[k] += slots[w * count + k];
-  }
-  __syncthreads();
-}
-
 /// Calls visit(j, i, a, b, weight) for this thread's share of a window's pixels, weight 0 where one is not known.
 template <class Visit>
 __device__ void for_each_pixel(WindowJob const& job, int column, int row, Visit const& visit) {
-  int const size = job.x.size, first_x = job.x.first(column), first_y = job.y.first(row);
-  float const* const weight_x = job.x.weight(column);
-  float const* const weight_y = job.y.weight(row);
+  int const size = job.side, first_x = job.x.first(column) + job.margin, first_y = job.y.first(row) + job.margin;
+  float const* const weight_x = job.x.weight(column) + job.margin;
+  float const* const weight_y = job.y.weight(row) + job.margin;
   for (int k = static_cast<int>(threadIdx.x); k < size * size; k += static_cast<int>(blockDim.x)) {
     int const i = k % size, j = k / size, x = first_x + i, y = first_y + j;
     float a = 0.0f, b = 0.0f, weight = 0.0f;
@@ -119,7 +104,8 @@ __device__ void for_each_pixel(WindowJob const& job, int column, int row, Visit 
 }
 
 /// Multiplies the spectrum of a + i b out to conj(A) B, wave numbers k and -k together.
-__device__ void form_cross_spectrum(Complex* window, int size, int pitch) {
+/// @param particles of rpc: what weighs the phases along one axis; null: magnitudes stay
+__device__ void form_cross_spectrum(Complex* window, int size, int pitch, float const* particles) {
   for (int k = static_cast<int>(threadIdx.x); k < (size / 2 + 1) * size; k += static_cast<int>(blockDim.x)) {
     int const x = k % size, y = k / size, mirror_x = (size - x) % size, mirror_y = (size - y) % size;
     if (y == mirror_y && x > mirror_x) continue;  // in the rows that are their own mirrors
@@ -127,27 +113,28 @@ __device__ void form_cross_spectrum(Complex* window, int size, int pitch) {
     Complex& there = window[static_cast<long long>(mirror_y) * pitch + mirror_x];
     Vec2<float> const product = cross_spectrum(here.re, here.im, there.re, there.im);
     here = {product.x, product.y};
+    if (particles != nullptr) here = PhaseSpectrum{particles}(here, x, y);
     there = conj(here);
   }
   __syncthreads();
 }
 
-__global__ void correlate_window_by_lines(WindowJob const job, LinePlan const plan, Complex const* roots_of_size,
-                                          Complex* all_scratch) {
+__global__ void correlate_window_by_lines(WindowJob const job, LinePlan const plan, Complex* all_scratch,
+                                          WindowPeaks* all_peaks) {
   extern __shared__ Complex memory[];
-  __shared__ double slots[32 * 4];
+  __shared__ double slots_of_sums[32 * 3], slots_of_energy[32 * 4];
   __shared__ PeakList<float> found;
-  int const side = job.x.size, size = plan.size, pitch = plan.pitch(), thread = static_cast<int>(threadIdx.x);
+  int const side = job.side, size = plan.size, pitch = plan.pitch(), thread = static_cast<int>(threadIdx.x);
   Complex* const roots = memory;
   Complex* const lines = memory + size;
   Complex* const window = plan.window_in_shared ? lines + static_cast<long long>(plan.warps) * 2 * size
                                                 : all_scratch + static_cast<long long>(blockIdx.x) * pitch * size;
-  for (int k = thread; k < size; k += static_cast<int>(blockDim.x)) roots[k] = roots_of_size[k];
+  for (int k = thread; k < size; k += static_cast<int>(blockDim.x)) roots[k] = job.roots[k];
 
   for (unsigned index = blockIdx.x; index < job.grid.size(); index += gridDim.x) {
     __syncthreads();  // the window before is done with
     int const column = static_cast<int>(index) % job.grid.columns, row = static_cast<int>(index) / job.grid.columns;
-    WindowCorrelation& result = job.results[index];
+    WindowPeaks& result = all_peaks[index];
 
     double sums[3] = {0.0, 0.0, 0.0};
     for_each_pixel(job, column, row, [&](int, int, float a, float b, float weight) {
@@ -155,38 +142,39 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
       sums[1] += static_cast<double>(weight) * a;
       sums[2] += static_cast<double>(weight) * b;
     });
-    block_sums(sums, slots);
+    block_sums(sums, slots_of_sums);
     if (sums[0] < smallest_known_part * job.x.sum(column) * job.y.sum(row)) {
-      if (thread == 0) write_nothing(WindowCorrelation::Outcome::masked, result);
+      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
       continue;
     }
     float const mean_a = static_cast<float>(sums[1] / sums[0]), mean_b = static_cast<float>(sums[2] / sums[0]);
     for (int k = thread; size > side && k < size * size; k += static_cast<int>(blockDim.x))
       window[static_cast<long long>(k / size) * pitch + k % size] = {0.0f, 0.0f};
     __syncthreads();
+    int const outer = job.x.size / 4 - job.margin;
     double energy[4] = {0.0, 0.0, 0.0, 0.0};
     for_each_pixel(job, column, row, [&](int j, int i, float a, float b, float weight) {
       Complex const z{weight * (a - mean_a), weight * (b - mean_b)};
       window[static_cast<long long>(j) * pitch + i] = z;
-      bool const core = i >= side / 4 && i < side - side / 4 && j >= side / 4 && j < side - side / 4;
+      bool const core = i >= outer && i < side - outer && j >= outer && j < side - outer;
       energy[0] += static_cast<double>(z.re) * z.re;
       energy[1] += static_cast<double>(z.im) * z.im;
       energy[2] += core ? static_cast<double>(z.re) * z.re : 0.0;
       energy[3] += core ? static_cast<double>(z.im) * z.im : 0.0;
     });
-    block_sums(energy, slots);
+    block_sums(energy, slots_of_energy);
     double const scale = plane_scale({static_cast<float>(energy[0]), static_cast<float>(energy[1]),
                                       static_cast<float>(energy[2]), static_cast<float>(energy[3])},
                                      *job.contrast, job.grid.window_px, size);
     if (scale == 0.0) {
-      if (thread == 0) write_nothing(WindowCorrelation::Outcome::no_signal, result);
+      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
       continue;
     }
 
     int const radius = job.search_radius_px;
     transform_lines(plan, roots, false, window, pitch, 1, 0, size, lines);
     transform_lines(plan, roots, false, window, 1, pitch, 0, size, lines);
-    form_cross_spectrum(window, size, pitch);
+    form_cross_spectrum(window, size, pitch, job.particles);
     transform_lines(plan, roots, true, window, 1, pitch, 0, size, lines);
     int const needed = min(size, 2 * radius + 3);
     transform_lines(plan, roots, true, window, pitch, 1, -(radius + 1), needed, lines);
@@ -214,7 +202,8 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
     if (thread == 0)
       prefer_nearest(plane, radius, found, [&](auto const& visit) { visit_rivals(plane, radius, found, visit); });
     __syncwarp();
-    write_peaks(plane, found, scale, job.x, column, job.y, row, result);
+    leave_samples(plane, found.count, found.peak[thread < PeakList<float>::capacity ? thread : 0],
+                  job.particles != nullptr ? 1.0 : scale, result);
   }
 }
 
@@ -241,24 +230,23 @@ LinePlan make_line_plan(int size) {
   return plan;
 }
 
-std::vector<float> unit_roots(int size) {
-  std::vector<float> roots;
+std::vector<Complex> unit_roots(int size) {
+  std::vector<Complex> roots;
   for (int k = 0; k < size; ++k) {
     double const angle = -2.0 * pi * k / size;
-    roots.push_back(static_cast<float>(std::cos(angle)));
-    roots.push_back(static_cast<float>(std::sin(angle)));
+    roots.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
   }
   return roots;
 }
 
-void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float const* roots, float* scratch,
-                                int slots) {
+void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float* scratch, int slots,
+                                WindowPeaks* peaks) {
   allow_shared_bytes(correlate_window_by_lines, plan.shared_bytes);
   auto const windows = static_cast<unsigned>(job.grid.size());
   unsigned const blocks =
       plan.window_in_shared || windows < static_cast<unsigned>(slots) ? windows : static_cast<unsigned>(slots);
   correlate_window_by_lines<<<blocks, static_cast<unsigned>(32 * plan.warps), plan.shared_bytes>>>(
-      job, plan, reinterpret_cast<Complex const*>(roots), reinterpret_cast<Complex*>(scratch));
+      job, plan, reinterpret_cast<Complex*>(scratch), peaks);
   check_launch("correlate_window_by_lines");
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "analysis/correlation/correlation_methods.h"
@@ -6,31 +7,30 @@
 #include "render/base/units.h"
 
 namespace gladstone {
-namespace {
 
-/// exp(-k^2 d^2/16) along one axis: the spectrum of the correlation of two Gaussian images of e^-2 diameter d.
 std::vector<float> particle_spectrum(int size) {
-  std::vector<float> factor(static_cast<std::size_t>(size));
+  std::vector<double> factor;
   for (int k = 0; k < size; ++k) {
     double const wave = 2.0 * pi * (k < size / 2 ? k : k - size) / size;
-    factor[static_cast<std::size_t>(k)] =
-        static_cast<float>(std::exp(-wave * wave * robust_phase_diameter_px * robust_phase_diameter_px / 16.0));
+    factor.push_back(std::exp(-wave * wave * robust_phase_diameter_px * robust_phase_diameter_px / 16.0));
   }
-  return factor;
+  double const all = std::accumulate(factor.begin(), factor.end(), 0.0);
+  std::vector<float> share;
+  for (double const f : factor) share.push_back(static_cast<float>(f / all));
+  return share;
 }
-
-}  // namespace
 
 void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane) {
   work.load(WindowTerm::frames);
   FloatLanes const scale = work.windows().scale(work.size());
   std::vector<float> const factor = particle_spectrum(work.size());
-  float all = 0.0f;
-  for (float const f : factor) all += f;
   work.correlate(
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {
-        float const along_x = factor[static_cast<std::size_t>(kx)] / (all * all);
+        float const along_x = factor[static_cast<std::size_t>(kx)];
+        if (kx == 0)
+          spectrum[0] = {FloatLanes{},
+                         FloatLanes{}};  // the windows are free of their means: what is there is rounding, not phase
         for (int ky = 0; ky < size; ++ky) {
           ComplexLanes& c = spectrum[ky];
           FloatLanes const magnitude = root_lanes(c.re * c.re + c.im * c.im) + 1e-30f;

@@ -54,7 +54,7 @@ void set_rate(benchmark::State& state, std::size_t vectors) {
 }
 
 /// From window to subpixel shift alone: two launches, 4096 x 4096 px, windows 1/4 of their size apart.
-/// @param range(0) nominal window [px]
+/// @param range(0) nominal window [px] @param range(1) 1: the kernel of its support alone; 0: by factors
 void correlate_windows(benchmark::State& state) {
   if (no_device(state)) return;
   DevicePairOfImages const images(4096);
@@ -75,23 +75,45 @@ void correlate_windows(benchmark::State& state) {
   DeviceArray<cuda::LevelKeys> keys(1, purpose);
   DeviceArray<cuda::WindowPeaks> peaks(grid.size(), purpose);
   DeviceArray<WindowCorrelation> results(grid.size(), purpose);
+  std::vector<cuda::Complex> const host_roots = cuda::unit_roots(2 * grid.window_px);
+  DeviceArray<cuda::Complex> const roots(host_roots.data(), host_roots.size(), purpose);
   cuda::DevicePair const pair{greys.data(), size, size};
   cuda::prepare_pair(images.first(), images.second(), keys.data(), contrast.data(), pair);
-  cuda::WindowJob const job{pair, contrast.data(), grid, view, view, grid.window_px / 2, results.data()};
+  cuda::WindowJob const job{.pair = pair,
+                            .contrast = contrast.data(),
+                            .grid = grid,
+                            .x = view,
+                            .y = view,
+                            .side = view.size,
+                            .margin = 0,
+                            .size = view.size,
+                            .roots = roots.data(),
+                            .particles = nullptr,
+                            .search_radius_px = grid.window_px / 2};
+  bool const own_kernel = state.range(1) != 0;
+  auto const correlate = [&] {
+    if (own_kernel)
+      job.size == 64 ? cuda::correlate_windows_of_64(job, peaks.data())
+                     : cuda::correlate_windows_of_32(job, peaks.data());
+    else
+      cuda::correlate_windows_by_factors(job, peaks.data());
+    cuda::measure_peaks(job, peaks.data(), false, results.data());
+  };
   cuda::DeviceTimer timer;
-  cuda::correlate_small_windows(job, peaks.data());
+  correlate();
   for (auto _ : state) {
     timer.start();
-    cuda::correlate_small_windows(job, peaks.data());
+    correlate();
     state.SetIterationTime(timer.stop());
   }
   set_rate(state, grid.size());
 }
 BENCHMARK(correlate_windows)
     ->Name("cuda_correlate_windows")
-    ->ArgName("window")
-    ->Arg(32)
-    ->Arg(16)
+    ->ArgNames({"window", "own"})
+    ->Args({32, 1})
+    ->Args({16, 1})
+    ->ArgsProduct({{64, 48, 32, 24, 20, 16}, {0}})
     ->UseManualTime()
     ->Iterations(20)
     ->Repetitions(3)

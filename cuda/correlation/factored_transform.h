@@ -1,0 +1,179 @@
+#pragma once
+
+#include "analysis/correlation/window_ops.h"
+#include "cuda/correlation/small_transform.h"
+
+/// The correlation plane of a window whose lines have outer x inner values, by a block of threads that shares memory. A
+/// line takes two steps, transforms of `outer` values `inner` apart and then of `inner` values side by side; wave
+/// number k lies at place(k) afterwards, and the way back takes the steps in the other order.
+///
+/// With a and b the windows, z = a + i b:
+///  1. transform columns of z along y, then rows along x (columns_apart, columns_together, rows_apart, rows_together);
+///  2. form the cross spectrum for wave numbers kx <= size/2, of which one half says all since planes are real, and
+///     transform back along y (product, columns_together_again);
+///  3. transform back along x, two rows of the plane as one complex line, only those that the search for peaks reads
+///     (rows_apart_again, rows_together_again).
+/// A step is what one thread does between two barriers; no two threads write, nor one writes and another reads, the
+/// same place between two barriers.
+namespace gladstone::cuda {
+
+/// Takes the cross spectrum as it is.
+struct WholeSpectrum {
+  GLADSTONE_HD Complex operator()(Complex c, int /*kx*/, int /*ky*/) const { return c; }
+};
+
+template <int outer, int inner, int threads_of_block>
+struct FactoredTransform {
+  static constexpr int size = outer * inner;
+  static constexpr int threads = threads_of_block;
+  static constexpr int groups = threads / size;  ///< of threads that have a line each
+  static constexpr int pitch = size + 3;         ///< odd; wave numbers kx = 0 and size/2 move to two columns at the end
+  static constexpr int largest_radius = size / 3;                           ///< of shifts
+  static constexpr int plane_pitch = (2 * largest_radius + 9 + 3) / 4 * 4;  ///< of the plane [values]
+  static_assert(size % 4 == 0 && size >= 32 && threads % size == 0);
+
+  Complex* memory;       ///< values(radius)
+  Complex const* roots;  ///< exp(-2 pi i k / size)
+  int thread;
+  int line = thread % size;
+  int group = thread / size;
+
+  /// Rows of two lines each; behind the window where its own rows do not suffice.
+  GLADSTONE_HD static constexpr int first_joined(int radius) { return 3 * radius + 5 < size ? radius + 3 : size; }
+  GLADSTONE_HD static constexpr int joined(int radius) { return radius + 2; }
+  static constexpr int values(int radius) {
+    return pitch * (first_joined(radius) < size ? size : size + joined(radius));
+  }
+  GLADSTONE_HD static constexpr int place(int k) { return k % outer * inner + k / outer; }
+
+  /// Takes the window's pixels, each where it lies in the memory, through `weighted` and transforms.
+  /// @param weighted z at (x, y) from the pixel there, row by row @param side of the window [px], beyond which z is 0
+  template <class Weighted>
+  GLADSTONE_HD void columns_apart(int side, Weighted const& weighted) const {
+    if (line >= side) return;
+    for (int n = group; n < inner; n += groups) {
+      Complex* const column = memory + n * pitch + line;
+      Complex z[outer];
+      for (int k = 0; k < outer; ++k)
+        z[k] = k * inner + n < side ? weighted(column[k * inner * pitch], k * inner + n) : Complex{0.0f, 0.0f};
+      small_transform<outer, -1, 1>(z);
+      for (int k = 0; k < outer; ++k) column[k * inner * pitch] = z[k] * roots[k * n];
+    }
+  }
+
+  GLADSTONE_HD void columns_together(int side) const {
+    if (line >= side) return;
+    for (int k = group; k < outer; k += groups) transform_neighbours(memory + k * inner * pitch + line, pitch);
+  }
+
+  GLADSTONE_HD void rows_apart(int side) const {
+    for (int n = group; n < inner; n += groups) {
+      Complex* const row = memory + line * pitch + n;
+      Complex z[outer];
+      for (int k = 0; k < outer; ++k) z[k] = k * inner + n < side ? row[k * inner] : Complex{0.0f, 0.0f};
+      small_transform<outer, -1, 1>(z);
+      for (int k = 0; k < outer; ++k) row[k * inner] = z[k] * roots[k * n];
+    }
+  }
+
+  GLADSTONE_HD void rows_together() const {
+    for (int k = group; k < outer; k += groups) transform_neighbours(memory + line * pitch + k * inner, 1);
+  }
+
+  /// Multiplies, filters, and transforms back along y, the first of two steps.
+  template <class Filter>
+  GLADSTONE_HD void product(Filter const& filter) const {
+    for (int task = thread; task < waves * outer; task += threads) {
+      int const kx = wave(task % waves), ky = task / waves;
+      Complex const* const here = memory + ky * inner * pitch + place(kx);
+      Complex const* const mirror = memory + (outer - ky) % outer * inner * pitch + place((size - kx) % size);
+      Complex c[inner];
+      for (int k = 0; k < inner; ++k) {
+        Complex const z = here[k * pitch], m = mirror[(ky > 0 ? inner - 1 - k : (inner - k) % inner) * pitch];
+        Vec2<float> const both = cross_spectrum(z.re, z.im, m.re, m.im);
+        c[k] = filter(Complex{both.x, both.y}, kx, ky + outer * k);
+      }
+      small_transform<inner, 1, 1>(c);
+      Complex* const out = memory + ky * inner * pitch + wave_column(kx);
+      for (int k = 0; k < inner; ++k) out[k * pitch] = c[k] * conj(roots[ky * k]);
+    }
+  }
+
+  GLADSTONE_HD void columns_together_again() const {
+    for (int task = thread; task < waves * inner; task += threads) {
+      Complex* const column = memory + task / waves * pitch + wave_column(wave(task % waves));
+      Complex z[outer];
+      for (int k = 0; k < outer; ++k) z[k] = column[k * inner * pitch];
+      small_transform<outer, 1, 1>(z);
+      for (int k = 0; k < outer; ++k) column[k * inner * pitch] = z[k];
+    }
+  }
+
+  /// Joins rows dy and dy + 1 and transforms them back along x, the first of two steps.
+  GLADSTONE_HD void rows_apart_again(int radius) const {
+    int const lines = joined(radius);
+    for (int task = thread; task < lines * outer; task += threads) {
+      int const pair = task % lines, kx = task / lines, dy = 2 * pair - radius - 1;
+      Complex const* const first = memory + (dy < 0 ? dy + size : dy) * pitch;
+      Complex const* const second = memory + (dy + 1 < 0 ? dy + 1 + size : dy + 1) * pitch;
+      Complex z[inner];
+      for (int k = 0; k < inner; ++k) {
+        int const here = kx + outer * k;
+        bool const mirrored = here > size / 2;
+        int const column = wave_column(mirrored ? size - here : here);
+        Complex const a = first[column], b = second[column];
+        z[k] = mirrored ? Complex{a.re + b.im, b.re - a.im} : Complex{a.re - b.im, a.im + b.re};
+      }
+      small_transform<inner, 1, 1>(z);
+      Complex* const out = memory + (first_joined(radius) + pair) * pitch + kx * inner;
+      for (int k = 0; k < inner; ++k) out[k] = z[k] * conj(roots[kx * k]);
+    }
+  }
+
+  /// Leaves the plane, rows of plane_pitch values from dy = -radius - 1 on, at the beginning of the memory.
+  GLADSTONE_HD void rows_together_again(int radius) const {
+    float* const out = centre(radius);
+    for (int task = thread; task < joined(radius) * inner; task += threads) {
+      int const pair = task / inner, n = task % inner, dy = 2 * pair - radius - 1;
+      Complex const* const in = memory + (first_joined(radius) + pair) * pitch + n;
+      Complex z[outer];
+      for (int k = 0; k < outer; ++k) z[k] = in[k * inner];
+      small_transform<outer, 1, 1>(z);
+      for (int k = 0; k < outer; ++k) {
+        int const x = k * inner + n, dx = x <= size / 2 ? x : x - size;
+        if (dx < -radius - 1 || dx > radius + 1) continue;
+        out[dy * plane_pitch + dx] = z[k].re;
+        out[(dy + 1) * plane_pitch + dx] = z[k].im;
+      }
+    }
+  }
+
+  /// The plane at shift (0, 0): four values from (-radius, dy) on are aligned.
+  GLADSTONE_HD float* centre(int radius) const {
+    return reinterpret_cast<float*>(memory) + (radius + 1) * plane_pitch + radius + 4;
+  }
+  /// Memory that the plane leaves free: pitch * joined(radius) values.
+  GLADSTONE_HD Complex* behind_plane(int radius) const { return memory + first_joined(radius) * pitch; }
+
+ private:
+  static constexpr int waves = size / 2 + 1;
+
+  /// The wave numbers 0 .. size/2 in an order in which neighbours mostly lie side by side.
+  GLADSTONE_HD static constexpr int wave(int index) {
+    constexpr int whole = inner / 2;
+    return index < outer * whole ? index / whole + outer * (index % whole) : index;
+  }
+  /// Where the products of wave number kx lie: those that are their own mirrors beside the spectrum, which others read.
+  GLADSTONE_HD static constexpr int wave_column(int kx) {
+    return kx == 0 ? size : (kx == size / 2 ? size + 1 : place(kx));
+  }
+
+  GLADSTONE_HD static void transform_neighbours(Complex* values, int step) {
+    Complex z[inner];
+    for (int k = 0; k < inner; ++k) z[k] = values[k * step];
+    small_transform<inner, -1, 1>(z);
+    for (int k = 0; k < inner; ++k) values[k * step] = z[k];
+  }
+};
+
+}  // namespace gladstone::cuda

@@ -1,0 +1,195 @@
+#include <cmath>
+
+#include "cuda/correlation/block_sums.cuh"
+#include "cuda/correlation/factored_transform.h"
+#include "cuda/correlation/phase_spectrum.cuh"
+#include "cuda/correlation/window_peaks.cuh"
+#include "cuda/device/launch.h"
+#include "render/base/contracts.h"
+
+/// Windows whose transforms have the lengths of the usual passes: a block correlates one by FactoredTransform, and
+/// nothing but the result leaves it.
+namespace gladstone::cuda {
+namespace {
+
+constexpr int most_warps = 32;
+constexpr int most_searching = 8;
+
+/// What the threads of a block share, before the window.
+template <int size>
+struct alignas(16) BlockMemory {
+  Complex roots[size];
+  float particles[size];
+  float weight_y[size];
+  float sums[most_warps * 2];
+  float known[most_warps * 3];
+  float energy[most_warps * 4];
+  HighestPeaks highest[most_searching];
+  PeakList<float> found;
+};
+
+/// Copies a window's pixels into the memory, the nearest ones beyond the border, where weights are 0.
+/// @return this thread's share of the weighted sums of both images
+template <class Transform>
+__device__ Complex take_pixels(Transform const& transform, WindowJob const& job, int column, int row,
+                               float const* weight_y, float weight_x) {
+  int const columns = job.pair.columns, rows = job.pair.rows;
+  int const first_x = job.x.first(column) + job.margin, first_y = job.y.first(row) + job.margin;
+  Complex sum{0.0f, 0.0f};
+  if (transform.line >= job.side) return sum;
+  GreyPair const* const image = job.pair.pixels + min(max(first_x + transform.line, 0), columns - 1);
+  Complex* const out = transform.memory + transform.line;
+#pragma unroll 4
+  for (int y = transform.group; y < job.side; y += Transform::groups) {
+    GreyPair const grey = image[static_cast<long long>(min(max(first_y + y, 0), rows - 1)) * columns];
+    out[y * Transform::pitch] = {grey.reference, grey.flow};
+    sum = {sum.re + weight_y[y] * grey.reference, sum.im + weight_y[y] * grey.flow};
+  }
+  return {weight_x * sum.re, weight_x * sum.im};
+}
+
+/// Sums over this thread's pixels that are known in both images: of the weight and of either image. Seldom needed.
+template <class Transform>
+__device__ void sum_known_pixels(Transform const& transform, int side, float const* weight_y, float weight_x,
+                                 float (&sums)[3]) {
+  if (transform.line >= side) return;
+  for (int y = transform.group; y < side; y += Transform::groups) {
+    Complex const pixel = transform.memory[y * Transform::pitch + transform.line];
+    if (isnan(pixel.re + pixel.im)) continue;
+    float const weight = weight_x * weight_y[y];
+    sums[0] += weight;
+    sums[1] += weight * pixel.re;
+    sums[2] += weight * pixel.im;
+  }
+}
+
+template <class Transform, bool phase_only>
+__global__ void __launch_bounds__(Transform::threads)
+    correlate_window_by_factors(WindowJob const __grid_constant__ job, WindowPeaks* const all_peaks) {
+  constexpr int size = Transform::size, threads = Transform::threads, warps = threads / 32;
+  extern __shared__ __align__(16) unsigned char memory[];
+  auto& own = *reinterpret_cast<BlockMemory<size>*>(memory);
+  int const thread = static_cast<int>(threadIdx.x);
+  int const column = static_cast<int>(blockIdx.x) % job.grid.columns,
+            row = static_cast<int>(blockIdx.x) / job.grid.columns;
+  WindowPeaks& result = all_peaks[blockIdx.x];
+  Transform const transform{reinterpret_cast<Complex*>(memory + sizeof(BlockMemory<size>)), own.roots, thread};
+  float const weight_x = transform.line < job.side ? job.x.weight(column)[job.margin + transform.line] : 0.0f;
+  for (int k = thread; k < size; k += threads) {
+    own.roots[k] = job.roots[k];
+    own.weight_y[k] = k < job.side ? job.y.weight(row)[job.margin + k] : 0.0f;
+    if constexpr (phase_only) own.particles[k] = job.particles[k];
+  }
+  __syncthreads();
+  Complex const share = take_pixels(transform, job, column, row, own.weight_y, weight_x);
+  float const full = static_cast<float>(job.x.sum(column) * job.y.sum(row));
+  float sums[2] = {share.re, share.im};
+  block_sums(sums, own.sums);
+  Complex mean{sums[0] / full, sums[1] / full};
+  if (isnan(mean.re + mean.im)) {  // pixels that are not known
+    float known[3] = {0.0f, 0.0f, 0.0f};
+    sum_known_pixels(transform, job.side, own.weight_y, weight_x, known);
+    block_sums(known, own.known);
+    if (known[0] < smallest_known_part * full) {
+      if (thread == 0) leave_nothing(WindowCorrelation::Outcome::masked, result);
+      return;
+    }
+    mean = {known[1] / known[0], known[2] / known[0]};
+  }
+  float energy[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+  int const core = job.x.size / 4 - job.margin, core_end = job.side - core;
+  bool const column_inside = transform.line >= core && transform.line < core_end;
+  transform.columns_apart(job.side, [&](Complex pixel, int y) {
+    float const weight = weight_x * own.weight_y[y];
+    Complex const z = isnan(pixel.re + pixel.im)
+                          ? Complex{0.0f, 0.0f}
+                          : Complex{weight * (pixel.re - mean.re), weight * (pixel.im - mean.im)};
+    energy[0] += z.re * z.re;
+    energy[1] += z.im * z.im;
+    if (column_inside && y >= core && y < core_end) {
+      energy[2] += z.re * z.re;
+      energy[3] += z.im * z.im;
+    }
+    return z;
+  });
+  block_sums(energy, own.energy);
+  double const scale =
+      plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
+  if (scale == 0.0) {
+    if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
+    return;
+  }
+  transform.columns_together(job.side);
+  __syncthreads();
+  transform.rows_apart(job.side);
+  __syncthreads();
+  transform.rows_together();
+  __syncthreads();
+  if constexpr (phase_only)
+    transform.product(PhaseSpectrum{own.particles});
+  else
+    transform.product(WholeSpectrum());
+  __syncthreads();
+  transform.columns_together_again();
+  __syncthreads();
+  int const radius = job.search_radius_px;
+  transform.rows_apart_again(radius);
+  __syncthreads();
+  transform.rows_together_again(radius);
+  __syncthreads();
+
+  // a warp searches 32 blocks of four shifts at a time; few warps, since each ranks what it found
+  int const blocks = (2 * radius + 1) * ((2 * radius + 4) / 4), warp = thread / 32;
+  int const searching = min((blocks + 63) / 64, warps < most_searching ? warps : most_searching);
+  int const rows_each = (2 * radius + searching) / searching;
+  CentredPlane<Transform::plane_pitch> const plane{transform.centre(radius)};
+  if (warp < searching) {
+    int const begin = warp * rows_each - radius, end = min(begin + rows_each, radius + 1);
+    HighestPeaks const highest = search_rows(plane, radius, begin, end);
+    if (thread % 32 == 0) own.highest[warp] = highest;
+  }
+  __syncthreads();
+  if (warp == 0)
+    leave_peaks(plane, radius, own.highest, searching,
+                reinterpret_cast<PlanePeak<float>*>(transform.behind_plane(radius)), own.found,
+                phase_only ? 1.0 : scale, result);
+}
+
+template <int outer, int inner, int threads>
+void launch(WindowJob const& job, WindowPeaks* peaks) {
+  using Transform = FactoredTransform<outer, inner, threads>;
+  GLADSTONE_EXPECTS(job.search_radius_px <= Transform::largest_radius && job.side <= Transform::size);
+  auto* const kernel = job.particles != nullptr ? correlate_window_by_factors<Transform, true>
+                                                : correlate_window_by_factors<Transform, false>;
+  std::size_t const bytes = sizeof(BlockMemory<Transform::size>) +
+                            sizeof(Complex) * static_cast<std::size_t>(Transform::values(job.search_radius_px));
+  allow_shared_bytes(kernel, bytes);
+  kernel<<<static_cast<unsigned>(job.grid.size()), threads, bytes>>>(job, peaks);
+  check_launch("correlate_window_by_factors");
+}
+
+/// Every length that this file has: those of windows of 16 to 64 px, one row each.
+struct Length {
+  int size;
+  void (*launch)(WindowJob const& job, WindowPeaks* peaks);
+};
+constexpr Length lengths[] = {
+    {32, launch<8, 4, 128>}, {40, launch<8, 5, 160>},  {48, launch<8, 6, 96>},
+    {64, launch<8, 8, 256>}, {96, launch<12, 8, 576>}, {128, launch<16, 8, 1024>},
+};
+
+}  // namespace
+
+int factored_size(int least) {
+  for (Length const& row : lengths)
+    if (row.size >= least) return row.size;
+  return 0;
+}
+
+void correlate_windows_by_factors(WindowJob const& job, WindowPeaks* peaks) {
+  for (Length const& row : lengths)
+    if (row.size == job.size) return row.launch(job, peaks);
+  GLADSTONE_EXPECTS(!"a factored size");
+}
+
+}  // namespace gladstone::cuda
