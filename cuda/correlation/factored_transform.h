@@ -15,6 +15,13 @@
 ///     (rows_apart_again, rows_together_again).
 /// A step is what one thread does between two barriers; no two threads write, nor one writes and another reads, the
 /// same place between two barriers.
+/// Before a loop: its body is there once. A kernel that is too long for the instruction cache waits for its code.
+#ifdef __CUDA_ARCH__
+#define GLADSTONE_KEEP_LOOP _Pragma("unroll 1")
+#else
+#define GLADSTONE_KEEP_LOOP
+#endif
+
 namespace gladstone::cuda {
 
 /// Takes the cross spectrum as it is.
@@ -51,6 +58,7 @@ struct FactoredTransform {
   template <class Weighted>
   GLADSTONE_HD void columns_apart(int side, Weighted const& weighted) const {
     if (line >= side) return;
+    GLADSTONE_KEEP_LOOP
     for (int n = group; n < inner; n += groups) {
       Complex* const column = memory + n * pitch + line;
       Complex z[outer];
@@ -63,10 +71,12 @@ struct FactoredTransform {
 
   GLADSTONE_HD void columns_together(int side) const {
     if (line >= side) return;
+    GLADSTONE_KEEP_LOOP
     for (int k = group; k < outer; k += groups) transform_neighbours(memory + k * inner * pitch + line, pitch);
   }
 
   GLADSTONE_HD void rows_apart(int side) const {
+    GLADSTONE_KEEP_LOOP
     for (int n = group; n < inner; n += groups) {
       Complex* const row = memory + line * pitch + n;
       Complex z[outer];
@@ -77,12 +87,14 @@ struct FactoredTransform {
   }
 
   GLADSTONE_HD void rows_together() const {
+    GLADSTONE_KEEP_LOOP
     for (int k = group; k < outer; k += groups) transform_neighbours(memory + line * pitch + k * inner, 1);
   }
 
   /// Multiplies, filters, and transforms back along y, the first of two steps.
   template <class Filter>
   GLADSTONE_HD void product(Filter const& filter) const {
+    GLADSTONE_KEEP_LOOP
     for (int task = thread; task < waves * outer; task += threads) {
       int const kx = wave(task % waves), ky = task / waves;
       Complex const* const here = memory + ky * inner * pitch + place(kx);
@@ -100,6 +112,7 @@ struct FactoredTransform {
   }
 
   GLADSTONE_HD void columns_together_again() const {
+    GLADSTONE_KEEP_LOOP
     for (int task = thread; task < waves * inner; task += threads) {
       Complex* const column = memory + task / waves * pitch + wave_column(wave(task % waves));
       Complex z[outer];
@@ -112,6 +125,7 @@ struct FactoredTransform {
   /// Joins rows dy and dy + 1 and transforms them back along x, the first of two steps.
   GLADSTONE_HD void rows_apart_again(int radius) const {
     int const lines = joined(radius);
+    GLADSTONE_KEEP_LOOP
     for (int task = thread; task < lines * outer; task += threads) {
       int const pair = task % lines, kx = task / lines, dy = 2 * pair - radius - 1;
       Complex const* const first = memory + (dy < 0 ? dy + size : dy) * pitch;
@@ -133,6 +147,7 @@ struct FactoredTransform {
   /// Leaves the plane, rows of plane_pitch values from dy = -radius - 1 on, at the beginning of the memory.
   GLADSTONE_HD void rows_together_again(int radius) const {
     float* const out = centre(radius);
+    GLADSTONE_KEEP_LOOP
     for (int task = thread; task < joined(radius) * inner; task += threads) {
       int const pair = task / inner, n = task % inner, dy = 2 * pair - radius - 1;
       Complex const* const in = memory + (first_joined(radius) + pair) * pitch + n;

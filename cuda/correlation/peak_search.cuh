@@ -87,15 +87,17 @@ struct LanePeaks {
     if (best.height != 0 && first.order == best.order) {
       first = second;
       second = RankedPeak();
+      lowest_taken = best.height;
       ++taken;
     }
     return best;
   }
-  /// Whether a third one of this lane might have been among those taken from its warp.
-  __device__ bool may_miss_one() const { return taken == 2 && count > 2; }
+  /// What a third one of this lane, which it has not kept, may have been below [height]; 0 where both were not taken.
+  __device__ unsigned missed_below() const { return taken == 2 && count > 2 ? lowest_taken : 0u; }
 
  private:
   int taken = 0;
+  unsigned lowest_taken = 0;
 };
 
 /// Four shifts side by side and what is around them.
@@ -107,7 +109,7 @@ struct PlanePatch {
 /// The three highest maxima of a warp's share of the plane, highest first.
 struct HighestPeaks {
   RankedPeak peak[PeakList<float>::capacity];
-  int incomplete = 0;  ///< 1: there may be a higher one than the last
+  unsigned missed_below = 0;  ///< there may be others, which are below this height
 };
 
 /// By one full warp.
@@ -115,7 +117,7 @@ inline __device__ HighestPeaks highest_of_warp(LanePeaks& own) {
   HighestPeaks highest;
 #pragma unroll
   for (RankedPeak& peak : highest.peak) peak = own.take_highest();
-  highest.incomplete = __any_sync(0xffffffffu, own.may_miss_one());
+  highest.missed_below = __reduce_max_sync(0xffffffffu, own.missed_below());
   return highest;
 }
 
@@ -199,9 +201,9 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
                            PlanePeak<float>* list, PeakList<float>& found, PlanePeak<float>& own) {
   constexpr int capacity = PeakList<float>::capacity;
   int const lane = static_cast<int>(threadIdx.x % 32u);
-  bool incomplete = false;
+  unsigned missed_below = 0;
   LanePeaks candidate;
-  for (int k = 0; k < count; ++k) incomplete = incomplete || shares[k].incomplete != 0;
+  for (int k = 0; k < count; ++k) missed_below = max(missed_below, shares[k].missed_below);
   if (lane < capacity * count) candidate.add(shares[lane / capacity].peak[lane % capacity]);
   RankedPeak const first = candidate.take_highest(), second = candidate.take_highest(),
                    third = candidate.take_highest();
@@ -209,7 +211,7 @@ __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* s
   bool const close = (peaks > 1 && are_close(first.peak(), second.peak())) ||
                      (peaks > 2 && (are_close(first.peak(), third.peak()) || are_close(second.peak(), third.peak())));
   bool const rivals = peaks > 1 && second.peak().height >= static_cast<float>(nearly_as_high) * first.peak().height;
-  if (close || incomplete || rivals) {
+  if (close || missed_below > third.height || rivals) {
     find_all_peaks(plane, radius, list, found);
     own = found.peak[lane < capacity ? lane : 0];
     return found.count;

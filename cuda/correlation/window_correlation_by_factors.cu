@@ -18,6 +18,7 @@ constexpr int most_searching = 8;
 /// What the threads of a block share, before the window.
 template <int size>
 struct alignas(16) BlockMemory {
+  double scale;
   Complex roots[size];
   float particles[size];
   float weight_y[size];
@@ -39,11 +40,19 @@ __device__ Complex take_pixels(Transform const& transform, WindowJob const& job,
   if (transform.line >= job.side) return sum;
   GreyPair const* const image = job.pair.pixels + min(max(first_x + transform.line, 0), columns - 1);
   Complex* const out = transform.memory + transform.line;
-#pragma unroll 4
-  for (int y = transform.group; y < job.side; y += Transform::groups) {
-    GreyPair const grey = image[static_cast<long long>(min(max(first_y + y, 0), rows - 1)) * columns];
+  auto const take = [&](int y, GreyPair grey) {
     out[y * Transform::pitch] = {grey.reference, grey.flow};
     sum = {sum.re + weight_y[y] * grey.reference, sum.im + weight_y[y] * grey.flow};
+  };
+  if (first_y >= 0 && first_y + job.side <= rows) {
+    GreyPair const* pixel = image + static_cast<long long>(first_y + transform.group) * columns;
+#pragma unroll 4
+    for (int y = transform.group; y < job.side; y += Transform::groups, pixel += Transform::groups * columns)
+      take(y, *pixel);
+  } else {
+#pragma unroll 1
+    for (int y = transform.group; y < job.side; y += Transform::groups)
+      take(y, image[static_cast<long long>(min(max(first_y + y, 0), rows - 1)) * columns]);
   }
   return {weight_x * sum.re, weight_x * sum.im};
 }
@@ -113,14 +122,15 @@ __global__ void __launch_bounds__(Transform::threads)
     return z;
   });
   block_sums(energy, own.energy);
-  double const scale =
-      plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
+  if (thread == 0)
+    own.scale = plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
+  transform.columns_together(job.side);
+  __syncthreads();
+  double const scale = own.scale;
   if (scale == 0.0) {
     if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
     return;
   }
-  transform.columns_together(job.side);
-  __syncthreads();
   transform.rows_apart(job.side);
   __syncthreads();
   transform.rows_together();
