@@ -20,10 +20,15 @@ namespace {
 /// The correlator of a GPU; what that does not have the CPU does, unless only the GPU is wanted.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
   std::string const missing = missing_on_gpu(settings);
+  bool const estimated = settings.uncertainty != "none";
+  if (only_gpu && (estimated || !missing.empty()))
+    throw DeviceError(
+        fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto",
+                    missing.empty() ? fmt::format("uncertainty = \"{}\"", settings.uncertainty) : missing));
+  if (estimated)
+    spdlog::info("correlate.uncertainty = \"{}\" is estimated on the CPU, {} threads", settings.uncertainty,
+                 thread_count());
   if (missing.empty()) return cuda::make_correlator(settings);
-  if (only_gpu)
-    throw DeviceError("--device cuda: correlate." + missing +
-                      " is computed on the CPU alone; use --device auto, or \"scc\" with \"gauss3\"");
   spdlog::info("correlate.{} is computed on the CPU, {} threads", missing, thread_count());
   return make_correlator(settings);
 }

@@ -35,7 +35,7 @@ std::vector<std::string> correlation_methods();
 /// The correlator that the settings ask for. @pre settings.method is one of correlation_methods()
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
-/// What these settings ask for that the correlator of CUDA does not have, as `method = "rpc"`; empty: it has all.
+/// What these settings ask for that the correlator of CUDA does not have, as `method = "spc"`; empty: it has all.
 std::string missing_on_gpu(CorrelationSettings const& settings);
 
 /// Weight W put on either image at an offset from a window's centre [px] in the last pass; 1 at the centre. A particle

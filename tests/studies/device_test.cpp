@@ -25,10 +25,10 @@ TEST(Measurement, NamesTheDeviceThatCorrelated) {
     return correlate_frames("a.tif", pair.reference, "b.tif", pair.flow, settings, device).device;
   };
   EXPECT_EQ(device_of(), "cuda");
-  settings.method = "rpc";
+  settings.method = "spc";
   EXPECT_EQ(device_of(), "cpu");
   settings.method = "scc";
-  settings.subpixel = "gauss2d";
+  settings.subpixel = "parabola";
   EXPECT_EQ(device_of(), "cpu");
 }
 
