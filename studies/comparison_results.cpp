@@ -67,7 +67,7 @@ nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
     UncertaintyQuality const quality =
         uncertainty_quality(measured.displacement_px, *truth, measured.sigma_px, comparison.mask);
     for (auto const& [measure, value] : quality_measures(quality)) {
-      bool const is_count = measure == "count" || measure == "gross";
+      bool const is_count = measure == "count" || measure == "gross" || measure == "without_sigma";
       json[name][std::string(measure)] =
           is_count ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
     }

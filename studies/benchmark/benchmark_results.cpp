@@ -10,7 +10,9 @@
 namespace gladstone {
 namespace {
 
-bool is_whole(std::string_view measure) { return measure == "vectors" || measure == "count" || measure == "gross"; }
+bool is_whole(std::string_view measure) {
+  return measure == "vectors" || measure == "count" || measure == "gross" || measure == "without_sigma";
+}
 
 nlohmann::json number(std::string_view measure, double value) {
   return is_whole(measure) ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
