@@ -23,10 +23,10 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 	fit=$$(awk '/^MemAvailable:/ {print int($$2 / 1500000)}' /proc/meminfo 2>/dev/null); \
 	[ "$${fit:-$$cores}" -ge 1 ] || fit=1; [ "$${fit:-$$cores}" -lt "$$cores" ] && echo $$fit || echo $$cores)
 
-# All from Debian bookworm. OpenCV's two small packages instead of libopencv-dev, which draws in two hundred others.
+# All from Debian bookworm. OpenCV's three small packages instead of libopencv-dev, which draws in two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
-	libceres-dev libnlopt-cxx-dev zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
+	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format clang-tidy
 # the compiler of PRESET=dev, with libFuzzer, and what makes its reports readable
 DEV_PACKAGES := clang libclang-rt-dev llvm

@@ -134,8 +134,12 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   CorrelationSettings const& settings = vectors.settings;
   WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
                             window_support_px(settings)};
-  comparison.window =
-      window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
+  auto const truth_by = [&](auto const& truth_on) {
+    return truth_on(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
+  };
+  comparison.window = truth_by(window_truth);
+  comparison.deformed_window = truth_by(deformed_window_truth);
+  comparison.frames_deformed = settings.window_px.size() > 1 || settings.final_passes > 1;
   if (rendered) {
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
     DisplacementField again = correlate_frames(*rendered->rendering->in_place->ideal(detector), settings, device).field;

@@ -32,7 +32,8 @@ struct Comparison {
   GroundTruth point;  ///< truth and theory of the virtual dot (particle) whose place the vector is; of PIV no theory
   std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them; not PIV
   std::vector<Vec2d> flow_px, ambient_px;  ///< of PIV alone: see ParticlePoints
-  WindowTruth window;
+  WindowTruth window, deformed_window;
+  bool frames_deformed = false;   ///< several passes: deformed_window is what they measure, of one pass window is
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
   VectorMask mask;
   ErrorBudget budget;

@@ -52,26 +52,30 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   return json;
 }
 
-/// How well the measurement's own uncertainties tell its errors against the truth on the window, and against that at
-/// the point, which the window's averaging adds to; nothing where there are none.
+/// How well the measurement's own uncertainties tell its errors against the truth on the window, on the deformed
+/// window, and against that at the point, which the window's averaging adds to; nothing where there are none.
 nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
   auto const is_known = [](Vec2d sigma) { return std::isfinite(sigma.x) && std::isfinite(sigma.y); };
   if (std::none_of(measured.sigma_px.begin(), measured.sigma_px.end(), is_known)) return {};
   nlohmann::ordered_json json;
-  for (auto const& [name, truth] : {std::pair("window_truth", &comparison.window.displacement_px),
-                                    std::pair("ray_truth", &comparison.point.displacement_px)}) {
+  std::vector<Vec2d> const &window = comparison.window.displacement_px,
+                           &deformed_window = comparison.deformed_window.displacement_px;
+  for (auto const& [name, truth] :
+       {std::pair("window_truth", &window), std::pair("deformed_window_truth", &deformed_window),
+        std::pair("ray_truth", &comparison.point.displacement_px)}) {
     UncertaintyQuality const quality =
         uncertainty_quality(measured.displacement_px, *truth, measured.sigma_px, comparison.mask);
     for (auto const& [measure, value] : quality_measures(quality)) {
-      bool const is_count = measure == "count" || measure == "gross";
+      bool const is_count = measure == "count" || measure == "gross" || measure == "without_sigma";
       json[name][std::string(measure)] =
           is_count ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
     }
   }
   json["bins"] = nlohmann::ordered_json::array();
-  for (UncertaintyBin const& bin : uncertainty_bins(measured.displacement_px, comparison.window.displacement_px,
-                                                    measured.sigma_px, comparison.mask))
+  std::vector<Vec2d> const& measured_truth = comparison.frames_deformed ? deformed_window : window;
+  for (UncertaintyBin const& bin :
+       uncertainty_bins(measured.displacement_px, measured_truth, measured.sigma_px, comparison.mask))
     json["bins"].push_back(
         {{"count", bin.count}, {"rms_sigma_px", bin.rms_sigma_px}, {"rms_error_px", bin.rms_error_px}});
   return json;

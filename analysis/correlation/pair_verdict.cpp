@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "analysis/correlation/correlation_methods.h"
+#include "analysis/correlation/outside_windows.h"
 #include "analysis/correlation/pattern_period.h"
 #include "analysis/correlation/standard_correlator.h"
 
@@ -23,14 +25,24 @@ constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-bool has_signal(VectorReason reason) { return reason != VectorReason::masked && reason != VectorReason::no_signal; }
+/// Fewest windows that can agree with their neighbours: one and those by which it is judged.
+constexpr std::size_t fewest_windows = fewest_neighbours + 1;
+
+char const* const correlates = "correlates";
+
+bool has_signal(VectorReason reason) {
+  return reason != VectorReason::masked && reason != VectorReason::outside && reason != VectorReason::no_signal;
+}
 
 /// Vectors with a signal, and parts of them.
 struct Tally {
   explicit Tally(DisplacementField const& field) {
     for (std::size_t i = 0; i < field.size(); ++i) {
+      known += field.reason[i] == VectorReason::no_signal;
       if (!has_signal(field.reason[i])) continue;
       ++signal;
+      ++known;
+      compared += std::isfinite(field.correlation[i]);
       uncorrelated += field.reason[i] == VectorReason::uncorrelated;
       beyond += field.reason[i] == VectorReason::beyond_limit;
       ambiguous += field.ambiguous[i] != Ambiguity::none;
@@ -41,6 +53,8 @@ struct Tally {
   double part(std::size_t count) const {
     return signal > 0 ? static_cast<double>(count) / static_cast<double>(signal) : 0.0;
   }
+  std::size_t known = 0;     ///< neither masked nor outside the frames
+  std::size_t compared = 0;  ///< with a correlation coefficient
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, ambiguous = 0, doubtful = 0;
 };
 
@@ -149,14 +163,31 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
   }
 }
 
+namespace {
+
+/// Why a pair cannot be judged by its vectors; empty: it can.
+std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
+  if (found.signal == 0) return found.known == 0 ? "no window is known" : "no window holds a signal";
+  if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
+  if (found.part(found.doubtful) >= suspicious) return "";
+  if (found.signal < fewest_windows) return fmt::format("{} windows are too few to agree", found.signal);
+  return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" leaves vectors that disagree";
+}
+
+}  // namespace
+
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings) {
+  name_windows_outside(field, frames, settings);
   if (stands_still(field) && same_bits(frames.reference(), frames.flow())) {
     field.warnings.emplace_back(
         "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
+    field.verdict = "not judged: both frames are the same picture";
     return;
   }
   Tally const found(field);
+  std::string const why_not = reason_not_to_judge(found, settings);
+  field.verdict = why_not.empty() ? correlates : "not judged: " + why_not;
   if (found.part(found.doubtful) < suspicious) return;
   Reach const reach(settings);
   if (std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings)) {
@@ -166,12 +197,14 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
           "below {:.2f} px can be trusted, a larger one comes back less by whole pitches; use random dots, or set "
           "correlate.max_displacement_px below {:.2f} if no displacement is larger",
           period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
-  } else {
+    field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
+  } else if (found.compared > 0) {
     // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
     leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
   }
   Tally const left(field);
+  if (field.verdict == correlates && left.nothing_left()) field.verdict = "does not correlate";
   bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
   if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))

@@ -9,6 +9,7 @@
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/ensemble.h"
+#include "analysis/correlation/outside_windows.h"
 #include "analysis/correlation/plane_sums.h"
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/contracts.h"
@@ -185,7 +186,9 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
     throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" is of single pairs (it compares matched "
                                             "frames); use \"none\"",
                                             settings.uncertainty));
-  return StandardCorrelator(settings).correlate_all(pairs);
+  DisplacementField field = StandardCorrelator(settings).correlate_all(pairs);
+  name_windows_outside(field, pairs.frames(0), settings);
+  return field;
 }
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {

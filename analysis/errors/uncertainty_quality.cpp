@@ -8,24 +8,34 @@
 namespace gladstone {
 namespace {
 
-/// Calls visit(error, sigma) for every component that counts. @return vectors left out for a gross error
+/// Vectors that are left out.
+struct LeftOut {
+  std::size_t gross = 0;
+  std::size_t without_sigma = 0;
+};
+
+/// Calls visit(error, sigma) for every component that counts.
 template <class Visit>
-std::size_t visit_components(std::span<Vec2d const> measured, std::span<Vec2d const> truth,
-                             std::span<Vec2d const> sigma, VectorMask const& mask, Visit const& visit) {
+LeftOut visit_components(std::span<Vec2d const> measured, std::span<Vec2d const> truth, std::span<Vec2d const> sigma,
+                         VectorMask const& mask, Visit const& visit) {
   GLADSTONE_EXPECTS(measured.size() == truth.size() && measured.size() == sigma.size());
   GLADSTONE_EXPECTS(mask.empty() || mask.size() == measured.size());
-  std::size_t gross = 0;
+  LeftOut left_out;
   for (std::size_t i = 0; i < measured.size(); ++i) {
     Vec2d const difference = measured[i] - truth[i], sigmas = sigma[i];
     bool const counts = mask.empty() || mask[i] != 0;
-    if (!counts || !std::isfinite(length(difference)) || !std::isfinite(length(sigmas))) continue;
+    if (!counts || !std::isfinite(length(difference))) continue;
     if (length(difference) > gross_error_px) {
-      ++gross;
+      ++left_out.gross;
+      continue;
+    }
+    if (!std::isfinite(length(sigmas))) {
+      ++left_out.without_sigma;
       continue;
     }
     for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) visit(std::abs(difference.*axis), sigmas.*axis);
   }
-  return gross;
+  return left_out;
 }
 
 }  // namespace
@@ -34,7 +44,7 @@ UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::spa
                                        std::span<Vec2d const> sigma, VectorMask const& mask) {
   UncertaintyQuality quality{};
   double n = 0.0, within_1 = 0.0, within_2 = 0.0, e = 0.0, s = 0.0, ee = 0.0, ss = 0.0, es = 0.0;
-  quality.gross = visit_components(measured, truth, sigma, mask, [&](double error, double deviation) {
+  LeftOut const left_out = visit_components(measured, truth, sigma, mask, [&](double error, double deviation) {
     n += 1.0;
     within_1 += error <= deviation;
     within_2 += error <= 2.0 * deviation;
@@ -45,6 +55,8 @@ UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::spa
     es += error * deviation;
   });
   quality.count = static_cast<std::size_t>(n);
+  quality.gross = left_out.gross;
+  quality.without_sigma = left_out.without_sigma;
   quality.coverage_1 = within_1 / n;  // 0/0: NaN of nothing
   quality.coverage_2 = within_2 / n;
   quality.rms_ratio = std::sqrt(ss / ee);
@@ -78,6 +90,7 @@ std::vector<UncertaintyBin> uncertainty_bins(std::span<Vec2d const> measured, st
 std::vector<std::pair<std::string_view, double>> quality_measures(UncertaintyQuality const& quality) {
   return {{"count", static_cast<double>(quality.count)},
           {"gross", static_cast<double>(quality.gross)},
+          {"without_sigma", static_cast<double>(quality.without_sigma)},
           {"coverage_1", quality.coverage_1},
           {"coverage_2", quality.coverage_2},
           {"rms_ratio", quality.rms_ratio},

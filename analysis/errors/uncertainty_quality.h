@@ -11,15 +11,17 @@
 namespace gladstone {
 
 /// How well estimated uncertainties tell the errors, both components pooled. Gross errors, which no standard
-/// uncertainty is about, are left out and counted; so are vectors without an uncertainty. NaN where nothing is left.
+/// uncertainty is about, are left out and counted, whether or not they have an uncertainty; so are other vectors
+/// without one. NaN where nothing is left.
 struct UncertaintyQuality {
-  std::size_t count = 0;  ///< components that count
-  std::size_t gross = 0;  ///< vectors left out for an error above gross_error_px
-  double coverage_1;      ///< part of the errors within sigma: 0.68 of normally distributed ones
-  double coverage_2;      ///< within twice sigma: 0.95
-  double rms_ratio;       ///< rms(sigma)/rms(error): 1 where sigma is right on the whole
-  double correlation;     ///< of sigma with |error|: whether it tells good vectors from bad ones
-  double sharpness_px;    ///< rms(sigma): of two methods that cover alike, the one that says less is the better
+  std::size_t count = 0;          ///< components that count
+  std::size_t gross = 0;          ///< vectors left out for an error above gross_error_px
+  std::size_t without_sigma = 0;  ///< other vectors left out, since sigma is NaN
+  double coverage_1;              ///< part of the errors within sigma: 0.68 of normally distributed ones
+  double coverage_2;              ///< within twice sigma: 0.95
+  double rms_ratio;               ///< rms(sigma)/rms(error): 1 where sigma is right on the whole
+  double correlation;             ///< of sigma with |error|: whether it tells good vectors from bad ones
+  double sharpness_px;            ///< rms(sigma): of two methods that cover alike, the one that says less is the better
 };
 
 /// @param measured, truth, sigma of equal length [px]

@@ -40,4 +40,14 @@ WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d co
                          std::span<double const> flux, std::span<Vec2d const> centres_px, WindowWeight const& weight,
                          TruthAt at = TruthAt::mid_position);
 
+/// Truth on a window of deformed frames: the plane that fits the displacements of the window's dots best, with the
+/// weights a W^2 of window_truth(), at the window's centre. Frames that a predictor deforms keep only what it leaves
+/// of the displacement; its gradient is gone, and with it what T has of the gradient times the distance of the dots'
+/// centre from the window's. So of one pass, which deforms nothing, window_truth() is what is measured, and of several
+/// this is. The mean T where the dots stand in line (across the line less than a thousandth of their extent along it);
+/// left out where there are fewer than three, as above.
+WindowTruth deformed_window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d const> displacement_px,
+                                  std::span<double const> flux, std::span<Vec2d const> centres_px,
+                                  WindowWeight const& weight, TruthAt at = TruthAt::mid_position);
+
 }  // namespace gladstone

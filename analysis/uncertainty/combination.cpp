@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "render/base/contracts.h"
 
@@ -33,10 +34,15 @@ double unlikelihood(std::span<UncertaintySample const> samples, Eigen::VectorXd 
 
 double UncertaintyCombination::log_sigma(std::span<double const> log_sigma) const {
   GLADSTONE_EXPECTS(log_sigma.size() == terms.size());
-  double sum = constant;
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    if (terms[k].weight != 0.0) sum += terms[k].weight * log_sigma[k];
-  return sum;
+  double sum = 0.0, known = 0.0, all = 0.0;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    all += terms[k].weight;
+    if (terms[k].weight == 0.0 || !std::isfinite(log_sigma[k])) continue;
+    sum += terms[k].weight * log_sigma[k];
+    known += terms[k].weight;
+  }
+  if (!(known > 0.0)) return std::numeric_limits<double>::quiet_NaN();
+  return constant + sum * (all / known);
 }
 
 UncertaintyCombination parse_combination(std::string_view text) {

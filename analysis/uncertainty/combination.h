@@ -22,6 +22,8 @@ struct UncertaintyCombination {
   };
   std::vector<Term> terms;
 
+  /// A term that is not finite is left out, and the others' weights grow by one factor until their sum is what it was:
+  /// a sigma that all methods scale alike then still scales so. NaN where the weights that are left add up to nothing.
   /// @param log_sigma of the terms, in their order
   double log_sigma(std::span<double const> log_sigma) const;
 };

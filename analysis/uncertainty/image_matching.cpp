@@ -9,12 +9,9 @@ namespace {
 
 /// Fewest dots whose scatter says something.
 constexpr double fewest_dots = 3.0;
-/// Maxima of noise pass for dots, faint ones scatter more than they count in the correlation, and the mean disparity is
-/// counted besides the scatter that makes it; found on the seeds of docs/estimators.md.
-constexpr double calibration = 0.74;
-/// Distance of two images of one dot that three points leave where there is no noise, from neighbours' light and the
-/// spline [px]; the correlation does not suffer from it, and its square is taken off.
-constexpr double of_single_dots_px = 0.024;
+/// Neighbouring dots share pixels, so that their disparities have errors in common and as many say less than if they
+/// were independent, and maxima of noise pass for dots; found on the seeds of docs/estimators.md.
+constexpr double calibration = 1.18;
 
 }  // namespace
 
@@ -37,8 +34,7 @@ std::vector<Vec2d> image_matching(UncertaintyInput const& input) {
     Vec2d const mean = sum / weights;
     auto const variance = [&](double square, double middle) {
       double const scatter = square / weights - middle * middle;
-      double const by_noise = std::max(0.1 * scatter, scatter - of_single_dots_px * of_single_dots_px);
-      return middle * middle + by_noise / number;
+      return middle * middle + scatter / number;
     };
     u[i] = calibration * calibration * variance(squares.x, mean.x);
     v[i] = calibration * calibration * variance(squares.y, mean.y);

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/correlation/subpixel_peak.h"
-
 namespace gladstone {
 namespace {
 
-/// The place of a frame's maximum at most a pixel from (i, j); nothing where there is none.
-std::optional<Vec2d> place_of_dot(MatchedWindow const& w, std::vector<float> const& frame, int i, int j) {
+/// Pixels on either side of a dot's own that are compared: all of dots up to 5 px.
+constexpr int reach = 2;
+
+/// Whether a frame has a maximum at most a pixel from (i, j).
+bool has_dot(MatchedWindow const& w, std::vector<float> const& frame, int i, int j) {
   int x = i, y = j;
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx)
@@ -18,16 +19,40 @@ std::optional<Vec2d> place_of_dot(MatchedWindow const& w, std::vector<float> con
         x = i + dx;
         y = j + dy;
       }
-  if (x < 1 || y < 1 || x + 1 >= w.side || y + 1 >= w.side) return std::nullopt;
   float const centre = frame[w.at(x, y)];
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx)
-      if (frame[w.at(x + dx, y + dy)] > centre) return std::nullopt;
-  if (!(centre > 0.0f)) return std::nullopt;
-  auto const along = [&](int dx, int dy) {
-    return gaussian_peak<double>(frame[w.at(x - dx, y - dy)], centre, frame[w.at(x + dx, y + dy)]).offset;
+      if (frame[w.at(x + dx, y + dy)] > centre) return false;
+  return centre > 0.0f;
+}
+
+/// How far a dot at (i, j) stands in the flow frame from where it does in the reference: the shift that takes one
+/// frame's pixels around it to the other's with the least squares of what remains, to first order. Neighbours' light,
+/// which both frames have, adds nothing where frames are equal. Nothing where noise leaves no slopes in common.
+std::optional<Vec2d> disparity_of_dot(MatchedWindow const& w, int i, int j) {
+  auto const slope = [&](std::vector<float> const& frame, int x, int y) {
+    return 0.5 * Vec2d{frame[w.at(x + 1, y)] - frame[w.at(x - 1, y)], frame[w.at(x, y + 1)] - frame[w.at(x, y - 1)]};
   };
-  return Vec2d{x + along(1, 0), y + along(0, 1)};
+  auto const difference = [&](int x, int y) { return w.reference[w.at(x, y)] - w.flow[w.at(x, y)]; };
+  double xx = 0.0, xy = 0.0, yy = 0.0, by_x = 0.0, by_y = 0.0;
+  for (int y = j - reach; y <= j + reach; ++y)
+    for (int x = i - reach; x <= i + reach; ++x) {
+      // each frame's noise squared would pass for slopes; that of one frame times that of the other does not
+      Vec2d const a = slope(w.reference, x, y), b = slope(w.flow, x, y);
+      xx += a.x * b.x;
+      xy += 0.5 * (a.x * b.y + a.y * b.x);
+      yy += a.y * b.y;
+      // a difference over two pixels is the derivative averaged over these (Simpson), and so must be what it is held
+      // against
+      double const here = 4.0 * difference(x, y);
+      by_x += 0.5 * (a.x + b.x) * (difference(x - 1, y) + here + difference(x + 1, y)) / 6.0;
+      by_y += 0.5 * (a.y + b.y) * (difference(x, y - 1) + here + difference(x, y + 1)) / 6.0;
+    }
+  double const determinant = xx * yy - xy * xy;
+  if (!(xx > 0.0 && yy > 0.0 && determinant > 0.01 * xx * yy)) return std::nullopt;
+  Vec2d const disparity{(yy * by_x - xy * by_y) / determinant, (xx * by_y - xy * by_x) / determinant};
+  bool const small = std::abs(disparity.x) <= 1.0 && std::abs(disparity.y) <= 1.0;
+  return small ? std::optional(disparity) : std::nullopt;
 }
 
 }  // namespace
@@ -38,8 +63,9 @@ void find_particle_pairs(MatchedWindow const& w, std::vector<ParticleImagePair>&
     float const a = w.reference[w.at(i, j)], b = w.flow[w.at(i, j)];
     return a > 0.0f && b > 0.0f ? a * b : 0.0f;
   };
-  for (int j = 2; j + 2 < w.side; ++j)
-    for (int i = 2; i + 2 < w.side; ++i) {
+  constexpr int margin = reach + 1;
+  for (int j = margin; j + margin < w.side; ++j)
+    for (int i = margin; i + margin < w.side; ++i) {
       float const here = product(i, j);
       if (!(here > 0.0f)) continue;
       bool highest = true;
@@ -50,10 +76,11 @@ void find_particle_pairs(MatchedWindow const& w, std::vector<ParticleImagePair>&
           if ((dx != 0 || dy != 0) && (other > here || (before && other == here))) highest = false;
         }
       if (!highest) continue;
-      std::optional<Vec2d> const a = place_of_dot(w, w.reference, i, j), b = place_of_dot(w, w.flow, i, j);
-      if (!a || !b) continue;
+      if (!has_dot(w, w.reference, i, j) || !has_dot(w, w.flow, i, j)) continue;
+      std::optional<Vec2d> const disparity = disparity_of_dot(w, i, j);
+      if (!disparity) continue;
       double const weight = w.weight[w.at(i, j)];
-      pairs.push_back({*b - *a, static_cast<double>(here) * weight * weight});
+      pairs.push_back({*disparity, static_cast<double>(here) * weight * weight});
     }
 }
 

@@ -13,7 +13,8 @@ struct ParticleImagePair {
 };
 
 /// Dots of a window: maxima of the product of both frames, each with a maximum of either frame at most a pixel away,
-/// placed by three points (Sciacchitano et al. 2013, section 2).
+/// set apart by least squares of the pixels around. Sciacchitano et al. (2013, section 2) place either maximum by three
+/// points, which of dots that are flat on top, and of dots in their neighbours' light, find noise.
 void find_particle_pairs(MatchedWindow const& window, std::vector<ParticleImagePair>& pairs);
 
 /// Leaves out pairs whose disparity along either axis is further from the median than 2.5 deviations, which 1.4826

@@ -39,7 +39,7 @@ std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input);
 std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input);
 
 /// From the methods before, by weights that were learnt where errors are known: shipped_combination(). Where one of
-/// them tells nothing the combination does not either.
+/// them tells nothing the others do: UncertaintyCombination::log_sigma().
 std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input);
 
 /// Names of the methods, in the order of their table, without "none".

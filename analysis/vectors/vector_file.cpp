@@ -165,9 +165,10 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   write("/correlation", "1", "correlation coefficient of the peak that u_raw_px, v_raw_px is", correlation);
   write_codes("/reason",
               "0 as measured, 1 replaced by another peak, 2 replaced by the neighbours' median, 3 masked, 4 no signal, "
-              "5 spurious with too few sound neighbours, 6 no peak in range, 7 uncorrelated",
+              "5 spurious with too few sound neighbours, 6 no peak in range, 7 uncorrelated, 8 moved out of the frames",
               reason);
   write_codes("/ambiguous", "1 where another displacement fits (nearly) as well", ambiguous);
+  if (!field.verdict.empty()) file.attribute("/", "verdict", field.verdict);
   file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));
   if (field.columns > 0) {
     file.attribute("/", "grid_columns", std::int64_t{field.columns});

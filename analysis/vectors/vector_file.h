@@ -55,7 +55,8 @@ DisplacementField apply_conventions(DisplacementField field, VectorConventions c
 
 /// Writes vectors.h5 (path ends in .h5) or vectors.csv: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
 /// status, u_raw_px, v_raw_px, correlation, reason, ambiguous; what was not estimated is NaN. CSV has one header line
-/// and 17 significant digits. A .h5 carries the warnings and the hashes of its sources; plain numbers cannot.
+/// and 17 significant digits. A .h5 carries the verdict, the warnings and the hashes of its sources; plain numbers
+/// cannot.
 /// @throws OutputError; DataError where a source has changed since it was read; std::invalid_argument for another
 /// ending
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);

@@ -22,6 +22,7 @@ enum class VectorReason : int {
   no_neighbours = 5,  ///< invalid: disagreed with its neighbours, too few of which are sound to replace it
   beyond_limit = 6,   ///< invalid: no peak within the search range, or the largest displacement that was allowed
   uncorrelated = 7,   ///< invalid: no better than what windows give that have nothing in common
+  outside = 8,        ///< invalid: the displacement around takes half the window or more out of a frame
 };
 
 /// Whether another displacement fits (nearly) as well as a measured one. Files say 0 or 1.
@@ -46,6 +47,8 @@ struct DisplacementField {
   int columns = 0;                   ///< vectors in a row of the interrogation grid, row by row; 0: scattered
   int rows = 0;
   std::vector<std::string> warnings;  ///< about the measurement as a whole
+  /// "correlates", "does not correlate" or "not judged: REASON"; empty: nobody was asked.
+  std::string verdict;
 
   std::size_t size() const { return position_px.size(); }
   /// True for vectors that count in statistics (valid or replaced).

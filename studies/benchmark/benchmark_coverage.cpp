@@ -24,7 +24,7 @@ struct TestedFlow {
 
 /// What one seed gives.
 struct Sample {
-  double window, total, rms_ratio, rms_ratio_total;
+  double window, deformed_window, total, rms_ratio, rms_ratio_deformed_window, rms_ratio_total;
 };
 
 SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
@@ -61,17 +61,20 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
         CorrelationSettings settings;
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
-        std::vector<Vec2d> const point = truth_at_vectors(field, truth),
-                                 window = window_truth_of(field, pair, settings);
+        std::vector<Vec2d> const point = truth_at_vectors(field, truth);
+        WindowTruths const on = window_truths_of(field, pair, settings);
         VectorMask mask = benchmark_mask(field, pixels, pixels);
         for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && field.status[i] == VectorStatus::valid;
         for (std::string const& method : uncertainty_methods()) {
           settings.uncertainty = method;
           estimate_uncertainty(field, frames, settings);
-          UncertaintyQuality const on_window = uncertainty_quality(field.displacement_px, window, field.sigma_px, mask);
-          UncertaintyQuality const total = uncertainty_quality(field.displacement_px, point, field.sigma_px, mask);
-          samples[{method, flow.name, noise}].push_back(
-              {on_window.coverage_1, total.coverage_1, on_window.rms_ratio, total.rms_ratio});
+          auto const quality_on = [&](std::vector<Vec2d> const& right) {
+            return uncertainty_quality(field.displacement_px, right, field.sigma_px, mask);
+          };
+          UncertaintyQuality const window = quality_on(on.window), deformed = quality_on(on.deformed_window),
+                                   total = quality_on(point);
+          samples[{method, flow.name, noise}].push_back({window.coverage_1, deformed.coverage_1, total.coverage_1,
+                                                         window.rms_ratio, deformed.rms_ratio, total.rms_ratio});
         }
       }
     }
@@ -81,8 +84,9 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
     for (TestedFlow const& flow : flows)
       for (double const noise : noises) {
         std::vector<Sample> const& of = samples[{method, flow.name, noise}];
-        rows.push_back({method, flow.name, noise, mean_of(of, &Sample::window), mean_of(of, &Sample::total),
-                        mean_of(of, &Sample::rms_ratio), mean_of(of, &Sample::rms_ratio_total)});
+        rows.push_back({method, flow.name, noise, mean_of(of, &Sample::window), mean_of(of, &Sample::deformed_window),
+                        mean_of(of, &Sample::total), mean_of(of, &Sample::rms_ratio),
+                        mean_of(of, &Sample::rms_ratio_deformed_window), mean_of(of, &Sample::rms_ratio_total)});
       }
   return rows;
 }

@@ -10,7 +10,9 @@
 namespace gladstone {
 namespace {
 
-bool is_whole(std::string_view measure) { return measure == "vectors" || measure == "count" || measure == "gross"; }
+bool is_whole(std::string_view measure) {
+  return measure == "vectors" || measure == "count" || measure == "gross" || measure == "without_sigma";
+}
 
 nlohmann::json number(std::string_view measure, double value) {
   return is_whole(measure) ? nlohmann::json(static_cast<long long>(value)) : known_or_null(value);
@@ -54,6 +56,7 @@ std::string benchmark_json(BenchmarkResult const& result) {
     nlohmann::ordered_json one{{"method", row.method},
                                {"case", row.of_case},
                                {"window_truth", quality_json(row.window)},
+                               {"deformed_window_truth", quality_json(row.deformed_window)},
                                {"point_truth", quality_json(row.point)},
                                {"bins", nlohmann::ordered_json::array()}};
     for (UncertaintyBin const& bin : row.bins)
@@ -67,8 +70,10 @@ std::string benchmark_json(BenchmarkResult const& result) {
                                 {"noise", row.noise},
                                 {"seeds", result.seeds},
                                 {"coverage_1_window", mean_json(row.window)},
+                                {"coverage_1_deformed_window", mean_json(row.deformed_window)},
                                 {"coverage_1_total", mean_json(row.total)},
                                 {"rms_ratio_window", mean_json(row.rms_ratio)},
+                                {"rms_ratio_deformed_window", mean_json(row.rms_ratio_deformed_window)},
                                 {"rms_ratio_total", mean_json(row.rms_ratio_total)}});
   json["conventions"] = result.conventions;
   return json_text(json) + '\n';

@@ -148,12 +148,16 @@ bool runs_on(BenchmarkEstimator const& estimator, std::string const& of_case) {
 
 }  // namespace
 
-std::vector<Vec2d> window_truth_of(DisplacementField const& field, ParticlePair const& dots,
-                                   CorrelationSettings const& settings) {
+WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
+                              CorrelationSettings const& settings) {
   WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
                             window_support_px(settings)};
-  return window_truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px, weight)
-      .displacement_px;
+  auto const by = [&](auto const& truth) {
+    return truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px, weight,
+                 TruthAt::mid_position)
+        .displacement_px;
+  };
+  return {by(window_truth), by(deformed_window_truth)};
 }
 
 std::vector<BenchmarkEstimator> const& benchmark_estimators() {
@@ -208,15 +212,16 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
       Measurement measured = correlate_frames(made.frames, estimator.settings, device);
       score(estimator.name, measured.field, measured.seconds);
       if (estimator.name != "default") continue;
-      std::vector<Vec2d> const point = truth_at_vectors(measured.field, made.truth),
-                               window = window_truth_of(measured.field, made.dots, estimator.settings);
+      std::vector<Vec2d> const point = truth_at_vectors(measured.field, made.truth);
+      WindowTruths const on = window_truths_of(measured.field, made.dots, estimator.settings);
       VectorMask const mask = benchmark_mask(measured.field, made.columns(), made.rows());
       for (std::string const& method : uncertainty_methods()) {
         CorrelationSettings settings = estimator.settings;
         settings.uncertainty = method;
         estimate_uncertainty(measured.field, made.frames, settings);
         auto const& [displacement, sigma] = std::tie(measured.field.displacement_px, measured.field.sigma_px);
-        result.uncertainties.push_back({method, one.name, uncertainty_quality(displacement, window, sigma, mask),
+        result.uncertainties.push_back({method, one.name, uncertainty_quality(displacement, on.window, sigma, mask),
+                                        uncertainty_quality(displacement, on.deformed_window, sigma, mask),
                                         uncertainty_quality(displacement, point, sigma, mask),
                                         uncertainty_bins(displacement, point, sigma, mask)});
       }

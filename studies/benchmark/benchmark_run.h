@@ -47,7 +47,9 @@ struct BenchmarkRow {
 /// An uncertainty method's sigma against the errors of the default passes.
 struct UncertaintyRow {
   std::string method, of_case;
-  UncertaintyQuality window, point;  ///< against truth on the window, and at the point: the total error
+  /// Against truth on the window, on the deformed window, which is what several passes measure, and at the point: the
+  /// total error.
+  UncertaintyQuality window, deformed_window, point;
   std::vector<UncertaintyBin> bins;  ///< against truth at the point
 };
 
@@ -59,8 +61,8 @@ struct SeedMean {
 struct CoverageRow {
   std::string method, flow;
   double noise = 0.0;
-  SeedMean window, total;               ///< coverage_1 against truth on the window, and at the point
-  SeedMean rms_ratio, rms_ratio_total;  ///< likewise
+  SeedMean window, deformed_window, total;                         ///< coverage_1, as in UncertaintyRow
+  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;  ///< likewise
 };
 
 struct CaseRecord {
@@ -83,9 +85,13 @@ struct BenchmarkResult {
 /// @throws DataError where a foreign file cannot be read or fits no convention, OutputError
 BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device);
 
-/// Truth on the windows of the last pass, of the dots that both frames show.
-std::vector<Vec2d> window_truth_of(DisplacementField const& field, ParticlePair const& dots,
-                                   CorrelationSettings const& settings);
+/// Truth on the windows of the last pass, of the dots that both frames show: window_truth() and
+/// deformed_window_truth().
+struct WindowTruths {
+  std::vector<Vec2d> window, deformed_window;
+};
+WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
+                              CorrelationSettings const& settings);
 
 /// Coverage of every uncertainty method, default passes, over seeds that nothing was chosen on: uniform, shear, vortex
 /// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise.

@@ -115,11 +115,17 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       spdlog::warn("{}: none of {} vectors is valid; are these two frames of one scene, with dots in every window?",
                    written, field.size());
     }
-    nlohmann::json const json{{"vectors", field.size()},      {"file", written},
-                              {"valid", counts[0]},           {"replaced", counts[1]},
-                              {"masked", counts[2]},          {"invalid", counts[3]},
-                              {"ambiguous", ambiguous},       {"warnings", field.warnings},
-                              {"device", measurement.device}, {"seconds_correlate", measurement.seconds}};
+    nlohmann::json const json{{"vectors", field.size()},
+                              {"file", written},
+                              {"valid", counts[0]},
+                              {"replaced", counts[1]},
+                              {"masked", counts[2]},
+                              {"invalid", counts[3]},
+                              {"ambiguous", ambiguous},
+                              {"verdict", field.verdict},
+                              {"warnings", field.warnings},
+                              {"device", measurement.device},
+                              {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),
                  fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, field.size(), counts[1],
                              counts[3], measurement.seconds));

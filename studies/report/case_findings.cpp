@@ -38,9 +38,9 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
         "The estimator's standard uncertainty is {:.3g} px in the median ({:.3g} to {:.3g} px for 10 to 90 % of the "
         "components). It covers {:.1f} % of the errors against truth on the window (68.3 % would be right), twice of "
         "it "
-        "{:.1f} % (95.4 %); {} components, {} vectors with gross errors left out.",
+        "{:.1f} % (95.4 %); {} components; left out: {} vectors with gross errors, {} without an uncertainty.",
         quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1,
-        100 * quality.coverage_2, quality.count, quality.gross));
+        100 * quality.coverage_2, quality.count, quality.gross, quality.without_sigma));
     statements.push_back(fmt::format("Its rms is {:.2f} times the rms error. {}", quality.rms_ratio,
                                      quality.rms_ratio < 0.85 ? "It is too small: enlarge it by the inverse before use."
                                      : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."

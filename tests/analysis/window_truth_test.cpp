@@ -6,8 +6,10 @@
 #include <limits>
 #include <random>
 
+#include "analysis/correlation/correlator.h"
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/parallel.h"
+#include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
 namespace {
@@ -103,6 +105,95 @@ TEST(WindowTruth, AgreesWithTheSumOverAllDotsForAnyNumberOfThreads) {
     EXPECT_EQ(truth.displacement_px[i], again.displacement_px[i]);
     EXPECT_NEAR(truth.displacement_px[i].x, sum.x / total, 1e-12);
     EXPECT_NEAR(truth.displacement_px[i].y, sum.y / total, 1e-12);
+  }
+}
+
+// A linear field is its own plane: at the window's centre it has exactly its value there, wherever the dots are, and
+// with three of them as with hundreds. The mean differs by the gradient times the distance of their centre.
+TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
+  auto const field = [](Vec2d p) { return Vec2d{0.5 + 0.02 * p.x - 0.03 * p.y, -1.0 + 0.04 * p.y}; };
+  std::vector<Vec2d> position = random_points(300, 100.0);
+  position.insert(position.end(), {{203.0, 204.0}, {212.0, 205.0}, {206.0, 213.0}});
+  std::vector<Vec2d> d;
+  std::vector<double> flux;
+  for (Vec2d const& p : position) {
+    d.push_back(field(p));
+    flux.push_back(1.0 + 0.3 * std::sin(p.x));
+  }
+  std::vector<Vec2d> const centres{{50.0, 50.0}, {3.0, 60.0}, {200.0, 200.0}};
+  WindowWeight const weight = gaussian_window(8.0, 16.0);
+  WindowTruth const mean = window_truth(position, d, flux, centres, weight, TruthAt::reference);
+  WindowTruth const plane = deformed_window_truth(position, d, flux, centres, weight, TruthAt::reference);
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    EXPECT_NEAR(plane.displacement_px[i].x, field(centres[i]).x, 1e-12) << i;
+    EXPECT_NEAR(plane.displacement_px[i].y, field(centres[i]).y, 1e-12) << i;
+  }
+  EXPECT_GT(length(mean.displacement_px[1] - field(centres[1])), 0.01);  // dots on one side alone
+  EXPECT_GT(length(mean.displacement_px[2] - field(centres[2])), 0.1);
+}
+
+// d = k x^2/2 over a lattice that is symmetric about the window: no slope there, and the mean is k/2 times the second
+// moment of W^2 about the centre. About x = x0, where the field slopes, the plane has the same on top of the value.
+TEST(DeformedWindowTruth, OfAQuadraticFieldAddsCurvatureTimesTheSecondMoment) {
+  double const k = 0.01, sigma = 4.0, half_width = 12.0;
+  std::vector<Vec2d> position, d;
+  for (int x = 0; x <= 80; ++x)
+    for (int y = 0; y <= 40; ++y) {
+      position.push_back({static_cast<double>(x), static_cast<double>(y)});
+      d.push_back({0.5 * k * (x - 20.0) * (x - 20.0), 0.0});
+    }
+  double moment = 0.0, sum = 0.0;
+  for (int x = -12; x <= 12; ++x) {
+    double const w = std::exp(-x * x / (sigma * sigma));
+    moment += w * x * x;
+    sum += w;
+  }
+  moment /= sum;
+  std::vector<Vec2d> const centres{{20.0, 20.0}, {50.0, 20.0}};
+  WindowTruth const plane =
+      deformed_window_truth(position, d, {}, centres, gaussian_window(sigma, half_width), TruthAt::reference);
+  EXPECT_NEAR(plane.displacement_px[0].x, 0.5 * k * moment, 1e-12);
+  EXPECT_NEAR(plane.displacement_px[1].x, 0.5 * k * (900.0 + moment), 1e-10);
+}
+
+// Where dots stand in line nothing tells the gradient across: the mean. Two dots are too few for either.
+TEST(DeformedWindowTruth, IsTheMeanOfDotsInLine) {
+  std::vector<Vec2d> const position{{1, 2}, {2, 3}, {4, 5}, {30, 0}, {31, 0}};
+  std::vector<Vec2d> const d{{1, 0}, {2, 1}, {6, 2}, {1, 1}, {1, 1}};
+  std::vector<Vec2d> const centres{{0, 0}, {30, 0}};
+  WindowTruth const truth = deformed_window_truth(position, d, {}, centres, top_hat_window(16.0), TruthAt::reference);
+  EXPECT_NEAR(truth.displacement_px[0].x, 3.0, 1e-15);
+  EXPECT_NEAR(truth.displacement_px[0].y, 1.0, 1e-15);
+  EXPECT_EQ(truth.left_out, 1u);
+  EXPECT_TRUE(std::isnan(truth.displacement_px[1].x));
+}
+
+// What decides which truth holds: frames of a shear, without noise, so coarse with dots that a window's dots lie off
+// its centre. One pass measures their mean, several the value at the centre.
+TEST(DeformedWindowTruth, IsWhatSeveralPassesMeasure) {
+  auto const shear = [](Vec2d p) { return Vec2d{0.02 * (p.y - 127.5), 0.0}; };
+  ParticlePair const pair = render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = 3}, shear);
+  for (bool const several : {false, true}) {
+    CorrelationSettings settings;
+    if (!several) settings.window_px = {32};
+    DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
+    WindowWeight const weight{[&](double dx, double dy) { return window_weight(settings, dx, dy); },
+                              window_support_px(settings)};
+    auto const rms_against = [&](auto const& truth_of) {
+      WindowTruth const truth = truth_of(pair.dot_reference_px, pair.dot_displacement_px, pair.dot_light,
+                                         field.position_px, weight, TruthAt::mid_position);
+      double sum = 0.0, count = 0.0;
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        Vec2d const at = field.position_px[i];
+        if (field.status[i] != VectorStatus::valid || std::min({at.x, at.y, 255 - at.x, 255 - at.y}) < 32) continue;
+        double const error = field.displacement_px[i].x - truth.displacement_px[i].x;
+        sum += error * error;
+        count += 1.0;
+      }
+      return std::sqrt(sum / count);
+    };
+    double const mean = rms_against(window_truth), plane = rms_against(deformed_window_truth);
+    EXPECT_GT(several ? mean : plane, 2.0 * (several ? plane : mean)) << several << ' ' << mean << ' ' << plane;
   }
 }
 

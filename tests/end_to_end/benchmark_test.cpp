@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -59,12 +61,37 @@ TEST_F(Benchmark, TellsWhatSigmaIsWorth) {
   for (auto const& row : found["uncertainty"]) {
     if (row["method"] != "correlation_statistics") continue;
     seen = true;
-    EXPECT_NEAR(row["window_truth"]["coverage_1"].get<double>(), 0.68, 0.06);
+    for (char const* truth : {"window_truth", "deformed_window_truth", "point_truth"})
+      EXPECT_NEAR(row[truth]["coverage_1"].get<double>(), 0.68, 0.06) << truth;
     EXPECT_EQ(row["bins"].size(), 10u);
   }
   EXPECT_TRUE(seen);
   EXPECT_TRUE(std::filesystem::exists(in("b/error_against_uncertainty.png")));
   EXPECT_THAT(read("b/benchmark.md"), testing::HasSubstr("error_against_uncertainty.png"));
+}
+
+// What ships is what the program learns, on any machine of the same arithmetic: four digits are written, and the
+// weights may be off by as much as rounding in single precision moves them, of which a thousandth is ample.
+TEST_F(Benchmark, LearnsTheCombinationThatShips) {
+  auto const learnt = json_of({"benchmark", "-o", "learnt", "--learn", "--device", "cpu"});
+  std::ifstream shipped(GLADSTONE_DATA_DIR "/uncertainty/combination.csv");
+  std::istringstream again(read("learnt/combination.csv"));
+  std::string line, line_again;
+  ASSERT_TRUE(std::getline(shipped, line) && std::getline(again, line_again));
+  EXPECT_EQ(line, "term,coefficient");
+  EXPECT_EQ(line_again, line);
+  std::size_t terms = 0;
+  for (; std::getline(shipped, line); ++terms) {
+    ASSERT_TRUE(std::getline(again, line_again)) << line;
+    auto const comma = line.find(',');
+    std::string const term = line.substr(0, comma);
+    EXPECT_EQ(line_again.substr(0, line_again.find(',')), term);
+    double const weight = std::stod(line.substr(comma + 1));
+    EXPECT_NEAR(std::stod(line_again.substr(line_again.find(',') + 1)), weight, 1e-3) << term;
+    EXPECT_NEAR(learnt[term].get<double>(), weight, 1e-3) << term;
+  }
+  EXPECT_EQ(terms, 5u);
+  EXPECT_FALSE(std::filesystem::exists(in("learnt/benchmark.html")));
 }
 
 TEST_F(Benchmark, RefusesWhatItCannotScore) {

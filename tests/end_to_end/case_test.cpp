@@ -184,7 +184,7 @@ TEST_F(Case, UncertaintiesAreWrittenAndJudged) {
   succeed({"correlate", "case", "--set", "correlate.uncertainty=correlation_statistics"});
   succeed({"compare", "case", "--no-figures"});
   auto const quality = nlohmann::json::parse(read("case/errors.json"))["uncertainty"];
-  for (char const* truth : {"window_truth", "ray_truth"}) {
+  for (char const* truth : {"window_truth", "deformed_window_truth", "ray_truth"}) {
     EXPECT_GT(quality[truth]["count"], 2 * 40);
     EXPECT_LE(quality[truth]["count"], 2 * 49);
     EXPECT_GE(quality[truth]["coverage_2"], quality[truth]["coverage_1"]);

@@ -223,6 +223,145 @@ TEST_F(Inputs, PixelsThatAreNoNumbersAreCountedAndLeftOut) {
   expect_refused({"render", "picture.toml", "-o", "case"}, 2, {"holed.tif: 23 of 9216 pixels are nan or infinite"});
 }
 
+/// Appends a number as little-endian bytes.
+void append(std::string& bytes, std::uint32_t value, int count) {
+  for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xff);
+}
+
+// Cameras of 12 bit write two pixels into three bytes. The same levels in 16 bits are the same picture.
+TEST_F(Inputs, PackedTwelveBitPicturesAreReadAsTheirLevels) {
+  for (double const shift : {0.0, 2.0}) {
+    Image<float> const grey = frame(shift);
+    std::vector<std::uint32_t> levels;
+    Image<float> whole(96, 96);
+    for (std::size_t i = 0; i < grey.size(); ++i) {
+      levels.push_back(static_cast<std::uint32_t>(std::lround(std::min(4095.0f, 2.0f * grey.data()[i]))));
+      whole.data()[i] = static_cast<float>(levels.back());
+    }
+    std::string file = "II*";
+    file += '\0';
+    constexpr std::uint32_t size = 96 * 96 / 2 * 3;
+    append(file, 8 + size, 4);
+    for (std::size_t i = 0; i < levels.size(); i += 2) {
+      std::uint32_t const a = levels[i], b = levels[i + 1];
+      for (std::uint32_t const byte : {a >> 4, (a & 15) << 4 | b >> 8, b & 255}) append(file, byte, 1);
+    }
+    struct Entry {
+      std::uint32_t tag, value;
+    };
+    // columns, rows, bits, no compression, black is zero, where the strip is, samples, its rows, its bytes
+    Entry const entries[] = {{256, 96}, {257, 96}, {258, 12}, {259, 1},   {262, 1},
+                             {273, 8},  {277, 1},  {278, 96}, {279, size}};
+    append(file, std::size(entries), 2);
+    for (Entry const& entry : entries) {
+      append(file, entry.tag, 2);
+      append(file, 4, 2);
+      append(file, 1, 4);
+      append(file, entry.value, 4);
+    }
+    append(file, 0, 4);
+    std::string const letter = shift == 0.0 ? "a" : "b";
+    write("packed_" + letter + ".tif", file);
+    write_pages("whole_" + letter + ".tif", {whole});
+  }
+  for (std::string const kind : {"packed", "whole"})
+    succeed({"correlate", kind + "_a.tif", kind + "_b.tif", "-o", kind + ".csv", "--set", "correlate.window_px=[32]"});
+  std::istringstream packed(read("packed.csv")), whole(read("whole.csv"));
+  std::string line, other;
+  std::getline(packed, line);
+  std::getline(whole, other);
+  std::size_t vectors = 0;
+  for (; std::getline(packed, line) && std::getline(whole, other); ++vectors) {
+    double u[2], unused;
+    char comma;
+    for (int k = 0; k < 2; ++k) {
+      std::istringstream row(k == 0 ? line : other);
+      row >> unused >> comma >> unused >> comma >> u[k];
+    }
+    EXPECT_NEAR(u[0], 2.0, 0.1);
+    EXPECT_NEAR(u[0], u[1], 1e-4);  // levels scaled to 16 bits: rounding in single precision
+  }
+  EXPECT_GT(vectors, 9u);
+}
+
+// Levels are what the palette says, not its numbers: with a palette in reverse the same numbers are the negative, which
+// moves alike.
+TEST_F(Inputs, PicturesWithAPaletteAreReadByIt) {
+  auto const write_bitmap = [&](std::string const& name, double shift, bool reversed) {
+    Image<float> const grey = frame(shift);
+    std::string file = "BM";
+    constexpr std::uint32_t offset = 54 + 4 * 256, size = 96 * 96;
+    append(file, offset + size, 4);
+    append(file, 0, 4);
+    for (std::uint32_t const value : {offset, 40u, 96u, 96u, 1u | 8u << 16, 0u, size, 2835u, 2835u, 256u, 0u})
+      append(file, value, 4);
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      std::uint32_t const level = reversed ? 255 - i : i;
+      append(file, level | level << 8 | level << 16, 4);
+    }
+    for (int row = 95; row >= 0; --row)
+      for (int column = 0; column < 96; ++column)
+        append(file, static_cast<std::uint32_t>(std::min(255.0f, 0.2f * grey(column, row))), 1);
+    write(name, file);
+  };
+  for (bool const reversed : {false, true}) {
+    write_bitmap("a.bmp", 0.0, reversed);
+    write_bitmap("b.bmp", 2.0, reversed);
+    auto const told = json_of({"info", "image", "a.bmp"});
+    EXPECT_EQ(told["channels"], 1);
+    EXPECT_EQ(told[reversed ? "maximum" : "minimum"], reversed ? 255 : 0);
+    auto const result = json_of({"correlate", "a.bmp", "b.bmp", "-o", "v.csv", "--set", "correlate.window_px=[32]"});
+    EXPECT_EQ(result["invalid"], 0);
+    std::istringstream text(read("v.csv"));
+    std::string line;
+    std::getline(text, line);
+    while (std::getline(text, line)) {
+      double x, y, u;
+      char comma;
+      std::istringstream(line) >> x >> comma >> y >> comma >> u;
+      EXPECT_NEAR(u, 2.0, 0.1) << x << ' ' << y;
+    }
+  }
+}
+
+// Pictures that hold nothing to correlate are an answer with flags and exit code 1; one dot is a vector where it is.
+TEST_F(Inputs, PicturesWithoutDotsAreNoMeasurement) {
+  for (float const level : {0.0f, 90.0f, 65535.0f}) {
+    Image<float> const even(96, 96, level);
+    write_pages("a.tif", {even});
+    write_pages("b.tif", {even});
+    Outcome const outcome = gladstone({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--json"});
+    EXPECT_EQ(outcome.exit_code, 1) << level << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("is valid; are these two frames of one scene")) << level;
+    auto const json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json["invalid"], json["vectors"]) << level;
+  }
+  for (double const shift : {0.0, 2.0}) {
+    Image<float> dot(96, 96);
+    for (int row = 0; row < 96; ++row)
+      for (int column = 0; column < 96; ++column)
+        dot(column, row) = static_cast<float>(
+            1000 * std::exp(-(column - 47 - shift) * (column - 47 - shift) - (row - 47.0) * (row - 47.0)));
+    write_pages(shift == 0.0 ? "a.tif" : "b.tif", {dot});
+  }
+  auto const json = json_of({"correlate", "a.tif", "b.tif", "-o", "v.csv", "--set", "correlate.window_px=[32]"});
+  EXPECT_GT(json["invalid"], 0);
+  EXPECT_LT(json["invalid"], json["vectors"]);
+  std::istringstream text(read("v.csv"));
+  std::string line;
+  std::getline(text, line);
+  while (std::getline(text, line)) {
+    std::vector<double> value;
+    std::string field;
+    for (std::istringstream row(line); std::getline(row, field, ',');)
+      value.push_back(std::strtod(field.c_str(), nullptr));
+    if (value[7] == 0.0) {  // valid
+      EXPECT_NEAR(value[2], 2.0, 0.1) << line;
+      EXPECT_NEAR(value[3], 0.0, 0.1) << line;
+    }
+  }
+}
+
 TEST_F(Inputs, SaturatedPixelsAreToldWithTheirCure) {
   auto const warning = [&](std::string const& noise, std::vector<std::string> arguments = {}) {
     write("noisy.toml", with(small_setup, "[lens]", "[camera.noise]\n" + noise + "[lens]"));

@@ -71,7 +71,7 @@ std::vector<GreyImage> pyramid_of(GreyImage finest) {
   return levels;
 }
 
-GreyImage normalised_frame(int columns, int rows, std::vector<float> const& level) {
+GreyImage normalised_frame(GreyImage frame) {
   constexpr double reach_px = 8.0;
   std::vector<float> weight;
   double all = 0.0;
@@ -80,14 +80,13 @@ GreyImage normalised_frame(int columns, int rows, std::vector<float> const& leve
     all += (k == 0 ? 1.0 : 2.0) * weight.back();
   }
   for (float& w : weight) w = static_cast<float>(w / all);
-  GreyImage frame{columns, rows, level};
   GreyImage const mean = filtered(frame, weight, 1);
   double squares = 0.0;
-  for (std::size_t i = 0; i < level.size(); ++i) {
+  for (std::size_t i = 0; i < frame.level.size(); ++i) {
     frame.level[i] -= mean.level[i];
     squares += static_cast<double>(frame.level[i]) * frame.level[i];
   }
-  double const rms = std::sqrt(squares / static_cast<double>(level.size()));
+  double const rms = std::sqrt(squares / static_cast<double>(frame.level.size()));
   if (rms > 0.0)
     for (float& value : frame.level) value = static_cast<float>(value / rms);
   return frame;

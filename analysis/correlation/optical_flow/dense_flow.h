@@ -39,19 +39,33 @@ struct DenseFlow {
 /// pixel i of a level is pixel 2 i of the one before. The finest first; no side below 24 px, but for the finest's.
 std::vector<GreyImage> pyramid_of(GreyImage finest);
 
-/// The frames less their local mean (Gaussian, 8 px), over their own rms: light that differs between them does no harm.
-GreyImage normalised_frame(int columns, int rows, std::vector<float> const& level);
+/// A frame less its local mean (Gaussian, 8 px), over its rms: light that differs between frames does no harm then.
+GreyImage normalised_frame(GreyImage frame);
 
 /// A displacement for every pixel, that belongs to the mid-position as a correlation's does.
+/// @param reference, flow as they were taken; what is not known holds the middle of the grey levels
 using EstimateFlow = DenseFlow (*)(GreyImage const& reference, GreyImage const& flow);
 
 /// Horn & Schunck, Artif. Intell. 17 (1981) 185, from coarse to fine: each level deforms both frames by half of what is
 /// known in opposite directions (cubic B-splines), and finds the smooth displacement whose remainder explains what is
-/// left. For background oriented schlieren: Atcheson, Heidrich & Ihrke, Exp. Fluids 46 (2009) 467.
+/// left. Of normalised frames. For background oriented schlieren: Atcheson, Heidrich & Ihrke, Exp. Fluids 46 (2009)
+/// 467.
 DenseFlow horn_schunck_flow(GreyImage const& reference, GreyImage const& flow);
-/// Dense inverse search: patches of 8 x 8 px, 4 px apart, each moved until it fits, from coarse to fine, and averaged
-/// by how well they fit. Kroeger, Timofte, Dai & Van Gool, ECCV 2016, sections 2.1 and 2.2, down to the finest level,
-/// which they leave out for speed, and without their variational refinement. OpenCV's DISOpticalFlow has both.
+/// Grey levels that become 0 and 255.
+struct GreyRange {
+  float low = 0.0f, high = 0.0f;
+};
+/// One pixel in so many may be brighter than what becomes 255.
+constexpr std::size_t brightest_pixels = 10000;
+/// From the darkest pixel of both frames to the one that one in brightest_pixels of them is brighter than, so that a
+/// few hot ones do not take the others' levels away.
+GreyRange joint_range(GreyImage const& reference, GreyImage const& flow);
+
+/// Dense inverse search of Kroeger, Timofte, Dai & Van Gool, ECCV 2016, as OpenCV has it (cv::DISOpticalFlow): its
+/// "medium" preset, the finest of three (patches of 8 px, 3 px apart, 25 steps, down to half of the resolution, five
+/// rounds of variational refinement; patches less their mean). It takes frames of 8 bits: both are scaled by the same
+/// joint_range(). The result does not depend on the number of threads: it works with one.
+/// @throws DataError where the frames are too small for it
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow);
 
 }  // namespace gladstone

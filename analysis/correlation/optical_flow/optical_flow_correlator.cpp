@@ -20,8 +20,7 @@ class OpticalFlowCorrelator final : public Correlator {
     bool const any_contrast = pair.contrast > 0.0f;
     DenseFlow dense(pair.columns, pair.rows);
     if (any_contrast)
-      dense = estimate_(normalised_frame(pair.columns, pair.rows, pair.reference),
-                        normalised_frame(pair.columns, pair.rows, pair.flow));
+      dense = estimate_({pair.columns, pair.rows, pair.reference}, {pair.columns, pair.rows, pair.flow});
     double const limit = CorrelationSchedule(settings_).limit_px(), nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<MeasuredVector> vectors(grid.size());
     for (std::size_t i = 0; i < vectors.size(); ++i) {
