@@ -72,14 +72,16 @@ double traced_displacement(CaseSetup const& loaded, UncertainInput const& input,
 }
 
 MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) {
-  MeasurementInput one{input.key, input.value, input.sigma, input.distribution, input.degrees_of_freedom, {},
-                       1,         1,           {},          input.correlations};
-  if (!loaded.setup.on_bench()) return one;
+  MeasurementInput one{
+      input.key, input.value,        input.sigma, input.distribution, input.degrees_of_freedom, {}, 1, 1,
+      {},        input.correlations, {}};
+  bool const bench = loaded.setup.on_bench();
   for (FormulaKey const& known : formula_keys) {
     if (input.key != known.key) continue;
-    one.enters = known.input;
+    (bench ? one.enters : one.scales) = known.input;
     one.unit = known.unit;
   }
+  if (!bench) return one;
   SetupNode const* const constant = loaded.document.find({"medium", "gladstone_dale"});
   if (input.key == "medium.wavelength_nm" && constant && constant->kind == SetupNode::Kind::text) {
     one.enters = GradientInput::gladstone_dale;

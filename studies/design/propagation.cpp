@@ -37,8 +37,17 @@ GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at)
 
 /// d ln(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the
 /// displacement a gradient makes and so of the opposite sign.
-double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result) {
-  if (!input.enters) return input.traced ? -*input.traced : 0;
+/// @param from_gradient the result over the gradient
+double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
+                         Jet const& from_gradient) {
+  if (!input.enters) {
+    double derivative = input.traced ? -*input.traced : 0;
+    if (input.scales) {
+      auto const i = static_cast<std::size_t>(*input.scales);
+      derivative += from_gradient.v[static_cast<Eigen::Index>(i)] * at.value[i] / (from_gradient.a * input.value);
+    }
+    return derivative;
+  }
   auto const i = static_cast<std::size_t>(*input.enters);
   return input.chain * result.v[static_cast<Eigen::Index>(i)] * at.value[i] / (result.a * input.value);
 }
@@ -73,17 +82,22 @@ Eigen::VectorXd drawn(std::vector<MeasurementInput> const& inputs, Eigen::Matrix
 std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vector<MeasurementInput> const& inputs,
                              Eigen::VectorXd const& drawn) {
   double factor = 1;
+  GradientMeasurement<double> whole = measurement;  // with what is not in the gradient's formula
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     MeasurementInput const& input = inputs[i];
     double const off = drawn[static_cast<Eigen::Index>(i)];
     if (!input.enters) {
       factor *= std::exp(input.traced ? -*input.traced * off : 0);
+      if (input.scales) whole[*input.scales] *= 1 + off / input.value;
     } else {
       double const ratio = 1 + off / input.value;
-      measurement[*input.enters] *= input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+      double const changed = input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+      measurement[*input.enters] *= changed;
+      whole[*input.enters] *= changed;
     }
   }
-  return {measurement.gradient() * factor, measurement.density_step() * factor};
+  double const gradient = measurement.gradient() * factor;
+  return {gradient, gradient * whole.density_over_gradient()};
 }
 
 double at_fraction(std::vector<double> const& sorted, double fraction) {
@@ -144,14 +158,14 @@ std::vector<CorrelatedGroup> correlated_groups(std::vector<MeasurementInput> con
 }
 
 PropagatedResult first_order(std::string key, GradientMeasurement<double> const& at,
-                             std::vector<MeasurementInput> const& inputs, Jet const& result) {
+                             std::vector<MeasurementInput> const& inputs, Jet const& result, Jet const& from_gradient) {
   PropagatedResult out;
   out.key = std::move(key);
   out.value = result.a;
   Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));  // c_i u(x_i), with their signs
   for (MeasurementInput const& input : inputs) {
     Contribution one;
-    one.log_derivative = log_derivative_of(input, at, result);
+    one.log_derivative = log_derivative_of(input, at, result, from_gradient);
     double const part = one.log_derivative * result.a * input.sigma;
     one.standard = std::abs(part);
     parts[static_cast<Eigen::Index>(out.contributions.size())] = part;
@@ -191,8 +205,9 @@ double coverage_factor(double degrees_of_freedom) {
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs) {
   GradientMeasurement<Jet> const jets = with_derivatives(at);
-  std::vector<PropagatedResult> results{first_order("gradient_kg_m4", at, inputs, jets.gradient()),
-                                        first_order("density_step_kg_m3", at, inputs, jets.density_step())};
+  std::vector<PropagatedResult> results{
+      first_order("gradient_kg_m4", at, inputs, jets.gradient(), Jet(1.0)),
+      first_order("density_step_kg_m3", at, inputs, jets.density_step(), jets.density_over_gradient())};
   std::optional<Eigen::MatrixXd> const factor = correlation_factor(coefficients_of(inputs));
   GLADSTONE_EXPECTS(factor);  // as take_uncertain_inputs() saw to
   std::array<std::vector<double>, 2> samples;

@@ -44,9 +44,9 @@ struct GradientMeasurement {
            (magnification() * (*this)[I::z_d] * (*this)[I::gladstone_dale] * (*this)[I::thickness]);
   }
   /// Density that it makes across one window, the step of an integration: the gradient times N_w p / M_A [kg/m^3].
-  T density_step() const {
-    return gradient() * window_px * (*this)[GradientInput::pixel_pitch] * (*this)[GradientInput::z_a] /
-           (magnification() * z_b());
+  T density_step() const { return gradient() * density_over_gradient(); }
+  T density_over_gradient() const {
+    return window_px * (*this)[GradientInput::pixel_pitch] * (*this)[GradientInput::z_a] / (magnification() * z_b());
   }
 };
 
@@ -63,6 +63,9 @@ struct MeasurementInput {
   /// d ln(displacement per gradient) / d(key) by tracing, in the key's own unit; nothing: not traced.
   std::optional<double> traced;
   std::vector<InputCorrelation> correlations{};  ///< with other inputs
+  /// Where it enters the way from a gradient to the density that it makes across a window, of inputs of a setup that no
+  /// formula describes; that way is taken for the bench's.
+  std::optional<GradientInput> scales{};
 };
 
 /// How an input adds to a result.

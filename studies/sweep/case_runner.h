@@ -28,9 +28,10 @@ struct ObservedCase {
 using CaseObserver = std::function<void(ObservedCase const&)>;
 
 /// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends on its manifest
-/// line alone (but for Sharing::over_repeats): what is shared between cases (fields and their splines, planned steps and rays, renderings, truth at
-/// vectors) is what the case itself would have computed, to the last bit. A reference frame is traced with the rays of
-/// its flow frame, whose pupil is as wide as the medium bends; so frames are shared where the medium agrees too.
+/// line alone (but for Sharing::over_repeats): what is shared between cases (fields and their splines, planned steps
+/// and rays, renderings, truth at vectors) is what the case itself would have computed, to the last bit. A reference
+/// frame is traced with the rays of its flow frame, whose pupil is as wide as the medium bends; so frames are shared
+/// where the medium agrees too.
 class CaseRunner {
  public:
   /// @param least_apart_px of the vectors that are compared: of a lattice that is denser, every second is, or third ...
