@@ -140,7 +140,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   std::optional<PaperLight> const light = read_light(root);
   if (loaded.setup.piv) root.refuse("light", "is of BOS (PIV's light is that of [laser]); remove it");
   // a setup may carry the question that gladstone design asks about it
-  for (char const* const table : {"requirements", "limits", "inventory", "free"}) root.pass_over(table);
+  for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"}) root.pass_over(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
     if (is_utf8(name)) continue;

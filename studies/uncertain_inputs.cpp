@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "render/base/nearest_name.h"
+#include "studies/correlation_matrix.h"
 
 namespace gladstone {
 namespace {
@@ -57,7 +58,7 @@ class Reader {
 
   void replace(SetupNode& node) {
     UncertainInput input{
-        path_, dotted(path_), node.find("value")->as_double(), 0, {}, UncertainInput{}.degrees_of_freedom, node};
+        path_, dotted(path_), node.find("value")->as_double(), 0, {}, UncertainInput{}.degrees_of_freedom, node, {}};
     for (SetupMember const& member : node.members) {
       bool const known = std::find(known_keys.begin(), known_keys.end(), member.key) != known_keys.end();
       if (known) continue;
@@ -108,6 +109,110 @@ class Reader {
   std::vector<std::string> path_;
 };
 
+/// Reads what [[correlations]] says of inputs, and enters it at both of each pair.
+class CorrelationReader {
+ public:
+  CorrelationReader(SetupDocument& document, std::vector<UncertainInput>& inputs)
+      : root_(document.root()),
+        inputs_(inputs),
+        coefficients_(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(inputs.size()),
+                                                static_cast<Eigen::Index>(inputs.size()))) {}
+
+  void read(SetupNode const& node) {
+    std::vector<SetupTable> tables = root_.tables("correlations");
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      read_pair(node.kind == SetupNode::Kind::array ? node.elements[i] : node, tables[i]);
+    }
+    if (correlation_factor(coefficients_)) return;
+    tables.back().problem("coefficient",
+                          "makes a matrix of coefficients with a negative eigenvalue: no inputs can be correlated so "
+                          "together; give smaller ones, or those of pairs that are left out");
+  }
+
+ private:
+  void read_pair(SetupNode const& node, SetupTable& table) {
+    static std::vector<std::string> const names{"keys", "coefficient"};
+    for (SetupMember const& member : node.members) {
+      if (std::find(names.begin(), names.end(), member.key) != names.end()) continue;
+      table.problem(member.key, "is no key of correlations; it has " + quoted_list(names));
+    }
+    auto const pair = pair_of(node, table);
+    SetupNode const* const number = node.find("coefficient");
+    if (!number || !number->is_number() || !(std::abs(number->as_double()) <= 1)) {
+      table.problem("coefficient",
+                    "must be a correlation coefficient (the covariance over both standard "
+                    "uncertainties); write a number from -1 to 1");
+      return;
+    }
+    if (pair) enter(pair->first, pair->second, number->as_double(), table);
+  }
+
+  std::optional<std::pair<std::size_t, std::size_t>> pair_of(SetupNode const& node, SetupTable& table) {
+    SetupNode const* const keys = node.find("keys");
+    bool const two = keys && keys->kind == SetupNode::Kind::array && keys->elements.size() == 2 &&
+                     keys->elements[0].kind == SetupNode::Kind::text && keys->elements[1].kind == SetupNode::Kind::text;
+    if (!two || keys->elements[0].text == keys->elements[1].text) {
+      table.problem("keys", "must name two inputs; write keys = [\"geometry.z_a_mm\", \"geometry.z_d_mm\"]");
+      return std::nullopt;
+    }
+    auto const a = input_of(keys->elements[0].text, table), b = input_of(keys->elements[1].text, table);
+    if (!a || !b) return std::nullopt;
+    return std::pair{*a, *b};
+  }
+
+  std::optional<std::size_t> input_of(std::string const& key, SetupTable& table) {
+    auto const found =
+        std::find_if(inputs_.begin(), inputs_.end(), [&key](UncertainInput const& one) { return one.key == key; });
+    if (found == inputs_.end()) {
+      std::vector<std::string> names;
+      for (UncertainInput const& input : inputs_) names.push_back(input.key);
+      auto const nearest = nearest_name(key, names);
+      table.problem("keys", "names " + key + ", which is not written with its uncertainty" +
+                                (nearest ? "; did you mean " + *nearest + "?"
+                                         : "; write " + key + " = { value = ..., sigma = ... }"));
+      return std::nullopt;
+    }
+    if (found->distribution != InputDistribution::normal) {
+      table.problem("keys", "names " + key +
+                                ", which is rectangular (only normal distributions are drawn together, JCGM 101:2008, "
+                                "6.4.8); remove its distribution, or the correlation");
+      return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - inputs_.begin());
+  }
+
+  void enter(std::size_t a, std::size_t b, double coefficient, SetupTable& table) {
+    for (InputCorrelation const& other : inputs_[a].correlations) {
+      if (other.with != inputs_[b].key) continue;
+      table.problem("keys", "are correlated already further up; remove one of both");
+      return;
+    }
+    auto const i = static_cast<Eigen::Index>(a), k = static_cast<Eigen::Index>(b);
+    coefficients_(i, k) = coefficients_(k, i) = coefficient;
+    inputs_[a].correlations.push_back({inputs_[b].key, coefficient});
+    inputs_[b].correlations.push_back({inputs_[a].key, coefficient});
+  }
+
+  SetupTable root_;
+  std::vector<UncertainInput>& inputs_;
+  Eigen::MatrixXd coefficients_;
+};
+
+/// As [[correlations]] is written, every pair once.
+SetupNode correlations_node(std::vector<UncertainInput> const& inputs) {
+  SetupNode all = setup_array({});
+  for (UncertainInput const& input : inputs) {
+    for (InputCorrelation const& one : input.correlations) {
+      if (one.with < input.key) continue;
+      SetupNode pair;
+      pair.members.push_back({"keys", setup_array({setup_text(input.key), setup_text(one.with)})});
+      pair.members.push_back({"coefficient", setup_number(one.coefficient)});
+      all.elements.push_back(std::move(pair));
+    }
+  }
+  return all;
+}
+
 /// The node at a path of keys and "[i]"; null where there is none.
 SetupNode* node_at(SetupNode& root, std::vector<std::string> const& path) {
   SetupNode* node = &root;
@@ -135,11 +240,18 @@ std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document) {
   Reader reader(document);
   SetupNode const root = *document.find({});
   for (SetupMember const& member : root.members) {
+    if (member.key == "correlations") continue;
     bool const question =
         member.key == "requirements" || member.key == "limits" || member.key == "inventory" || member.key == "free";
     if (question) continue;
     SetupNode value = member.value;
     if (reader.take_at(member.key, value)) document.set({member.key}, value);
+  }
+  SetupNode const* const correlations = root.find("correlations");
+  bool const none = !correlations || (correlations->kind == SetupNode::Kind::array && correlations->elements.empty());
+  if (!none) {
+    CorrelationReader(document, reader.inputs).read(*correlations);
+    document.set({"correlations"}, setup_array({}));  // taken: who reads the setup next finds none
   }
   return reader.inputs;
 }
@@ -151,6 +263,9 @@ std::string with_uncertain_inputs(std::string const& text, std::vector<Uncertain
     SetupNode* const node = node_at(root, input.path);
     if (node && node->is_number() && node->as_double() == input.value) *node = input.node;
   }
+  SetupNode correlations = correlations_node(inputs);
+  std::erase_if(root.members, [](SetupMember const& member) { return member.key == "correlations"; });
+  if (!correlations.elements.empty()) root.members.push_back({"correlations", std::move(correlations)});
   return toml_document(root);
 }
 

@@ -23,6 +23,8 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options) {
       ->check(one_of({"html", "md"}))
       ->capture_default_str();
   app.add_option("--vectors", arguments->report.vectors, "Of a CASE: vectors as gladstone compare takes them");
+  app.add_option("--repeats", arguments->report.repeats,
+                 "Of a measured CASE: vectors of the same field measured again, for an evaluation of type A");
   app.add_option("--conventions", arguments->report.conventions,
                  "Of a measured CASE: the axes of foreign vectors, as for gladstone compare");
   app.add_option("--figures", arguments->report.figures, "Folder for the figures as files of their own");

@@ -70,7 +70,9 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
     return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
                        100 * std::expm1(outcome.solution.violation));
   }
-  return fmt::format("    {}: {} {:.5g}\n", name, objective_word(answered), outcome.solution.objective);
+  auto const objective = static_cast<std::size_t>(answered.question.requirements.objective);
+  return fmt::format("    {}: {} {:.5g} {}\n", name, objective_words[objective],
+                     outcome.solution.objective / objective_scales[objective], objective_units[objective]);
 }
 
 std::string feasible_text(AnsweredQuestion const& answered) {

@@ -61,6 +61,14 @@ std::vector<double> values_of(FreeChoice const& free, DesignVariant const& varia
   return values;
 }
 
+void leave_out(SetupDocument& document, std::string const& table, std::string const& key) {
+  SetupNode const* const node = document.find({table});
+  if (!node || !node->find(key)) return;
+  SetupNode rest = *node;
+  std::erase_if(rest.members, [&key](SetupMember const& member) { return member.key == key; });
+  document.set({table}, rest);
+}
+
 }  // namespace
 
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question) {
@@ -137,6 +145,9 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
+  bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
+                                        [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
+  if (chooses_dots) leave_out(document, "target", "dot_diameter_px");  // one size is enough
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
     ChoiceKey const& key = key_of(free.choice);
@@ -145,8 +156,6 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
     document.set({path.substr(0, dot), path.substr(dot + 1)},
                  setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
-  bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
-                                        [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
   // loaded once more: it is a setup that renders, and its file names are absolute then
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));

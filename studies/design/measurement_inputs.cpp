@@ -72,13 +72,16 @@ double traced_displacement(CaseSetup const& loaded, UncertainInput const& input,
 }
 
 MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) {
-  MeasurementInput one{input.key, input.value, input.sigma, input.distribution, input.degrees_of_freedom, {}, 1, 1, {}};
-  if (!loaded.setup.on_bench()) return one;
+  MeasurementInput one{
+      input.key, input.value,        input.sigma, input.distribution, input.degrees_of_freedom, {}, 1, 1,
+      {},        input.correlations, {}};
+  bool const bench = loaded.setup.on_bench();
   for (FormulaKey const& known : formula_keys) {
     if (input.key != known.key) continue;
-    one.enters = known.input;
+    (bench ? one.enters : one.scales) = known.input;
     one.unit = known.unit;
   }
+  if (!bench) return one;
   SetupNode const* const constant = loaded.document.find({"medium", "gladstone_dale"});
   if (input.key == "medium.wavelength_nm" && constant && constant->kind == SetupNode::Kind::text) {
     one.enters = GradientInput::gladstone_dale;
@@ -103,7 +106,7 @@ bool same(MeasurementInput const& input, Contribution const& contribution) {
 }  // namespace
 
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
-  if (loaded.setup.lens.prescription || input.key == "lens.f_number") return std::nullopt;
+  if (input.key == "lens.f_number") return std::nullopt;  // a stop displaces nothing
   QuietLog const quiet;
   double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
   if (step == 0) return std::nullopt;
@@ -151,11 +154,20 @@ MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vec
   return told;
 }
 
+std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs) {
+  std::vector<std::string> texts;
+  for (MeasurementInput const& input : inputs) {
+    for (InputCorrelation const& one : input.correlations) {
+      if (input.key < one.with) texts.push_back(fmt::format("{} and {}, {:.3g}", input.key, one.with, one.coefficient));
+    }
+  }
+  return texts;
+}
+
 std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
   std::string text =
       "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
-      "inputs "
-      "of type B, independent)\n";
+      "inputs of type B)\n";
   text += fmt::format("  {:<30}{:>12}{:>11} {:<12}{:>6}{:>16}{:>12}{:>10}\n", "input", "value", "sigma", "distribution",
                       "nu", "u(gradient)", "d ln/d ln", "traced");
   PropagatedResult const& gradient = uncertainty.results.front();
@@ -168,6 +180,10 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
                         input.traced ? fmt::format("{:.4f}", -*input.traced * input.value) : "",
                         same(input, part) ? "" : "  formula and rays differ");
   }
+  std::vector<std::string> const correlated = correlation_texts(uncertainty.inputs);
+  for (std::string const& pair : correlated) text += "  correlated: " + pair + '\n';
+  if (correlated.empty() && uncertainty.inputs.size() > 2)
+    text += "  taken for independent ([[correlations]] has none)\n";
   for (PropagatedResult const& result : uncertainty.results) {
     text += fmt::format(
         "  {}: {:.6g}, combined standard uncertainty {:.3g}, effective degrees of freedom {}\n"
@@ -196,6 +212,13 @@ nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertaint
                               {"distribution", to_string(input.distribution)},
                               {"degrees_of_freedom", finite(input.degrees_of_freedom)},
                               {"traced_log_derivative", input.traced ? Json(-*input.traced) : Json(nullptr)}});
+  }
+  json["correlations"] = Json::array();
+  for (MeasurementInput const& input : uncertainty.inputs) {
+    for (InputCorrelation const& one : input.correlations) {
+      if (one.with < input.key) continue;
+      json["correlations"].push_back({{"keys", {input.key, one.with}}, {"coefficient", one.coefficient}});
+    }
   }
   json["results"] = Json::array();
   for (PropagatedResult const& result : uncertainty.results) {

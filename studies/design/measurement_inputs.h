@@ -39,6 +39,9 @@ std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::v
 MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                                                Bench<double> const& bench, double gradient, Renderer& renderer);
 
+/// "geometry.z_a_mm and geometry.z_d_mm, -0.8" of every pair that is correlated.
+std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs);
+
 std::string uncertainty_text(MeasurementUncertainty const& uncertainty);
 nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertainty);
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/base/contracts.h"
 #include "render/base/random_variates.h"
+#include "studies/correlation_matrix.h"
 
 namespace gladstone {
 namespace {
@@ -35,32 +37,67 @@ GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at)
 
 /// d ln(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the
 /// displacement a gradient makes and so of the opposite sign.
-double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result) {
-  if (!input.enters) return input.traced ? -*input.traced : 0;
+/// @param from_gradient the result over the gradient
+double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
+                         Jet const& from_gradient) {
+  if (!input.enters) {
+    double derivative = input.traced ? -*input.traced : 0;
+    if (input.scales) {
+      auto const i = static_cast<std::size_t>(*input.scales);
+      derivative += from_gradient.v[static_cast<Eigen::Index>(i)] * at.value[i] / (from_gradient.a * input.value);
+    }
+    return derivative;
+  }
   auto const i = static_cast<std::size_t>(*input.enters);
   return input.chain * result.v[static_cast<Eigen::Index>(i)] * at.value[i] / (result.a * input.value);
 }
 
-/// One draw of an input less its value.
-double drawn(MeasurementInput const& input, KeyedEngine& engine) {
-  bool const normal = input.distribution == InputDistribution::normal;
-  return input.sigma * (normal ? normal_variate(engine) : std::sqrt(3.0) * (2 * to_unit(engine()) - 1));
+Eigen::MatrixXd coefficients_of(std::vector<MeasurementInput> const& inputs) {
+  auto const n = static_cast<Eigen::Index>(inputs.size());
+  Eigen::MatrixXd coefficients = Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    for (InputCorrelation const& one : inputs[i].correlations) {
+      for (std::size_t k = 0; k < inputs.size(); ++k) {
+        if (inputs[k].key != one.with) continue;
+        coefficients(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = one.coefficient;
+      }
+    }
+  }
+  return coefficients;
+}
+
+/// One draw of all inputs less their values. Those that are correlated are normal.
+Eigen::VectorXd drawn(std::vector<MeasurementInput> const& inputs, Eigen::MatrixXd const& factor, KeyedEngine& engine) {
+  Eigen::VectorXd off(static_cast<Eigen::Index>(inputs.size()));
+  for (Eigen::Index i = 0; i < off.size(); ++i) {
+    bool const normal = inputs[static_cast<std::size_t>(i)].distribution == InputDistribution::normal;
+    off[i] = normal ? normal_variate(engine) : std::sqrt(3.0) * (2 * to_unit(engine()) - 1);
+  }
+  off = factor * off;
+  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] *= inputs[static_cast<std::size_t>(i)].sigma;
+  return off;
 }
 
 /// The results of a sample: of what the formula has not, by what its logarithm changes.
 std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vector<MeasurementInput> const& inputs,
-                             KeyedEngine& engine) {
+                             Eigen::VectorXd const& drawn) {
   double factor = 1;
-  for (MeasurementInput const& input : inputs) {
-    double const off = drawn(input, engine);
+  GradientMeasurement<double> whole = measurement;  // with what is not in the gradient's formula
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    MeasurementInput const& input = inputs[i];
+    double const off = drawn[static_cast<Eigen::Index>(i)];
     if (!input.enters) {
       factor *= std::exp(input.traced ? -*input.traced * off : 0);
+      if (input.scales) whole[*input.scales] *= 1 + off / input.value;
     } else {
       double const ratio = 1 + off / input.value;
-      measurement[*input.enters] *= input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+      double const changed = input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+      measurement[*input.enters] *= changed;
+      whole[*input.enters] *= changed;
     }
   }
-  return {measurement.gradient() * factor, measurement.density_step() * factor};
+  double const gradient = measurement.gradient() * factor;
+  return {gradient, gradient * whole.density_over_gradient()};
 }
 
 double at_fraction(std::vector<double> const& sorted, double fraction) {
@@ -89,23 +126,64 @@ void add_samples(PropagatedResult& result, std::vector<double> samples) {
                   std::abs(result.value + reach - result.sampled_high) <= delta;
 }
 
+/// Inputs that are correlated with one another, directly or by others; one that is with none is a group by itself.
+struct CorrelatedGroup {
+  std::vector<Eigen::Index> members;
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< the fewest of theirs
+};
+
+std::vector<CorrelatedGroup> correlated_groups(std::vector<MeasurementInput> const& inputs,
+                                               Eigen::MatrixXd const& coefficients) {
+  std::vector<CorrelatedGroup> groups;
+  std::vector<bool> entered(inputs.size());
+  for (Eigen::Index first = 0; first < coefficients.rows(); ++first) {
+    if (entered[static_cast<std::size_t>(first)]) continue;
+    CorrelatedGroup& group = groups.emplace_back();
+    std::vector<Eigen::Index> open{first};
+    entered[static_cast<std::size_t>(first)] = true;
+    while (!open.empty()) {
+      Eigen::Index const i = open.back();
+      open.pop_back();
+      group.members.push_back(i);
+      group.degrees_of_freedom =
+          std::min(group.degrees_of_freedom, inputs[static_cast<std::size_t>(i)].degrees_of_freedom);
+      for (Eigen::Index k = 0; k < coefficients.cols(); ++k) {
+        if (coefficients(i, k) == 0 || entered[static_cast<std::size_t>(k)]) continue;
+        entered[static_cast<std::size_t>(k)] = true;
+        open.push_back(k);
+      }
+    }
+  }
+  return groups;
+}
+
 PropagatedResult first_order(std::string key, GradientMeasurement<double> const& at,
-                             std::vector<MeasurementInput> const& inputs, Jet const& result) {
+                             std::vector<MeasurementInput> const& inputs, Jet const& result, Jet const& from_gradient) {
   PropagatedResult out;
   out.key = std::move(key);
   out.value = result.a;
-  double variance = 0, over_degrees = 0;
+  Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));  // c_i u(x_i), with their signs
   for (MeasurementInput const& input : inputs) {
     Contribution one;
-    one.log_derivative = log_derivative_of(input, at, result);
-    one.standard = std::abs(one.log_derivative * result.a * input.sigma);
-    double const square = one.standard * one.standard;
-    variance += square;
-    over_degrees += square * square / input.degrees_of_freedom;
+    one.log_derivative = log_derivative_of(input, at, result, from_gradient);
+    double const part = one.log_derivative * result.a * input.sigma;
+    one.standard = std::abs(part);
+    parts[static_cast<Eigen::Index>(out.contributions.size())] = part;
     out.contributions.push_back(one);
   }
+  Eigen::MatrixXd const coefficients = coefficients_of(inputs);
+  Eigen::VectorXd const shares = parts.cwiseProduct(coefficients * parts);
+  double const variance = std::max(0.0, shares.sum());
   out.standard = std::sqrt(variance);
-  for (Contribution& one : out.contributions) one.share = variance > 0 ? one.standard * one.standard / variance : 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    out.contributions[i].share = variance > 0 ? shares[static_cast<Eigen::Index>(i)] / variance : 0;
+  }
+  double over_degrees = 0;
+  for (CorrelatedGroup const& group : correlated_groups(inputs, coefficients)) {
+    double square = 0;
+    for (Eigen::Index const i : group.members) square += shares[i];
+    over_degrees += square * square / group.degrees_of_freedom;
+  }
   out.degrees_of_freedom =
       over_degrees > 0 ? variance * variance / over_degrees : std::numeric_limits<double>::infinity();
   out.coverage_factor = coverage_factor(out.degrees_of_freedom);
@@ -127,12 +205,15 @@ double coverage_factor(double degrees_of_freedom) {
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs) {
   GradientMeasurement<Jet> const jets = with_derivatives(at);
-  std::vector<PropagatedResult> results{first_order("gradient_kg_m4", at, inputs, jets.gradient()),
-                                        first_order("density_step_kg_m3", at, inputs, jets.density_step())};
+  std::vector<PropagatedResult> results{
+      first_order("gradient_kg_m4", at, inputs, jets.gradient(), Jet(1.0)),
+      first_order("density_step_kg_m3", at, inputs, jets.density_step(), jets.density_over_gradient())};
+  std::optional<Eigen::MatrixXd> const factor = correlation_factor(coefficients_of(inputs));
+  GLADSTONE_EXPECTS(factor);  // as take_uncertain_inputs() saw to
   std::array<std::vector<double>, 2> samples;
   for (int i = 0; i < propagation_samples; ++i) {
     KeyedEngine engine(1, RandomStream::sensor, static_cast<std::uint64_t>(i));
-    std::array<double, 2> const one = sample(at, inputs, engine);
+    std::array<double, 2> const one = sample(at, inputs, drawn(inputs, *factor, engine));
     for (std::size_t k = 0; k < results.size(); ++k) samples[k].push_back(one[k]);
   }
   for (std::size_t k = 0; k < results.size(); ++k) add_samples(results[k], std::move(samples[k]));
@@ -140,13 +221,12 @@ std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
 }
 
 double common_relative_uncertainty(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient) {
-  double variance = 0;
+  Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].enters == GradientInput::displacement) continue;
-    double const relative = gradient.contributions[i].standard / gradient.value;
-    variance += relative * relative;
+    bool const common = inputs[i].enters != GradientInput::displacement;
+    parts[static_cast<Eigen::Index>(i)] = common ? gradient.contributions[i].log_derivative * inputs[i].sigma : 0;
   }
-  return std::sqrt(variance);
+  return std::sqrt(std::max(0.0, parts.dot(coefficients_of(inputs) * parts)));
 }
 
 }  // namespace gladstone

@@ -44,9 +44,9 @@ struct GradientMeasurement {
            (magnification() * (*this)[I::z_d] * (*this)[I::gladstone_dale] * (*this)[I::thickness]);
   }
   /// Density that it makes across one window, the step of an integration: the gradient times N_w p / M_A [kg/m^3].
-  T density_step() const {
-    return gradient() * window_px * (*this)[GradientInput::pixel_pitch] * (*this)[GradientInput::z_a] /
-           (magnification() * z_b());
+  T density_step() const { return gradient() * density_over_gradient(); }
+  T density_over_gradient() const {
+    return window_px * (*this)[GradientInput::pixel_pitch] * (*this)[GradientInput::z_a] / (magnification() * z_b());
   }
 };
 
@@ -62,13 +62,17 @@ struct MeasurementInput {
   double chain = 1;
   /// d ln(displacement per gradient) / d(key) by tracing, in the key's own unit; nothing: not traced.
   std::optional<double> traced;
+  std::vector<InputCorrelation> correlations{};  ///< with other inputs
+  /// Where it enters the way from a gradient to the density that it makes across a window, of inputs of a setup that no
+  /// formula describes; that way is taken for the bench's.
+  std::optional<GradientInput> scales{};
 };
 
 /// How an input adds to a result.
 struct Contribution {
   double log_derivative = 0;  ///< d ln(result) / d(input), in the input's unit
   double standard = 0;        ///< |derivative| times sigma, in the result's unit
-  double share = 0;           ///< of the combined variance
+  double share = 0;           ///< of the combined variance, with half of what each correlation adds to it
 };
 
 /// A result with its uncertainty, in the words of the GUM (JCGM 100:2008) and, by samples, of its Supplement 1 (JCGM
@@ -92,8 +96,9 @@ inline constexpr int propagation_samples = 100'000;
 /// Coverage factor of Student's t distribution for 95.45 %, 2 for infinitely many degrees of freedom.
 double coverage_factor(double degrees_of_freedom);
 
-/// Propagates the inputs, which are taken for independent, to density gradient and density by exact derivatives and by
-/// samples.
+/// Propagates the inputs to density gradient and density by exact derivatives (JCGM 100:2008, eq. 16: with covariances)
+/// and by samples. Degrees of freedom are those of Welch and Satterthwaite; inputs that are correlated, directly or by
+/// others, count as one with the fewest of theirs.
 /// @param at the values of all inputs of the formula
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs);

@@ -8,6 +8,7 @@
 #include "render/base/nearest_name.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
+#include "studies/design/solve.h"
 
 namespace gladstone {
 namespace {
@@ -183,7 +184,7 @@ void check_total(DesignQuestion const& question, SetupTable limits) {
     if (free.choice != Choice::z_a && free.choice != Choice::z_d) continue;
     least += free.values.empty() ? free.low : *std::min_element(free.values.begin(), free.values.end());
   }
-  if (least <= *question.requirements.z_total_max) return;
+  if (least <= *question.requirements.z_total_max * (1 + allowed_excess)) return;
   limits.problem("z_total_max_mm",
                  fmt::format("contradicts the other limits (z_a_mm and z_d_mm are {:.6g} mm together at least); "
                              "raise it or lower those",

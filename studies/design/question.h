@@ -34,6 +34,9 @@ constexpr ChoiceKey const& key_of(Choice choice) { return choice_keys[static_cas
 /// What is made best: the smallest of these.
 enum class Objective { gradient_min, resolution, uncertainty, z_total };
 inline constexpr std::array<char const*, 4> objective_words{"gradient_min", "resolution", "uncertainty", "z_total"};
+/// Of each as it is told, and what it is in SI.
+inline constexpr std::array<char const*, 4> objective_units{"kg/m^4", "mm", "px", "mm"};
+inline constexpr std::array<double, 4> objective_scales{1, 1e-3, 1, 1e-3};
 
 /// What a design is to keep; empty: nothing is asked. In SI.
 struct Requirements {

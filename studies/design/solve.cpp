@@ -161,11 +161,11 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
   }
   Bench<double> const near = bench_at(branch, least), far = bench_at(branch, most);
   for (Limit const& limit : problem.limits) {
-    if (limit.bound == Bound::z_total && near.z_b() > limit.value) return limit.bound;
+    if (limit.bound == Bound::z_total && near.z_b() > limit.value * (1 + allowed_excess)) return limit.bound;
     bool const farthest = limit.bound == Bound::focus || limit.bound == Bound::view_width ||
                           limit.bound == Bound::view_height || limit.bound == Bound::dots_clear ||
                           limit.bound == Bound::lens_clear;
-    if (farthest && excess(limit, far) > 0) return limit.bound;
+    if (farthest && excess(limit, far) > allowed_excess) return limit.bound;
   }
   return std::nullopt;
 }

@@ -4,6 +4,9 @@
 
 namespace gladstone {
 
+/// By which a bench may exceed a limit and still keep it, as the logarithm of a ratio: rounding of a solution on it.
+inline constexpr double allowed_excess = 1e-7;
+
 /// The best bench of a branch.
 struct BranchSolution {
   std::vector<double> logarithms;  ///< of the continuous choices
@@ -11,7 +14,7 @@ struct BranchSolution {
   double violation = HUGE_VAL;     ///< largest excess over a limit
   Bound worst = Bound::focus;      ///< the limit that it is of
 
-  bool feasible() const { return violation <= 1e-7; }
+  bool feasible() const { return violation <= allowed_excess; }
 };
 
 /// Why no bench of the branch can keep a limit, told by the ends of its intervals alone; nothing: it may.

@@ -32,6 +32,53 @@ struct MeasuredGradients {
   std::size_t count = 0;        ///< of vectors
 };
 
+/// What the repeats of a measurement tell of its mean (JCGM 100:2008, 4.2), beside what is known of each of them.
+struct MeanOfRepeats {
+  DisplacementField field;  ///< of the mean, with its standard deviation for uncertainty; of one measurement as it is
+  std::size_t count = 1;
+  double estimated_px = 0;  ///< the mean's uncertainty by what every measurement says of itself, median over components
+};
+
+/// The mean of several measurements at the same vectors, those that count in all of them.
+/// @param formula_px random error of one that does not say
+MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double formula_px) {
+  MeanOfRepeats mean;
+  mean.field = all.front();
+  mean.count = all.size();
+  if (mean.count == 1) return mean;
+  DisplacementField& field = mean.field;
+  auto const n = static_cast<double>(mean.count);
+  std::vector<double> estimated;
+  field.sigma_px.assign(field.size(), {std::nan(""), std::nan("")});
+  field.status.resize(field.size(), VectorStatus::valid);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    Vec2d sum, squares, variance;
+    bool counts = true;
+    for (DisplacementField const& one : all) {
+      Vec2d const d = one.displacement_px[i];
+      counts = counts && one.counts(i) && std::isfinite(d.x) && std::isfinite(d.y);
+      sum += d;
+      Vec2d own = one.sigma_px.empty() ? Vec2d{formula_px, formula_px} : one.sigma_px[i];
+      if (!std::isfinite(own.x) || !std::isfinite(own.y)) own = {formula_px, formula_px};
+      variance += {own.x * own.x, own.y * own.y};
+    }
+    if (!counts) {
+      field.status[i] = VectorStatus::invalid;
+      continue;
+    }
+    field.displacement_px[i] = sum / n;
+    for (DisplacementField const& one : all) {
+      Vec2d const off = one.displacement_px[i] - field.displacement_px[i];
+      squares += {off.x * off.x, off.y * off.y};
+    }
+    field.sigma_px[i] = {std::sqrt(squares.x / (n - 1) / n), std::sqrt(squares.y / (n - 1) / n)};
+    estimated.push_back(std::sqrt(variance.x) / n);
+    estimated.push_back(std::sqrt(variance.y) / n);
+  }
+  mean.estimated_px = estimated.empty() ? std::nan("") : quantile(estimated, 0.5);
+  return mean;
+}
+
 MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> const& bench, double common) {
   MeasuredGradients all;
   all.common = common;
@@ -87,7 +134,7 @@ void add_map(nlohmann::json& fields, std::string const& name, std::string const&
 /// Statements in the words of the GUM (JCGM 100:2008).
 std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResult const& gradient,
                                     std::vector<MeasurementInput> const& inputs, SimulatedTwin const* twin,
-                                    double sensitivity) {
+                                    double sensitivity, MeanOfRepeats const& mean) {
   std::vector<double> const combined = finite_components(all.combined);
   double const median = quantile(combined, 0.5);
   std::vector<std::string> said;
@@ -104,17 +151,25 @@ std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResu
       "degrees of freedom {}) for a coverage probability of 95.45 %.",
       gradient.coverage_factor * median, gradient.coverage_factor,
       std::isfinite(gradient.degrees_of_freedom) ? fmt::format("{:.3g}", gradient.degrees_of_freedom) : "infinite"));
-  said.push_back(fmt::format(
-      "The uncertainty of the displacement is of type B: {}. There is no evaluation of type A, for which measurements "
-      "would have to be repeated.",
-      all.estimated ? "the estimator's own, from the images"
-                    : "by the formula of the random error, since the vectors "
-                      "have none"));
+  if (mean.count > 1) {
+    said.push_back(fmt::format(
+        "The uncertainty of the displacement is of type A: the standard deviation of the mean of {} repeats, {:.3g} px "
+        "rms over vectors and components, with {} degrees of freedom at each of them. What the measurements say of "
+        "themselves, of type B, would make it {:.3g} px in the median; it is not added.",
+        mean.count, inputs.front().sigma, mean.count - 1, mean.estimated_px));
+  } else {
+    said.push_back(fmt::format(
+        "The uncertainty of the displacement is of type B: {}. There is no evaluation of type A, for which the "
+        "measurement would have to be repeated (--repeats).",
+        all.estimated ? "the estimator's own, from the images"
+                      : "by the formula of the random error, since the vectors have none"));
+  }
   if (inputs.size() > 1) {
     said.push_back(fmt::format(
-        "The numbers of the setup that are written with their uncertainty are of type B, taken for independent, and "
-        "the "
-        "same at all vectors: together {:.3g} % of the gradient. {}",
+        "The numbers of the setup that are written with their uncertainty are of type B, {}, and the same at all "
+        "vectors: together {:.3g} % of the gradient. {}",
+        correlation_texts(inputs).empty() ? "taken for independent"
+                                          : fmt::format("correlated ({})", fmt::join(correlation_texts(inputs), "; ")),
         100 * all.common,
         gradient.linear
             ? "The first order holds (JCGM 101:2008)."
@@ -138,15 +193,17 @@ std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResu
   return said;
 }
 
-TextTable inputs_table(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient) {
+TextTable inputs_table(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient,
+                       MeanOfRepeats const& mean) {
   TextTable table{"What the gradient of a vector of typical displacement is uncertain by",
-                  {"input", "value", "standard uncertainty", "distribution", "degrees of freedom",
+                  {"input", "type", "value", "standard uncertainty", "distribution", "degrees of freedom",
                    "part of u(gradient) [kg/m^4]", "share of the variance [%]"},
                   {}};
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     Contribution const& part = gradient.contributions[i];
     bool const finite = std::isfinite(inputs[i].degrees_of_freedom);
     table.rows.push_back({{inputs[i].key},
+                          {i == 0 && mean.count > 1 ? "A" : "B"},
                           TableCell::of(inputs[i].value),
                           TableCell::of(inputs[i].sigma),
                           {to_string(inputs[i].distribution)},
@@ -167,6 +224,26 @@ DisplacementField read_measured(std::string const& path, ReportOptions const& op
   return field;
 }
 
+/// A measurement and its repeats. @throws DataError where one has its vectors elsewhere
+std::vector<DisplacementField> read_repeats(std::string const& vectors_file, ReportOptions const& options,
+                                            CameraSetup const& camera) {
+  std::vector<DisplacementField> all{read_measured(vectors_file, options, camera)};
+  for (std::string const& file : options.repeats) {
+    DisplacementField one = read_measured(file, options, camera);
+    bool same = one.size() == all.front().size();
+    for (std::size_t i = 0; same && i < one.size(); ++i) {
+      same = length(one.position_px[i] - all.front().position_px[i]) < 1e-3;
+    }
+    if (!same) {
+      throw DataError(file, "has its vectors at other places than " + vectors_file +
+                                " (the scatter of repeats is told at every vector); correlate all of them with one "
+                                "configuration");
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 }  // namespace
 
 ReportPage measured_report(ReportOptions const& options, Device const& device) {
@@ -182,19 +259,25 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
         "the dots); describe the measurement by one");
   }
   std::string const vectors_file = options.vectors.empty() ? own_vectors : options.vectors;
-  DisplacementField const field = read_measured(vectors_file, options, loaded.setup.camera);
   BenchGiven const given = bench_given(loaded);
   Bench<double> const bench = bench_of(loaded.setup, given);
+  MeanOfRepeats const mean =
+      mean_of_repeats(read_repeats(vectors_file, options, loaded.setup.camera), bench.random_error());
+  DisplacementField const& field = mean.field;
 
   // a vector of typical displacement and uncertainty stands for all in the table
   std::vector<double> displacement = finite_components(field.displacement_px);
   std::vector<double> sigma = finite_components(field.sigma_px);
   if (displacement.empty())
     throw DataError(vectors_file, "has no vector with a displacement; correlate the images anew");
-  std::vector<MeasurementInput> inputs{{"displacement_px", rms_of(displacement),
-                                        sigma.empty() ? bench.random_error() : quantile(sigma, 0.5),
-                                        InputDistribution::normal, std::numeric_limits<double>::infinity(),
-                                        GradientInput::displacement, 1, 1, std::nullopt}};
+  bool const repeated = mean.count > 1;
+  double const typical_sigma = repeated        ? rms_of(sigma)  // of few repeats the median is too small
+                               : sigma.empty() ? bench.random_error()
+                                               : quantile(sigma, 0.5);
+  double const degrees = repeated ? static_cast<double>(mean.count - 1) : std::numeric_limits<double>::infinity();
+  std::vector<MeasurementInput> inputs{{"displacement_px", rms_of(displacement), typical_sigma,
+                                        InputDistribution::normal, degrees, GradientInput::displacement, 1, 1,
+                                        std::nullopt}};
   for (MeasurementInput& input : measurement_inputs(loaded, uncertain, *device.renderer))
     inputs.push_back(std::move(input));
   PropagatedResult const gradient =
@@ -216,7 +299,8 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   page.title = "Measurement " + fs::absolute(options.source).lexically_normal().filename().string();
   page.question = fmt::format("How certain are the density gradients of this measurement? {} vectors of {}.",
                               field.size(), fs::path(vectors_file).filename().string());
-  std::vector<std::string> const said = statements(all, gradient, inputs, twin ? &*twin : nullptr, bench.sensitivity());
+  std::vector<std::string> const said =
+      statements(all, gradient, inputs, twin ? &*twin : nullptr, bench.sensitivity(), mean);
   page.findings = {said[0], said[1], said.back()};
   if (fs::exists(fs::path(options.source) / case_file::reference) &&
       fs::exists(fs::path(options.source) / case_file::flow)) {
@@ -235,7 +319,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
                          {"y", component_json(field.position_px, &Vec2d::y)}};
     page.sections.push_back({"Maps", {Chart{"field", "Displacement, gradient and their uncertainty", said[0]}}});
   }
-  page.sections.push_back({"Uncertainty", {TextList{said}, inputs_table(inputs, gradient)}});
+  page.sections.push_back({"Uncertainty", {TextList{said}, inputs_table(inputs, gradient, mean)}});
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (twin && twin->failed.empty()) {
     causes.blocks.push_back(
@@ -253,9 +337,15 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   page.sections.push_back(std::move(causes));
   page.sections.push_back({"Settings", {Verbatim{"The setup", read_text_file(setup_file)}}});
   std::string const place = shell_word(options.source);
-  page.sections.push_back(how_it_was_made(
-      {{"setup", file_hash(setup_file)}, {"vectors", file_hash(vectors_file)}},
-      {"gladstone report " + place + (options.vectors.empty() ? "" : " --vectors " + shell_word(options.vectors))}));
+  std::vector<std::pair<std::string, std::string>> sources{{"setup", file_hash(setup_file)},
+                                                           {"vectors", file_hash(vectors_file)}};
+  std::string command = "gladstone report " + place;
+  if (!options.vectors.empty()) command += " --vectors " + shell_word(options.vectors);
+  for (std::string const& file : options.repeats) {
+    sources.emplace_back(fmt::format("repeat {}", sources.size()), file_hash(file));
+    command += (file == options.repeats.front() ? " --repeats " : " ") + shell_word(file);
+  }
+  page.sections.push_back(how_it_was_made(sources, {command}));
   return page;
 }
 

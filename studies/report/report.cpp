@@ -57,6 +57,11 @@ std::string write_report(ReportOptions const& options, Device const& device) {
   }
   OutputFile output(options.output);  // shows that the place can be written
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
+  if (!measured && !options.repeats.empty()) {
+    throw DataError(options.source,
+                    "is no measurement (repeats tell what its mean is uncertain by, where there is no "
+                    "truth); leave --repeats out, or give the folder of a measurement");
+  }
   ReportPage const page = run        ? run_report(options)
                           : measured ? measured_report(options, device)
                                      : case_report(options, device);

@@ -12,12 +12,13 @@ namespace gladstone {
 
 /// What a report is written from and as.
 struct ReportOptions {
-  std::string source;         ///< RUN or CASE folder
-  std::string output;         ///< file
-  bool markdown = false;      ///< else HTML
-  std::string figures;        ///< folder for the figures of a paper; empty: none
-  std::string figure_format;  ///< "png", "svg" or "pdf"
-  std::string vectors;        ///< of a CASE: file; empty: its own
+  std::string source;                ///< RUN or CASE folder
+  std::string output;                ///< file
+  bool markdown = false;             ///< else HTML
+  std::string figures;               ///< folder for the figures of a paper; empty: none
+  std::string figure_format;         ///< "png", "svg" or "pdf"
+  std::string vectors;               ///< of a CASE: file; empty: its own
+  std::vector<std::string> repeats;  ///< of a measured case: vectors of the same measured again
   std::string
       conventions;  ///< of a measured case's foreign vectors, as parse_conventions() reads them; empty: their format's
 };

@@ -108,6 +108,27 @@ TEST_F(Design, RendersAndCorrelatesWhatItRecommends) {
   EXPECT_TRUE(std::filesystem::exists(in("out.toml")));
 }
 
+// A size in pixels is what the setup has now; a chosen one, in mm, takes its place. What was recommended, asked again
+// as the only choice, is the answer again, though its view is what is required but for the last digits.
+TEST_F(Design, RecommendsWhatAnswersItsOwnQuestion) {
+  std::string text = tunnel;
+  text.insert(text.find("[correlate]"), "[target]\ndot_diameter_px = 2.5\n");
+  write("tunnel.toml", text);
+  auto const json = json_of({"design", "tunnel.toml", "--verify", "0", "--apply", "out.toml"});
+  EXPECT_THAT(read("out.toml"), testing::Not(HasSubstr("dot_diameter_px")));
+  std::string again = text.substr(0, text.find("[limits]"));
+  std::string limits = "[limits]\nz_total_max_mm = 2000.0\n", keys;
+  for (auto const& [key, value] : json["recommended"].items()) {
+    limits += key.substr(key.find('.') + 1) + " = { values = [" + value.dump() + "] }\n";
+    keys += (keys.empty() ? "\"" : ", \"") + key + '"';
+  }
+  write("again.toml", again + limits + "[free]\nkeys = [" + keys + "]\n");
+  auto const same = json_of({"design", "again.toml", "--verify", "0"});
+  EXPECT_THAT(succeed({"design", "again.toml", "--verify", "0"}), HasSubstr(" kg/m^4\n"));  // of the objective
+  EXPECT_TRUE(same["feasible"]);
+  EXPECT_EQ(same["recommended"], json["recommended"]);
+}
+
 TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
   std::string text = tunnel;
   text.replace(text.find("resolution_mm = 12.0"), 20, "resolution_mm = 0.5");

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -122,6 +126,77 @@ window_px = [32, 16]
   EXPECT_GT(mean_of("combined", "u"), common);
   EXPECT_NEAR(mean_of("combined", "u"), std::hypot(common, mean_of("random", "u")), 0.1 * common);
   expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv"});
+}
+
+/// The displacements along x of a file of vectors.
+std::vector<double> displacements_of(std::string const& csv) {
+  std::istringstream lines(csv);
+  std::vector<double> u;
+  std::size_t column = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    std::vector<std::string> cells;
+    std::istringstream parts(line);
+    for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(cell);
+    auto const head = std::find(cells.begin(), cells.end(), "u_px");
+    if (head != cells.end()) {
+      column = static_cast<std::size_t>(head - cells.begin());
+    } else {
+      u.push_back(std::stod(cells.at(column)));
+    }
+  }
+  return u;
+}
+
+// The same steady field measured twice, with other noise: the standard deviation of a mean of two is half of what they
+// differ by, and has one degree of freedom (JCGM 100:2008, 4.2). In one px there are 150.9 kg/m^4.
+TEST_F(Reports, OfARepeatedMeasurementTellItsScatter) {
+  std::string const setup = R"(schema = 1
+[camera]
+pixels = [128, 128]
+bit_depth = 12
+[camera.noise]
+full_well_e = 30000
+read_noise_e = 300
+[geometry]
+z_a_mm = 750.0
+z_d_mm = 250.0
+[medium.field]
+kind = "uniform_gradient"
+gradient_kg_m4 = [40.0, 0.0, 0.0]
+[correlate]
+window_px = [32, 16]
+)";
+  write("bench.toml", setup);
+  std::filesystem::create_directories(in("measured"));
+  write("measured/setup.toml", setup);
+  std::vector<std::vector<double>> u;
+  for (std::string const repeat : {"1", "2"}) {
+    render("case" + repeat, {"--set", "camera.noise.seed=" + repeat}, "bench.toml");
+    succeed({"correlate", "case" + repeat, "-o", "measured/" + repeat + ".csv", "--quiet"});
+    u.push_back(displacements_of(read("measured/" + repeat + ".csv")));
+  }
+  ASSERT_EQ(u[0].size(), u[1].size());
+  double scatter = 0;
+  for (std::size_t i = 0; i < u[0].size(); ++i) scatter += std::abs(u[0][i] - u[1][i]) / 2;
+  scatter /= static_cast<double>(u[0].size());
+  ASSERT_GT(scatter, 1e-4);
+  std::string const findings = json_of({"report", "measured", "--vectors", "measured/1.csv", "--repeats",
+                                        "measured/2.csv", "--device", "cpu"})["findings"];
+  EXPECT_THAT(findings, HasSubstr("effective degrees of freedom 1)"));
+  EXPECT_THAT(findings, HasSubstr("coverage factor k = 13.97"));
+  EXPECT_THAT(read("measured/report.html"), HasSubstr("is of type A: the standard deviation of the mean of 2 repeats"));
+  nlohmann::json const data = data_of("measured/report.html");
+  for (nlohmann::json const& one : data["fields"]) {
+    if (one["name"] != "random") continue;
+    double mean = 0;
+    for (nlohmann::json const& value : one["u"]) mean += value.get<double>() / static_cast<double>(one["u"].size());
+    EXPECT_NEAR(mean, scatter * 150.9, 0.01 * scatter * 150.9);
+  }
+  write("measured/other.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0\n20,10,0.1,0\n");
+  expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
+                 {"other.csv", "at other places"});
+  expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is no measurement"});
 }
 
 TEST_F(Reports, AreWrittenAsMarkdownWithFiguresBesideIt) {

@@ -74,6 +74,18 @@ TEST_F(CaseKeysOf, AreEqualWhereTheLightIsAndNowhereElse) {
   }
 }
 
+TEST_F(CaseKeysOf, LeaveOutTheSeedsOfRepeats) {
+  auto const cases = plan("base = \"base.toml\"\n[study]\nrepeats = 2\n[axes]\n\"lens.f_number\" = [8, 11]\n");
+  ASSERT_EQ(cases.size(), 4u);
+  auto const seedless = [](ManifestCase const& one) {
+    return case_keys(load_case_setup(SetupDocument::from_text(one.setup, "case")), one.inputs, RepeatSeeds::left_out);
+  };
+  EXPECT_NE(keys_of(cases[0]).scene, keys_of(cases[2]).scene);
+  EXPECT_EQ(seedless(cases[0]).scene, seedless(cases[2]).scene);
+  EXPECT_EQ(seedless(cases[0]).rays, seedless(cases[2]).rays);
+  EXPECT_NE(seedless(cases[0]).scene, seedless(cases[1]).scene);
+}
+
 // Whatever two cases differ in, the second takes nothing from the first that is not its own: the same bits as alone.
 TEST_F(CaseKeysOf, GiveNoCaseWhatBelongsToAnother) {
   auto const same = [](CaseResult const& a, CaseResult const& b) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "studies/sweep/claims.h"
@@ -79,6 +80,52 @@ TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
 )");
   CaseRunner sharing = runner(Sharing::yes), alone = runner(Sharing::no);
   for (ManifestCase const& one : cases) expect_same(sharing.run(one), alone.run(one));
+}
+
+// Windows of 16 px that overlap by half are 8 px apart: of those every second row and column is compared, and of each
+// all that is known stays what it was.
+TEST_F(CaseRunners, CompareNoVectorsThatAreCloserThanIsAsked) {
+  auto const cases = plan("base = \"base.toml\"\n[axes]\n\"camera.bit_depth\" = [12]\n");
+  CaseRunner all(open_device("cpu")), some(open_device("cpu"), Sharing::yes, 16);
+  std::optional<Comparison> whole, thinned;
+  all.run(cases[0], "", [&](ObservedCase const& seen) { whole = seen.comparison; });
+  some.run(cases[0], "", [&](ObservedCase const& seen) { thinned = seen.comparison; });
+  ASSERT_TRUE(whole && thinned);
+  int const n = thinned->measured.columns;
+  EXPECT_EQ(n, (whole->measured.columns + 1) / 2);
+  ASSERT_EQ(thinned->measured.size(), static_cast<std::size_t>(n * thinned->measured.rows));
+  EXPECT_EQ(thinned->measured.position_px[1].x - thinned->measured.position_px[0].x, 16);
+  EXPECT_EQ(thinned->measured.position_px[static_cast<std::size_t>(n)].y - thinned->measured.position_px[0].y, 16);
+  ASSERT_EQ(thinned->noise_free.size(), thinned->measured.size());
+  for (std::size_t i = 0; i < thinned->measured.size(); ++i) {
+    std::size_t k = 0;
+    while (k < whole->measured.size() && !(whole->measured.position_px[k] == thinned->measured.position_px[i])) ++k;
+    ASSERT_LT(k, whole->measured.size());
+    EXPECT_EQ(thinned->measured.displacement_px[i], whole->measured.displacement_px[k]);
+    EXPECT_EQ(thinned->noise_free[i], whole->noise_free[k]);
+    EXPECT_EQ(thinned->point.displacement_px[i], whole->point.displacement_px[k]);
+  }
+}
+
+// Another pattern of dots has other images and the same field: what is measured is its own, to the last bit, and truth
+// and theory at the vectors those of the first, within what the plan of the rays leaves of truth.
+TEST_F(CaseRunners, MayTakeTruthOverFromRepeats) {
+  write("base.toml", std::string(small_base).replace(std::string(small_base).find("rays_per_dot = 32"), 17, ""));
+  auto const cases = plan("base = \"base.toml\"\n[study]\nrepeats = 2\n[axes]\n\"camera.bit_depth\" = [12]\n");
+  ASSERT_EQ(cases.size(), 2u);
+  CaseRunner over_repeats = runner(Sharing::over_repeats), alone = runner(Sharing::no);
+  std::optional<Comparison> first, second, own;
+  over_repeats.run(cases[0], "", [&](ObservedCase const& seen) { first = seen.comparison; });
+  over_repeats.run(cases[1], "", [&](ObservedCase const& seen) { second = seen.comparison; });
+  alone.run(cases[1], "", [&](ObservedCase const& seen) { own = seen.comparison; });
+  ASSERT_TRUE(first && second && own);
+  EXPECT_NE(first->measured.displacement_px, second->measured.displacement_px);
+  EXPECT_EQ(second->measured.displacement_px, own->measured.displacement_px);
+  EXPECT_EQ(second->point.displacement_px, first->point.displacement_px);
+  EXPECT_NE(second->point.displacement_px, own->point.displacement_px);  // by other rays
+  for (std::size_t i = 0; i < own->measured.size(); ++i) {
+    EXPECT_LT(length(second->point.displacement_px[i] - own->point.displacement_px[i]), 2 * truth_tolerance_px);
+  }
 }
 
 TEST_F(CaseRunners, ACaseThatCannotBeIsAResultAndAChangedInputIsNot) {

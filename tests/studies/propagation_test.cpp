@@ -132,6 +132,43 @@ TEST(Propagation, CombinesDegreesOfFreedom) {
   EXPECT_NEAR(common_relative_uncertainty(inputs, result), 0.01, 1e-12);
 }
 
+/// Two distances that are correlated so.
+std::vector<MeasurementInput> correlated_distances(double coefficient) {
+  std::vector<MeasurementInput> inputs{input(GradientInput::displacement, measured_at_table1().value[0], 1e-9),
+                                       input(GradientInput::z_a, 750, 2), input(GradientInput::z_d, 250, 1)};
+  inputs[1].key = "z_a";
+  inputs[2].key = "z_d";
+  inputs[1].correlations = {{"z_d", coefficient}};
+  inputs[2].correlations = {{"z_a", coefficient}};
+  return inputs;
+}
+
+// JCGM 100:2008, eq. 16: the variance is the sum of c_i c_j u_i u_j r_ij, and the samples have it, too, within three of
+// their standard errors (0.22 % each). With a coefficient of 1 contributions add up with their signs, with -1 they
+// subtract: Z_A / (Z_B - f) of 2 / 750 and (Z_D / (Z_B - f) - 1) of 1 / 250.
+TEST(Propagation, AddsWhatInputsHaveInCommon) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  double const rest = 1 - 0.105, a = 0.75 / rest * 2 / 750 * 10, d = (0.25 / rest - 1) / 250 * 10;
+  for (double const r : {-1.0, -0.6, 0.0, 0.8, 1.0}) {
+    PropagatedResult const result = propagate(at, correlated_distances(r))[0];
+    double const expected = std::sqrt(a * a + d * d + 2 * r * a * d);
+    EXPECT_NEAR(result.standard, expected, 1e-6) << r;
+    EXPECT_NEAR(result.sampled_standard / result.standard, 1, 0.0067) << r;
+    EXPECT_NEAR(result.contributions[1].share + result.contributions[2].share, 1, 1e-6) << r;
+    EXPECT_NEAR(result.contributions[1].standard, a, 1e-6) << r;
+    EXPECT_NEAR(common_relative_uncertainty(correlated_distances(r), result), expected / 10, 1e-7) << r;
+  }
+}
+
+// Of two inputs that are one and the same, neither knows more than the other: their contributions add up to one with
+// the fewest degrees of freedom, where Welch and Satterthwaite would take them for two.
+TEST(Propagation, CountsCorrelatedInputsAsOneByDegreesOfFreedom) {
+  std::vector<MeasurementInput> inputs = correlated_distances(1);
+  inputs[1].degrees_of_freedom = 4;
+  inputs[2].degrees_of_freedom = 9;
+  EXPECT_NEAR(propagate(measured_at_table1(), inputs)[0].degrees_of_freedom, 4, 1e-5);
+}
+
 // Chief rays through a uniform gradient, which no stop clips: the displacement per gradient is S, the gradient's
 // derivative its inverse. Off the axis it differs by theta^2 = (48 px p / z_i)^2 = 2e-5.
 TEST(Propagation, HasTheSameDerivativesByTracingRays) {
@@ -162,6 +199,49 @@ window_px = [32]
     EXPECT_NEAR(-*inputs[i].traced * inputs[i].value, gradient.contributions[i].log_derivative * inputs[i].value, 1e-3)
         << inputs[i].key;
   }
+}
+
+// A double Gauss of 100 mm is no formula's: what counts are differences of rays through it. On the axis it is the thin
+// lens of its principal planes, so that both have the same derivatives, but for what its aberrations and the dots'
+// places off the axis change: theta^2 = 2e-5 and less than 0.01 of a derivative.
+TEST(Propagation, TracesWhatARealLensIsUncertainBy) {
+  SetupDocument document = SetupDocument::from_text(R"(schema = 1
+[camera]
+pixels = [128, 128]
+[lens]
+model = "prescription"
+file = "lenses/double_gauss.toml"
+f_number = 8.0
+[geometry]
+z_a_mm = { value = 750.0, sigma = 1.0 }
+z_d_mm = { value = 250.0, sigma = 1.0 }
+[medium]
+thickness_mm = { value = 10.0, sigma = 0.1 }
+[correlate]
+window_px = [32]
+)",
+                                                    "gauss", GLADSTONE_DATA_DIR);
+  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  CaseSetup const loaded = load_case_setup(std::move(document));
+  Device device = open_device("cpu");
+  std::vector<MeasurementInput> const inputs = measurement_inputs(loaded, uncertain, *device.renderer);
+  GradientMeasurement<double> const at = gradient_measurement(loaded.setup, 32, 0.1);
+  auto const traced = propagate(at, inputs);
+  ASSERT_EQ(inputs.size(), 3u);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    ASSERT_TRUE(inputs[i].traced) << inputs[i].key;
+    EXPECT_FALSE(inputs[i].enters) << inputs[i].key;
+    GradientInput const known = inputs[i].key == "geometry.z_a_mm"   ? GradientInput::z_a
+                                : inputs[i].key == "geometry.z_d_mm" ? GradientInput::z_d
+                                                                     : GradientInput::thickness;
+    auto const thin = propagate(at, {input(known, inputs[i].value, 1)});
+    for (std::size_t k = 0; k < traced.size(); ++k) {  // of the gradient, and of the density across a window
+      EXPECT_NEAR(traced[k].contributions[i].log_derivative * inputs[i].value,
+                  thin[k].contributions[0].log_derivative * inputs[i].value, 0.01)
+          << inputs[i].key << ", " << traced[k].key;
+    }
+  }
+  for (PropagatedResult const& one : traced) EXPECT_NEAR(one.sampled_standard / one.standard, 1, 0.0067) << one.key;
 }
 
 }  // namespace

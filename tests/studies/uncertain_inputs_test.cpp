@@ -80,5 +80,85 @@ TEST(UncertainInputs, AreRefusedAtTheirPlaceWithTheCure) {
   EXPECT_EQ(complaint("{ value = 250.0, sigma = 1 }"), "nothing");
 }
 
+constexpr char const* correlated = R"(schema = 1
+[camera]
+pixels = [64, 64]
+[lens]
+focal_length_mm = { value = 105.0, sigma = 0.5 }
+[geometry]
+z_a_mm = { value = 750.0, sigma = 1.0 }
+z_d_mm = { value = 250.0, sigma = 1.5 }
+[medium]
+thickness_mm = { value = 10.0, sigma = 0.1, distribution = "rectangular" }
+[correlate]
+window_px = [32, 16]
+)";
+
+std::string correlation_complaint(std::string const& tables) {
+  try {
+    load_case_setup(SetupDocument::from_text(std::string(correlated) + tables, "setup.toml"));
+  } catch (SetupError const& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+std::string pair_of(std::string const& keys, std::string const& coefficient) {
+  return "[[correlations]]\nkeys = " + keys + "\ncoefficient = " + coefficient + '\n';
+}
+
+constexpr char const* both_distances = R"(["geometry.z_a_mm", "geometry.z_d_mm"])";
+
+// A ruler that is laid at the wrong place makes one distance longer and the other shorter.
+TEST(UncertainInputs, AreCorrelatedInPairsAndStaySo) {
+  std::string const text = correlated + pair_of(both_distances, "-0.8");
+  SetupDocument document = SetupDocument::from_text(text, "setup.toml");
+  std::vector<UncertainInput> const inputs = take_uncertain_inputs(document);
+  ASSERT_EQ(inputs.size(), 4u);
+  for (UncertainInput const& input : inputs) {
+    bool const distance = input.key.starts_with("geometry.");
+    ASSERT_EQ(input.correlations.size(), distance ? 1u : 0u) << input.key;
+    if (!distance) continue;
+    EXPECT_EQ(input.correlations[0].with, input.key == "geometry.z_a_mm" ? "geometry.z_d_mm" : "geometry.z_a_mm");
+    EXPECT_EQ(input.correlations[0].coefficient, -0.8);
+  }
+  CaseSetup const loaded = load_case_setup(std::move(document));
+  SetupDocument written =
+      SetupDocument::from_text(with_uncertain_inputs(loaded.document.resolved(), inputs), "again.toml");
+  for (UncertainInput const& again : take_uncertain_inputs(written)) {
+    EXPECT_EQ(again.correlations.size(), again.key.starts_with("geometry.") ? 1u : 0u) << again.key;
+  }
+  load_case_setup(std::move(written));
+  EXPECT_EQ(correlation_complaint(pair_of(both_distances, "-0.8")), "nothing");
+}
+
+TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
+  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "1.2")),
+              testing::AllOf(HasSubstr("setup.toml:15:1: correlations"), HasSubstr("write a number from -1 to 1")));
+  EXPECT_THAT(correlation_complaint("[[correlations]]\nkeys = " + std::string(both_distances) + '\n'),
+              HasSubstr("write a number from -1 to 1"));
+  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm"])", "0.5")), HasSubstr("must name two inputs"));
+  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_a_mm"])", "0.5")),
+              HasSubstr("must name two inputs"));
+  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "geometry.z_c_mm"])", "0.5")),
+              testing::AllOf(HasSubstr("setup.toml:14:1: correlations"), HasSubstr("did you mean geometry.z_")));
+  EXPECT_THAT(correlation_complaint(pair_of(R"(["geometry.z_a_mm", "medium.thickness_mm"])", "0.5")),
+              HasSubstr("remove its distribution, or the correlation"));
+  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")), HasSubstr("is no key of correlations"));
+  EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
+              HasSubstr("setup.toml:17:1: correlations"));
+  // two that go with a third cannot go against one another: the determinant is 1 - 3 (0.9)^2 - 2 (0.9)^3 < 0
+  std::string const with_lens = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "0.9") +
+                                pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "0.9");
+  EXPECT_THAT(correlation_complaint(with_lens + pair_of(both_distances, "-0.9")),
+              testing::AllOf(HasSubstr("setup.toml:21:1: correlations"), HasSubstr("negative eigenvalue")));
+  EXPECT_EQ(correlation_complaint(with_lens + pair_of(both_distances, "0.9")), "nothing");
+  // as long as pairs are missing, what stands there may look impossible: 1, 1 and nothing
+  std::string const all_one = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "1") +
+                              pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "1");
+  EXPECT_THAT(correlation_complaint(all_one), HasSubstr("negative eigenvalue"));
+  EXPECT_EQ(correlation_complaint(all_one + pair_of(both_distances, "1")), "nothing");
+}
+
 }  // namespace
 }  // namespace gladstone

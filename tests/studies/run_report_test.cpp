@@ -1,0 +1,52 @@
+#include <ctime>
+
+#include "studies/report/report.h"
+#include "studies/sweep/case_runner.h"
+#include "studies/sweep/collect.h"
+#include "studies/sweep/results.h"
+#include "tests/studies/support/study_folder.h"
+
+namespace gladstone {
+namespace {
+
+class RunReports : public StudyFolder {
+ protected:
+  /// A finished study of so many cases: one is computed, the others have its measures, each a little off, so that no
+  /// two numbers are alike.
+  void finish(std::size_t cases) const {
+    StudyFile const file = study("base = \"base.toml\"\n[axes]\n\"lens.f_number\" = { linear = [8, 16, " +
+                                 std::to_string(cases) + "] }\n");
+    write_plan(in("run"), plan_study(file, "cpu"));
+    Manifest const manifest = read_manifest(in("run"));
+    ASSERT_EQ(manifest.size(), cases);
+    CaseResult result = CaseRunner(open_device("cpu")).run(manifest[0]);
+    ASSERT_EQ(result.status, CaseStatus::ok) << result.error;
+    for (std::size_t index = 0; index < cases; ++index) {
+      ManifestCase const one = manifest[index];
+      for (auto& [name, value] : result.measures) value *= 1.0001;
+      result.index = one.index;
+      result.line_hash = one.line_hash;
+      write_result(in("run"), result);
+    }
+  }
+};
+
+// What a report of a study may weigh and take: 10 MB and 5 s of processor time for 1000 cases.
+TEST_F(RunReports, OfAThousandCasesAreSmallAndQuick) {
+  finish(1000);
+  std::clock_t const start = std::clock();
+  ReportOptions options;
+  options.source = in("run");
+  options.output = in("run/report.html");
+  std::string const html = html_page(run_report(options));
+  double const seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  RecordProperty("seconds", std::to_string(seconds));
+  RecordProperty("bytes", std::to_string(html.size()));
+  EXPECT_THAT(html, testing::HasSubstr("1000 of 1000 cases are finished"));
+  EXPECT_LT(html.size(), 10e6);
+  EXPECT_GT(html.size(), 1e6);  // 1000 cases of a hundred measures are in it
+  EXPECT_LT(seconds, 5);
+}
+
+}  // namespace
+}  // namespace gladstone
