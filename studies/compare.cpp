@@ -17,6 +17,7 @@
 #include "studies/correlate.h"
 #include "studies/particle_points.h"
 #include "studies/scene_renderer.h"
+#include "studies/thinned_vectors.h"
 #include "studies/truth_file.h"
 
 namespace gladstone {
@@ -138,7 +139,8 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
       window_truth(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
   if (rendered) {
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);
-    DisplacementField again = correlate_frames(*rendered->rendering->in_place->ideal(detector), settings, device).field;
+    DisplacementField again = every_nth(
+        correlate_frames(*rendered->rendering->in_place->ideal(detector), settings, device).field, vectors.every);
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 

@@ -65,6 +65,7 @@ struct MeasuredVectors {
   std::string name;              ///< of the file or the case, for messages
   LeftOutVectors left_out{};
   std::optional<DetectedConventions> detected{};  ///< of a foreign file
+  int every = 1;                                  ///< of the lattice that the settings give, as every_nth() thins it
 };
 
 /// Truth and theory at the places of vectors: all of a comparison that does not depend on what was measured there.

@@ -6,6 +6,7 @@
 
 #include "studies/budget_stages.h"
 #include "studies/design/predicted_blur.h"
+#include "studies/scene_renderer.h"
 #include "studies/sweep/plan.h"
 
 namespace gladstone {
@@ -34,8 +35,36 @@ AxisValue value_of(char const* label, SetupNode node) {
   return value;
 }
 
-/// The bench's setup with the middle of its camera alone, once with its own medium and once with each wave.
-StudyFile study_of(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed) {
+/// The bench's setup with the middle of its camera alone, repeated with other dots, rays and noise.
+struct BenchStudies {
+  SetupDocument base;
+  std::size_t repeats;
+  std::uint64_t seed;
+
+  /// @param rays of a dot; nothing: "auto"
+  StudyFile of(std::vector<AxisValue> media, std::optional<std::uint64_t> rays) const {
+    SetupDocument setup = base.copy();
+    if (rays) setup.set({"render", "rays_per_dot"}, setup_integer(static_cast<long long>(*rays)));
+    StudyFile study;
+    study.path = study.base_path = "recommended setup";
+    study.base_text = setup.written();
+    AxisPlan& medium = study.axes.emplace_back();
+    medium.key = "medium.field";
+    medium.path = {"medium", "field"};
+    medium.list = std::move(media);
+    study.repeats = repeats;
+    study.seed = seed;
+    return study;
+  }
+  AxisValue own_medium() const {
+    SetupNode none;
+    none.members.push_back({"kind", setup_text("none")});
+    SetupNode const* const own = base.find({"medium", "field"});
+    return value_of("as set up", own ? *own : none);
+  }
+};
+
+BenchStudies studies_of(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed) {
   SetupDocument base = SetupDocument::from_text(setup, "recommended setup");
   CameraSetup const& camera = bench.given->camera;
   int const side =
@@ -43,24 +72,7 @@ StudyFile study_of(std::string const& setup, Bench<double> const& bench, std::si
                std::clamp(simulated_windows * bench.given->window.window_px(), least_simulated_px, most_simulated_px));
   int const columns = std::min(camera.columns, side), rows = std::min(camera.rows, side);
   base.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
-  AxisPlan medium;
-  medium.key = "medium.field";
-  medium.path = {"medium", "field"};
-  SetupNode none;
-  none.members.push_back({"kind", setup_text("none")});
-  SetupNode const* const own = base.find(medium.path);
-  medium.list.push_back(value_of("as set up", own ? *own : none));
-  double const wavelength = resolved_wavelength(bench);
-  for (double const share : {1.0, shorter_wave}) {
-    medium.list.push_back(value_of("wave", wave_field(bench, share * wavelength)));
-  }
-  StudyFile study;
-  study.path = study.base_path = "recommended setup";
-  study.base_text = base.written();
-  study.axes.push_back(std::move(medium));
-  study.repeats = repeats;
-  study.seed = seed;
-  return study;
+  return {std::move(base), repeats, seed};
 }
 
 /// What is kept of the repeats of one medium, at the vectors of the grid.
@@ -72,6 +84,7 @@ struct Repeats {
   double displacement_px = 0;
   std::optional<Setup> setup;
   double magnification = 0;
+  std::optional<std::uint64_t> rays;  ///< that correct a plain table; nothing where dots take what they need
 };
 
 bool inside(Vec2d place, Setup const& setup, double border) {
@@ -89,6 +102,9 @@ void enter(Repeats& repeats, ObservedCase const& seen, double border) {
     repeats.lens = all.point.displacement_px;
     repeats.setup = seen.prepared.scene.setup;
     repeats.magnification = seen.prepared.scene.imaging.magnification;
+    RaysPlan const& plan = seen.prepared.rays;
+    bool const plain = method_of(seen.prepared.scene) == RenderMethod::focused_dots && plan.fineness == 1;
+    if (plain && !plan.by_need) repeats.rays = plan.rays;
   }
   std::vector<Vec2d>& error = repeats.error.emplace_back(all.mask.size(), Vec2d{nan, nan});
   for (std::size_t i = 0; i < all.mask.size(); ++i) {
@@ -253,26 +269,40 @@ struct Peaks {
 
 }  // namespace
 
+int compared_apart_px(Bench<double> const& bench) { return bench.given->window.window_px() / 2; }
+
 SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeat_count,
                         std::uint64_t seed, CaseRunner& runner, std::string const& device,
                         std::function<void()> const& finished) {
   SimulatedBench simulated;
-  StudyPlan const plan = plan_study(study_of(setup, bench, repeat_count, seed), device);
-  std::size_t const media = plan.study().points();
   int const window_px = bench.given->window.window_px();
-  std::vector<Repeats> repeats(media);
+  auto const run = [&](StudyFile const& study, std::vector<Repeats>& repeats, Peaks* peaks) {
+    StudyPlan const plan = plan_study(study, device);
+    repeats.resize(study.points());
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+      CaseResult const result = runner.run(plan[i], "", [&](ObservedCase const& seen) {
+        enter(repeats[i % repeats.size()], seen, window_px);
+        if (peaks) peaks->add(seen);
+      });
+      finished();
+      if (result.status != CaseStatus::ok) simulated.failed = result.error;
+      if (!simulated.failed.empty()) return;
+    }
+  };
+  BenchStudies const studies = studies_of(setup, bench, repeat_count, seed);
+  std::vector<Repeats> as_set_up, waves;
   Peaks peaks;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    CaseResult const result = runner.run(plan[i], "", [&](ObservedCase const& seen) {
-      enter(repeats[i % media], seen, window_px);
-      if (i % media == 0) peaks.add(seen);
-    });
-    finished();
-    if (result.status == CaseStatus::ok) continue;
-    simulated.failed = result.error;
-    return simulated;
+  run(studies.of({studies.own_medium()}, std::nullopt), as_set_up, &peaks);
+  if (!simulated.failed.empty()) return simulated;
+  // waves are smooth: where the medium is, too, what corrects its table corrects theirs
+  double const wavelength = resolved_wavelength(bench);
+  std::vector<AxisValue> media;
+  for (double const share : {1.0, shorter_wave}) {
+    media.push_back(value_of("wave", wave_field(bench, share * wavelength)));
   }
-  Repeats const& own = repeats.front();
+  run(studies.of(std::move(media), as_set_up.front().rays), waves, nullptr);
+  if (!simulated.failed.empty()) return simulated;
+  Repeats const& own = as_set_up.front();
   simulated.columns = own.setup->camera.columns;
   simulated.rows = own.setup->camera.rows;
   simulated.repeats = repeat_count;
@@ -280,9 +310,8 @@ SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, st
   simulated.displacement_px = own.displacement_px;
   simulated.peak_electrons = peaks.mean();
   add_errors(simulated, own, bench);
-  double const wavelength = resolved_wavelength(bench);
-  simulated.waves = {shares_of(repeats[1], wavelength, window_px),
-                     shares_of(repeats[2], shorter_wave * wavelength, window_px)};
+  simulated.waves = {shares_of(waves[0], wavelength, window_px),
+                     shares_of(waves[1], shorter_wave * wavelength, window_px)};
   simulated.resolution = resolution_of(simulated.waves);
   return simulated;
 }

@@ -55,6 +55,9 @@ inline constexpr int simulated_windows = 12, least_simulated_px = 192, most_simu
 /// Cases that a bench takes: its own medium and two waves, each of them as often as is repeated.
 constexpr std::size_t simulated_cases(std::size_t repeats) { return 3 * repeats; }
 
+/// How far apart the vectors of a bench are compared: half a window, since nearer ones tell little more. [px]
+int compared_apart_px(Bench<double> const& bench);
+
 /// Renders a bench, correlates and compares it, as a study of three media: the setup's own, and waves of the wavelength
 /// that the formulas resolve and of less.
 /// @param setup    as applied_setup() writes it

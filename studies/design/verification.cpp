@@ -200,11 +200,13 @@ Verification verify(DesignQuestion const& question, std::vector<DesignVariant> c
                     VerificationPlan const& plan, Device device) {
   std::string const device_name = device.name();
   Verification verification;
-  CaseRunner runner(std::move(device));
   std::vector<BranchOutcome> best;
   for (BranchOutcome const& outcome : answer.outcomes) {
     if (outcome.solution.feasible() && best.size() < plan.benches) best.push_back(outcome);
   }
+  BranchOutcome const& first = answer.outcomes.front();
+  CaseRunner runner(std::move(device), Sharing::over_repeats,
+                    compared_apart_px(bench_at(first.branch, first.solution.logarithms)));
   Progress progress("verifying", best.size() * simulated_cases(plan.repeats));
   for (BranchOutcome const& outcome : best) {
     verification.benches.push_back(simulated_bench(question, variants, outcome, plan, runner, device_name, progress));

@@ -84,7 +84,7 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
     ScratchFile const file("density.nrrd");
     write_density_plane(file.path(), density, margin_nodes, loaded.setup.medium.ambient_density);
     StudyPlan const plan = plan_study(study_of(loaded, field_of(file.path(), spacing, centre)), device.name());
-    CaseRunner runner(std::move(device));
+    CaseRunner runner(std::move(device), Sharing::over_repeats);
     std::vector<std::vector<Vec2d>> errors;
     Progress progress("simulating the twin", plan.size());
     for (std::size_t i = 0; i < plan.size(); ++i) {

@@ -23,7 +23,7 @@ SetupNode& table_of(SetupNode& root, std::string const& key) {
 
 }  // namespace
 
-CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs) {
+CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs, RepeatSeeds seeds) {
   SetupNode setup = parse_toml(loaded.document.resolved(), "resolved setup");  // every default is written out
   std::string files;
   for (auto const& [name, hash] : inputs) files += fmt::format("\n{} {}", name, hash);
@@ -44,6 +44,9 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   std::optional<std::uint64_t> const rays = loaded.setup.render.rays_per_dot;
   remove(table_of(setup, "render"), "rays_per_dot");
   remove(setup, "correlate");
+  if (seeds == RepeatSeeds::left_out) {
+    for (char const* const table : {"target", "particles", "render"}) remove(table_of(setup, table), "seed");
+  }
   Vec2d const extent = loaded.setup.piv ? Vec2d{} : loaded.setup.target_extent();
   keys.scene = fmt::format("{}\nextent {} {}{}", toml_text(setup), extent.x, extent.y, files);
   keys.rays = keys.scene + (rays ? fmt::format("\n{} rays", *rays) : "\nrays for " + electronics);

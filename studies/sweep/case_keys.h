@@ -14,7 +14,11 @@ struct CaseKeys {
   std::string rays;    ///< the number of rays
 };
 
+/// Whether the seeds of dots and of rays count: without them repeats of a case have equal keys.
+enum class RepeatSeeds { count, left_out };
+
 /// @param inputs of the manifest: names of files and their hashes
-CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs);
+CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs,
+                   RepeatSeeds seeds = RepeatSeeds::count);
 
 }  // namespace gladstone

@@ -22,6 +22,7 @@
 #include "studies/scene_renderer.h"
 #include "studies/sweep/case_keys.h"
 #include "studies/sweep/recent.h"
+#include "studies/thinned_vectors.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -117,8 +118,11 @@ std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json
   return measures;
 }
 
-CaseRunner::CaseRunner(Device device, Sharing sharing)
-    : device_(std::move(device)), sharing_(sharing), shared_(std::make_unique<Shared>()) {}
+CaseRunner::CaseRunner(Device device, Sharing sharing, int least_apart_px)
+    : device_(std::move(device)),
+      sharing_(sharing),
+      least_apart_px_(least_apart_px),
+      shared_(std::make_unique<Shared>()) {}
 CaseRunner::~CaseRunner() = default;
 
 void CaseRunner::check_inputs(ManifestCase const& one) {
@@ -180,6 +184,8 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   CaseSetup loaded =
       load_case_setup(SetupDocument::from_text(one.setup, fmt::format("case {}", one.index)), FieldMemory::taken);
   CaseKeys const keys = case_keys(loaded, one.inputs);
+  CaseKeys const plans =
+      sharing_ == Sharing::over_repeats ? case_keys(loaded, one.inputs, RepeatSeeds::left_out) : keys;
   std::optional<OutputFolder> folder;
   if (!keep.empty()) {
     refuse_case_over_inputs(keep, loaded.document.file_names());
@@ -196,22 +202,23 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
     medium = &shared.media.keep(keys.medium, build_checked_medium(loaded.setup.medium), bytes);
   }
   known.medium = medium;
-  Shared::Plan const* const plan = shared.plans.find(keys.scene);
+  Shared::Plan const* const plan = shared.plans.find(plans.scene);
   if (plan) {
     known.step = &plan->step;
     known.strain = &plan->strain;
   }
-  known.rays = shared.rays.find(keys.rays);
+  known.rays = shared.rays.find(plans.rays);
   PreparedCase prepared = prepare_case(loaded, known);
-  if (!plan) shared.plans.keep(keys.scene, {prepared.step, prepared.strain});
-  if (!known.rays) shared.rays.keep(keys.rays, prepared.rays);
+  if (!plan) shared.plans.keep(plans.scene, {prepared.step, prepared.strain});
+  if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
 
   RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // of the dots: for truth.h5
-  std::string const frames_key =
-      fmt::format("{}\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}", keys.scene,
+  std::string const traced =
+      fmt::format("\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}",
                   to_string(method_of(prepared.scene)), prepared.scene.rays_per_dot, prepared.scene.rays_at_side_faces,
                   prepared.rays.by_need ? prepared.rays.by_need->level : 0.0, prepared.rays.fineness,
                   keep.empty() ? "" : ", theory");
+  std::string const frames_key = keys.scene + traced;
   RenderedCase* const made = shared.renderings.find(frames_key);
   RenderedCase rendered = made ? *made : render_case(prepared, *device_.renderer, theory);
   if (!made) shared.renderings.keep(frames_key, rendered);
@@ -226,21 +233,24 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   }
 
   std::string const name = fmt::format("case {}", one.index);
-  Measurement const measured = correlate_frames(*frames.levels, loaded.correlate, device_);
+  Measurement measured = correlate_frames(*frames.levels, loaded.correlate, device_);
   result.seconds_correlate = measured.seconds;
+  int const every = lattice_step(measured.field, least_apart_px_);
+  measured.field = every_nth(std::move(measured.field), every);
 
   start = std::chrono::steady_clock::now();
   std::vector<Vec2d> const& places = measured.field.position_px;
   std::string const truth_key =
-      frames_key + "\nvectors " +
+      plans.scene + traced + "\nvectors " +
       content_hash({reinterpret_cast<char const*>(places.data()), places.size() * sizeof(Vec2d)});
   PointTruth* truth = shared.truths.find(truth_key);
   if (!truth) {
     truth =
         &shared.truths.keep(truth_key, truth_of_vectors(prepared, *device_.renderer, places, TruthAt::mid_position));
   }
-  Comparison comparison = compare_vectors(prepared, rendered.rendering->truth, &rendered,
-                                          {measured.field, loaded.correlate, false, "", name}, *truth, device_);
+  Comparison comparison =
+      compare_vectors(prepared, rendered.rendering->truth, &rendered,
+                      {measured.field, loaded.correlate, false, "", name, {}, {}, every}, *truth, device_);
   result.measures = flat_measures(errors_of(comparison));
   std::vector<Vec2d> const still(places.size());
   result.measures.emplace_back("signal_px",

@@ -13,8 +13,10 @@
 
 namespace gladstone {
 
-/// Whether a runner takes over from the cases before what this one agrees with them on.
-enum class Sharing { yes, no };
+/// Whether a runner takes over from the cases before what this one agrees with them on. Over repeats: also what other
+/// dots and rays were planned (step, number of rays) and what truth and theory they had at the same vectors, which then
+/// hang on which of them came first, by no more than what those plans allow.
+enum class Sharing { yes, no, over_repeats };
 
 /// A case in memory, before it is let go.
 struct ObservedCase {
@@ -26,12 +28,13 @@ struct ObservedCase {
 using CaseObserver = std::function<void(ObservedCase const&)>;
 
 /// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends on its manifest
-/// line alone: what is shared between cases (fields and their splines, planned steps and rays, renderings, truth at
+/// line alone (but for Sharing::over_repeats): what is shared between cases (fields and their splines, planned steps and rays, renderings, truth at
 /// vectors) is what the case itself would have computed, to the last bit. A reference frame is traced with the rays of
 /// its flow frame, whose pupil is as wide as the medium bends; so frames are shared where the medium agrees too.
 class CaseRunner {
  public:
-  explicit CaseRunner(Device device, Sharing sharing = Sharing::yes);
+  /// @param least_apart_px of the vectors that are compared: of a lattice that is denser, every second is, or third ...
+  explicit CaseRunner(Device device, Sharing sharing = Sharing::yes, int least_apart_px = 0);
   ~CaseRunner();
 
   /// Computes a case. What goes wrong in computing it is its result (`failed`).
@@ -50,6 +53,7 @@ class CaseRunner {
 
   Device device_;
   Sharing sharing_;
+  int least_apart_px_;
   std::unique_ptr<Shared> shared_;
 };
 

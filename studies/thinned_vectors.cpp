@@ -1,0 +1,57 @@
+#include "studies/thinned_vectors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/contracts.h"
+
+namespace gladstone {
+namespace {
+
+template <class Value>
+void keep(std::vector<Value>& values, std::vector<std::size_t> const& kept) {
+  if (values.empty()) return;  // not known
+  std::vector<Value> some;
+  some.reserve(kept.size());
+  for (std::size_t const i : kept) some.push_back(values[i]);
+  values = std::move(some);
+}
+
+/// Numbers of those that stay of a row or column of so many.
+std::vector<int> every_nth_of(int count, int n) {
+  std::vector<int> stay;
+  for (int i = (count - 1) % n / 2; i < count; i += n) stay.push_back(i);
+  return stay;
+}
+
+}  // namespace
+
+int lattice_step(DisplacementField const& field, int least_apart_px) {
+  if (field.columns < 2 || field.size() < 2) return 1;
+  double const apart = std::abs(field.position_px[1].x - field.position_px[0].x);
+  return apart > 0 ? std::max(1, static_cast<int>(std::ceil(least_apart_px / apart - 1e-9))) : 1;
+}
+
+DisplacementField every_nth(DisplacementField field, int n) {
+  GLADSTONE_EXPECTS(n >= 1);
+  if (n == 1 || field.columns == 0) return field;
+  std::vector<int> const columns = every_nth_of(field.columns, n), rows = every_nth_of(field.rows, n);
+  std::vector<std::size_t> kept;
+  for (int const row : rows) {
+    for (int const column : columns) kept.push_back(static_cast<std::size_t>(row * field.columns + column));
+  }
+  keep(field.position_px, kept);
+  keep(field.displacement_px, kept);
+  keep(field.sigma_px, kept);
+  keep(field.peak_ratio, kept);
+  keep(field.status, kept);
+  keep(field.raw_px, kept);
+  keep(field.correlation, kept);
+  keep(field.reason, kept);
+  keep(field.ambiguous, kept);
+  field.columns = static_cast<int>(columns.size());
+  field.rows = static_cast<int>(rows.size());
+  return field;
+}
+
+}  // namespace gladstone
