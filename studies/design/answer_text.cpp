@@ -149,6 +149,9 @@ std::string answer_text(AnsweredQuestion const& answered) {
   std::size_t skipped = 0;
   for (BranchOutcome const& outcome : answered.answer.outcomes) skipped += outcome.skipped;
   if (skipped > 0) text += fmt::format("  {} were skipped, each by one bound (--json names it)\n", skipped);
+  for (SkippedVariant const& variant : answered.skipped) {
+    text += fmt::format("  {}: skipped, it does not go with the setup: {}\n", variant.name(), variant.reason);
+  }
   return text;
 }
 
@@ -172,6 +175,10 @@ Json answer_json(AnsweredQuestion const& answered) {
                                {"skipped", outcome.skipped},
                                {"objective", feasible ? Json(outcome.solution.objective) : Json(nullptr)},
                                {"worst", bound_name(outcome.solution.worst)}});
+  }
+  json["skipped"] = Json::array();
+  for (SkippedVariant const& variant : answered.skipped) {
+    json["skipped"].push_back({{"name", variant.name()}, {"reason", variant.reason}});
   }
   return json;
 }

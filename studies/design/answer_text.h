@@ -15,6 +15,7 @@ struct AnsweredQuestion {
   std::vector<DesignVariant> variants;
   Recommendation answer;
   std::optional<Verification> verification;  ///< nothing: not asked for, or nothing is feasible
+  std::vector<SkippedVariant> skipped = {};  ///< cameras and lenses that do not go with the setup
 
   /// What is recommended: the best that the simulation keeps to, or the best by formula where none was simulated.
   /// @pre answer.feasible()

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 
+#include "render/base/error.h"
 #include "studies/design/sheet.h"
 #include "studies/light_exposure.h"
 #include "studies/uncertain_inputs.h"
@@ -39,8 +41,25 @@ std::pair<std::string, std::string> beyond_design(Setup const& setup) {
   return {};
 }
 
-DesignVariant load_variant(SetupDocument document, std::string const& camera, std::string const& lens) {
-  CaseSetup const loaded = load_case_setup(document.copy());
+bool chooses_dots(DesignQuestion const& question) {
+  return std::any_of(question.free.begin(), question.free.end(),
+                     [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
+}
+
+/// To be loaded with any camera and lens: dots that are chosen do not cover the target as they are written.
+SetupDocument with_small_dots(SetupDocument document) {
+  constexpr double small_px = 1, small_mm = 1e-3;
+  if (document.find({"target", "dot_diameter_mm"})) {
+    document.set({"target", "dot_diameter_mm"}, setup_number(small_mm));
+  } else {
+    document.set({"target", "dot_diameter_px"}, setup_number(small_px));
+  }
+  return document;
+}
+
+DesignVariant load_variant(SetupDocument document, DesignQuestion const& question, std::string const& camera,
+                           std::string const& lens) {
+  CaseSetup const loaded = load_case_setup(chooses_dots(question) ? with_small_dots(document.copy()) : document.copy());
   if (auto const [key, reason] = beyond_design(loaded.setup); !key.empty()) {
     auto const dot = key.find('.');
     SetupTable table = dot == std::string::npos ? document.root() : document.root().table(key.substr(0, dot));
@@ -69,10 +88,29 @@ void leave_out(SetupDocument& document, std::string const& table, std::string co
   document.set({table}, rest);
 }
 
+std::string parts_name(std::string const& camera, std::string const& lens) {
+  std::string name;
+  for (std::string const& file : {camera, lens}) {
+    if (!file.empty()) name += (name.empty() ? "" : ", ") + std::filesystem::path(file).filename().string();
+  }
+  return name;
+}
+
 }  // namespace
 
-std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question) {
+std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
+                                           std::vector<SkippedVariant>& skipped) {
   std::vector<DesignVariant> variants;
+  std::exception_ptr first;
+  auto const add = [&](SetupDocument const& with_both, std::string const& camera, std::string const& lens) {
+    try {
+      variants.push_back(load_variant(with_both.copy(), question, camera, lens));
+    } catch (SetupError const& error) {
+      if (camera.empty() && lens.empty()) throw;  // the setup itself
+      if (!first) first = std::current_exception();
+      skipped.push_back({camera, lens, error.what()});
+    }
+  };
   std::size_t const cameras = std::max<std::size_t>(1, question.cameras.size());
   for (std::size_t i = 0; i < cameras; ++i) {
     SetupDocument with_camera = document.copy();
@@ -81,13 +119,14 @@ std::vector<DesignVariant> design_variants(SetupDocument const& document, Design
       with_camera.set({"camera"}, question.cameras[i].table);
       name = question.cameras[i].file;
     }
-    variants.push_back(load_variant(with_camera.copy(), name, ""));
+    add(with_camera, name, "");
     for (std::string const& lens : question.lenses) {
       SetupDocument with_lens = with_camera.copy();
       with_lens.set({"lens"}, prescription_node(lens));
-      variants.push_back(load_variant(std::move(with_lens), name, lens));
+      add(with_lens, name, lens);
     }
   }
+  if (variants.empty()) std::rethrow_exception(first);
   return variants;
 }
 
@@ -124,13 +163,13 @@ std::vector<DesignBranch> design_branches(std::vector<DesignVariant> const& vari
   return branches;
 }
 
+std::string SkippedVariant::name() const { return parts_name(camera, lens); }
+
 std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> const& variants,
                         DesignQuestion const& question) {
   DesignVariant const& variant = variants[branch.variant];
-  std::string name;
+  std::string name = parts_name(variant.camera, variant.lens);
   auto const add = [&name](std::string const& part) { name += (name.empty() ? "" : ", ") + part; };
-  if (!variant.camera.empty()) add(std::filesystem::path(variant.camera).filename().string());
-  if (!variant.lens.empty()) add(std::filesystem::path(variant.lens).filename().string());
   for (FreeChoice const& free : question.free) {
     bool const continuous = std::any_of(branch.continuous.begin(), branch.continuous.end(),
                                         [&free](FreeChoice const& other) { return other.choice == free.choice; });
@@ -163,7 +202,7 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   std::erase_if(root.members, [](SetupMember const& member) {
     return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
   });
-  if (SetupNode* const target = root.find("target"); target && chooses_dots) {
+  if (SetupNode* const target = root.find("target"); target && chooses_dots(question)) {
     std::erase_if(target->members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
   }
   return toml_document(root);

@@ -18,10 +18,19 @@ struct DesignVariant {
   std::unique_ptr<BenchGiven> given;
 };
 
+/// A camera or lens of the inventory that does not go with the setup.
+struct SkippedVariant {
+  std::string camera, lens;  ///< files; empty as above
+  std::string reason;
+  std::string name() const;  ///< for the reader
+};
+
 /// Every camera of the inventory with the setup's lens and with every prescription.
 /// @param document a setup that can be loaded
-/// @throws SetupError where a camera or lens does not go with the setup, or where closed forms do not describe it
-std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question);
+/// @param skipped gets those that do not go with the setup
+/// @throws SetupError where none does, where the setup's own do not, or where closed forms do not describe it
+std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
+                                           std::vector<SkippedVariant>& skipped);
 
 /// All combinations of the variants and of the values to choose from. The variants must outlive them.
 std::vector<DesignBranch> design_branches(std::vector<DesignVariant> const& variants, DesignQuestion const& question);

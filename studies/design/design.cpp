@@ -38,8 +38,8 @@ void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double
 }
 
 AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
-  AnsweredQuestion result{std::move(question), {}, {}, {}};
-  result.variants = design_variants(document, result.question);
+  AnsweredQuestion result{std::move(question), {}, {}, {}, {}};
+  result.variants = design_variants(document, result.question, result.skipped);
   std::vector<DesignBranch> const branches = design_branches(result.variants, result.question);
   Requirements const& requirements = result.question.requirements;
   result.answer = recommend(requirements.objective, required_limits(requirements), branches);

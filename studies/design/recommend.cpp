@@ -29,16 +29,22 @@ double moved(Limit const& limit, double factor) {
   return from_below(limit.bound) ? limit.value * factor : limit.value / factor;
 }
 
-double best_objective(DesignProblem const& problem, std::vector<DesignBranch> const& branches) {
-  BranchSolution const best = solve_branches(problem, branches).front().solution;
-  return best.feasible() ? best.objective : HUGE_VAL;
-}
+/// A question's branches, and the benches of each that its problems have found so far.
+struct Search {
+  std::vector<DesignBranch> const& branches;
+  std::vector<KnownBenches> known{branches.size()};
 
-double objective_with(DesignProblem problem, std::size_t index, double limit,
-                      std::vector<DesignBranch> const& branches) {
-  problem.limits[index].value = limit;
-  return best_objective(problem, branches);
-}
+  std::vector<BranchOutcome> solved(DesignProblem const& problem) { return solve_branches(problem, branches, &known); }
+  bool feasible(DesignProblem const& problem) { return any_feasible(problem, branches, known); }
+  double objective(DesignProblem const& problem) {
+    BranchSolution const best = solved(problem).front().solution;
+    return best.feasible() ? best.objective : HUGE_VAL;
+  }
+  double objective_with(DesignProblem problem, std::size_t index, double limit) {
+    problem.limits[index].value = limit;
+    return objective(problem);
+  }
+};
 
 std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome const& best) {
   std::vector<std::string> names;
@@ -56,11 +62,15 @@ std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome 
   return names;
 }
 
-void add_costs(Recommendation& answer, DesignProblem const& problem, std::vector<DesignBranch> const& branches) {
+/// @return the best objective of the stricter problems
+double add_costs(Recommendation& answer, DesignProblem const& problem, Search& search) {
   double const best = answer.outcomes.front().solution.objective;
-  double dearest = 1e-4;
+  double dearest = 1e-4, least = best;
+  answer.costs.clear();
+  answer.front_bound = Bound::focus;
   for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-    double const then = objective_with(problem, i, moved(problem.limits[i], 1 + stricter), branches);
+    double const then = search.objective_with(problem, i, moved(problem.limits[i], 1 + stricter));
+    least = std::min(least, then);
     double const change = std::isfinite(then) ? then / best - 1 : HUGE_VAL;
     answer.costs.push_back({problem.limits[i].bound, change});
     double const counted = std::isfinite(change) ? change : 1.0;
@@ -68,19 +78,45 @@ void add_costs(Recommendation& answer, DesignProblem const& problem, std::vector
     dearest = counted;
     answer.front_bound = problem.limits[i].bound;
   }
-  if (answer.front_bound == Bound::focus) return;
+  return least;
+}
+
+/// @return the best objective of the points that are as strict as required or more
+double add_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
+  answer.front.clear();
+  if (answer.front_bound == Bound::focus) return HUGE_VAL;
   auto const of_front = std::find_if(problem.limits.begin(), problem.limits.end(),
                                      [&](Limit const& limit) { return limit.bound == answer.front_bound; });
   auto const index = static_cast<std::size_t>(of_front - problem.limits.begin());
-  for (int k = 0; k < front_points; ++k) {
-    double const limit = of_front->value * std::pow(front_span, 2.0 * k / (front_points - 1) - 1);
-    double const then = objective_with(problem, index, limit, branches);
+  double least = HUGE_VAL;
+  for (int k = 0; k < front_points; ++k) {  // the strictest first: what keeps it keeps the others
+    double const lenience = std::pow(front_span, 2.0 * k / (front_points - 1) - 1);
+    double const limit = moved(*of_front, 1 / lenience);
+    double const then = search.objective_with(problem, index, limit);
+    if (lenience < 1 + 1e-9) least = std::min(least, then);
     if (std::isfinite(then)) answer.front.push_back({limit, then});
+  }
+  std::sort(answer.front.begin(), answer.front.end(),
+            [](FrontPoint const& a, FrontPoint const& b) { return a.limit < b.limit; });
+  return least;
+}
+
+/// What the requirements cost. A stricter one that gains shows a better bench for the requirements as they are: they
+/// are solved again, which knows it.
+void add_costs_and_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
+  constexpr int most_rounds = 8;
+  constexpr double gain = 1 - 1e-6;  // that is none
+  for (int round = 0; round < most_rounds; ++round) {
+    double const best = answer.outcomes.front().solution.objective;
+    double least = add_costs(answer, problem, search);
+    if (least >= best * gain) least = add_front(answer, problem, search);
+    if (least >= best * gain) return;
+    answer.outcomes = search.solved(problem);
   }
 }
 
 /// The fewest of the limits that no bench keeps together.
-std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, std::vector<DesignBranch> const& branches) {
+std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, Search& search) {
   std::size_t const count = problem.limits.size();
   for (std::size_t size = 0; size <= count; ++size) {
     for (std::uint32_t set = 0; set < (1u << count); ++set) {
@@ -92,7 +128,7 @@ std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, std::ve
         chosen.push_back(i);
         part.limits.push_back(problem.limits[i]);
       }
-      if (!any_feasible(part, branches)) return chosen;
+      if (!search.feasible(part)) return chosen;
     }
   }
   return {};
@@ -100,7 +136,7 @@ std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, std::ve
 
 /// The least that a limit has to give way, the others kept: the share of it by which the most lenient bench exceeds it.
 void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::vector<std::size_t> const& conflict,
-                     std::vector<DesignBranch> const& branches) {
+                     Search& search) {
   constexpr double most = 1e3;  // no one gives way further
   for (std::size_t const index : conflict) {
     answer.conflicts.push_back(problem.limits[index].bound);
@@ -112,7 +148,7 @@ void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::
             i == index || (from_below(problem.limits[i].bound) && from_below(problem.limits[index].bound));
         if (same) relaxed.limits[i].value = moved(problem.limits[i], 1 / factor);
       }
-      return any_feasible(relaxed, branches);
+      return search.feasible(relaxed);
     };
     if (!feasible_at(most)) continue;
     double low = 1, high = most;
@@ -124,9 +160,20 @@ void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::
   }
 }
 
+/// Once more where nothing is feasible, from the best benches of the problem with one limit dropped.
+void search_again(Recommendation& answer, DesignProblem const& problem, Search& search) {
+  for (std::size_t i = 0; i < problem.limits.size(); ++i) {
+    DesignProblem without = problem;
+    without.limits.erase(without.limits.begin() + static_cast<std::ptrdiff_t>(i));
+    search.solved(without);
+  }
+  answer.outcomes = search.solved(problem);
+}
+
 }  // namespace
 
-std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches) {
+std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
+                                          std::vector<KnownBenches>* known) {
   throw_if_interrupted();
   std::vector<BranchOutcome> outcomes(branches.size());
   parallel_for(branches.size(), [&](std::size_t i) {
@@ -137,7 +184,8 @@ std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vec
       outcome.skipped = true;
       outcome.solution.worst = *bound;
     } else {
-      outcome.solution = solve(whole, branches[i]);
+      outcome.solution = solve(whole, branches[i], known ? (*known)[i] : KnownBenches{});
+      if (known) (*known)[i].push_back(outcome.solution.logarithms);
     }
   });
   std::stable_sort(outcomes.begin(), outcomes.end(), [](BranchOutcome const& a, BranchOutcome const& b) {
@@ -148,13 +196,16 @@ std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vec
   return outcomes;
 }
 
-bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches) {
+bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
+                  std::vector<KnownBenches> const& known) {
   throw_if_interrupted();
   std::atomic<bool> found = false;
   parallel_for(branches.size(), [&](std::size_t i) {
     if (found) return;
     DesignProblem const whole = complete(problem, branches[i]);
-    if (!excluded_by(whole, branches[i]) && least_violation(whole, branches[i]).feasible()) found = true;
+    if (excluded_by(whole, branches[i])) return;
+    BranchSolution const least = least_violation(whole, branches[i], known.empty() ? KnownBenches{} : known[i]);
+    if (least.feasible()) found = true;
   });
   return found;
 }
@@ -162,13 +213,15 @@ bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const&
 Recommendation recommend(Objective objective, std::vector<Limit> const& required,
                          std::vector<DesignBranch> const& branches) {
   DesignProblem const problem{objective, required};
+  Search search{branches};
   Recommendation answer;
-  answer.outcomes = solve_branches(problem, branches);
+  answer.outcomes = search.solved(problem);
+  if (!answer.feasible()) search_again(answer, problem, search);
   if (answer.feasible()) {
+    add_costs_and_front(answer, problem, search);
     answer.binding = binding_of(problem, answer.outcomes.front());
-    add_costs(answer, problem, branches);
   } else {
-    add_relaxations(answer, problem, smallest_conflict(problem, branches), branches);
+    add_relaxations(answer, problem, smallest_conflict(problem, search), search);
   }
   return answer;
 }

@@ -48,11 +48,15 @@ struct Recommendation {
 };
 
 /// Solves every branch.
+/// @param known of every branch, or null; what is found is added to it
 /// @return outcomes, the best first
-std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches);
+std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
+                                          std::vector<KnownBenches>* known = nullptr);
 
 /// Whether any branch has a bench within the limits.
-bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches);
+/// @param known of every branch, or empty
+bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
+                  std::vector<KnownBenches> const& known = {});
 
 /// The best bench, what binds and what each requirement costs; or the smallest set of requirements that conflict, and
 /// how far each of them would have to give way for the others to be kept.

@@ -10,8 +10,10 @@ namespace {
 
 using Jet = ceres::Jet<double, choice_count>;
 
-constexpr int candidates = 240;  // points that the starts are the best of
-constexpr int starts = 8;
+constexpr int candidates = 480;  // points that the starts are the best of
+constexpr std::size_t starts = 8;
+constexpr std::size_t known_starts = 4;  // of the benches known from other problems
+constexpr double apart = 0.1;            // of two starts, in an interval's length
 constexpr int most_evaluations = 300;
 constexpr double tolerance = 1e-9;
 
@@ -108,14 +110,34 @@ std::vector<double> spread_point(DesignBranch const& branch, int index) {
   return x;
 }
 
-/// The best of many points, the best first.
-std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch) {
-  std::vector<BranchSolution> points;
+bool far_from(std::vector<BranchSolution> const& chosen, BranchSolution const& point, DesignBranch const& branch) {
+  return std::none_of(chosen.begin(), chosen.end(), [&](BranchSolution const& other) {
+    double distance = 0;
+    for (std::size_t i = 0; i < branch.continuous.size(); ++i) {
+      double const length = std::log(branch.continuous[i].high / branch.continuous[i].low);
+      if (length > 0) distance = std::max(distance, std::abs(point.logarithms[i] - other.logarithms[i]) / length);
+    }
+    return distance < apart;
+  });
+}
+
+/// Where the search starts, the best first: the best of many points, each far from the others, so that a narrow region
+/// behind a worse one is found, too; and the best of the known benches.
+std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch,
+                                         KnownBenches const& known) {
+  std::vector<BranchSolution> points, chosen, before;
   int const count = branch.continuous.empty() ? 1 : candidates;
   for (int i = 0; i < count; ++i) points.push_back(judged(problem, branch, spread_point(branch, i)));
   std::stable_sort(points.begin(), points.end(), better);
-  if (points.size() > starts) points.resize(starts);
-  return points;
+  for (BranchSolution const& point : points) {
+    if (chosen.size() < starts && far_from(chosen, point, branch)) chosen.push_back(point);
+  }
+  for (std::vector<double> const& x : known) before.push_back(judged(problem, branch, x));
+  std::stable_sort(before.begin(), before.end(), better);
+  if (before.size() > known_starts) before.resize(known_starts);
+  chosen.insert(chosen.end(), before.begin(), before.end());
+  std::stable_sort(chosen.begin(), chosen.end(), better);
+  return chosen;
 }
 
 std::vector<double> minimised(Task& task, std::vector<double> x) {
@@ -135,8 +157,8 @@ std::vector<double> minimised(Task& task, std::vector<double> x) {
   optimizer.set_upper_bounds(high);
   optimizer.set_min_objective(objective_of, &task);
   optimizer.add_inequality_mconstraint(limits_of, &task, std::vector<double>(task.problem->limits.size(), tolerance));
+  // by the choices alone: the slack stands still where limits bend, long before it is least
   optimizer.set_xtol_rel(1e-12);
-  optimizer.set_ftol_rel(1e-12);
   optimizer.set_maxeval(most_evaluations);
   double value = 0;
   try {
@@ -170,23 +192,26 @@ std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch cons
   return std::nullopt;
 }
 
-BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch) {
-  std::vector<BranchSolution> const points = start_points(problem, branch);
+BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known) {
+  std::vector<BranchSolution> const points = start_points(problem, branch, known);
   BranchSolution best = points.front();
   for (BranchSolution const& start : points) {
     if (best.feasible() || branch.continuous.empty()) return best;
-    Task task{&problem, &branch, true};
-    BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
-    if (better(found, best)) best = found;
+    for (bool const slack : {true, false}) {  // where one gets stuck, the other may not
+      Task task{&problem, &branch, slack};
+      BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
+      if (better(found, best)) best = found;
+    }
   }
   return best;
 }
 
-BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch) {
-  BranchSolution best = least_violation(problem, branch);
+BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known) {
+  BranchSolution best = least_violation(problem, branch, known);
   if (!best.feasible() || branch.continuous.empty()) return best;
-  std::vector<BranchSolution> points = start_points(problem, branch);
+  std::vector<BranchSolution> points = start_points(problem, branch, known);
   points.push_back(best);
+  if (better(points.front(), best)) best = points.front();
   for (BranchSolution const& start : points) {
     Task task{&problem, &branch, false};
     BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));

@@ -17,15 +17,20 @@ struct BranchSolution {
   bool feasible() const { return violation <= allowed_excess; }
 };
 
+/// Benches of a branch that are known from other problems, by the logarithms of the continuous choices: more starts,
+/// and a solution is never worse than the best of them.
+using KnownBenches = std::vector<std::vector<double>>;
+
 /// Why no bench of the branch can keep a limit, told by the ends of its intervals alone; nothing: it may.
 std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch);
 
 /// Minimises the objective within the limits by sequential quadratic programming (Kraft's SLSQP, ACM Trans. Math.
 /// Softw. 20 (1994) 262, as NLopt has it) in the logarithms of the choices, with derivatives from Jets, from several
 /// starts. Where none keeps the limits, the bench that exceeds them least.
-BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch);
+BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known = {});
 
 /// The bench that exceeds its worst limit least, with no regard to the objective. Ends early where one keeps them all.
-BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch);
+BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch,
+                               KnownBenches const& known = {});
 
 }  // namespace gladstone

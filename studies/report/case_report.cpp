@@ -11,6 +11,7 @@
 #include "studies/budget_stages.h"
 #include "studies/case_files.h"
 #include "studies/compare.h"
+#include "studies/report/bench_view.h"
 #include "studies/report/case_view.h"
 #include "studies/report/report.h"
 #include "studies/sweep/job_array.h"
@@ -159,6 +160,8 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   page.findings = findings_of(view);
   bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
   page.data = {{"errors", view.errors}, {"budget", budget_json(all.budget)}};
+  std::optional<BenchView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
+  if (bench) page.sections.push_back(bench_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) {
     page.data["fields"] = view.fields;
@@ -189,7 +192,10 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
   }
   page.sections.push_back(std::move(uncertainty));
   auto const draw = [&](std::string const& folder, std::string const& format) {
-    return draw_comparison(folder, all, format);
+    std::vector<std::string> drawn = draw_comparison(folder, all, format);
+    if (!bench) return drawn;
+    for (std::string& path : draw_bench(folder, format, *bench)) drawn.push_back(std::move(path));
+    return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
     page.sections.push_back(std::move(figures));

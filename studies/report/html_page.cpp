@@ -87,6 +87,13 @@ struct HtmlBlock {
         escaped(pair.title), picture(pair.first_name, pair.first_png), picture(pair.second_name, pair.second_png));
   }
 
+  std::string operator()(Picture const& picture) const {
+    return fmt::format(
+        "<figure class=\"picture\"><figcaption>{0}</figcaption>\n<img alt=\"{1}\" "
+        "src=\"data:image/png;base64,{2}\">\n<p class=\"alt\">{1}</p></figure>\n",
+        escaped(picture.title), escaped(picture.alt), base64(picture.png));
+  }
+
   std::string operator()(FigureFile const& figure) const {
     return fmt::format("<p>Figure file: <code>{}</code></p>\n", escaped(figure.path));
   }

@@ -11,6 +11,8 @@
 #include "studies/case_files.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
+#include "studies/figures/map_panels.h"
+#include "studies/report/bench_view.h"
 #include "studies/report/case_view.h"
 #include "studies/report/measured_density.h"
 #include "studies/report/report.h"
@@ -27,7 +29,7 @@ struct MeasuredGradients {
   std::vector<Vec2d> gradient;  ///< NaN where a vector does not count [kg/m^4]
   std::vector<Vec2d> random;    ///< standard uncertainty by the displacement's
   std::vector<Vec2d> combined;  ///< with that of the setup's numbers
-  bool estimated = false;       ///< the displacements' uncertainties are the estimator's, else the formula's
+  std::size_t estimated = 0;    ///< of vectors whose displacement's uncertainty is the estimator's, else the formula's
   double common = 0;            ///< relative, of the setup's numbers
   std::size_t count = 0;        ///< of vectors
 };
@@ -82,7 +84,6 @@ MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double 
 MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> const& bench, double common) {
   MeasuredGradients all;
   all.common = common;
-  all.estimated = !field.sigma_px.empty();
   double const per_px = 1 / bench.sensitivity(), formula = bench.random_error();
   for (std::size_t i = 0; i < field.size(); ++i) {
     bool const counts =
@@ -95,8 +96,12 @@ MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> con
       continue;
     }
     ++all.count;
-    Vec2d sigma = all.estimated ? field.sigma_px[i] : Vec2d{formula, formula};
-    if (!std::isfinite(sigma.x) || !std::isfinite(sigma.y)) sigma = {formula, formula};
+    Vec2d sigma = field.sigma_px.empty() ? unknown : field.sigma_px[i];
+    if (std::isfinite(sigma.x) && std::isfinite(sigma.y)) {
+      ++all.estimated;
+    } else {
+      sigma = {formula, formula};
+    }
     Vec2d const g = Vec2d{-field.displacement_px[i].x, field.displacement_px[i].y} * per_px;
     Vec2d const random = sigma * per_px;
     all.gradient.push_back(g);
@@ -131,6 +136,40 @@ void add_map(nlohmann::json& fields, std::string const& name, std::string const&
                     {"v", component_json(values, &Vec2d::y)}});
 }
 
+/// Where the displacements' uncertainty comes from.
+std::string source_of_sigma(MeasuredGradients const& all) {
+  if (all.estimated == all.count) return "the estimator's own, from the images";
+  if (all.estimated == 0) return "by the formula of the random error (F26), since the vectors have none";
+  return fmt::format(
+      "the estimator's own, from the images, at {} vectors, and by the formula of the random error (F26) at {} that "
+      "have none",
+      all.estimated, all.count - all.estimated);
+}
+
+/// Displacement, gradient and its combined standard uncertainty on the lattice of the vectors.
+std::string draw_maps(std::string const& path, DisplacementField const& field, MeasuredGradients const& all) {
+  MapFigure figure;
+  figure.title = "Measured displacement, density gradient and its combined standard uncertainty";
+  figure.axes.x_first = field.position_px.front().x;
+  figure.axes.y_first = field.position_px.front().y;
+  figure.axes.x_step = field.position_px[1].x - figure.axes.x_first;
+  figure.axes.y_step = field.position_px[static_cast<std::size_t>(field.columns)].y - figure.axes.y_first;
+  auto const add = [&](std::string const& title, std::vector<Vec2d> const& values, double Vec2d::*component,
+                       ColourScale scale, std::string const& group) {
+    Image<double> map(field.columns, field.rows);
+    for (std::size_t i = 0; i < values.size(); ++i) map.data()[i] = values[i].*component;
+    figure.panels.push_back({title, std::move(map), scale, group});
+  };
+  add("u [px]", field.displacement_px, &Vec2d::x, ColourScale::diverging, "displacement");
+  add("v [px]", field.displacement_px, &Vec2d::y, ColourScale::diverging, "displacement");
+  add("∂ρ/∂x [kg/m⁴]", all.gradient, &Vec2d::x, ColourScale::diverging, "gradient");
+  add("∂ρ/∂y [kg/m⁴]", all.gradient, &Vec2d::y, ColourScale::diverging, "gradient");
+  add("u_c of ∂ρ/∂x [kg/m⁴]", all.combined, &Vec2d::x, ColourScale::magnitude, "uncertainty");
+  add("u_c of ∂ρ/∂y [kg/m⁴]", all.combined, &Vec2d::y, ColourScale::magnitude, "uncertainty");
+  write_map_figure(path, figure);
+  return path;
+}
+
 /// Statements in the words of the GUM (JCGM 100:2008).
 std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResult const& gradient,
                                     std::vector<MeasurementInput> const& inputs, SimulatedTwin const* twin,
@@ -161,8 +200,7 @@ std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResu
     said.push_back(fmt::format(
         "The uncertainty of the displacement is of type B: {}. There is no evaluation of type A, for which the "
         "measurement would have to be repeated (--repeats).",
-        all.estimated ? "the estimator's own, from the images"
-                      : "by the formula of the random error, since the vectors have none"));
+        source_of_sigma(all)));
   }
   if (inputs.size() > 1) {
     said.push_back(fmt::format(
@@ -302,6 +340,8 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   std::vector<std::string> const said =
       statements(all, gradient, inputs, twin ? &*twin : nullptr, bench.sensitivity(), mean);
   page.findings = {said[0], said[1], said.back()};
+  std::optional<BenchView> const drawn_bench = bench_view(load_case_setup(setup_file, {}));
+  if (drawn_bench) page.sections.push_back(bench_section(*drawn_bench, "the measurement"));
   if (fs::exists(fs::path(options.source) / case_file::reference) &&
       fs::exists(fs::path(options.source) / case_file::flow)) {
     page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
@@ -335,6 +375,16 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
                                            : "There is no simulated twin: the vectors are no complete lattice."});
   }
   page.sections.push_back(std::move(causes));
+  auto const draw = [&](std::string const& folder, std::string const& format) {
+    std::vector<std::string> drawn;
+    if (gridded) drawn.push_back(draw_maps(folder + "/measured_maps." + format, field, all));
+    if (!drawn_bench) return drawn;
+    for (std::string& path : draw_bench(folder, format, *drawn_bench)) drawn.push_back(std::move(path));
+    return drawn;
+  };
+  if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
+    page.sections.push_back(std::move(figures));
+  }
   page.sections.push_back({"Settings", {Verbatim{"The setup", read_text_file(setup_file)}}});
   std::string const place = shell_word(options.source);
   std::vector<std::pair<std::string, std::string>> sources{{"setup", file_hash(setup_file)},

@@ -46,12 +46,18 @@ struct FramePictures {
   std::string first_name, second_name;
   std::string first_png, second_png;  ///< bytes
 };
+/// A figure that the report holds; as Markdown it is told by its words.
+struct Picture {
+  std::string title;
+  std::string alt;  ///< what it shows, in numbers
+  std::string png;  ///< bytes
+};
 /// A figure that is a file beside the report.
 struct FigureFile {
   std::string path;  ///< relative to the report
   std::string alt;
 };
-using ReportBlock = std::variant<Paragraph, TextList, Verbatim, TextTable, Chart, FramePictures, FigureFile>;
+using ReportBlock = std::variant<Paragraph, TextList, Verbatim, TextTable, Chart, FramePictures, Picture, FigureFile>;
 
 struct ReportSection {
   std::string title;

@@ -12,6 +12,7 @@
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
 #include "studies/json_text.h"
+#include "studies/report/bench_view.h"
 #include "studies/report/report.h"
 #include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
@@ -105,6 +106,15 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
   return frame_pictures(folder, title);
 }
 
+/// The bench of a case, from its setup; nothing where what it names is not there any more.
+std::optional<BenchView> bench_of_case(std::string const& setup, std::size_t index) {
+  try {
+    return bench_view(load_case_setup(SetupDocument::from_text(setup, fmt::format("the setup of case {}", index))));
+  } catch (Error const&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 ReportPage run_report(ReportOptions const& options) {
@@ -129,6 +139,9 @@ ReportPage run_report(ReportOptions const& options) {
   page.data = data_of(study);
   auto const free = std::count_if(study.table.axes.begin(), study.table.axes.end(),
                                   [](StudyAxis const& axis) { return axis.labels.size() > 1; });
+  auto const manifest_entries = read_manifest(run);
+  std::optional<BenchView> const bench = bench_of_case(manifest_entries[best.index].setup, best.index);
+  if (bench) page.sections.push_back(bench_section(*bench, fmt::format("case {}, the best", best.index)));
   ReportSection errors{"Error over the axes", {}};
   if (free > 0) errors.blocks.push_back(Chart{"curves", "A measure over an axis", page.findings.front()});
   if (free > 1) errors.blocks.push_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
@@ -144,7 +157,10 @@ ReportPage run_report(ReportOptions const& options) {
   page.sections.push_back(
       {"Best and worst case", {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}});
   auto const draw = [&](std::string const& folder, std::string const& format) {
-    return draw_study(folder, study.table, {format});
+    std::vector<std::string> drawn = draw_study(folder, study.table, {format});
+    if (!bench) return drawn;
+    for (std::string& path : draw_bench(folder, format, *bench)) drawn.push_back(std::move(path));
+    return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
     page.sections.push_back(std::move(figures));
@@ -155,7 +171,7 @@ ReportPage run_report(ReportOptions const& options) {
   ReportSection settings{"Settings", {}};
   if (fs::exists(study_file)) settings.blocks.push_back(Verbatim{"The study", read_text_file(study_file)});
   settings.blocks.push_back(
-      Verbatim{fmt::format("The setup of case {}, the best", best.index), read_manifest(run)[best.index].setup});
+      Verbatim{fmt::format("The setup of case {}, the best", best.index), manifest_entries[best.index].setup});
   std::string seeds, builds;
   std::vector<std::uint64_t> told;
   for (StudyRow const& row : study.table.rows) {

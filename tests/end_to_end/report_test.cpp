@@ -34,6 +34,8 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   std::string const html = read("run/report.html");
   EXPECT_THAT(html, HasSubstr("How wrong is the measured displacement against Eq. 9"));
   EXPECT_THAT(html, HasSubstr("6 of 6 cases are finished"));
+  EXPECT_THAT(html,
+              HasSubstr(", the best</figcaption>\n<img alt=\"Seen from the side, to scale: the dots stand Z_D = "));
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBOR"));
   nlohmann::json const data = data_of("run/report.html");
   ASSERT_EQ(data["rows"].size(), 6u);
@@ -69,7 +71,11 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     ++told;
   }
   EXPECT_GT(told, 0u);
-  EXPECT_THAT(read("case/report.html"), HasSubstr("expanded uncertainty"));
+  std::string const html = read("case/report.html");
+  EXPECT_THAT(html, HasSubstr("expanded uncertainty"));
+  EXPECT_THAT(html, HasSubstr("Layout of the case"));
+  EXPECT_THAT(html, HasSubstr("<img alt=\"Seen from the side, to scale: the dots stand Z_D = "));
+  EXPECT_THAT(html, HasSubstr("Design map of the case"));
 }
 
 // Frames and vectors that somebody measured, with a setup that describes the bench and no truth: what is told rests on
@@ -108,6 +114,14 @@ window_px = [32, 16]
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("geometry.z_d_mm"));
+  EXPECT_THAT(html, HasSubstr("the dots stand Z_D = 250 mm behind the medium"));
+  EXPECT_THAT(html, HasSubstr("of type B: by the formula of the random error (F26), since the vectors have none"));
+  succeed({"report", "measured", "--format", "md", "-o", "text/m.md", "--figures", "paper", "--figure-format", "svg",
+           "--quiet"});
+  EXPECT_THAT(read("text/m.md"), HasSubstr("measured_maps.svg"));
+  for (char const* const figure : {"measured_maps", "layout", "design_map"}) {
+    EXPECT_THAT(read(std::string("paper/") + figure + ".svg"), HasSubstr("</svg>")) << figure;
+  }
   nlohmann::json const data = data_of("measured/report.html");
   auto const mean_of = [&](std::string const& name, char const* component) {
     for (nlohmann::json const& one : data["fields"]) {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "render/base/error.h"
+#include "studies/demo.h"
+#include "studies/design/branches.h"
 #include "studies/design/recommend.h"
 #include "tests/studies/support/table1_bench.h"
 
@@ -177,6 +180,105 @@ TEST(Design, IsNeverWorseThanAGridOfAHundredThousandSetups) {
   }
   EXPECT_GE(feasible, 8);
   EXPECT_LE(feasible, 19);
+}
+
+/// The shipped question with some keys replaced, and its branches.
+struct ShippedQuestion {
+  DesignQuestion question;
+  std::vector<DesignVariant> variants;
+  std::vector<SkippedVariant> skipped;
+  std::vector<DesignBranch> branches;
+
+  explicit ShippedQuestion(std::vector<std::string> const& overrides) {
+    SetupDocument document = SetupDocument::from_file(shared_folder() + "/studies/cases/design.toml");
+    for (std::string const& assignment : overrides) document.override_key(assignment);
+    SetupDocument const written = document.copy();
+    question = *read_design_question(document);
+    variants = design_variants(written, question, skipped);
+    branches = design_branches(variants, question);
+  }
+  Recommendation recommended() const {
+    return recommend(question.requirements.objective, required_limits(question.requirements), branches);
+  }
+};
+
+// One lens and one stop, about 85 mm and f/22: f = 85 mm, Z_A = 1100 mm, Z_D = 640 mm, dots of 0.2 mm keep 0.08 kg/m^4
+// already, so that they keep what is more lenient.
+TEST(Design, FindsWhatKeepsAStricterRequirement) {
+  for (char const* const gradient : {"0.08", "0.09", "0.10", "0.11", "0.12", "0.13"}) {
+    ShippedQuestion const asked({"requirements.objective=\"z_total\"",
+                                 std::string("requirements.gradient_min_kg_m4=") + gradient,
+                                 "inventory.focal_lengths_mm=[85]", "inventory.f_numbers=[22]"});
+    EXPECT_TRUE(solve_branches({asked.question.requirements.objective, required_limits(asked.question.requirements)},
+                               asked.branches)
+                    .front()
+                    .solution.feasible())
+        << gradient;
+  }
+}
+
+// What keeps the stricter requirement keeps the one as it is, so that no cost is negative, and a front falls or rises
+// with its limit. At 0.1 kg/m^4 f = 50 mm, f/22, Z_A = 556.0 mm, Z_D = 649.1 mm, dots of 0.2432 mm are 1205.1 mm long.
+TEST(Design, NoStricterRequirementGains) {
+  double longer = HUGE_VAL;
+  for (char const* const gradient : {"0.08", "0.09", "0.1", "0.1001"}) {
+    ShippedQuestion const asked(
+        {"requirements.objective=\"z_total\"", std::string("requirements.gradient_min_kg_m4=") + gradient});
+    Recommendation const answer = asked.recommended();
+    ASSERT_TRUE(answer.feasible()) << gradient;
+    double const length = answer.outcomes.front().solution.objective;
+    EXPECT_LE(length, longer * (1 + 1e-6)) << gradient;
+    longer = length;
+    for (RequirementCost const& cost : answer.costs) EXPECT_GE(cost.change, -1e-4) << bound_name(cost.bound);
+    bool const more_is_stricter = answer.front_bound == Bound::view_width || answer.front_bound == Bound::view_height;
+    for (std::size_t i = 1; i < answer.front.size(); ++i) {
+      double const ratio = answer.front[i].objective / answer.front[i - 1].objective;
+      EXPECT_LE(more_is_stricter ? 1 / ratio : ratio, 1 + 1e-6) << gradient << ' ' << answer.front[i].limit;
+    }
+  }
+  EXPECT_LE(longer, 1.2051);
+}
+
+// A set drawn at random, for which a long random search found 0.10094 kg/m^4.
+TEST(Design, FindsTheBestBehindALongSearch) {
+  ShippedQuestion const asked({"requirements.resolution_mm=4.27776475182963", "requirements.displacement_max_px=1e6",
+                               "requirements.field_of_view_mm=[87.64111349495506, 87.64111349495506]",
+                               "requirements.uncertainty_max_px=0.006686455823232469",
+                               "limits.z_total_max_mm=1506.2281774327887"});
+  Recommendation const answer = asked.recommended();
+  ASSERT_TRUE(answer.feasible());
+  EXPECT_LE(answer.outcomes.front().solution.objective, 1.02 * 0.10094);
+}
+
+// Dots of 3 mm would cover the target more than once; they are chosen, so that this
+// refuses nothing.
+TEST(DesignBranches, DotsThatAreChosenDoNotRefuseACamera) {
+  ShippedQuestion const asked({"target.dot_diameter_mm=3"});
+  EXPECT_EQ(asked.variants.size(), 1u);
+  EXPECT_TRUE(asked.skipped.empty());
+}
+
+// Dots of 0.3 mm at M = 0.07 are 3.8 px of 5.5 um and 10.5 px of 2 um, 20 of which in 32 px cover 1.7 of the target.
+TEST(DesignBranches, SkipsACameraThatDoesNotGoWithTheSetup) {
+  SetupDocument document = SetupDocument::from_file(shared_folder() + "/studies/cases/design.toml");
+  document.override_key("target.dot_diameter_mm=0.3");
+  DesignQuestion question;
+  question.free = {interval(Choice::z_a, 0.3, 2)};
+  auto const camera = [](double pitch_um) {
+    SetupNode table;
+    table.members.push_back({"pixel_pitch_um", setup_number(pitch_um)});
+    return table;
+  };
+  question.cameras = {{"/wide.toml", camera(5.5)}, {"/narrow.toml", camera(2)}};
+  std::vector<SkippedVariant> skipped;
+  std::vector<DesignVariant> const variants = design_variants(document, question, skipped);
+  ASSERT_EQ(variants.size(), 1u);
+  EXPECT_EQ(variants.front().camera, "/wide.toml");
+  ASSERT_EQ(skipped.size(), 1u);
+  EXPECT_EQ(skipped.front().name(), "narrow.toml");
+  EXPECT_THAT(skipped.front().reason, testing::HasSubstr("would cover"));
+  question.cameras = {{"/narrow.toml", camera(2)}};
+  EXPECT_THROW(design_variants(document, question, skipped), SetupError);
 }
 
 }  // namespace

@@ -29,11 +29,11 @@ ReportPage hostile_page() {
   page.title = hostile;
   page.question = hostile;
   page.findings = {hostile};
-  page.sections = {
-      {hostile,
-       {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
-        TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true}, Chart{"curves", hostile, hostile},
-        FramePictures{hostile, hostile, "a", "b", "one", "two"}, FigureFile{hostile, hostile}}}};
+  page.sections = {{hostile,
+                    {Paragraph{hostile}, TextList{{hostile}}, Verbatim{hostile, hostile},
+                     TextTable{hostile, {hostile}, {{{hostile}, TableCell::of(0.1234567)}}, true},
+                     Chart{"curves", hostile, hostile}, FramePictures{hostile, hostile, "a", "b", "one", "two"},
+                     Picture{hostile, hostile, "three"}, FigureFile{hostile, hostile}}}};
   page.data = {{"text", hostile}};
   return page;
 }
@@ -51,6 +51,7 @@ TEST(ReportPage, HoldsAllThatItNeeds) {
   EXPECT_THAT(html, HasSubstr("default-src 'none'"));
   EXPECT_THAT(html, HasSubstr("d3js.org v5"));
   EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64," + base64("one")));
+  EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64," + base64("three")));
   EXPECT_THAT(html, HasSubstr("Copyright"));
   EXPECT_THAT(html, HasSubstr("{\"text\":\"\\u003c/script>\\u003cscript>"));
 }
