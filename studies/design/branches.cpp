@@ -184,9 +184,7 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
-  bool const chooses_dots = std::any_of(question.free.begin(), question.free.end(),
-                                        [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
-  if (chooses_dots) leave_out(document, "target", "dot_diameter_px");  // one size is enough
+  if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");  // one size is enough
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
     ChoiceKey const& key = key_of(free.choice);
@@ -202,9 +200,6 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   std::erase_if(root.members, [](SetupMember const& member) {
     return std::find(question_tables.begin(), question_tables.end(), member.key) != question_tables.end();
   });
-  if (SetupNode* const target = root.find("target"); target && chooses_dots(question)) {
-    std::erase_if(target->members, [](SetupMember const& member) { return member.key == "dot_diameter_px"; });
-  }
   return toml_document(root);
 }
 
