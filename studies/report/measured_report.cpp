@@ -142,7 +142,7 @@ std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResu
       "(effective "
       "degrees of freedom {}) for a coverage probability of 95.45 %.",
       gradient.coverage_factor * median, gradient.coverage_factor,
-      std::isfinite(gradient.degrees_of_freedom) ? fmt::format("{:.3g}", gradient.degrees_of_freedom) : "infinite"));
+      gradient.degrees_of_freedom < 1e6 ? fmt::format("{:.3g}", gradient.degrees_of_freedom) : "infinite"));
   said.push_back(fmt::format(
       "The uncertainty of the displacement is of type B: {}. There is no evaluation of type A, for which measurements "
       "would have to be repeated.",
@@ -228,7 +228,10 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   std::vector<double> sigma = finite_components(field.sigma_px);
   if (displacement.empty())
     throw DataError(vectors_file, "has no vector with a displacement; correlate the images anew");
-  std::vector<MeasurementInput> inputs{{"displacement_px", rms_of(displacement),
+  // where nothing moved, a displacement that is too small to count: the parts of the setup's numbers are relative to it
+  constexpr double least_typical_px = 1e-9;
+  double const typical_px = std::max(rms_of(displacement), least_typical_px);
+  std::vector<MeasurementInput> inputs{{"displacement_px", typical_px,
                                         sigma.empty() ? bench.random_error() : quantile(sigma, 0.5),
                                         InputDistribution::normal, std::numeric_limits<double>::infinity(),
                                         GradientInput::displacement, 1, 1, std::nullopt}};
