@@ -115,7 +115,7 @@ window_px = [32, 16]
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("geometry.z_d_mm"));
   EXPECT_THAT(html, HasSubstr("the dots stand Z_D = 250 mm behind the medium"));
-  EXPECT_THAT(html, HasSubstr("of type B: by the formula of the random error (F26), since the vectors have none"));
+  EXPECT_THAT(html, HasSubstr("of type B: the estimator's own, from the images"));
   succeed({"report", "measured", "--format", "md", "-o", "text/m.md", "--figures", "paper", "--figure-format", "svg",
            "--quiet"});
   EXPECT_THAT(read("text/m.md"), HasSubstr("measured_maps.svg"));
@@ -139,6 +139,11 @@ window_px = [32, 16]
   double const common = (1 - 250.0 / 895) * 0.01 * 40;
   EXPECT_GT(mean_of("combined", "u"), common);
   EXPECT_NEAR(mean_of("combined", "u"), std::hypot(common, mean_of("random", "u")), 0.1 * common);
+  write("still.csv", "x,y,u,v\n10,10,0,0\n30,10,0,0\n10,30,0,0\n30,30,0,0\n");
+  succeed({"report", "measured", "--vectors", "still.csv", "--format", "md", "-o", "text/still.md", "--quiet"});
+  EXPECT_THAT(read("text/still.md"), testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(read("text/still.md"),
+              HasSubstr("by the formula of the random error (F26), since the vectors have none"));
   expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv"});
 }
 
