@@ -189,16 +189,19 @@ std::vector<std::string> statements(MeasuredGradients const& all, PropagatedResu
       "(effective "
       "degrees of freedom {}) for a coverage probability of 95.45 %.",
       gradient.coverage_factor * median, gradient.coverage_factor,
-  bool const repeated = mean.count > 1;
-  double const typical_sigma = repeated        ? rms_of(sigma)  // of few repeats the median is too small
-                               : sigma.empty() ? bench.random_error()
-                                               : quantile(sigma, 0.5);
-  double const degrees = repeated ? static_cast<double>(mean.count - 1) : std::numeric_limits<double>::infinity();
-  // where nothing moved, a displacement that is too small to count: the parts of the setup's numbers are relative to it
-  constexpr double least_typical_px = 1e-9;
-  double const typical_px = std::max(rms_of(displacement), least_typical_px);
-  std::vector<MeasurementInput> inputs{{"displacement_px", typical_px, typical_sigma, InputDistribution::normal, degrees,
-                                        GradientInput::displacement, 1, 1, std::nullopt}};
+      gradient.degrees_of_freedom < 1e6 ? fmt::format("{:.3g}", gradient.degrees_of_freedom) : "infinite"));
+  if (mean.count > 1) {
+    said.push_back(fmt::format(
+        "The uncertainty of the displacement is of type A: the standard deviation of the mean of {} repeats, {:.3g} px "
+        "rms over vectors and components, with {} degrees of freedom at each of them. What the measurements say of "
+        "themselves, of type B, would make it {:.3g} px in the median; it is not added.",
+        mean.count, inputs.front().sigma, mean.count - 1, mean.estimated_px));
+  } else {
+    said.push_back(fmt::format(
+        "The uncertainty of the displacement is of type B: {}. There is no evaluation of type A, for which the "
+        "measurement would have to be repeated (--repeats).",
+        source_of_sigma(all)));
+  }
   if (inputs.size() > 1) {
     said.push_back(fmt::format(
         "The numbers of the setup that are written with their uncertainty are of type B, {}, and the same at all "
