@@ -3,72 +3,91 @@
 #include <limits>
 
 #include "analysis/uncertainty/matched_windows.h"
+#include "analysis/uncertainty/pass_amplification.h"
 
 namespace gladstone {
 namespace {
 
-/// Terms of the difference are summed over squares of this side before they are squared: that adds the covariance of
-/// neighbours, with weights that fall off linearly with their distance (Bartlett). Terms of dots of 2 to 4 px have
-/// nothing in common beyond.
-constexpr int block_px = 5;
-/// What the linear fall-off leaves out of the covariance of dots of 3 px, and what the spline that deforms adds; found
-/// on the seeds of docs/estimators.md.
-constexpr double calibration = 1.3;
+/// Terms of the difference have no more in common beyond this distance along an axis than chance makes: the spline that
+/// deforms spreads the noise of a pixel over its neighbours, and alternates from there on. Terms so far apart count by
+/// half, so that what alternates from pixel to pixel cancels.
+constexpr int reach_px = 2;
 
-/// Sum of the squares of all sums over blocks, each block's share of a term taken off: the variance of the whole sum.
-double variance_of_sum(std::vector<float> const& term, int columns, int rows, std::vector<double>& across) {
-  int const wide = columns + block_px - 1;
-  across.assign(static_cast<std::size_t>(wide) * rows, 0.0);
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i)
-      for (int k = 0; k < block_px; ++k)
-        across[static_cast<std::size_t>(j) * wide + i + k] += term[static_cast<std::size_t>(j) * columns + i];
+/// Of a place that is anywhere within a pixel of the highest value [px^2]: a peak that is flat by chance says no more.
+constexpr double largest_variance = 1.0 / 3.0;
+
+/// Sum of the products of two values at most reach_px apart along either axis: of terms, the variance of their sum.
+double sum_of_products(std::vector<float> const& term, int side, std::vector<float>& across) {
+  auto const share = [](int distance) { return std::abs(distance) == reach_px ? 0.5f : 1.0f; };
+  across.assign(term.size(), 0.0f);
+  for (int j = 0; j < side; ++j)
+    for (int d = -reach_px; d <= reach_px; ++d)
+      for (int i = std::max(0, -d); i < std::min(side, side - d); ++i)
+        across[static_cast<std::size_t>(j) * side + i] += share(d) * term[static_cast<std::size_t>(j) * side + i + d];
   double sum = 0.0;
-  std::vector<double> column(static_cast<std::size_t>(wide));
-  for (int j = 0; j < rows + block_px - 1; ++j) {
-    std::fill(column.begin(), column.end(), 0.0);
-    for (int k = std::max(0, j - rows + 1); k < block_px && k <= j; ++k)
-      for (int i = 0; i < wide; ++i)
-        column[static_cast<std::size_t>(i)] += across[static_cast<std::size_t>(j - k) * wide + i];
-    for (double const value : column) sum += value * value;
-  }
-  return sum / (block_px * block_px);
+  for (int j = 0; j < side; ++j)
+    for (int k = std::max(0, j - reach_px); k <= std::min(side - 1, j + reach_px); ++k) {
+      float line = 0.0f;
+      for (int i = 0; i < side; ++i)
+        line += term[static_cast<std::size_t>(j) * side + i] * across[static_cast<std::size_t>(k) * side + i];
+      sum += static_cast<double>(share(k - j)) * line;
+    }
+  return sum;
 }
 
-/// Standard uncertainty along an axis: of three points of a Gaussian peak, u = (ln C- - ln C+)/(2 (ln C+ + ln C- -
-/// 2 ln C0)), so that sigma_u = sigma(C+ - C-)/(4 C1 ln(C0/C1)), C1 the mean of both.
-double uncertainty_along(MatchedWindow const& w, int dx, int dy, std::vector<float>& term,
-                         std::vector<double>& scratch) {
-  int const columns = w.side - dx, rows = w.side - dy;
-  term.resize(static_cast<std::size_t>(columns) * rows);
-  double centre = 0.0, beside = 0.0;
-  for (std::size_t k = 0; k < w.weight.size(); ++k)
+/// Variance along an axis: of three points of a Gaussian peak, u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)), so
+/// that sigma_u = sigma(C+ - C-)/(4 C1 ln(C0/C1)), C1 the mean of both. The terms a_i b_(i+1) - a_(i+1) b_i of the
+/// difference are s_i d_(i+1) - s_(i+1) d_i of the frames' mean s and difference d, and summed by parts
+/// d_i (s_(i-1) - s_(i+1)): the noise of a pixel then stands in one term, while as it is written it stands in two, with
+/// opposite signs, whose covariance reaches as far as dots are wide. The frames have been matched by what is judged, so
+/// that the sum has lost what it would have been; with the share p_i of a term in the variance, noise being equal
+/// everywhere, the sum over pairs of terms has lost the part sum p_i p_k of it, which is made good.
+double variance_along(MatchedWindow const& w, int dx, int dy, std::vector<float>& term, std::vector<float>& share,
+                      std::vector<float>& scratch) {
+  share.assign(w.weight.size(), 0.0f);
+  term.assign(w.weight.size(), 0.0f);
+  double centre = 0.0, beside = 0.0, overlap = 0.0, whole = 0.0;
+  for (std::size_t k = 0; k < w.weight.size(); ++k) {
     centre += static_cast<double>(w.weight[k]) * w.weight[k] * w.reference[k] * w.flow[k];
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
+    whole += static_cast<double>(w.weight[k]) * w.weight[k];
+  }
+  for (int j = 0; j + dy < w.side; ++j)
+    for (int i = 0; i + dx < w.side; ++i) {
       std::size_t const here = w.at(i, j), there = w.at(i + dx, j + dy);
       float const weight = w.weight[here] * w.weight[there];
-      float const forward = w.reference[here] * w.flow[there], backward = w.reference[there] * w.flow[here];
-      term[static_cast<std::size_t>(j) * columns + i] = weight * (forward - backward);
-      beside += 0.5 * static_cast<double>(weight) * (forward + backward);
+      float const sum_here = w.reference[here] + w.flow[here], sum_there = w.reference[there] + w.flow[there];
+      share[here] -= 0.5f * weight * sum_there;
+      share[there] += 0.5f * weight * sum_here;
+      beside +=
+          0.5 * static_cast<double>(weight) * (w.reference[here] * w.flow[there] + w.reference[there] * w.flow[here]);
+      overlap += static_cast<double>(weight);
     }
+  // as the correlator has it: the fall-off of the weights divided out
+  beside *= whole / overlap;
   if (!(beside > 0.0 && centre > beside)) return std::numeric_limits<double>::quiet_NaN();
-  double const deviation = std::sqrt(variance_of_sum(term, columns, rows, scratch));
-  return calibration * deviation / (4.0 * beside * std::log(centre / beside));
+  double const slope = 4.0 * beside * std::log(centre / beside) * overlap / whole;
+  float squares = 0.0f;
+  for (std::size_t k = 0; k < term.size(); ++k) {
+    term[k] = share[k] * (w.flow[k] - w.reference[k]);
+    share[k] *= share[k];
+    squares += share[k];
+  }
+  double const lost = sum_of_products(share, w.side, scratch) / (static_cast<double>(squares) * squares);
+  double const variance = sum_of_products(term, w.side, scratch) / ((1.0 - lost) * slope * slope);
+  return std::clamp(variance, 0.0, largest_variance);
 }
 
 }  // namespace
 
 std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
+  double const amplification = amplification_of_passes(input.settings), squared = amplification * amplification;
   std::vector<double> u(input.field.size(), nan), v = u;
   visit_matched_windows(input, [&](std::size_t i, MatchedWindow const& window) {
-    thread_local std::vector<float> term;
-    thread_local std::vector<double> scratch;
-    double const along_x = uncertainty_along(window, 1, 0, term, scratch);
-    double const along_y = uncertainty_along(window, 0, 1, term, scratch);
-    u[i] = along_x * along_x;
-    v[i] = along_y * along_y;
+    thread_local std::vector<float> term, share;
+    thread_local std::vector<float> scratch;
+    u[i] = squared * variance_along(window, 1, 0, term, share, scratch);
+    v[i] = squared * variance_along(window, 0, 1, term, share, scratch);
   });
   return sigma_of_variances(u, v, input.grid);
 }

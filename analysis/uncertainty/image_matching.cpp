@@ -3,43 +3,46 @@
 #include <limits>
 
 #include "analysis/uncertainty/particle_pairs.h"
+#include "analysis/uncertainty/pass_amplification.h"
 
 namespace gladstone {
 namespace {
 
-/// Fewest dots whose scatter says something.
-constexpr double fewest_dots = 3.0;
-/// Neighbouring dots share pixels, so that their disparities have errors in common and as many say less than if they
-/// were independent, and maxima of noise pass for dots; found on the seeds of docs/estimators.md.
-constexpr double calibration = 1.18;
+/// Fewest dots besides one, on the mean of a window and its neighbours, whose scatter says something.
+constexpr double least_freedom = 0.25;
 
 }  // namespace
 
 std::vector<Vec2d> image_matching(UncertaintyInput const& input) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> u(input.field.size(), nan), v = u;
+  double const amplification = amplification_of_passes(input.settings);
+  std::vector<double> number(input.field.size(), nan), freedom = number, u = number, v = number;
   visit_matched_windows(input, [&](std::size_t i, MatchedWindow const& window) {
     thread_local std::vector<ParticleImagePair> pairs;
     find_particle_pairs(window, pairs);
     leave_out_mismatches(pairs);
-    double const number = effective_number(pairs);
-    if (number < fewest_dots) return;
+    number[i] = effective_number(pairs);
+    if (!(number[i] > 0.0)) return;
     double weights = 0.0;
-    Vec2d sum, squares;
+    Vec2d squares;
     for (auto const& [disparity, weight] : pairs) {
       weights += weight;
-      sum += weight * disparity;
       squares += weight * Vec2d{disparity.x * disparity.x, disparity.y * disparity.y};
     }
-    Vec2d const mean = sum / weights;
-    auto const variance = [&](double square, double middle) {
-      double const scatter = square / weights - middle * middle;
-      return middle * middle + scatter / number;
-    };
-    u[i] = calibration * calibration * variance(squares.x, mean.x);
-    v[i] = calibration * calibration * variance(squares.y, mean.y);
+    // the mean disparity is what the frames were matched by: of N disparities N - 1 are free
+    freedom[i] = number[i] - 1.0;
+    u[i] = number[i] * squares.x / weights;
+    v[i] = number[i] * squares.y / weights;
   });
-  return sigma_of_variances(u, v, input.grid);
+  freedom = averaged_over_neighbours(freedom, input.grid);
+  u = averaged_over_neighbours(u, input.grid);
+  v = averaged_over_neighbours(v, input.grid);
+  std::vector<Vec2d> sigma(u.size(), {nan, nan});
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    if (!(freedom[i] > least_freedom)) continue;
+    sigma[i] = amplification / std::sqrt(freedom[i] * number[i]) * Vec2d{std::sqrt(u[i]), std::sqrt(v[i])};
+  }
+  return sigma;
 }
 
 }  // namespace gladstone

@@ -98,7 +98,7 @@ void leave_out_mismatches(std::vector<ParticleImagePair>& pairs) {
     double const middle = centre.*axis = median();
     std::transform(pairs.begin(), pairs.end(), values.begin(),
                    [&](auto const& p) { return std::abs(p.disparity.*axis - middle); });
-    reach.*axis = 2.5 * 1.4826 * median();
+    reach.*axis = 3.5 * 1.4826 * median();
   }
   std::erase_if(pairs, [&](ParticleImagePair const& p) {
     return std::abs(p.disparity.x - centre.x) > reach.x || std::abs(p.disparity.y - centre.y) > reach.y;

@@ -25,10 +25,13 @@ using UncertaintyMethod = std::vector<Vec2d> (*)(UncertaintyInput const& input);
 
 /// From the sums whose difference shows that a correlation peak is not symmetric: they vanish but for noise, whose
 /// variance is that of their terms and of the terms' covariance with their neighbours. Wieneke, Meas. Sci. Technol. 26
-/// (2015) 074002, eqs. 6 to 12.
+/// (2015) 074002, eqs. 6 to 12, the sums rearranged so that covariances reach no farther than those of pixels' noise,
+/// times amplification_of_passes(). No factor is fitted.
 std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input);
-/// From the distances of paired particle images in the matched frames: mean and scatter over the root of their number.
-/// Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302, eqs. 5 to 8.
+/// From the distances of paired particle images in the matched frames: their scatter over the root of their number.
+/// Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302, eqs. 5 to 8, the scatter about zero, of a
+/// window's dots and its neighbours', times amplification_of_passes(). Their mean is not counted besides: frames that
+/// were matched by the vectors themselves leave none but by the scatter. No factor is fitted.
 std::vector<Vec2d> image_matching(UncertaintyInput const& input);
 /// From the ratio Q of the highest correlation peak to the next: sigma^2 = (a Q^-b)^2 + c^2, the form of Charonko &
 /// Vlachos, Meas. Sci. Technol. 24 (2013) 065301, eq. 10, without its term for gross errors.

@@ -42,12 +42,16 @@ TEST(UncertaintyCombination, IsReadAsItIsWritten) {
   EXPECT_EQ(back.terms[1].weight, 0.125);
 }
 
-// What has no weight is not looked at, known or not; what has one and is not known makes the sum unknown.
+// What has no weight is not looked at, known or not. What has one and is not known is left out, and the others take its
+// weight over: 1 + (2 3 + 1 9) (4/3) without the second term, whose weight is a quarter of all.
 TEST(UncertaintyCombination, KnowsWhatItsPartsKnow) {
   UncertaintyCombination const combination{1.0, {{"one", 2.0}, {"other", 0.0}}};
   double const nan = std::nan(""), with[] = {3.0, nan}, without[] = {nan, 3.0};
   EXPECT_EQ(combination.log_sigma(with), 7.0);
   EXPECT_TRUE(std::isnan(combination.log_sigma(without)));
+  UncertaintyCombination const three{1.0, {{"one", 2.0}, {"other", 1.0}, {"third", 1.0}}};
+  double const two_known[] = {3.0, nan, 9.0};
+  EXPECT_NEAR(three.log_sigma(two_known), 21.0, 1e-12);
 }
 
 TEST(ShippedCombination, IsOfMethodsThatThereAre) {

@@ -38,6 +38,12 @@ CorrelationSettings within(double limit_px) {
   return settings;
 }
 
+CorrelationSettings windows_of(int pixels) {
+  CorrelationSettings settings;
+  settings.window_px = {pixels};
+  return settings;
+}
+
 std::size_t count(DisplacementField const& field, VectorReason reason) {
   return static_cast<std::size_t>(std::count(field.reason.begin(), field.reason.end(), reason));
 }
@@ -144,6 +150,74 @@ TEST(PairVerdict, WarnsOfOnePictureGivenTwice) {
 TEST(PairVerdict, SaysNoDisplacementOfPicturesWithoutASignal) {
   ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
   EXPECT_THAT(judged(flat).warnings, IsEmpty());
+}
+
+// Every pair has one.
+TEST(PairVerdict, StandsInOneWord) {
+  ParticleSettings const small{.columns = 128, .rows = 128, .noise = 0.05};
+  ParticlePair twice = render_particle_pair(small, everywhere(0.3, 0.0));
+  EXPECT_EQ(judged(twice).verdict, "correlates");
+  EXPECT_EQ(judged(two_scenes({.columns = 200, .rows = 200})).verdict, "does not correlate");
+  EXPECT_EQ(judged(render_particle_pair({.columns = 200, .rows = 200}, everywhere(6.0, 0.0)), within(4.0)).verdict,
+            "does not correlate");
+  EXPECT_EQ(judged(render_particle_pair({.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1},
+                                        everywhere(2.3, -0.2)))
+                .verdict,
+            "correlates");
+  EXPECT_THAT(judged(render_particle_pair({.noise = 0.05, .pitch_px = 8.3}, everywhere(2.5, 0.0))).verdict,
+              HasSubstr("not judged: the pattern repeats every 8.3"));
+  ParticlePair const flat{Image<double>(128, 128, 100.0), Image<double>(128, 128, 100.0)};
+  EXPECT_EQ(judged(flat).verdict, "not judged: no window holds a signal");
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  ParticlePair const masked{Image<double>(128, 128, nan), Image<double>(128, 128, nan)};
+  EXPECT_EQ(judged(masked).verdict, "not judged: no window is known");
+  CorrelationSettings settings;
+  settings.median_threshold.reset();
+  EXPECT_THAT(judged(twice, settings).verdict, HasSubstr("not judged: correlate.median_threshold"));
+  settings = {};
+  settings.method = "dis";
+  EXPECT_THAT(judged(twice, settings).verdict, HasSubstr("not judged: optical flow"));
+  EXPECT_THAT(judged(render_particle_pair({.columns = 64, .rows = 64}, everywhere(0.3, 0.0)), windows_of(64)).verdict,
+              HasSubstr("not judged: 1 windows are too few"));
+  twice.flow = twice.reference;
+  EXPECT_EQ(judged(twice).verdict, "not judged: both frames are the same picture");
+}
+
+// The first pass finds chance peaks up to 32 px far, by which windows at the rim are taken out of the frames. Nothing
+// is masked there.
+TEST(OutsideWindows, AreNotCalledMasked) {
+  ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02}, everywhere(0.0, 0.0));
+  Image<double> const still = pair.reference;
+  for (int j = 0; j < 256; ++j)
+    for (int i = 0; i < 256; ++i) pair.flow(i, j) = still((i + 256 - 40) % 256, j);
+  DisplacementField const rolled = judged(pair);
+  EXPECT_EQ(count(rolled, VectorReason::masked), 0u);
+  EXPECT_GT(count(rolled, VectorReason::outside), 0u);
+  for (std::size_t i = 0; i < rolled.size(); ++i) {
+    if (rolled.reason[i] != VectorReason::outside) continue;
+    EXPECT_EQ(rolled.status[i], VectorStatus::invalid);
+  }
+}
+
+// 28 px to the right, and a mask 60 px wide in the middle of the reference, which the flow frame does not have: windows
+// on the mask are masked, those on the rim have left the frames.
+TEST(OutsideWindows, AreToldFromMaskedOnes) {
+  ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256}, everywhere(28.0, 0.0));
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  for (int j = 0; j < 256; ++j)
+    for (int i = 100; i < 160; ++i) pair.reference(i, j) = nan;
+  DisplacementField const field = judged(pair);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    double const x = field.position_px[i].x;
+    if (field.reason[i] == VectorReason::masked) {
+      EXPECT_TRUE(x > 80.0 && x < 200.0) << x;
+    }
+    if (field.reason[i] == VectorReason::outside) {
+      EXPECT_TRUE(x < 28.0 || x > 227.0) << x;
+    }
+  }
+  EXPECT_GT(count(field, VectorReason::masked), 100u);
+  EXPECT_GT(count(field, VectorReason::outside), 10u);
 }
 
 // 0.3 pitch; every alias within 32 px matches as well.

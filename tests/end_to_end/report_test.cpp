@@ -115,7 +115,7 @@ window_px = [32, 16]
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("geometry.z_d_mm"));
   EXPECT_THAT(html, HasSubstr("the dots stand Z_D = 250 mm behind the medium"));
-  EXPECT_THAT(html, HasSubstr("of type B: the estimator's own, from the images"));
+  EXPECT_THAT(html, HasSubstr("of type B: by the formula of the random error (F26), since the vectors have none"));
   succeed({"report", "measured", "--format", "md", "-o", "text/m.md", "--figures", "paper", "--figure-format", "svg",
            "--quiet"});
   EXPECT_THAT(read("text/m.md"), HasSubstr("measured_maps.svg"));
