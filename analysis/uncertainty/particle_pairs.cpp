@@ -92,16 +92,16 @@ void leave_out_mismatches(std::vector<ParticleImagePair>& pairs) {
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
-  Vec2d centre, reach;
+  Vec2d centre, most;
   for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
     std::transform(pairs.begin(), pairs.end(), values.begin(), [&](auto const& p) { return p.disparity.*axis; });
     double const middle = centre.*axis = median();
     std::transform(pairs.begin(), pairs.end(), values.begin(),
                    [&](auto const& p) { return std::abs(p.disparity.*axis - middle); });
-    reach.*axis = 3.5 * 1.4826 * median();
+    most.*axis = 3.5 * 1.4826 * median();
   }
   std::erase_if(pairs, [&](ParticleImagePair const& p) {
-    return std::abs(p.disparity.x - centre.x) > reach.x || std::abs(p.disparity.y - centre.y) > reach.y;
+    return std::abs(p.disparity.x - centre.x) > most.x || std::abs(p.disparity.y - centre.y) > most.y;
   });
 }
 
