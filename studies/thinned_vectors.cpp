@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/vectors/vector_file.h"
 #include "render/base/contracts.h"
 
 namespace gladstone {
 namespace {
-
-template <class Value>
-void keep(std::vector<Value>& values, std::vector<std::size_t> const& kept) {
-  if (values.empty()) return;  // not known
-  std::vector<Value> some;
-  some.reserve(kept.size());
-  for (std::size_t const i : kept) some.push_back(values[i]);
-  values = std::move(some);
-}
 
 /// Numbers of those that stay of a row or column of so many.
 std::vector<int> every_nth_of(int count, int n) {
@@ -40,15 +32,7 @@ DisplacementField every_nth(DisplacementField field, int n) {
   for (int const row : rows) {
     for (int const column : columns) kept.push_back(static_cast<std::size_t>(row * field.columns + column));
   }
-  keep(field.position_px, kept);
-  keep(field.displacement_px, kept);
-  keep(field.sigma_px, kept);
-  keep(field.peak_ratio, kept);
-  keep(field.status, kept);
-  keep(field.raw_px, kept);
-  keep(field.correlation, kept);
-  keep(field.reason, kept);
-  keep(field.ambiguous, kept);
+  take_vectors(field, kept);
   field.columns = static_cast<int>(columns.size());
   field.rows = static_cast<int>(rows.size());
   return field;

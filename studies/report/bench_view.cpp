@@ -2,41 +2,20 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
-#include "render/base/error.h"
 #include "render/base/text_file.h"
 #include "studies/design/sheet.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
+#include "studies/passing_folder.h"
 
 namespace gladstone {
 namespace {
 
-namespace fs = std::filesystem;
 constexpr double mm = unit::millimetre;
-
-/// A folder that is gone with it.
-class PassingFolder {
- public:
-  PassingFolder() : path_((fs::temp_directory_path() / "gladstone_bench_XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) throw OutputError(path_, "cannot be made");
-  }
-  ~PassingFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  PassingFolder(PassingFolder const&) = delete;
-  PassingFolder& operator=(PassingFolder const&) = delete;
-  std::string const& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 std::string layout_text(Bench<double> const& b) {
   return fmt::format(

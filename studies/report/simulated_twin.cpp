@@ -1,15 +1,14 @@
 #include "studies/report/simulated_twin.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "render/base/error.h"
 #include "render/base/progress.h"
 #include "render/base/units.h"
+#include "studies/passing_folder.h"
 #include "studies/report/measured_density.h"
 #include "studies/sweep/case_runner.h"
 #include "studies/sweep/plan.h"
@@ -17,26 +16,8 @@
 namespace gladstone {
 namespace {
 
-namespace fs = std::filesystem;
 constexpr std::size_t twin_repeats = 2;
 constexpr int margin_nodes = 16;  ///< of the density beyond the vectors: what cones and dots out of view see
-
-/// A file that is gone with its owner.
-class ScratchFile {
- public:
-  explicit ScratchFile(std::string const& name)
-      : path_((fs::temp_directory_path() / fmt::format("gladstone_{}_{}", ::getpid(), name)).string()) {}
-  ~ScratchFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  ScratchFile(ScratchFile const&) = delete;
-  ScratchFile& operator=(ScratchFile const&) = delete;
-  std::string const& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
   double const mm = unit::millimetre;
@@ -81,9 +62,10 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
                             Device device) {
   SimulatedTwin twin;
   try {
-    ScratchFile const file("density.nrrd");
-    write_density_plane(file.path(), density, margin_nodes, loaded.setup.medium.ambient_density);
-    StudyPlan const plan = plan_study(study_of(loaded, field_of(file.path(), spacing, centre)), device.name());
+    PassingFolder const folder;
+    std::string const file = folder.path() + "/density.nrrd";
+    write_density_plane(file, density, margin_nodes, loaded.setup.medium.ambient_density);
+    StudyPlan const plan = plan_study(study_of(loaded, field_of(file, spacing, centre)), device.name());
     CaseRunner runner(std::move(device), Sharing::over_repeats);
     std::vector<std::vector<Vec2d>> errors;
     Progress progress("simulating the twin", plan.size());

@@ -28,9 +28,8 @@ void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane) {
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {
         float const along_x = factor[static_cast<std::size_t>(kx)];
-        if (kx == 0)
-          spectrum[0] = {FloatLanes{},
-                         FloatLanes{}};  // the windows are free of their means: what is there is rounding, not phase
+        // the windows are free of their means: what is there is rounding, not phase
+        if (kx == 0) spectrum[0] = {FloatLanes{}, FloatLanes{}};
         for (int ky = 0; ky < size; ++ky) {
           ComplexLanes& c = spectrum[ky];
           FloatLanes const magnitude = root_lanes(c.re * c.re + c.im * c.im) + 1e-30f;
