@@ -9,8 +9,8 @@
 namespace gladstone {
 namespace {
 
-/// The number of dots stands for the mutual information of the authors, who fit both to synthetic images; found on the
-/// seeds of docs/estimators.md.
+/// The number of dots stands for the mutual information of the authors, who fit both to synthetic images; this factor
+/// is fitted to the errors of default passes over dots of 3 px at 5 % noise.
 constexpr double calibration = 0.22;
 /// Least variance of a displacement [px^2]: peaks of clean images are as narrow as the filter, or narrower by rounding.
 constexpr double least_variance = 1e-4;

@@ -10,6 +10,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 /// What a camera sees: Gaussian dots of 3 px (e^-2) at random places, 150 grey levels high.
 struct Scene {
@@ -87,6 +88,7 @@ TEST_F(PairOfFrames, ShiftedBeyondTheSearchRangeIsNoMeasurement) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("v.csv: the frames do not correlate"), HasSubstr("search range of 32 px"),
                                  Not(HasSubstr("none of 576"))));
   auto const json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["verdict"], "does not correlate");
   EXPECT_EQ(json["valid"], 0);
   EXPECT_EQ(json["replaced"], 0);
   EXPECT_EQ(json["warnings"].size(), 1u);
@@ -97,12 +99,14 @@ TEST_F(PairOfFrames, ShiftedBeyondTheSearchRangeIsNoMeasurement) {
 
 TEST_F(PairOfFrames, OfASmallRealDisplacementIsBelieved) {
   write_frames({.pixels = 96, .noise = 7.5}, {0.02, 0.0});
-  Outcome const outcome = correlate("v.csv");
+  Outcome const outcome = correlate("v.h5");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, Not(HasSubstr("warning")));
   auto const json = nlohmann::json::parse(outcome.out);
   EXPECT_GT(json["vectors"], 90);
   EXPECT_EQ(json["valid"], json["vectors"]);
+  EXPECT_EQ(json["verdict"], "correlates");
+  EXPECT_EQ(Hdf5Reader(in("v.h5").string()).attribute("verdict"), "correlates");
 }
 
 TEST_F(PairOfFrames, GivenTwiceIsWarnedOf) {
@@ -111,7 +115,10 @@ TEST_F(PairOfFrames, GivenTwiceIsWarnedOf) {
   Outcome const outcome = correlate("v.h5");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.err, HasSubstr("both frames are the same picture"));
-  EXPECT_THAT(Hdf5Reader(in("v.h5").string()).attribute("warnings"), HasSubstr("both frames are the same picture"));
+  Hdf5Reader const file(in("v.h5").string());
+  EXPECT_THAT(file.attribute("warnings"), HasSubstr("both frames are the same picture"));
+  EXPECT_THAT(file.attribute("verdict"), StartsWith("not judged: "));
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["verdict"], file.attribute("verdict"));
 }
 
 // Few dots in noise: of every kind of vector there are some. Text and HDF5 say the same of each.
