@@ -1,6 +1,7 @@
 #include "analysis/uncertainty/matched_windows.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/correlation/standard_correlator.h"
 #include "render/base/parallel.h"
@@ -33,10 +34,18 @@ void take_window(ImagePair const& pair, int first_x, int first_y, std::vector<fl
     }
   float const mean_reference = weights > 0.0 ? static_cast<float>(reference / weights) : 0.0f;
   float const mean_flow = weights > 0.0 ? static_cast<float>(flow / weights) : 0.0f;
+  double energy_reference = 0.0, energy_flow = 0.0;
   for (std::size_t k = 0; k < window.weight.size(); ++k) {
-    window.reference[k] = window.weight[k] > 0.0f ? window.reference[k] - mean_reference : 0.0f;
-    window.flow[k] = window.weight[k] > 0.0f ? window.flow[k] - mean_flow : 0.0f;
+    float const w = window.weight[k];
+    window.reference[k] = w > 0.0f ? window.reference[k] - mean_reference : 0.0f;
+    window.flow[k] = w > 0.0f ? window.flow[k] - mean_flow : 0.0f;
+    energy_reference += static_cast<double>(w * window.reference[k]) * (w * window.reference[k]);
+    energy_flow += static_cast<double>(w * window.flow[k]) * (w * window.flow[k]);
   }
+  // what the lamp gave more in one frame is no difference between them
+  if (!(energy_flow > 0.0)) return;
+  float const gain = static_cast<float>(std::sqrt(energy_reference / energy_flow));
+  for (float& value : window.flow) value *= gain;
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace gladstone {
 struct MatchedWindow {
   int side;                      ///< pixels along an axis
   std::vector<float> reference;  ///< less the weighted mean; 0 outside the image
-  std::vector<float> flow;
-  std::vector<float> weight;  ///< that the correlator puts on either frame; 0 outside the image and where unknown
+  std::vector<float> flow;       ///< likewise, and made as bright as the reference: equal sums of squares, weighted
+  std::vector<float> weight;     ///< that the correlator puts on either frame; 0 outside the image and where unknown
 
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * side + i; }
 };
