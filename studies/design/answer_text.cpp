@@ -58,6 +58,11 @@ char const* objective_word(AnsweredQuestion const& answered) {
   return objective_words[static_cast<std::size_t>(answered.question.requirements.objective)];
 }
 
+/// An objective in the unit in which it is written.
+double written_objective(AnsweredQuestion const& answered, double objective) {
+  return objective / objective_scales[static_cast<std::size_t>(answered.question.requirements.objective)];
+}
+
 std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& outcome) {
   std::string const name = branch_name(outcome.branch, answered.variants, answered.question);
   if (outcome.skipped)
@@ -70,9 +75,9 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
     return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),
                        100 * std::expm1(outcome.solution.violation));
   }
-  auto const objective = static_cast<std::size_t>(answered.question.requirements.objective);
-  return fmt::format("    {}: {} {:.5g} {}\n", name, objective_words[objective],
-                     outcome.solution.objective / objective_scales[objective], objective_units[objective]);
+  return fmt::format("    {}: {} {:.5g} {}\n", name, objective_word(answered),
+                     written_objective(answered, outcome.solution.objective),
+                     objective_units[static_cast<std::size_t>(answered.question.requirements.objective)]);
 }
 
 std::string feasible_text(AnsweredQuestion const& answered) {
@@ -132,7 +137,7 @@ Json feasible_json(AnsweredQuestion const& answered) {
   for (FrontPoint const& point : answer.front) {
     json["front"].push_back({{"key", bound_name(answer.front_bound)},
                              {"limit", point.limit / bound_key(answer.front_bound).unit},
-                             {"objective", point.objective}});
+                             {"objective", written_objective(answered, point.objective)}});
   }
   return json;
 }
@@ -159,6 +164,7 @@ Json answer_json(AnsweredQuestion const& answered) {
   Recommendation const& answer = answered.answer;
   Json json = answer.feasible() ? feasible_json(answered) : Json::object();
   json["feasible"] = answered.feasible();
+  json["objective"] = objective_keys[static_cast<std::size_t>(answered.question.requirements.objective)];
   if (answered.verification) json.update(verification_json(*answered.verification));
   json["conflicts"] = Json::array();
   for (Bound const bound : answer.conflicts) json["conflicts"].push_back(bound_name(bound));
@@ -170,11 +176,12 @@ Json answer_json(AnsweredQuestion const& answered) {
   json["choices"] = Json::array();
   for (BranchOutcome const& outcome : answer.outcomes) {
     bool const feasible = outcome.solution.feasible();
-    json["choices"].push_back({{"name", branch_name(outcome.branch, answered.variants, answered.question)},
-                               {"feasible", feasible},
-                               {"skipped", outcome.skipped},
-                               {"objective", feasible ? Json(outcome.solution.objective) : Json(nullptr)},
-                               {"worst", bound_name(outcome.solution.worst)}});
+    json["choices"].push_back(
+        {{"name", branch_name(outcome.branch, answered.variants, answered.question)},
+         {"feasible", feasible},
+         {"skipped", outcome.skipped},
+         {"objective", feasible ? Json(written_objective(answered, outcome.solution.objective)) : Json(nullptr)},
+         {"worst", bound_name(outcome.solution.worst)}});
   }
   json["skipped"] = Json::array();
   for (SkippedVariant const& variant : answered.skipped) {

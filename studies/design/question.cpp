@@ -116,6 +116,11 @@ std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, Se
   std::vector<std::string> const keys = texts(document, "free", "keys");
   std::vector<std::string> known;
   for (ChoiceKey const& key : choice_keys) known.emplace_back(key.path);
+  for (auto key = keys.begin(); key != keys.end(); ++key) {
+    if (std::find(keys.begin(), key, *key) != key) {
+      free.problem("keys", fmt::format("\"{}\" stands twice; write it once", *key));
+    }
+  }
   for (std::string const& key : keys) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     auto const nearest = nearest_name(key, known);

@@ -36,6 +36,8 @@ enum class Objective { gradient_min, resolution, uncertainty, z_total };
 inline constexpr std::array<char const*, 4> objective_words{"gradient_min", "resolution", "uncertainty", "z_total"};
 /// Of each as it is told, and what it is in SI.
 inline constexpr std::array<char const*, 4> objective_units{"kg/m^4", "mm", "px", "mm"};
+inline constexpr std::array<char const*, 4> objective_keys{"gradient_min_kg_m4", "resolution_mm", "random_px",
+                                                           "z_total_mm"};
 inline constexpr std::array<double, 4> objective_scales{1, 1e-3, 1, 1e-3};
 
 /// What a design is to keep; empty: nothing is asked. In SI.

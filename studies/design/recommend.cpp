@@ -56,8 +56,11 @@ std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome 
     FreeChoice const& free = best.branch.continuous[i];
     double const x = best.solution.logarithms[i];
     std::string const key = std::string("limits.") + key_of(free.choice).limit;
-    if (x - std::log(free.low) < spare) names.push_back(key + "[0]");
-    if (std::log(free.high) - x < spare) names.push_back(key + "[1]");
+    bool const at_low = x - std::log(free.low) < spare, at_high = std::log(free.high) - x < spare;
+    if (at_low && at_high)
+      names.push_back(key);  // an interval of one value
+    else if (at_low || at_high)
+      names.push_back(key + (at_low ? "[0]" : "[1]"));
   }
   return names;
 }

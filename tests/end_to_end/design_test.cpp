@@ -69,6 +69,7 @@ TEST_F(Design, RecommendsAndWritesASetupThatRenders) {
   EXPECT_LE(predicted["z_total_mm"], 2000.0 * (1 + 1e-6));
   EXPECT_FALSE(json["binding"].empty());
   EXPECT_EQ(json["choices"].size(), 4u);
+  EXPECT_EQ(json["choices"][0]["objective"], predicted[json["objective"].get<std::string>()]);
   EXPECT_FALSE(json.contains("verification"));
   std::string const applied = read("out.toml");
   for (char const* const table : {"requirements", "limits", "inventory", "free"}) {

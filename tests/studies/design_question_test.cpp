@@ -74,6 +74,8 @@ TEST(DesignQuestion, MistakesAreToldAtTheirPlaces) {
   expect_refused_question(with("f_numbers = [8, 11]", "f_numbers = []"), "setup.toml:11:1", "inventory.f_numbers");
   expect_refused_question(with("\"lens.f_number\"", "\"lens.f_nubmer\""), "setup.toml:13:1",
                           "did you mean \"lens.f_number\"?");
+  expect_refused_question(with("\"lens.f_number\"", "\"lens.f_number\", \"lens.f_number\""), "setup.toml:13:1",
+                          "\"lens.f_number\" stands twice");
   expect_refused_question(with(", \"lens.f_number\"", ""), "setup.toml:11:1", "is a choice that is not free");
   expect_refused_question(with("keys = [\"geometry.z_a_mm\", \"geometry.z_d_mm\", \"lens.f_number\"]", "keys = []"),
                           "setup.toml:13:1", "names no key");

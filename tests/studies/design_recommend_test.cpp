@@ -52,6 +52,16 @@ TEST(Design, FindsTheOptimumOnPaper) {
   }
 }
 
+// An interval of one value binds as one, not at both of its ends.
+TEST(Design, NamesAValueThatBindsOnce) {
+  BenchGiven const given = table1_given();
+  DesignBranch branch = free_distances(given);
+  branch.continuous = {interval(Choice::z_a, 0.75, 0.75), interval(Choice::z_d, 0.05, 0.25)};
+  Recommendation const answer = recommend(Objective::gradient_min, {}, {branch});
+  ASSERT_TRUE(answer.feasible());
+  EXPECT_THAT(answer.binding, UnorderedElementsAre("limits.z_a_mm", "limits.z_d_mm[1]"));
+}
+
 // The random error over the dots' size alone: where its derivative vanishes. A golden section tells the place.
 TEST(Design, FindsTheBestDotSize) {
   BenchGiven given = table1_given();
