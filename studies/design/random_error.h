@@ -4,17 +4,18 @@
 
 namespace gladstone {
 
-/// What the random error was measured at: geometric diameters of dots, diameters of their images (e^-2, d below) and
-/// standard deviations of their spots [px], noise over peak [1].
+/// What the random error was measured at.
 struct RandomErrorRange {
-  double least_dot, most_image, widest_spot, most_noise;
-  bool holds(double geometric_px, double image_px, double noise) const {
-    return geometric_px >= least_dot && image_px <= most_image && noise <= most_noise;
-  }
+  double least_dot;                    ///< geometric diameter of a dot's image [px]
+  double most_image;                   ///< e^-2 diameter of the whole image, d below [px]
+  double narrowest_spot, widest_spot;  ///< standard deviation [px]
+  double least_noise, most_noise;      ///< over the peak [1]
+  double fewest_dots, most_dots;       ///< in a window
 };
-inline constexpr RandomErrorRange random_error_range{0.8, 4.2, 0.276, 0.111};
+inline constexpr RandomErrorRange random_error_range{0.8, 4.2, 0.1, 0.276, 0.006, 0.111, 5, 45};
 
-/// Random error of a displacement that our correlator measures with its default settings, per component [px]: what the
+/// Random error of a displacement that our correlator measures with its default settings, along it, where it goes
+/// through all fractions of a pixel [px] (across it, where nothing moves, 0.3 to 0.8 of that: data/README.md): what the
 /// places of the dots on the pixels change, which falls as dots grow and as their spots smooth them, and what noise
 /// changes, which falls with the number and the size of the dots.
 ///

@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -88,6 +90,50 @@ TEST(DesignSheet, MarginsSayWhatIsViolated) {
   EXPECT_STREQ(margin_word(Margin::violated), "violated");
   EXPECT_EQ(at_least(7, 8, 5), Margin::marginal);
   EXPECT_EQ(at_most(7, 5, 8), Margin::marginal);
+}
+
+// F22: a lamp that is dimmer by the square of f-number over ceiling lights the dots with 20 times their noise. Light
+// that is short by 9 closes the window, and the floor tells by how much.
+TEST(DesignSheet, LightLimitsTheStop) {
+  auto const under = [](double radiance, char const* stop) {
+    return sheet_of(std::string(table1_setup) + "[camera.noise]\n[light]\nradiance_w_m2_sr = " +
+                    std::to_string(radiance) + "\nexposure_us = 20\n[lens]\nf_number = " + stop + "\n")
+        ->sheet;
+  };
+  DesignSheet const bright = under(8000, "11");
+  double const ceiling = bright["f_number_light"];
+  DesignSheet const dim = under(8000 * std::pow(11 / ceiling, 2), "11");
+  EXPECT_NEAR(dim["signal_to_noise"], 20, 1e-4);
+  EXPECT_NEAR(dim["f_number_light"], 11, 1e-4);
+  EXPECT_EQ(dim.row("f_number_light").margin, Margin::green);
+  double const floor = dim["f_number_floor"], missing = std::pow(floor / 11, 2);
+  EXPECT_GT(missing, 1.1);
+  EXPECT_THAT(dim.row("f_number_floor").note,
+              testing::HasSubstr("no f-number keeps all: the largest, f/11, has a cone of 2.386 mm"));
+  EXPECT_THAT(dim.row("f_number_floor").note, testing::HasSubstr(fmt::format("{:.3g} times the light", missing)));
+  DesignSheet const automatic = sheet_of(table1_setup)->sheet;
+  EXPECT_TRUE(std::none_of(automatic.rows.begin(), automatic.rows.end(), [](SheetRow const& row) {
+    return row.key == "f_number_light";
+  })) << "exposure = \"auto\" takes what light it needs";
+}
+
+// The study went from f/4 to f/11, with noise of 0.6 to 11 % of the peak: what is beyond is told and never green.
+TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
+  auto const row = [](std::string const& more) {
+    return sheet_of(std::string(table1_setup) + more)->sheet.row("random_error_px");
+  };
+  std::string const noise = "[camera.noise]\nfull_well_e = 10000\n";
+  SheetRow const within = row(noise);
+  EXPECT_EQ(within.margin, Margin::green);
+  EXPECT_THAT(within.note, testing::Not(testing::HasSubstr("beyond")));
+  for (auto const& [more, what] :
+       {std::pair<std::string, char const*>{"", "noise below 0.6 %"},
+        {noise + "[lens]\nf_number = 32\n", "spots above 0.276 px"},
+        {noise + "[target]\ndots_per_32px_window = 8\n", "a number of dots below 5 in a window"}}) {
+    EXPECT_EQ(row(more).margin, Margin::marginal) << what;
+    EXPECT_THAT(row(more).note,
+                testing::AllOf(testing::HasSubstr("beyond what was measured: "), testing::HasSubstr(what)));
+  }
 }
 
 // F29: a plume's largest deflection is sqrt(2 pi / e) dn / n0, which is a mean gradient of 1.520347 A / L_z.
