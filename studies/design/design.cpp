@@ -15,6 +15,7 @@
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
+#include "studies/figures/piv_map.h"
 
 namespace gladstone {
 namespace {
@@ -37,6 +38,11 @@ void draw_bench(DesignRequest const& request, DesignReport& report, Bench<double
   draw(request, report, "design_map", [&](std::string const& path) { write_design_map(path, bench, requirements); });
 }
 
+void draw_piv(DesignRequest const& request, DesignReport& report, Setup const& setup) {
+  draw(request, report, "layout", [&](std::string const& path) { write_piv_layout(path, setup); });
+  draw(request, report, "design_map", [&](std::string const& path) { write_piv_map(path, setup); });
+}
+
 AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& document, DesignQuestion question) {
   AnsweredQuestion result{std::move(question), {}, {}, {}, {}};
   result.variants = design_variants(document, result.question, result.skipped);
@@ -50,7 +56,7 @@ AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& doc
   return result;
 }
 
-/// The sheet of a setup; of a BOS bench with its figures.
+/// The sheet of a setup with its figures.
 void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                bool draws, DesignReport& report) {
   if (!std::isfinite(loaded.setup.lens.f_number)) {
@@ -61,6 +67,7 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   std::optional<MeasurementUncertainty> uncertainty;
   if (loaded.setup.piv) {
     sheet = piv_sheet(loaded);
+    if (draws) draw_piv(request, report, loaded.setup);
   } else {
     BenchGiven const given = bench_given(loaded);
     Bench<double> const bench = bench_of(loaded.setup, given);
@@ -78,13 +85,21 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   report.text += uncertainty_text(*uncertainty);
 }
 
+/// @param loaded the setup as it is
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
-                std::optional<OutputFile>& applied, DesignReport& report) {
+                CaseSetup const& loaded, std::optional<OutputFile>& applied, DesignReport& report) {
   AnsweredQuestion const result = answered(request, document, std::move(question));
   report.json.update(answer_json(result));
   report.text += answer_text(result);
   report.feasible = result.feasible();
-  if (!result.answer.feasible()) return;
+  if (!result.answer.feasible()) {
+    // the setup as it is, among what is required of it
+    BenchGiven const given = bench_given(loaded);
+    if (!request.figures.empty()) {
+      draw_bench(request, report, bench_of(loaded.setup, given), result.question.requirements);
+    }
+    return;
+  }
   Bench<double> const best = result.best();
   if (!request.figures.empty()) {
     Requirements const& requirements = result.question.requirements;
@@ -122,7 +137,7 @@ DesignReport design(DesignRequest const& request) {
   std::optional<OutputFile> applied;
   if (!request.apply.empty()) applied.emplace(request.apply);
   add_sheet(request, loaded, uncertain, !request.figures.empty() && !question, report);
-  if (question) add_answer(request, written, std::move(*question), applied, report);
+  if (question) add_answer(request, written, std::move(*question), loaded, applied, report);
   return report;
 }
 

@@ -116,6 +116,9 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
                     GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
                     *std::max_element(resolution.begin(), resolution.end())));
   }
+  // what is required is shown wherever it lies
+  if (requirements && requirements->resolution) y.hold(*requirements->resolution / mm);
+  if (requirements && requirements->gradient_min) x.hold(2 * bench.random_error() / *requirements->gradient_min);
   double const x_low = x.low / 1.1, x_high = x.high * 1.2, y_low = y.low / 1.3, y_high = y.high * 1.3;
   if (requirements && requirements->resolution) {
     double const limit = *requirements->resolution / mm;

@@ -33,12 +33,17 @@ struct Lines {
 };
 
 struct Drawing {
-  Lines planes, medium, lens, view, cone;
+  Lines planes, medium, lens, view, cone, sheet;
 };
 
 Drawing drawing_of(BenchLayout const& l) {
   Drawing d;
-  d.planes.add({{l.dots_z, -1.15 * l.dots_half}, {l.dots_z, 1.15 * l.dots_half}});
+  if (l.sheet_half_height > 0) {
+    double const w = l.sheet_half_thickness, height = l.sheet_half_height;
+    d.sheet.add({{-w, -height}, {w, -height}, {w, height}, {-w, height}, {-w, -height}});
+  } else {
+    d.planes.add({{l.dots_z, -1.15 * l.dots_half}, {l.dots_z, 1.15 * l.dots_half}});
+  }
   d.planes.add({{l.sensor_z, -l.sensor_half}, {l.sensor_z, l.sensor_half}});
   double const h = 1.1 * std::max(l.medium_half, l.cone_radius), t = l.medium_half_thickness;
   d.medium.add({{-t, -h}, {t, -h}, {t, h}, {-t, h}, {-t, -h}});
@@ -75,14 +80,68 @@ void name_part(GnuplotFigure& plot, std::string const& name, double z, double at
 }
 
 void draw(GnuplotFigure& plot, Drawing const& d) {
+  bool const dots = d.sheet.z.empty();
   auto const lines = [&plot](Lines const& l, std::string_view colour, int thickness, std::string const& title) {
     return fmt::format("{} using 1:2 with lines linewidth {} linecolor '{}' {}", plot.add_table({l.z, l.y}), thickness,
                        colour, title.empty() ? "notitle" : "title " + GnuplotFigure::quoted(title));
   };
-  plot.command("plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
-               lines(d.cone, house_colour(1), 2, "light of the dot on the axis") + ", " +
-               lines(d.medium, house_colour(2), 2, "medium") + ", " + lines(d.lens, house_colour(0), 3, "stop") + ", " +
-               lines(d.planes, "#202020", 3, "dots and sensor"));
+  std::string command =
+      "plot " + lines(d.view, house_colour(5), 1, "field of view") + ", " +
+      lines(d.cone, house_colour(1), 2, dots ? "light of the dot on the axis" : "light of a particle") + ", " +
+      lines(d.medium, house_colour(2), 2, "medium") + ", " + lines(d.lens, house_colour(0), 3, "stop") + ", " +
+      lines(d.planes, "#202020", 3, dots ? "dots and sensor" : "sensor");
+  if (!dots) command += ", " + lines(d.sheet, house_colour(3), 2, "laser sheet");
+  plot.command(command);
+}
+
+/// What is written on a layout.
+struct LayoutWords {
+  std::string title;
+  std::string seen;    ///< in the dots' plane, or in the sheet's
+  std::string medium;  ///< empty: nothing of its own
+};
+
+void write_layout(std::string const& path, BenchLayout const& l, LayoutWords const& words) {
+  Drawing const drawing = drawing_of(l);
+  bool const dots = l.sheet_half_height == 0;
+  double const length = l.sensor_z - l.dots_z, z_high = l.sensor_z + 0.06 * length;
+  double const z_low = std::min(l.dots_z, -l.medium_half_thickness) - 0.06 * length;
+  double const tallest =
+      1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half, l.sheet_half_height});
+  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
+  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // of the panel that is to scale
+  GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
+  plot.command("set style textbox opaque noborder margins 0.4,0.2");
+  plot.command("set multiplot");
+  plot.command(fmt::format("set label 1 {} at screen 0.5,0.965 center font 'DejaVu Sans,14' textcolor '#101010'",
+                           GnuplotFigure::quoted(words.title)));
+  plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
+  plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
+  place(plot, stretched_top + between, stretched_top + between + to_scale_px);
+  plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
+  draw(plot, drawing);
+  plot.command("unset label 1; unset label 2");
+  plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
+  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
+  place(plot, stretched_bottom, stretched_top);
+  double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
+  plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
+                           GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
+  plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
+  distance(plot, 0, l.lens_z, 0.14, "Z_A");
+  if (dots) {
+    distance(plot, l.dots_z, 0, 0.14, "Z_D");
+    distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
+  }
+  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.14);
+  name_part(plot, words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
+  if (!words.medium.empty()) name_part(plot, words.medium, dots ? 0 : 0.08 * length, 0.89);
+  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z, 0.83);
+  name_part(plot, fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
+  draw(plot, drawing);
+  plot.command("unset multiplot");
+  plot.write(path);
 }
 
 }  // namespace
@@ -102,44 +161,36 @@ BenchLayout bench_layout(Bench<double> const& b) {
 
 void write_layout_figure(std::string const& path, Bench<double> const& bench) {
   BenchLayout const l = bench_layout(bench);
-  Drawing const drawing = drawing_of(l);
-  double const length = l.sensor_z - l.dots_z, z_low = l.dots_z - 0.06 * length, z_high = l.sensor_z + 0.06 * length;
-  double const tallest = 1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half});
-  double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
-  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // of the panel that is to scale
-  GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
-  plot.command("set style textbox opaque noborder margins 0.4,0.2");
-  plot.command("set multiplot");
-  plot.command(
-      fmt::format("set label 1 {} at screen 0.5,0.965 center font 'DejaVu Sans,14' textcolor '#101010'",
-                  GnuplotFigure::quoted(fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}",
-                                                    bench.focal_length / mm, bench.f_number, bench.magnification()))));
-  plot.command("unset border; unset ytics; unset key; set format x ''; set xtics scale 0");
-  plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]", z_low / mm, z_high / mm));
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -to_scale_px * mm_a_px / 2, to_scale_px * mm_a_px / 2));
-  place(plot, stretched_top + between, stretched_top + between + to_scale_px);
-  plot.command("set label 2 'to scale' at graph 0,1.06 left textcolor '#606060'");
-  draw(plot, drawing);
-  plot.command("unset label 1; unset label 2");
-  plot.command("set border 1; set format x '%g'; set xtics scale 0.5; set xlabel 'Z [mm]' offset 0,0.5");
-  plot.command(fmt::format("set yrange [{:.6g}:{:.6g}]", -1.6 * tallest / mm, 1.35 * tallest / mm));
-  place(plot, stretched_bottom, stretched_top);
-  double const stretched = mm_a_px * (stretched_top - stretched_bottom) / (2.95 * tallest / mm);
-  plot.command(fmt::format("set label 3 {} at graph 0,1.01 left textcolor '#606060'",
-                           GnuplotFigure::quoted(fmt::format("heights {:.2g} times as large", stretched))));
-  plot.command("set key at graph 0.995,1.06 right top horizontal samplen 2");
-  distance(plot, l.dots_z, 0, 0.14, "Z_D");
-  distance(plot, 0, l.lens_z, 0.14, "Z_A");
-  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.14);
-  distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
-  name_part(plot, fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), l.dots_z + 0.03 * length, 0.95);
-  name_part(plot, fmt::format("medium: sees {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm),
-            0, 0.89);
-  name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z, 0.83);
-  name_part(plot, fmt::format("sensor {:.4g} mm", 2 * l.sensor_half / mm), l.sensor_z, 0.20);
-  draw(plot, drawing);
-  plot.command("unset multiplot");
-  plot.write(path);
+  write_layout(path, l,
+               {fmt::format("Layout: f = {:.5g} mm, f/{:.4g}, M = {:.4g}", bench.focal_length / mm, bench.f_number,
+                            bench.magnification()),
+                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm),
+                fmt::format("medium: sees {:.4g} mm, cone {:.3g} mm", 2 * l.medium_half / mm, 2 * l.cone_radius / mm)});
+}
+
+BenchLayout piv_layout(Setup const& setup) {
+  ImagingGeometry const imaging = setup.imaging();
+  double const half = setup.camera.rows / 2.0 * setup.camera.pixel_pitch, seen = half / imaging.magnification;
+  return {0,
+          setup.z_a,
+          setup.z_a + imaging.image_distance,
+          setup.medium.thickness / 2,
+          imaging.entrance_pupil / 2,
+          half,
+          seen,
+          seen,
+          0,
+          setup.piv->laser.thickness / 2,
+          setup.piv->laser.height / 2};
+}
+
+void write_piv_layout(std::string const& path, Setup const& setup) {
+  BenchLayout const l = piv_layout(setup);
+  LaserSetup const& laser = setup.piv->laser;
+  write_layout(path, l,
+               {fmt::format("Layout: f/{:.4g}, M = {:.4g}, sheet {:.4g} mm thick", setup.lens.f_number,
+                            setup.imaging().magnification, laser.thickness / mm),
+                fmt::format("sees {:.4g} mm", 2 * l.dots_half / mm), ""});
 }
 
 }  // namespace gladstone

@@ -134,9 +134,13 @@ TEST_F(Design, EndsWithFourWhereNothingIsFeasible) {
   std::string text = tunnel;
   text.replace(text.find("resolution_mm = 12.0"), 20, "resolution_mm = 0.5");
   write("tunnel.toml", text);
-  Outcome const outcome = gladstone({"design", "tunnel.toml", "--json", "--apply", "out.toml"});
+  Outcome const outcome = gladstone({"design", "tunnel.toml", "--json", "--apply", "out.toml", "--figures", "drawn"});
   EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
   auto const json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["figures"].empty(), outcome.err.find("gnuplot") != std::string::npos);
+  if (!json["figures"].empty()) {
+    EXPECT_THAT(names("drawn"), testing::ElementsAre("design_map.png", "layout.png")) << "of the setup as it is";
+  }
   EXPECT_FALSE(json["feasible"]);
   EXPECT_THAT(json["conflicts"].dump(), HasSubstr("requirements.resolution_mm"));
   EXPECT_FALSE(json["relaxations"].empty());

@@ -10,6 +10,7 @@
 #include "studies/design/sheet.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/layout_figure.h"
+#include "studies/figures/piv_map.h"
 #include "tests/studies/support/table1_bench.h"
 
 namespace gladstone {
@@ -168,9 +169,7 @@ TEST(DesignSheet, MapLiesAboveTheInvariant) {
   }
 }
 
-// Droplets of docs/piv.md's example: the sheet says what info particles says, and how far they may move.
-TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
-  CaseSetup const loaded = load_case_setup(SetupDocument::from_text(R"(schema = 1
+constexpr char const* droplets = R"(schema = 1
 experiment = "piv"
 [camera]
 pixels = [512, 512]
@@ -188,8 +187,13 @@ velocity_m_s = [3.0, 4.0, 20.0]
 dt_us = 20.0
 [correlate]
 window_px = [64, 32]
-)",
-                                                                    "piv.toml"));
+)";
+
+CaseSetup droplet_setup() { return load_case_setup(SetupDocument::from_text(droplets, "piv.toml")); }
+
+// Droplets of docs/piv.md's example: the sheet says what info particles says, and how far they may move.
+TEST(DesignSheet, OfPivLimitsWhatMovesBetweenThePulses) {
+  CaseSetup const loaded = droplet_setup();
   DesignSheet const sheet = piv_sheet(loaded);
   double const pixel = 5e-6 / (105.0 / 645);
   EXPECT_NEAR(sheet["displacement_px"], 5 * 20e-6 / pixel, 1e-9);
@@ -199,6 +203,36 @@ window_px = [64, 32]
   EXPECT_EQ(sheet.row("in_plane_max_m_s").margin, Margin::green);
   // 20000 in 40 x 40 x 3 mm, 1 mm of it lit, in windows of 32 px
   EXPECT_NEAR(sheet["particles_per_window"], 20000.0 / 4800 * std::pow(32 * pixel * 1e3, 2), 1e-6);
+}
+
+// The sensor's edge sees the sheet's edge of the view through the middle of the lens.
+TEST(DesignSheet, LayoutOfPivIsToScale) {
+  CaseSetup const loaded = droplet_setup();
+  BenchLayout const l = piv_layout(loaded.setup);
+  EXPECT_DOUBLE_EQ(l.lens_z, 0.75);
+  EXPECT_NEAR(l.sensor_z - l.lens_z, 1 / (1 / 0.105 - 1 / 0.75), 1e-12);
+  EXPECT_NEAR(l.dots_half / l.lens_z, l.sensor_half / (l.sensor_z - l.lens_z), 1e-12);
+  EXPECT_NEAR(l.pupil_radius, 0.105 / 8 / 2, 1e-12);
+  EXPECT_DOUBLE_EQ(l.sheet_half_thickness, 0.5e-3);
+  EXPECT_DOUBLE_EQ(l.dots_z, 0);
+}
+
+// At the setup's own stop the map says what the sheet says. Up to f/2.8 images are far smaller than a pixel: the peak
+// has all the light, which falls with the square of the stop; from f/16 on the spot spreads it, once more by the
+// square.
+TEST(DesignSheet, MapOfPivFollowsTheStop) {
+  CaseSetup const loaded = droplet_setup();
+  DesignSheet const sheet = piv_sheet(loaded);
+  std::vector<PivStop> const stops = piv_stops(loaded.setup);
+  auto const at = [&](double f_number) {
+    return *std::find_if(stops.begin(), stops.end(), [&](PivStop const& row) { return row.f_number == f_number; });
+  };
+  EXPECT_DOUBLE_EQ(at(8).image_px, sheet["image_diameter_px"]);
+  EXPECT_DOUBLE_EQ(at(8).edge_px, sheet["image_diameter_sheet_edge_px"]);
+  EXPECT_DOUBLE_EQ(at(8).peak_electrons[1], sheet["peak_electrons"]);
+  EXPECT_NEAR(std::log(at(1.4).peak_electrons[1] / at(2.8).peak_electrons[1]) / std::log(2.0), 2, 0.05);
+  EXPECT_NEAR(std::log(at(16).peak_electrons[1] / at(32).peak_electrons[1]) / std::log(2.0), 4, 0.3);
+  EXPECT_GT(at(1.4).edge_px, 2 * at(1.4).image_px) << "the blur of half the sheet";
 }
 
 }  // namespace
