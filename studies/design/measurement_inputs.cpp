@@ -1,10 +1,7 @@
 #include "studies/design/measurement_inputs.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "render/medium/gladstone_dale.h"
 #include "studies/quiet_log.h"
@@ -16,9 +13,6 @@ constexpr double step_share = 1e-3;      ///< of a value, that it is moved by ei
 constexpr double traced_gradient = 1.0;  ///< uniform, that rays are traced through [kg/m^4]
 constexpr int traced_px = 96;            ///< of the camera's middle
 constexpr int traced_rays = 16;          ///< of a dot: where they begin on it, since all go through the pupil's middle
-/// By how much derivative by formula and by tracing may differ, d ln / d ln: what lies off the axis, and differences.
-constexpr double traced_tolerance = 0.02;
-
 struct FormulaKey {
   char const* key;
   GradientInput input;
@@ -95,14 +89,6 @@ MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) 
   return one;
 }
 
-std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
-
-/// Whether formula and tracing have the same derivative.
-bool same(MeasurementInput const& input, Contribution const& contribution) {
-  double const scale = input.value != 0 ? std::abs(input.value) : input.sigma;
-  return !input.traced || std::abs(-*input.traced - contribution.log_derivative) * scale <= traced_tolerance;
-}
-
 }  // namespace
 
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
@@ -110,14 +96,23 @@ std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainIn
   QuietLog const quiet;
   double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
   if (step == 0) return std::nullopt;
-  try {
-    double const more = traced_displacement(loaded, input, input.value + step, renderer);
-    double const less = traced_displacement(loaded, input, input.value - step, renderer);
-    double const slope = std::log(more / less) / (2 * step);
-    return std::isfinite(slope) ? std::optional(slope) : std::nullopt;
-  } catch (SetupError const&) {  // a key of the field, of the correlation: it changes no displacement per gradient
-    return std::nullopt;
+  auto const displacement_at = [&](double value) -> std::optional<double> {
+    try {
+      return traced_displacement(loaded, input, value, renderer);
+    } catch (SetupError const&) {
+      return std::nullopt;
+    }
+  };
+  std::optional<double> more = displacement_at(input.value + step), less = displacement_at(input.value - step);
+  double apart = 2 * step;
+  if (input.value == 0 && more.has_value() != less.has_value()) {  // a number of one sign alone: from one side
+    (more ? less : more) = displacement_at(0);
+    apart = step;
   }
+  // neither side: a key of the field, of the correlation, which changes no displacement per gradient
+  if (!more || !less) return std::nullopt;
+  double const slope = std::log(*more / *less) / apart;
+  return std::isfinite(slope) ? std::optional(slope) : std::nullopt;
 }
 
 GradientMeasurement<double> gradient_measurement(Setup const& setup, int window_px, double displacement_px) {
@@ -152,100 +147,6 @@ MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vec
       gradient_measurement(loaded.setup, bench.given->window.window_px(), told.inputs.front().value), told.inputs);
   told.share_resolved = bench.transfer(2 * resolved_wavelength(bench));
   return told;
-}
-
-std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs) {
-  std::vector<std::string> texts;
-  for (MeasurementInput const& input : inputs) {
-    for (InputCorrelation const& one : input.correlations) {
-      if (input.key < one.with) texts.push_back(fmt::format("{} and {}, {:.3g}", input.key, one.with, one.coefficient));
-    }
-  }
-  return texts;
-}
-
-std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
-  std::string text =
-      "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
-      "inputs of type B)\n";
-  text += fmt::format("  {:<30}{:>12}{:>11} {:<12}{:>6}{:>16}{:>12}{:>10}\n", "input", "value", "sigma", "distribution",
-                      "nu", "u(gradient)", "d ln/d ln", "traced");
-  PropagatedResult const& gradient = uncertainty.results.front();
-  for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
-    MeasurementInput const& input = uncertainty.inputs[i];
-    Contribution const& part = gradient.contributions[i];
-    text += fmt::format("  {:<30}{:>12.6g}{:>11.4g} {:<12}{:>6}{:>9.2g} {:>5.1f} %{:>12.4f}{:>10}{}\n", input.key,
-                        input.value, input.sigma, to_string(input.distribution), degrees_text(input.degrees_of_freedom),
-                        part.standard, 100 * part.share, part.log_derivative * input.value,
-                        input.traced ? fmt::format("{:.4f}", -*input.traced * input.value) : "",
-                        same(input, part) ? "" : "  formula and rays differ");
-  }
-  std::vector<std::string> const correlated = correlation_texts(uncertainty.inputs);
-  for (std::string const& pair : correlated) text += "  correlated: " + pair + '\n';
-  if (correlated.empty() && uncertainty.inputs.size() > 2)
-    text += "  taken for independent ([[correlations]] has none)\n";
-  for (PropagatedResult const& result : uncertainty.results) {
-    text += fmt::format(
-        "  {}: {:.6g}, combined standard uncertainty {:.3g}, effective degrees of freedom {}\n"
-        "    expanded uncertainty {:.3g}, coverage factor {:.3f}, coverage probability 95.45 %\n"
-        "    {} samples (JCGM 101:2008): mean {:.6g}, standard uncertainty {:.3g}, 95.45 % from {:.6g} to {:.6g}; {}\n",
-        result.key, result.value, result.standard, degrees_text(result.degrees_of_freedom), result.expanded(),
-        result.coverage_factor, propagation_samples, result.sampled_mean, result.sampled_standard, result.sampled_low,
-        result.sampled_high,
-        result.linear ? "the first order holds" : "not linear, or not normal: take the samples' interval");
-  }
-  text +=
-      fmt::format("  not in it: the uncorrected bias; {:.2g} % of a wave twice as long as the resolved one is lost\n",
-                  100 * (1 - uncertainty.share_resolved));
-  return text;
-}
-
-nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertainty) {
-  using Json = nlohmann::ordered_json;
-  auto const finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-  Json json;
-  json["inputs"] = Json::array();
-  for (MeasurementInput const& input : uncertainty.inputs) {
-    json["inputs"].push_back({{"key", input.key},
-                              {"value", input.value},
-                              {"sigma", input.sigma},
-                              {"distribution", to_string(input.distribution)},
-                              {"degrees_of_freedom", finite(input.degrees_of_freedom)},
-                              {"traced_log_derivative", input.traced ? Json(-*input.traced) : Json(nullptr)}});
-  }
-  json["correlations"] = Json::array();
-  for (MeasurementInput const& input : uncertainty.inputs) {
-    for (InputCorrelation const& one : input.correlations) {
-      if (one.with < input.key) continue;
-      json["correlations"].push_back({{"keys", {input.key, one.with}}, {"coefficient", one.coefficient}});
-    }
-  }
-  json["results"] = Json::array();
-  for (PropagatedResult const& result : uncertainty.results) {
-    Json row{{"key", result.key},
-             {"value", result.value},
-             {"standard_uncertainty", result.standard},
-             {"effective_degrees_of_freedom", finite(result.degrees_of_freedom)},
-             {"coverage_factor", result.coverage_factor},
-             {"expanded_uncertainty", result.expanded()},
-             {"sampled_mean", result.sampled_mean},
-             {"sampled_standard_uncertainty", result.sampled_standard},
-             {"sampled_interval", {result.sampled_low, result.sampled_high}},
-             {"linear", result.linear},
-             {"contributions", Json::array()}};
-    for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
-      Contribution const& part = result.contributions[i];
-      row["contributions"].push_back({{"key", uncertainty.inputs[i].key},
-                                      {"log_derivative", part.log_derivative},
-                                      {"standard_uncertainty", part.standard},
-                                      {"share", part.share},
-                                      {"agrees_with_rays", same(uncertainty.inputs[i], part)}});
-    }
-    json["results"].push_back(std::move(row));
-  }
-  json["uncorrected_bias"] = {{"wave", "twice the resolved wavelength"},
-                              {"share_lost", 1 - uncertainty.share_resolved}};
-  return json;
 }
 
 }  // namespace gladstone

@@ -14,14 +14,16 @@ namespace gladstone {
 struct MeasurementUncertainty {
   std::vector<MeasurementInput> inputs;  ///< the displacement first
   std::vector<PropagatedResult> results;
-  double random_px = 0;       ///< of the displacement
-  double share_resolved = 0;  ///< of a wave twice as long as the resolved one that is left: an uncorrected bias
-  bool traced = false;        ///< whether rays were traced for the derivatives
+  double random_px = 0;  ///< of the displacement
+  double share_resolved =
+      0;                ///< of a wave twice as long as the resolved one that is left; the rest: uncorrected_bias.h
+  bool traced = false;  ///< whether rays were traced for the derivatives
 };
 
 /// d ln(displacement per gradient) / d(key) of a setup, in the key's own unit: central differences over twice a
 /// thousandth of the value (of sigma where the value is 0), of chief rays that no stop clips, through a uniform
-/// gradient, with the same random numbers on both sides. Nothing where the setup cannot be traced so.
+/// gradient, with the same random numbers on both sides; from one side where the value is 0 and cannot have either
+/// sign. Nothing where the setup cannot be traced so.
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer);
 
 /// The formula's values for a displacement [px] that a setup measures.

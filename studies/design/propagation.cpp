@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/base/contracts.h"
-#include "render/base/random_variates.h"
-#include "studies/correlation_matrix.h"
+#include "render/base/random.h"
+#include "studies/design/input_draws.h"
 
 namespace gladstone {
 namespace {
@@ -35,47 +34,25 @@ GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at)
   return jets;
 }
 
-/// d ln(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the
-/// displacement a gradient makes and so of the opposite sign.
+/// Change of the formula's input, in SI, by one of the key's own unit.
+double slope_of(MeasurementInput const& input, double value) {
+  return input.chain == 1 ? input.unit : input.chain * value / input.value;
+}
+
+/// d(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the displacement
+/// a gradient makes and so of the opposite sign.
 /// @param from_gradient the result over the gradient
-double log_derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
-                         Jet const& from_gradient) {
+double derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
+                     Jet const& from_gradient) {
   if (!input.enters) {
-    double derivative = input.traced ? -*input.traced : 0;
+    double derivative = input.traced ? -*input.traced * result.a : 0;
     if (input.scales) {
-      auto const i = static_cast<std::size_t>(*input.scales);
-      derivative += from_gradient.v[static_cast<Eigen::Index>(i)] * at.value[i] / (from_gradient.a * input.value);
+      auto const i = static_cast<Eigen::Index>(*input.scales);
+      derivative += from_gradient.v[i] * input.unit * result.a / from_gradient.a;
     }
     return derivative;
   }
-  auto const i = static_cast<std::size_t>(*input.enters);
-  return input.chain * result.v[static_cast<Eigen::Index>(i)] * at.value[i] / (result.a * input.value);
-}
-
-Eigen::MatrixXd coefficients_of(std::vector<MeasurementInput> const& inputs) {
-  auto const n = static_cast<Eigen::Index>(inputs.size());
-  Eigen::MatrixXd coefficients = Eigen::MatrixXd::Identity(n, n);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    for (InputCorrelation const& one : inputs[i].correlations) {
-      for (std::size_t k = 0; k < inputs.size(); ++k) {
-        if (inputs[k].key != one.with) continue;
-        coefficients(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = one.coefficient;
-      }
-    }
-  }
-  return coefficients;
-}
-
-/// One draw of all inputs less their values. Those that are correlated are normal.
-Eigen::VectorXd drawn(std::vector<MeasurementInput> const& inputs, Eigen::MatrixXd const& factor, KeyedEngine& engine) {
-  Eigen::VectorXd off(static_cast<Eigen::Index>(inputs.size()));
-  for (Eigen::Index i = 0; i < off.size(); ++i) {
-    bool const normal = inputs[static_cast<std::size_t>(i)].distribution == InputDistribution::normal;
-    off[i] = normal ? normal_variate(engine) : std::sqrt(3.0) * (2 * to_unit(engine()) - 1);
-  }
-  off = factor * off;
-  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] *= inputs[static_cast<std::size_t>(i)].sigma;
-  return off;
+  return result.v[static_cast<Eigen::Index>(*input.enters)] * slope_of(input, at[*input.enters]);
 }
 
 /// The results of a sample: of what the formula has not, by what its logarithm changes.
@@ -88,10 +65,12 @@ std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vecto
     double const off = drawn[static_cast<Eigen::Index>(i)];
     if (!input.enters) {
       factor *= std::exp(input.traced ? -*input.traced * off : 0);
-      if (input.scales) whole[*input.scales] *= 1 + off / input.value;
+      if (input.scales) whole[*input.scales] += input.unit * off;
+    } else if (input.chain == 1) {
+      measurement[*input.enters] += input.unit * off;
+      whole[*input.enters] += input.unit * off;
     } else {
-      double const ratio = 1 + off / input.value;
-      double const changed = input.chain == 1 ? ratio : std::pow(std::max(ratio, 1e-9), input.chain);
+      double const changed = std::pow(std::max(1 + off / input.value, 1e-9), input.chain);
       measurement[*input.enters] *= changed;
       whole[*input.enters] *= changed;
     }
@@ -101,60 +80,39 @@ std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vecto
 }
 
 double at_fraction(std::vector<double> const& sorted, double fraction) {
-  double const place = fraction * static_cast<double>(sorted.size() - 1);
+  double const place = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
   auto const i = std::min(static_cast<std::size_t>(place), sorted.size() - 2);
   double const part = place - static_cast<double>(i);
   return (1 - part) * sorted[i] + part * sorted[i + 1];
 }
 
+/// Standard error of at_fraction(): half of how far the samples reach whose number below is uncertain by one.
+double error_at_fraction(std::vector<double> const& sorted, double fraction) {
+  double const one = std::sqrt(fraction * (1 - fraction) / static_cast<double>(sorted.size()));
+  return (at_fraction(sorted, fraction + one) - at_fraction(sorted, fraction - one)) / 2;
+}
+
 constexpr double covered = 0.954499736;  ///< of a normal distribution within two standard deviations
 
-void add_samples(PropagatedResult& result, std::vector<double> samples) {
+/// @param fewest degrees of freedom of a t distribution that the samples are drawn from
+void add_samples(PropagatedResult& result, std::vector<double> samples, double fewest) {
   double sum = 0, squares = 0;
   for (double const one : samples) sum += one;
-  result.sampled_mean = sum / static_cast<double>(samples.size());
-  for (double const one : samples) squares += (one - result.sampled_mean) * (one - result.sampled_mean);
-  result.sampled_standard = std::sqrt(squares / static_cast<double>(samples.size() - 1));
+  double const mean = sum / static_cast<double>(samples.size());
+  for (double const one : samples) squares += (one - mean) * (one - mean);
+  if (fewest > 1) result.sampled_mean = mean;
+  if (fewest > 2) result.sampled_standard = std::sqrt(squares / static_cast<double>(samples.size() - 1));
   std::sort(samples.begin(), samples.end());
-  result.sampled_low = at_fraction(samples, (1 - covered) / 2);
-  result.sampled_high = at_fraction(samples, (1 + covered) / 2);
+  double const below = (1 - covered) / 2, above = (1 + covered) / 2;
+  result.sampled_low = at_fraction(samples, below);
+  result.sampled_high = at_fraction(samples, above);
   if (result.standard == 0) return;
   // JCGM 101, 7.9.2 with one significant digit: u = c 10^l, c from 1 to 9, delta = 10^l / 2
   double const delta = 0.5 * std::pow(10.0, std::floor(std::log10(result.standard)));
-  double const reach = 2 * result.standard;
-  result.linear = std::abs(result.value - reach - result.sampled_low) <= delta &&
-                  std::abs(result.value + reach - result.sampled_high) <= delta;
-}
-
-/// Inputs that are correlated with one another, directly or by others; one that is with none is a group by itself.
-struct CorrelatedGroup {
-  std::vector<Eigen::Index> members;
-  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< the fewest of theirs
-};
-
-std::vector<CorrelatedGroup> correlated_groups(std::vector<MeasurementInput> const& inputs,
-                                               Eigen::MatrixXd const& coefficients) {
-  std::vector<CorrelatedGroup> groups;
-  std::vector<bool> entered(inputs.size());
-  for (Eigen::Index first = 0; first < coefficients.rows(); ++first) {
-    if (entered[static_cast<std::size_t>(first)]) continue;
-    CorrelatedGroup& group = groups.emplace_back();
-    std::vector<Eigen::Index> open{first};
-    entered[static_cast<std::size_t>(first)] = true;
-    while (!open.empty()) {
-      Eigen::Index const i = open.back();
-      open.pop_back();
-      group.members.push_back(i);
-      group.degrees_of_freedom =
-          std::min(group.degrees_of_freedom, inputs[static_cast<std::size_t>(i)].degrees_of_freedom);
-      for (Eigen::Index k = 0; k < coefficients.cols(); ++k) {
-        if (coefficients(i, k) == 0 || entered[static_cast<std::size_t>(k)]) continue;
-        entered[static_cast<std::size_t>(k)] = true;
-        open.push_back(k);
-      }
-    }
-  }
-  return groups;
+  result.linear =
+      std::abs(result.value - result.expanded() - result.sampled_low) <=
+          delta + 3 * error_at_fraction(samples, below) &&
+      std::abs(result.value + result.expanded() - result.sampled_high) <= delta + 3 * error_at_fraction(samples, above);
 }
 
 PropagatedResult first_order(std::string key, GradientMeasurement<double> const& at,
@@ -165,8 +123,8 @@ PropagatedResult first_order(std::string key, GradientMeasurement<double> const&
   Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));  // c_i u(x_i), with their signs
   for (MeasurementInput const& input : inputs) {
     Contribution one;
-    one.log_derivative = log_derivative_of(input, at, result, from_gradient);
-    double const part = one.log_derivative * result.a * input.sigma;
+    one.derivative = derivative_of(input, at, result, from_gradient);
+    double const part = one.derivative * input.sigma;
     one.standard = std::abs(part);
     parts[static_cast<Eigen::Index>(out.contributions.size())] = part;
     out.contributions.push_back(one);
@@ -208,23 +166,26 @@ std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
   std::vector<PropagatedResult> results{
       first_order("gradient_kg_m4", at, inputs, jets.gradient(), Jet(1.0)),
       first_order("density_step_kg_m3", at, inputs, jets.density_step(), jets.density_over_gradient())};
-  std::optional<Eigen::MatrixXd> const factor = correlation_factor(coefficients_of(inputs));
-  GLADSTONE_EXPECTS(factor);  // as take_uncertain_inputs() saw to
+  InputDraws const draws(inputs);
   std::array<std::vector<double>, 2> samples;
   for (int i = 0; i < propagation_samples; ++i) {
     KeyedEngine engine(1, RandomStream::sensor, static_cast<std::uint64_t>(i));
-    std::array<double, 2> const one = sample(at, inputs, drawn(inputs, *factor, engine));
+    std::array<double, 2> const one = sample(at, inputs, draws.draw(engine));
     for (std::size_t k = 0; k < results.size(); ++k) samples[k].push_back(one[k]);
   }
-  for (std::size_t k = 0; k < results.size(); ++k) add_samples(results[k], std::move(samples[k]));
+  double const fewest = draws.fewest_degrees_of_t();
+  for (std::size_t k = 0; k < results.size(); ++k) add_samples(results[k], std::move(samples[k]), fewest);
   return results;
 }
 
-double common_relative_uncertainty(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient) {
+double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs) {
+  at[GradientInput::displacement] = 1;  // what the others make is relative: it is the same of any displacement
+  Jet const gradient = with_derivatives(at).gradient();
   Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     bool const common = inputs[i].enters != GradientInput::displacement;
-    parts[static_cast<Eigen::Index>(i)] = common ? gradient.contributions[i].log_derivative * inputs[i].sigma : 0;
+    parts[static_cast<Eigen::Index>(i)] =
+        common ? derivative_of(inputs[i], at, gradient, Jet(1.0)) / gradient.a * inputs[i].sigma : 0;
   }
   return std::sqrt(std::max(0.0, parts.dot(coefficients_of(inputs) * parts)));
 }

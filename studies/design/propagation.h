@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,7 +59,7 @@ struct MeasurementInput {
   double degrees_of_freedom = std::numeric_limits<double>::infinity();
   std::optional<GradientInput> enters;  ///< where the formula has it; nothing: it has not
   double unit = 1;                      ///< of the key [SI]
-  /// Times the derivative of the formula's input by the key, both relative: 1, or of a wavelength that of K.
+  /// The formula's input goes as this power of the key: 1, or of a wavelength, which is never 0, what K goes as.
   double chain = 1;
   /// d ln(displacement per gradient) / d(key) by tracing, in the key's own unit; nothing: not traced.
   std::optional<double> traced;
@@ -70,9 +71,9 @@ struct MeasurementInput {
 
 /// How an input adds to a result.
 struct Contribution {
-  double log_derivative = 0;  ///< d ln(result) / d(input), in the input's unit
-  double standard = 0;        ///< |derivative| times sigma, in the result's unit
-  double share = 0;           ///< of the combined variance, with half of what each correlation adds to it
+  double derivative = 0;  ///< d(result) / d(input), the sensitivity coefficient, in the units of both
+  double standard = 0;    ///< |derivative| times sigma, in the result's unit
+  double share = 0;       ///< of the combined variance, with half of what each correlation adds to it
 };
 
 /// A result with its uncertainty, in the words of the GUM (JCGM 100:2008) and, by samples, of its Supplement 1 (JCGM
@@ -80,13 +81,16 @@ struct Contribution {
 struct PropagatedResult {
   std::string key;  ///< with its unit as suffix
   double value = 0;
-  double standard = 0;                      ///< combined standard uncertainty, first order
-  double degrees_of_freedom = 0;            ///< effective, after Welch and Satterthwaite; infinite where all are
-  double coverage_factor = 2;               ///< for 95.45 %
-  std::vector<Contribution> contributions;  ///< of the inputs, in their order
-  double sampled_mean = 0, sampled_standard = 0;
+  double standard = 0;                       ///< combined standard uncertainty, first order
+  double degrees_of_freedom = 0;             ///< effective, after Welch and Satterthwaite; infinite where all are
+  double coverage_factor = 2;                ///< for 95.45 %
+  std::vector<Contribution> contributions;   ///< of the inputs, in their order
+  std::optional<double> sampled_mean;        ///< nothing where an input has one degree of freedom: it has no mean
+  std::optional<double> sampled_standard;    ///< nothing where an input has two of them or fewer: it has no variance
   double sampled_low = 0, sampled_high = 0;  ///< 95.45 % of the samples, as many below as above
-  bool linear = true;  ///< the ends of both intervals agree within half of the first digit of `standard` (JCGM 101, 8)
+  /// The ends of both intervals, the samples' and value -+ k u, agree within half of the first digit of `standard`
+  /// (JCGM 101, 8) and what the samples' ends themselves are uncertain by, three standard errors.
+  bool linear = true;
 
   double expanded() const { return coverage_factor * standard; }
 };
@@ -97,14 +101,20 @@ inline constexpr int propagation_samples = 100'000;
 double coverage_factor(double degrees_of_freedom);
 
 /// Propagates the inputs to density gradient and density by exact derivatives (JCGM 100:2008, eq. 16: with covariances)
-/// and by samples. Degrees of freedom are those of Welch and Satterthwaite; inputs that are correlated, directly or by
-/// others, count as one with the fewest of theirs.
+/// and by samples of what drawn_distribution() says. Degrees of freedom are those of Welch and Satterthwaite; inputs
+/// that are correlated, directly or by others, count as one with the fewest of theirs.
 /// @param at the values of all inputs of the formula
 std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
                                         std::vector<MeasurementInput> const& inputs);
 
+/// What samples of an input are drawn from: "normal"; "t, 4 degrees of freedom", scaled by sigma and shifted to the
+/// value (JCGM 101:2008, 6.4.9), of correlated inputs all by one variate of chi squared; "rectangular"; "rectangular,
+/// limits inexact", a curvilinear trapezoid (6.4.3) whose half width varies by 1 / sqrt(2 nu) of itself, as sigma does
+/// (JCGM 100:2008, G.4.2).
+std::string drawn_distribution(std::vector<MeasurementInput> const& inputs, std::size_t input);
+
 /// Relative uncertainty of a gradient that all inputs but the displacement make together, first order: what is the same
-/// at all vectors.
-double common_relative_uncertainty(std::vector<MeasurementInput> const& inputs, PropagatedResult const& gradient);
+/// at all vectors, whatever their displacement.
+double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs);
 
 }  // namespace gladstone

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double mm = unit::millimetre;
 
-std::string layout_text(Bench<double> const& b) {
+std::string text_of_layout(Bench<double> const& b) {
   return fmt::format(
       "Seen from the side, to scale: the dots stand Z_D = {:.5g} mm behind the medium's mid-plane, the lens (f = "
       "{:.5g} "
@@ -27,6 +27,20 @@ std::string layout_text(Bench<double> const& b) {
       b.z_d / mm, b.focal_length / mm, b.f_number, b.z_a / mm, b.given->camera.columns * b.pixel_at_medium() / mm,
       b.given->camera.rows * b.pixel_at_medium() / mm, b.given->camera.columns * b.pixel_at_dots() / mm,
       b.given->camera.rows * b.pixel_at_dots() / mm, b.cone_diameter() / mm);
+}
+
+/// A figure that the page holds; without gnuplot its words.
+template <class Write>
+ReportBlock drawn_block(std::string title, std::string words, Write const& write) {
+  try {
+    PassingFolder const folder;
+    std::string const path = folder.path() + "/figure.png";
+    write(path);
+    return Picture{std::move(title), std::move(words), read_text_file(path)};
+  } catch (GnuplotMissing const& missing) {
+    spdlog::warn("{}", missing.what());
+    return Paragraph{title + ". " + words};
+  }
 }
 
 std::string map_text(Bench<double> const& b) {
@@ -50,17 +64,17 @@ std::optional<BenchView> bench_view(CaseSetup loaded) {
   return BenchView{std::move(given), bench};
 }
 
+std::string layout_text(BenchView const& view) { return text_of_layout(view.bench); }
+
+ReportBlock layout_block(BenchView const& view, std::string const& whose) {
+  return drawn_block("Layout of " + whose, layout_text(view),
+                     [&view](std::string const& path) { write_layout_figure(path, view.bench); });
+}
+
 ReportSection bench_section(BenchView const& view, std::string const& whose) {
-  ReportSection section{"Set-up", {}};
-  try {
-    PassingFolder const folder;
-    std::vector<std::string> const drawn = draw_bench(folder.path(), "png", view);
-    section.blocks.push_back(Picture{"Layout of " + whose, layout_text(view.bench), read_text_file(drawn.front())});
-    section.blocks.push_back(Picture{"Design map of " + whose, map_text(view.bench), read_text_file(drawn.back())});
-  } catch (GnuplotMissing const& missing) {
-    spdlog::warn("{}", missing.what());
-  }
-  return section;
+  ReportBlock map = drawn_block("Design map of " + whose, map_text(view.bench),
+                                [&view](std::string const& path) { write_design_map(path, view.bench, std::nullopt); });
+  return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
 std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view) {

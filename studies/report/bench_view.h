@@ -21,10 +21,16 @@ struct BenchView {
 /// calibration, posed, tilted, plenoptic, behind windows or without a stop. The medium's field is not read.
 std::optional<BenchView> bench_view(CaseSetup loaded);
 
+/// What the layout shows, in numbers.
+std::string layout_text(BenchView const& view);
+
 /// Section "Set-up": the layout to scale, and the design map with the set-up as a point, both drawn now and held by the
-/// page. Empty where there is no gnuplot.
-/// @param whose "the measurement", "case 3"
+/// page; without gnuplot their words.
+/// @param whose "the measurement", "the base"
 ReportSection bench_section(BenchView const& view, std::string const& whose);
+
+/// The layout alone. @param whose "case 3"
+ReportBlock layout_block(BenchView const& view, std::string const& whose);
 
 /// The same as files of a paper. @return their paths @throws GnuplotMissing, OutputError
 std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view);

@@ -5,6 +5,7 @@
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
 #include "studies/report/case_view.h"
+#include "studies/uncorrected_bias.h"
 
 namespace gladstone {
 
@@ -46,16 +47,16 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
                                      : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."
                                                                 : "That is within 15 %."));
   }
-  ErrorBudget const& budget = all.budget;
-  double const bias = std::hypot(budget.total.bias_u_px, budget.total.bias_v_px);
-  double const random = std::sqrt(
-      (budget.total.random_u_px * budget.total.random_u_px + budget.total.random_v_px * budget.total.random_v_px) / 2);
+  double const rms =
+      summarize_errors(all.measured.displacement_px, all.window.displacement_px, all.mask, all.vectors_in_file())
+          .rms_px;
   statements.push_back(fmt::format(
-      "Against {}, all causes together: the combined standard uncertainty of a component is {:.3g} px (type B, from "
-      "this "
-      "simulated measurement over {} vectors), the expanded uncertainty {:.3g} px with a coverage factor of 2. The "
-      "uncorrected bias of {:.3g} px is stated apart and is not in it.",
-      view.piv ? "the displacement of the flow" : "Eq. 9", random, budget.count, 2 * random, bias));
+      "The combined standard uncertainty of a component is {:.3g} px, of type B: the rms error against truth on the "
+      "window, by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty is "
+      "{:.3g} px with a coverage factor of 2.",
+      rms, all.budget.count, 2 * rms));
+  statements.push_back(fmt::format("The uncorrected bias is {:.3g} px. {}", uncorrected_bias_px(all),
+                                   uncorrected_bias_words(all.chain)));
   return statements;
 }
 

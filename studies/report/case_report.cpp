@@ -6,6 +6,7 @@
 
 #include "analysis/errors/error_summary.h"
 #include "analysis/errors/uncertainty_quality.h"
+#include "render/base/error.h"
 #include "render/base/image_file.h"
 #include "render/base/text_file.h"
 #include "studies/budget_stages.h"
@@ -112,6 +113,27 @@ std::string png_of(Image<double> const& frame, double black, double white) {
   return encode_png(picture);
 }
 
+/// Setup, frames and what was compared. @throws DataError where a frame is another than the vectors were measured on
+SourceFiles case_sources(std::string const& folder, Comparison const& compared) {
+  SourceFiles sources;
+  sources.add("setup", in_case(folder, case_file::setup), SourceFiles::Holds::bytes);
+  for (auto const& [name, file] : {std::pair{"reference", case_file::reference}, std::pair{"flow", case_file::flow}}) {
+    std::string const path = in_case(folder, file), told = compared.sources.sha256(name);
+    sources.add(name, path, SourceFiles::Holds::pixels);
+    if (told.empty() || told == sources.sha256(name)) continue;
+    throw DataError(path,
+                    fmt::format("is another frame than the vectors were measured on (the SHA-256 of its pixels is "
+                                "{:.12}..., not {:.12}...); bring the old one back, or render and correlate {} "
+                                "again",
+                                sources.sha256(name), told, folder));
+  }
+  for (SourceFiles::Source const& source : compared.sources.all()) {
+    bool const file = !source.name.empty() && !source.path.empty();
+    if (file) sources.add(source.name, source.path, source.holds, source.sha256);
+  }
+  return sources;
+}
+
 }  // namespace
 
 TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
@@ -205,14 +227,10 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
       {"Settings",
        {Verbatim{"The resolved setup", read_text_file(setup)},
         Verbatim{"Summary of the rendering", read_text_file(in_case(options.source, case_file::summary))}}});
-  std::vector<std::pair<std::string, std::string>> sources;
-  for (SourceFiles::Source const& source : all.sources.all()) {
-    if (!source.name.empty()) sources.emplace_back(source.name, source.sha256);
-  }
   std::string const place = shell_word(options.source);
-  page.sections.push_back(
-      how_it_was_made(sources, {"gladstone render setup.toml -o " + place, "gladstone correlate " + place,
-                                "gladstone compare " + place, "gladstone report " + place}));
+  page.sections.push_back(how_it_was_made(case_sources(options.source, all),
+                                          {"gladstone render setup.toml -o " + place, "gladstone correlate " + place,
+                                           "gladstone compare " + place, "gladstone report " + place}));
   return page;
 }
 

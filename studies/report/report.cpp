@@ -16,6 +16,14 @@ namespace gladstone {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+char const* words_of(SourceFiles::Holds holds) {
+  return holds == SourceFiles::Holds::pixels ? "pixels" : holds == SourceFiles::Holds::datasets ? "numbers" : "bytes";
+}
+
+}  // namespace
+
 ReportSection drawn_figures(
     ReportOptions const& options,
     std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw) {
@@ -33,10 +41,11 @@ ReportSection drawn_figures(
   return section;
 }
 
-ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,
-                              std::vector<std::string> const& commands) {
-  TextTable files{"What this report was made from (SHA-256)", {"what", "SHA-256"}, {}};
-  for (auto const& [name, sha256] : sources) files.rows.push_back({{name}, {sha256}});
+ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands) {
+  TextTable files{"What this report was made from (SHA-256)", {"what", "of its", "SHA-256"}, {}};
+  for (SourceFiles::Source const& source : sources.all()) {
+    if (!source.name.empty()) files.rows.push_back({{source.name}, {words_of(source.holds)}, {source.sha256}});
+  }
   std::string text;
   for (std::string const& command : commands) text += command + '\n';
   return {"How it was made, and how to cite it",

@@ -2,9 +2,9 @@
 
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "render/base/source_files.h"
 #include "studies/device.h"
 #include "studies/report/report_page.h"
 
@@ -45,9 +45,8 @@ ReportSection drawn_figures(
     std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw);
 
 /// How every report ends: versions, checksums, commands, how to cite.
-/// @param sources name and SHA-256 of what it was made from
-ReportSection how_it_was_made(std::vector<std::pair<std::string, std::string>> const& sources,
-                              std::vector<std::string> const& commands);
+/// @param sources what it was made from: those that have a name are told, with their SHA-256
+ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands);
 
 /// Two frames as 8-bit pictures of equal grey scale; of large ones the middle.
 FramePictures frame_pictures(std::string const& folder, std::string const& title);

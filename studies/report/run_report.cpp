@@ -25,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_table_rows = 20;  ///< without a search field
+constexpr std::size_t most_told = 12;        ///< values of an axis in a list
 
 nlohmann::json data_of(StudyView const& study) {
   nlohmann::json data{{"main", study.main}, {"terms", study.terms}};
@@ -106,13 +107,56 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
   return frame_pictures(folder, title);
 }
 
-/// The bench of a case, from its setup; nothing where what it names is not there any more.
-std::optional<BenchView> bench_of_case(std::string const& setup, std::size_t index) {
+/// The bench of a setup; nothing where what it names is not there any more, or it is none without the study's axes.
+std::optional<BenchView> bench_of_text(std::string const& setup, std::string const& name) {
+  if (setup.empty()) return std::nullopt;
   try {
-    return bench_view(load_case_setup(SetupDocument::from_text(setup, fmt::format("the setup of case {}", index))));
+    return bench_view(load_case_setup(SetupDocument::from_text(setup, name)));
   } catch (Error const&) {
     return std::nullopt;
   }
+}
+
+/// A file of RUN as text; empty where there is none, as of a study that an older gladstone planned.
+std::string text_in_run(std::string const& run, char const* name) {
+  std::string const path = (fs::path(run) / name).string();
+  return fs::exists(path) ? read_text_file(path) : std::string();
+}
+
+/// What every case starts from, and what the study changes of it.
+ReportSection setup_section(StudyView const& study, BenchView const* base) {
+  ReportSection section{"Set-up", {}};
+  if (base) section = bench_section(*base, "the base");
+  TextList axes;
+  for (StudyAxis const& axis : study.table.axes) {
+    std::string values;
+    for (std::size_t i = 0; i < axis.labels.size() && i < most_told; ++i) {
+      values += (i == 0 ? "" : ", ") + axis.labels[i];
+    }
+    std::size_t const more = axis.labels.size() - std::min(axis.labels.size(), most_told);
+    axes.items.push_back(axis_title(axis.key) + ": " + values + (more > 0 ? fmt::format(" and {} more", more) : ""));
+  }
+  section.blocks.insert(section.blocks.begin(),
+                        {Paragraph{"Every case starts from one setup, the base. What the study changes of it:"}, axes});
+  return section;
+}
+
+/// What the report was made from: the study as planned, its table, and the frames that are shown.
+SourceFiles run_sources(std::string const& run, std::vector<StudyRow const*> const& shown) {
+  SourceFiles sources;
+  for (char const* const name : {run_file::study, run_file::base, run_file::manifest}) {
+    std::string const path = (fs::path(run) / name).string();
+    if (fs::exists(path)) sources.add(name, path, SourceFiles::Holds::bytes);
+  }
+  for (StudyRow const* const row : shown) {
+    for (char const* const name : {case_file::reference, case_file::flow}) {
+      fs::path const path = fs::path(run) / run_file::cases / std::to_string(row->index) / name;
+      if (fs::exists(path)) {
+        sources.add(fmt::format("{} of case {}", name, row->index), path.string(), SourceFiles::Holds::pixels);
+      }
+    }
+  }
+  return sources;
 }
 
 }  // namespace
@@ -140,8 +184,11 @@ ReportPage run_report(ReportOptions const& options) {
   auto const free = std::count_if(study.table.axes.begin(), study.table.axes.end(),
                                   [](StudyAxis const& axis) { return axis.labels.size() > 1; });
   auto const manifest_entries = read_manifest(run);
-  std::optional<BenchView> const bench = bench_of_case(manifest_entries[best.index].setup, best.index);
-  if (bench) page.sections.push_back(bench_section(*bench, fmt::format("case {}, the best", best.index)));
+  std::string const base_text = text_in_run(run, run_file::base), best_text = manifest_entries[best.index].setup;
+  std::string const whose_best = fmt::format("case {}, the best", best.index);
+  std::optional<BenchView> const base = bench_of_text(base_text, run_file::base),
+                                 bench = bench_of_text(best_text, "the setup of " + whose_best);
+  page.sections.push_back(setup_section(study, base ? &*base : nullptr));
   ReportSection errors{"Error over the axes", {}};
   if (free > 0) errors.blocks.push_back(Chart{"curves", "A measure over an axis", page.findings.front()});
   if (free > 1) errors.blocks.push_back(Chart{"cells", "A measure over two axes", strongest_axis(study)});
@@ -154,24 +201,30 @@ ReportPage run_report(ReportOptions const& options) {
                     "not add up in quadrature."},
           Chart{"causes", "rms of every cause", largest_cause(study)}}});
   }
-  page.sections.push_back(
-      {"Best and worst case", {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}});
+  ReportSection extreme{"Best and worst case",
+                        {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}};
+  if (bench && (!base || layout_text(*base) != layout_text(*bench))) {
+    extreme.blocks.push_back(layout_block(*bench, whose_best));
+  }
+  page.sections.push_back(std::move(extreme));
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn = draw_study(folder, study.table, {format});
-    if (!bench) return drawn;
-    for (std::string& path : draw_bench(folder, format, *bench)) drawn.push_back(std::move(path));
+    if (!base) return drawn;
+    for (std::string& path : draw_bench(folder, format, *base)) drawn.push_back(std::move(path));
     return drawn;
   };
   if (ReportSection figures = drawn_figures(options, draw); !figures.blocks.empty()) {
     page.sections.push_back(std::move(figures));
   }
   page.sections.push_back({"All cases", {cases_table(study)}});
-  std::string const study_file = (fs::path(run) / run_file::study).string();
-  std::string const manifest = (fs::path(run) / run_file::manifest).string();
   ReportSection settings{"Settings", {}};
-  if (fs::exists(study_file)) settings.blocks.push_back(Verbatim{"The study", read_text_file(study_file)});
-  settings.blocks.push_back(
-      Verbatim{fmt::format("The setup of case {}, the best", best.index), manifest_entries[best.index].setup});
+  if (std::string text = text_in_run(run, run_file::study); !text.empty()) {
+    settings.blocks.push_back(Verbatim{"The study", std::move(text)});
+  }
+  if (!base_text.empty()) {
+    settings.blocks.push_back(Verbatim{"The setup that every case starts from (base)", base_text});
+  }
+  settings.blocks.push_back(Verbatim{"The setup of " + whose_best, best_text});
   std::string seeds, builds;
   std::vector<std::uint64_t> told;
   for (StudyRow const& row : study.table.rows) {
@@ -184,10 +237,11 @@ ReportPage run_report(ReportOptions const& options) {
       Paragraph{fmt::format("Seeds of the repeats: {}. Computed by gladstone {} on {}.", seeds, builds, best.device)});
   page.sections.push_back(std::move(settings));
   std::string const place = shell_word(run);
-  page.sections.push_back(
-      how_it_was_made({{"manifest.jsonl", byte_sha256(manifest)}},
-                      {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
-                       "gladstone sweep collect " + place, "gladstone report " + place}));
+  std::vector<StudyRow const*> shown{&best};
+  if (worst != &best) shown.push_back(worst);
+  page.sections.push_back(how_it_was_made(
+      run_sources(run, shown), {"gladstone sweep plan study.toml -o " + place, "gladstone sweep run " + place,
+                                "gladstone sweep collect " + place, "gladstone report " + place}));
   return page;
 }
 

@@ -70,7 +70,8 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
     std::vector<std::vector<Vec2d>> errors;
     Progress progress("simulating the twin", plan.size());
     for (std::size_t i = 0; i < plan.size(); ++i) {
-      CaseResult const result = runner.run(plan[i], "", [&](ObservedCase const& seen) {
+      ManifestCase const one = plan[i];
+      CaseResult const result = runner.run(one, "", [&](ObservedCase const& seen) {
         Comparison const& all = seen.comparison;
         std::vector<Vec2d>& error = errors.emplace_back(all.mask.size(), Vec2d{std::nan(""), std::nan("")});
         for (std::size_t k = 0; k < all.mask.size(); ++k) {
@@ -83,14 +84,14 @@ SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& densit
         }
       });
       progress.advance();
+      twin.seeds.push_back(one.seed);
       if (result.status == CaseStatus::ok) continue;
       twin.failed = result.error;
       return twin;
     }
     RepeatSplit const split = split_repeats(errors);
-    twin.repeats = errors.size();
     twin.random_px = split.scatter_px;
-    twin.bias_px = split.systematic_px;
+    twin.systematic_px = split.systematic_px;
   } catch (SetupError const& error) {
     twin.failed = error.what();
   } catch (DataError const& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,12 @@ namespace gladstone {
 /// A measurement that is made again in simulation: the density that was measured, as the medium of the setup, rendered,
 /// correlated and compared.
 struct SimulatedTwin {
-  Comparison comparison;  ///< of the first repeat
-  double random_px = 0;   ///< scatter between repeats
-  double bias_px = 0;     ///< what they share against Eq. 9 of the density put in, rms
-  std::size_t repeats = 0;
-  int columns = 0, rows = 0;  ///< of the camera's middle that was simulated
-  std::string failed;         ///< why there is none; empty: there is
+  Comparison comparison;             ///< of the first repeat
+  double random_px = 0;              ///< scatter between repeats
+  double systematic_px = 0;          ///< what they share against Eq. 9 of the density put in, rms
+  std::vector<std::uint64_t> seeds;  ///< of the repeats
+  int columns = 0, rows = 0;         ///< of the camera's middle that was simulated
+  std::string failed;                ///< why there is none; empty: there is
 };
 
 inline constexpr int most_twin_px = 512;  ///< of the camera, across and down

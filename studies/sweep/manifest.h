@@ -43,6 +43,7 @@ struct ManifestCase {
 namespace run_file {
 inline constexpr char const* manifest = "manifest.jsonl";
 inline constexpr char const* study = "study.toml";  ///< copy of the study file
+inline constexpr char const* base = "base.toml";    ///< the setup that every case starts from, file names absolute
 inline constexpr char const* claims = "claims";     ///< locked byte by byte by who computes which case
 inline constexpr char const* cases = "cases";       ///< folder of results, INDEX.json
 inline constexpr char const* table = "study.h5";

@@ -45,13 +45,15 @@ std::vector<CaseResult> whole_results(fs::path const& run) {
 /// Whether a folder holds nothing but what write_plan() leaves when it is cut short: by a full disk, or killed.
 bool left_by_a_cut_plan(fs::path const& folder) {
   std::error_code error;
-  // study.toml is written after cases/ was made: alone it is somebody else's
+  // study.toml and base.toml are written after cases/ was made: alone they are somebody else's
   bool const ours = fs::is_directory(folder / run_file::cases, error) && fs::is_empty(folder / run_file::cases, error);
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string const name = entry->path().filename().string();
-    bool const partial =
-        is_partial(name, stem_beside(run_file::manifest)) || is_partial(name, stem_beside(run_file::study));
-    bool const written = name == run_file::cases || name == run_file::study || name == run_file::claims;
+    bool const partial = is_partial(name, stem_beside(run_file::manifest)) ||
+                         is_partial(name, stem_beside(run_file::study)) ||
+                         is_partial(name, stem_beside(run_file::base));
+    bool const written =
+        name == run_file::cases || name == run_file::study || name == run_file::base || name == run_file::claims;
     if (!partial && !(ours && written) && name != "lost+found") return false;
   }
   return !error;
@@ -124,9 +126,9 @@ void write_lines(StudyPlan const& plan, std::string const& path, std::string con
 void try_plan_place(std::string const& run, StudyFile const& study) {
   fs::path const folder(run), manifest = folder / run_file::manifest;
   refuse_foreign_run(folder);
-  refuse_inputs_as_outputs(
-      {manifest.string(), (folder / run_file::study).string(), (folder / run_file::claims).string()},
-      {study.path, study.base_path});
+  refuse_inputs_as_outputs({manifest.string(), (folder / run_file::study).string(), (folder / run_file::base).string(),
+                            (folder / run_file::claims).string()},
+                           {study.path, study.base_path});
   OutputFile const tried(manifest.string());
 }
 
@@ -168,6 +170,7 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
   fs::create_directories(folder / run_file::cases, error);
   if (error) throw OutputError((folder / run_file::cases).string(), "cannot be made (" + error.message() + ')');
   OutputFile::write_text((folder / run_file::study).string(), plan.study().text);
+  OutputFile::write_text((folder / run_file::base).string(), plan.base());
   Claims const made(run, Claims::Use::take);
   write_lines(plan, output.temporary_path(), manifest.string());
   output.commit();

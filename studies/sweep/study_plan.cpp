@@ -232,6 +232,13 @@ StudyPlan::~StudyPlan() = default;
 StudyPlan::StudyPlan(StudyPlan&&) noexcept = default;
 
 StudyFile const& StudyPlan::study() const { return parts_->study; }
+
+std::string StudyPlan::base() const {
+  SetupDocument document = parts_->base.copy();
+  document.name_files(parts_->keys_of_files({}, document));
+  return document.written();
+}
+
 std::size_t StudyPlan::size() const { return parts_->study.points() * parts_->study.repeats; }
 
 ManifestCase StudyPlan::without_hash(std::size_t index) const {

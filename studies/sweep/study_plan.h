@@ -25,6 +25,8 @@ class StudyPlan {
   static constexpr std::size_t most_tried = 5'000;
 
   StudyFile const& study() const;
+  /// The setup that every case starts from, as TOML with absolute file names.
+  std::string base() const;
   std::size_t size() const;
   /// A case, its line_hash included. From any thread. @throws DataError for inputs that cannot be read
   ManifestCase operator[](std::size_t index) const;

@@ -191,6 +191,27 @@ window_px = [32, 16]
   EXPECT_TRUE(part["agrees_with_rays"]);
   EXPECT_TRUE(gradient["linear"]);
   EXPECT_THAT(succeed({"design", "bench.toml", "--device", "cpu"}), HasSubstr("combined standard uncertainty"));
+  // an ambient density that is let out to 0 tells what it is uncertain by, too
+  write("vacuum.toml", read("bench.toml") + "[medium]\nambient_density_kg_m3 = { value = 0.0, sigma = 0.02 }\n");
+  auto const vacuum = json_of({"design", "vacuum.toml", "--device", "cpu"})["uncertainty"]["results"][0];
+  auto const& air = vacuum["contributions"][vacuum["contributions"].size() - 1];
+  EXPECT_EQ(air["key"], "medium.ambient_density_kg_m3");
+  EXPECT_NEAR(air["derivative"], 10 * 2.26e-4, 1e-9);
+  EXPECT_NEAR(air["log_derivative"], 2.26e-4, 1e-10);
+  EXPECT_TRUE(air["agrees_with_rays"]);
+  EXPECT_THAT(succeed({"design", "vacuum.toml", "--device", "cpu"}), testing::Not(HasSubstr("nan")));
+  // a number with degrees of freedom is drawn from Student's distribution, and the table says so
+  std::string few = read("bench.toml");
+  few.replace(few.find("sigma = 1.0"), 11, "sigma = 1.0, degrees_of_freedom = 2");
+  write("few.toml", few);
+  auto const of_few = json_of({"design", "few.toml", "--device", "cpu"})["uncertainty"];
+  EXPECT_EQ(of_few["inputs"][1]["drawn_from"], "t, 2 degrees of freedom");
+  EXPECT_TRUE(of_few["results"][0]["sampled_standard_uncertainty"].is_null());
+  EXPECT_THAT(of_few["uncorrected_bias"]["is"].get<std::string>(), HasSubstr("less that of Eq. 9"));
+  std::string const table = succeed({"design", "few.toml", "--device", "cpu"});
+  EXPECT_THAT(table, HasSubstr("t, 2 degrees of freedom"));
+  EXPECT_THAT(table, HasSubstr("standard uncertainty undefined"));
+  EXPECT_THAT(table, HasSubstr("The uncorrected bias is the true displacement, averaged over the window"));
   // all else reads the value, and a case keeps what it is worth
   render("case", {}, "bench.toml");
   succeed({"correlate", "case", "--quiet"});

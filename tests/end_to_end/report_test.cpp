@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 
+#include "render/base/source_files.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -34,8 +36,17 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   std::string const html = read("run/report.html");
   EXPECT_THAT(html, HasSubstr("How wrong is the measured displacement against Eq. 9"));
   EXPECT_THAT(html, HasSubstr("6 of 6 cases are finished"));
-  EXPECT_THAT(html,
-              HasSubstr(", the best</figcaption>\n<img alt=\"Seen from the side, to scale: the dots stand Z_D = "));
+  // the set-up is the base's, at its own stop; the best case's stands with that case
+  EXPECT_THAT(html, HasSubstr("Layout of the base</figcaption>\n<img alt=\"Seen from the side, to scale: the dots "
+                              "stand Z_D = 250 mm behind the medium's mid-plane, the lens (f = 105 mm, f/11)"));
+  std::string const best = html.substr(html.find("Best and worst case"));
+  EXPECT_THAT(best, HasSubstr(", the best</figcaption>\n<img alt=\"Seen from the side, to scale: the dots stand Z_D"));
+  EXPECT_LT(html.find("Layout of the base"), html.find("Best and worst case"));
+  EXPECT_THAT(html, HasSubstr("The setup that every case starts from (base)</summary>"));
+  EXPECT_THAT(html, HasSubstr("<li>f-number: 8, 16, 32</li>"));
+  for (char const* const file : {"study.toml", "base.toml", "manifest.jsonl"}) {
+    EXPECT_THAT(html, HasSubstr(byte_sha256(in(std::string("run/") + file).string()))) << file;
+  }
   EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBOR"));
   nlohmann::json const data = data_of("run/report.html");
   ASSERT_EQ(data["rows"].size(), 6u);
@@ -71,6 +82,30 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     ++told;
   }
   EXPECT_GT(told, 0u);
+  // the uncorrected bias is what leads from Eq. 9 to truth on the window, rms; four digits of a number, three of it
+  // told
+  double squares = 0, components = 0;
+  for (char const* component : {"u", "v"}) {
+    std::map<std::string, nlohmann::json> fields;
+    for (nlohmann::json const& one : data["fields"]) fields[one["name"]] = one[component];
+    for (std::size_t i = 0; i < fields["error_eq9"].size(); ++i) {
+      if (fields["error_eq9"][i].is_null()) continue;
+      double const off = fields["error_eq9"][i].get<double>() - fields["estimator"][i].get<double>() -
+                         fields["noise"][i].get<double>();
+      squares += off * off;
+      components += 1;
+    }
+  }
+  std::string const said = read("case/report.html"), head = "<li>The uncorrected bias is ";
+  ASSERT_NE(said.find(head), std::string::npos);
+  double const bias = std::stod(said.substr(said.find(head) + head.size()));
+  EXPECT_NEAR(bias, std::sqrt(squares / components), 0.005 * bias + 1e-6);
+  EXPECT_THAT(said, HasSubstr("px. The uncorrected bias is the true displacement, averaged over the window, less that "
+                              "of Eq. 9, rms over the vectors"));
+  for (char const* const frame : {"reference", "flow"}) {
+    EXPECT_THAT(said, HasSubstr(std::string("<td>") + frame + "</td><td>pixels</td><td>" +
+                                pixel_sha256(in(std::string("case/") + frame + ".tif").string())));
+  }
   std::string const html = read("case/report.html");
   EXPECT_THAT(html, HasSubstr("expanded uncertainty"));
   EXPECT_THAT(html, HasSubstr("Layout of the case"));
@@ -110,10 +145,20 @@ window_px = [32, 16]
   std::string const findings = json_of({"report", "measured", "--device", "cpu"})["findings"];
   EXPECT_THAT(findings, HasSubstr("combined standard uncertainty"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 2.00"));
-  EXPECT_THAT(findings, HasSubstr("In the simulated twin"));
+  EXPECT_THAT(findings, HasSubstr("kg/m^4, in the simulated twin"));
+  EXPECT_THAT(findings,
+              HasSubstr("The uncorrected bias is the true displacement, averaged over the window, less that"));
   std::string const html = read("measured/report.html");
   EXPECT_THAT(html, HasSubstr("of the simulated twin and not of the measurement itself"));
   EXPECT_THAT(html, HasSubstr("geometry.z_d_mm"));
+  EXPECT_THAT(html, HasSubstr("<td>normal</td>"));
+  EXPECT_THAT(html, HasSubstr("each time with other dots (seeds "));
+  for (char const* const frame : {"reference", "flow"}) {
+    EXPECT_THAT(html, HasSubstr(std::string("<td>") + frame + "</td><td>pixels</td><td>" +
+                                pixel_sha256(in(std::string("measured/") + frame + ".tif").string())));
+  }
+  EXPECT_THAT(html, HasSubstr(byte_sha256(in("measured/setup.toml").string())));
+  EXPECT_THAT(html, HasSubstr(dataset_sha256(in("measured/vectors.h5").string())));
   EXPECT_THAT(html, HasSubstr("the dots stand Z_D = 250 mm behind the medium"));
   EXPECT_THAT(html, HasSubstr("of type B: by the formula of the random error (F26), since the vectors have none"));
   succeed({"report", "measured", "--format", "md", "-o", "text/m.md", "--figures", "paper", "--figure-format", "svg",
@@ -144,7 +189,39 @@ window_px = [32, 16]
   EXPECT_THAT(read("text/still.md"), testing::Not(HasSubstr("nan")));
   EXPECT_THAT(read("text/still.md"),
               HasSubstr("by the formula of the random error (F26), since the vectors have none"));
-  expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv"});
+  EXPECT_THAT(read("text/still.md"), HasSubstr("The vectors span 2.4 % of the camera's 128 x 128 px"));
+  expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv", "check --vectors"});
+}
+
+// A setup of another camera than the one that took the frames, or another pair than was correlated.
+TEST_F(Reports, OfAMeasurementKnowWhoseFramesAndVectorsTheyAre) {
+  render("case");
+  succeed({"correlate", "case", "--quiet"});
+  std::filesystem::create_directories(in("measured"));
+  for (char const* const name : {"reference.tif", "flow.tif", "vectors.h5"}) {
+    std::filesystem::copy_file(in(std::string("case/") + name), in(std::string("measured/") + name));
+  }
+  std::string const setup = read("setup.toml");
+  write("measured/setup.toml", with(setup, "pixels = [64, 64]", "pixels = [48, 32]"));
+  expect_refused({"report", "measured"}, 2,
+                 {"measured/reference.tif: has 64 x 64 px", "the camera of measured/setup.toml has 48 x 32 px",
+                  "write camera.pixels = [64, 64]"});
+  for (char const* const name : {"reference.tif", "flow.tif"})
+    std::filesystem::remove(in(std::string("measured/") + name));
+  expect_refused({"report", "measured"}, 2,
+                 {"measured/vectors.h5: has ", "vectors outside the 48 x 32 px of the camera of measured/setup.toml",
+                  "write camera.pixels = [columns, rows]"});
+  write("measured/setup.toml", setup);
+  std::filesystem::copy_file(in("case/reference.tif"), in("measured/reference.tif"));
+  std::filesystem::copy_file(in("case/reference.tif"), in("measured/flow.tif"));
+  expect_refused({"report", "measured"}, 2,
+                 {"measured/vectors.h5: was measured on another flow frame than measured/flow.tif"});
+  std::filesystem::remove(in("measured/vectors.h5"));
+  expect_refused({"report", "measured"}, 2, {"measured/vectors.h5: is not there", "gladstone correlate"});
+  // a frame of a case that is another by now
+  std::filesystem::copy_file(in("case/reference.tif"), in("case/flow.tif"),
+                             std::filesystem::copy_options::overwrite_existing);
+  expect_refused({"report", "case"}, 2, {"case/flow.tif: is another frame than the vectors were measured on"});
 }
 
 /// The displacements along x of a file of vectors.
@@ -204,6 +281,7 @@ window_px = [32, 16]
                                         "measured/2.csv", "--device", "cpu"})["findings"];
   EXPECT_THAT(findings, HasSubstr("effective degrees of freedom 1)"));
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 13.97"));
+  EXPECT_THAT(read("measured/report.html"), HasSubstr("<td>t, 1 degree of freedom</td>"));
   EXPECT_THAT(read("measured/report.html"), HasSubstr("is of type A: the standard deviation of the mean of 2 repeats"));
   nlohmann::json const data = data_of("measured/report.html");
   for (nlohmann::json const& one : data["fields"]) {

@@ -235,6 +235,16 @@ TEST_F(Runs, WhatACutPlanLeavesIsPlannedAnewAndNothingElse) {
   EXPECT_FALSE(std::filesystem::exists(partial));
 }
 
+// The base stands beside the manifest as the study has it, with none of the axes' values, and loads from anywhere.
+TEST_F(Runs, TheBaseIsKeptBesideTheManifest) {
+  StudyPlan const plan = plan_study(study(two_axes), "cpu");
+  EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
+  SetupDocument base = SetupDocument::from_text(content("run/base.toml"), "base");
+  ASSERT_NE(base.find({"lens", "f_number"}), nullptr);
+  EXPECT_EQ(base.find({"lens", "f_number"})->as_double(), 11);
+  EXPECT_EQ(load_case_setup(std::move(base)).setup.camera.columns, 64);
+}
+
 TEST_F(Runs, AManifestOfSomethingElseIsLeftAlone) {
   std::filesystem::create_directory(in("package"));
   StudyPlan const plan = plan_study(study(two_axes), "cpu");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "studies/design/measurement_inputs.h"
 #include "studies/device.h"
@@ -19,15 +20,25 @@ GradientMeasurement<double> measured_at_table1() {
   return at;
 }
 
+/// In px, um, mm, m^3/kg and kg/m^3, as setups write them.
 MeasurementInput input(GradientInput enters, double value, double sigma,
                        InputDistribution distribution = InputDistribution::normal) {
+  using I = GradientInput;
   MeasurementInput one;
   one.key = "input";
+  one.unit = enters == I::pixel_pitch                                                                      ? 1e-6
+             : enters == I::focal_length || enters == I::z_a || enters == I::z_d || enters == I::thickness ? 1e-3
+                                                                                                           : 1;
   one.value = value;
   one.sigma = sigma;
   one.distribution = distribution;
   one.enters = enters;
   return one;
+}
+
+/// d ln(result) / d ln(input).
+double log_derivative(PropagatedResult const& result, std::size_t i, MeasurementInput const& input) {
+  return result.contributions[i].derivative * input.value / result.value;
 }
 
 // The gradient solves F6, so that Table 1's sensitivity gives back 10 kg/m^4. With M = f / (Z_B - f) it is
@@ -49,7 +60,7 @@ TEST(Propagation, HasTheDerivativesOfTheFormula) {
   PropagatedResult const gradient = propagate(at, inputs)[0];
   double variance = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    EXPECT_NEAR(gradient.contributions[i].log_derivative * inputs[i].value, by_hand[i], 1e-12) << i;
+    EXPECT_NEAR(log_derivative(gradient, i, inputs[i]), by_hand[i], 1e-12) << i;
     double const part = by_hand[i] * inputs[i].sigma / inputs[i].value * gradient.value;
     EXPECT_NEAR(gradient.contributions[i].standard, std::abs(part), 1e-12 * gradient.value) << i;
     variance += part * part;
@@ -61,11 +72,12 @@ TEST(Propagation, HasTheDerivativesOfTheFormula) {
 // counts twice, the focal length -f / (Z_B - f) - 1 twice.
 TEST(Propagation, OfTheDensityCountsTheImagingTwice) {
   GradientMeasurement<double> const at = measured_at_table1();
-  auto const results =
-      propagate(at, {input(GradientInput::pixel_pitch, 10, 0.01), input(GradientInput::focal_length, 105, 1)});
+  std::vector<MeasurementInput> const inputs{input(GradientInput::pixel_pitch, 10, 0.01),
+                                             input(GradientInput::focal_length, 105, 1)};
+  auto const results = propagate(at, inputs);
   EXPECT_NEAR(results[1].value, results[0].value * 16 * 10e-6 * 0.75 / (0.105 / 0.895), 1e-12);
-  EXPECT_NEAR(results[1].contributions[0].log_derivative * 10, 2, 1e-12);
-  EXPECT_NEAR(results[1].contributions[1].log_derivative * 105, 2 * (-0.105 / 0.895 - 1), 1e-12);
+  EXPECT_NEAR(log_derivative(results[1], 0, inputs[0]), 2, 1e-12);
+  EXPECT_NEAR(log_derivative(results[1], 1, inputs[1]), 2 * (-0.105 / 0.895 - 1), 1e-12);
 }
 
 // Inputs of 0.5 % and less: the second order is (0.005)^2 of the uncertainty. The standard deviation of 10^5 samples
@@ -77,8 +89,8 @@ TEST(Propagation, EqualsMonteCarloWhereItIsLinear) {
                      input(GradientInput::focal_length, 105, 0.3), input(GradientInput::z_d, 250, 1),
                      input(GradientInput::gladstone_dale, 2.26e-4, 1e-6, InputDistribution::rectangular)});
   for (PropagatedResult const& result : results) {
-    EXPECT_NEAR(result.sampled_standard / result.standard, 1, 0.0067) << result.key;
-    EXPECT_NEAR(result.sampled_mean, result.value, 3 * result.standard / std::sqrt(1e5) + 1e-4 * result.value);
+    EXPECT_NEAR(*result.sampled_standard / result.standard, 1, 0.0067) << result.key;
+    EXPECT_NEAR(*result.sampled_mean, result.value, 3 * result.standard / std::sqrt(1e5) + 1e-4 * result.value);
     EXPECT_TRUE(result.linear);
     EXPECT_EQ(result.coverage_factor, 2);
   }
@@ -90,7 +102,7 @@ TEST(Propagation, SaysWhereItIsNotLinear) {
   GradientMeasurement<double> const at = measured_at_table1();
   PropagatedResult const result = propagate(at, {input(GradientInput::thickness, 10, 2.5)})[0];
   EXPECT_FALSE(result.linear);
-  EXPECT_GT(result.sampled_mean, 1.05 * result.value);
+  EXPECT_GT(*result.sampled_mean, 1.05 * result.value);
   EXPECT_GT(result.sampled_high - result.value, 1.5 * (result.value - result.sampled_low));
 }
 
@@ -98,10 +110,10 @@ TEST(Propagation, SaysWhereItIsNotLinear) {
 // u = 0.9 the ends are 0.31 apart, and half of the first digit is 0.05.
 TEST(Propagation, SaysWhereARectangleIsNoNormalDistribution) {
   GradientMeasurement<double> const at = measured_at_table1();
-  PropagatedResult const result =
-      propagate(at, {input(GradientInput::displacement, 1, 0.09, InputDistribution::rectangular)})[0];
+  PropagatedResult const result = propagate(
+      at, {input(GradientInput::displacement, at.value[0], 0.09 * at.value[0], InputDistribution::rectangular)})[0];
   EXPECT_NEAR(result.standard, 0.9, 1e-4);
-  EXPECT_NEAR(result.sampled_standard, 0.9, 0.9 * 0.0067);
+  EXPECT_NEAR(*result.sampled_standard, 0.9, 0.9 * 0.0067);
   EXPECT_NEAR(result.sampled_high - result.value, std::sqrt(3.0) * 0.954499736 * 0.9, 0.005);
   EXPECT_FALSE(result.linear);
 }
@@ -123,13 +135,13 @@ TEST(Propagation, TakesTheCoverageFactorFromStudentsDistribution) {
 // Welch and Satterthwaite: of two equal contributions with four degrees of freedom each, (2 u^2)^2 / (2 u^4 / 4) = 8.
 TEST(Propagation, CombinesDegreesOfFreedom) {
   GradientMeasurement<double> const at = measured_at_table1();
-  std::vector<MeasurementInput> inputs{input(GradientInput::displacement, 1, 0.01),
+  std::vector<MeasurementInput> inputs{input(GradientInput::displacement, at.value[0], 0.01 * at.value[0]),
                                        input(GradientInput::pixel_pitch, 10, 0.1)};
   for (MeasurementInput& one : inputs) one.degrees_of_freedom = 4;
   PropagatedResult const result = propagate(at, inputs)[0];
   EXPECT_NEAR(result.degrees_of_freedom, 8, 1e-9);
   EXPECT_NEAR(result.coverage_factor, 2.37, 0.005);
-  EXPECT_NEAR(common_relative_uncertainty(inputs, result), 0.01, 1e-12);
+  EXPECT_NEAR(common_relative_uncertainty(at, inputs), 0.01, 1e-12);
 }
 
 /// Two distances that are correlated so.
@@ -153,10 +165,10 @@ TEST(Propagation, AddsWhatInputsHaveInCommon) {
     PropagatedResult const result = propagate(at, correlated_distances(r))[0];
     double const expected = std::sqrt(a * a + d * d + 2 * r * a * d);
     EXPECT_NEAR(result.standard, expected, 1e-6) << r;
-    EXPECT_NEAR(result.sampled_standard / result.standard, 1, 0.0067) << r;
+    EXPECT_NEAR(*result.sampled_standard / result.standard, 1, 0.0067) << r;
     EXPECT_NEAR(result.contributions[1].share + result.contributions[2].share, 1, 1e-6) << r;
     EXPECT_NEAR(result.contributions[1].standard, a, 1e-6) << r;
-    EXPECT_NEAR(common_relative_uncertainty(correlated_distances(r), result), expected / 10, 1e-7) << r;
+    EXPECT_NEAR(common_relative_uncertainty(at, correlated_distances(r)), expected / 10, 1e-7) << r;
   }
 }
 
@@ -167,6 +179,90 @@ TEST(Propagation, CountsCorrelatedInputsAsOneByDegreesOfFreedom) {
   inputs[1].degrees_of_freedom = 4;
   inputs[2].degrees_of_freedom = 9;
   EXPECT_NEAR(propagate(measured_at_table1(), inputs)[0].degrees_of_freedom, 4, 1e-5);
+}
+
+// Of air that is let out to 0 +- 0.02 kg/m^3 the index n0 = 1 + K rho has the derivative K, at 0 as elsewhere: g K, and
+// the density across a window the same share of it. Three standard errors of the samples' standard deviation: 0.67 %.
+TEST(Propagation, TakesNumbersOfNothing) {
+  GradientMeasurement<double> at = measured_at_table1();
+  at[GradientInput::ambient_density] = 0;
+  for (PropagatedResult const& result : propagate(at, {input(GradientInput::ambient_density, 0, 0.02)})) {
+    EXPECT_NEAR(result.contributions[0].derivative, 2.26e-4 * result.value, 1e-12) << result.key;
+    EXPECT_NEAR(result.standard, 0.02 * 2.26e-4 * result.value, 1e-12) << result.key;
+    EXPECT_NEAR(*result.sampled_standard / result.standard, 1, 0.0067) << result.key;
+    EXPECT_TRUE(result.linear) << result.key;
+  }
+  EXPECT_NEAR(common_relative_uncertainty(at, {input(GradientInput::ambient_density, 0, 0.02)}), 0.02 * 2.26e-4, 1e-15);
+}
+
+// Where nothing moved, 1 / S = 150.9 kg/m^4 a pixel is left of the displacement, and nothing of all else, which is in
+// proportion to it: of samples, by as much as 0.5 % of a gradient that is 0 in the mean.
+TEST(Propagation, TellsAMeasurementInWhichNothingMoved) {
+  GradientMeasurement<double> at = measured_at_table1();
+  double const per_px = at.gradient() / at.value[0];
+  at[GradientInput::displacement] = 0;
+  std::vector<MeasurementInput> inputs{input(GradientInput::displacement, 0, 0.01), input(GradientInput::z_d, 250, 1),
+                                       MeasurementInput{}};
+  inputs[2].traced = 0.01;
+  inputs[2].sigma = 1;
+  PropagatedResult const result = propagate(at, inputs)[0];
+  EXPECT_EQ(result.value, 0);
+  EXPECT_NEAR(result.standard, 0.01 * per_px, 1e-12);
+  EXPECT_NEAR(result.contributions[0].share, 1, 1e-12);
+  EXPECT_EQ(result.contributions[1].standard, 0);
+  EXPECT_EQ(result.contributions[2].standard, 0);
+  EXPECT_NEAR(*result.sampled_standard / result.standard, 1, 0.0067);
+  EXPECT_NEAR(common_relative_uncertainty(at, inputs), std::hypot((1 - 250.0 / 895) / 250, 0.01), 1e-12);
+}
+
+// JCGM 101:2008, 6.4.9: what is known from nu + 1 readings is drawn from a t distribution, so that the interval that
+// holds 95.45 % of the samples is that of Student's factor, and the first order holds at k u where it would miss by
+// (k - 2) u at 2 u. Its standard deviation is sqrt(nu / (nu - 2)) u. Of a quantile where 2.3 % are beyond it, the
+// standard error is sqrt(0.0228 0.9772 / 10^5) = 4.7e-4 over the density there: 0.017 u with ten degrees of freedom
+// (density 0.027 / u), 0.023 u with four (0.0205), 0.29 u with one (0.0016). Four of them.
+TEST(Propagation, DrawsFromStudentsDistributionWhatHasDegreesOfFreedom) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  for (auto const& [degrees, factor, within] : {std::tuple{10.0, 2.284, 0.07}, {4.0, 2.869, 0.09}, {1.0, 13.97, 1.2}}) {
+    MeasurementInput one = input(GradientInput::displacement, at.value[0], 0.02 * at.value[0]);
+    one.degrees_of_freedom = degrees;
+    PropagatedResult const result = propagate(at, {one})[0];
+    EXPECT_NEAR((result.sampled_high - result.value) / result.standard, factor, within) << degrees;
+    EXPECT_NEAR((result.value - result.sampled_low) / result.standard, factor, within) << degrees;
+    EXPECT_TRUE(result.linear) << degrees;
+    EXPECT_EQ(result.sampled_mean.has_value(), degrees > 1);
+    EXPECT_EQ(result.sampled_standard.has_value(), degrees > 2);
+    EXPECT_EQ(drawn_distribution({one}, 0), degrees == 1   ? "t, 1 degree of freedom"
+                                            : degrees == 4 ? "t, 4 degrees of freedom"
+                                                           : "t, 10 degrees of freedom");
+    if (degrees < 10) continue;
+    // the fourth moment of ten degrees is 4 sigma^4: a relative sqrt((4 - 1) / 4 / 10^5) = 0.27 %, three of them
+    EXPECT_NEAR(*result.sampled_standard / result.standard, std::sqrt(10.0 / 8), 0.0082 * std::sqrt(10.0 / 8));
+  }
+}
+
+// Two normal inputs of four degrees of freedom that are correlated have one chi squared in common: every sum of both is
+// t with four, as Welch and Satterthwaite's count of them says. Two with a chi squared each would end at 2.5 u.
+TEST(Propagation, DrawsCorrelatedInputsWithOneChiSquared) {
+  std::vector<MeasurementInput> inputs = correlated_distances(-0.8);
+  for (std::size_t const i : {1u, 2u}) inputs[i].degrees_of_freedom = 4;
+  PropagatedResult const result = propagate(measured_at_table1(), inputs)[0];
+  EXPECT_NEAR((result.sampled_high - result.sampled_low) / (2 * result.standard), 2.869, 0.09);
+  EXPECT_TRUE(result.linear);
+  EXPECT_EQ(drawn_distribution(inputs, 0), "normal");
+  inputs[1].degrees_of_freedom = 9;
+  EXPECT_EQ(drawn_distribution(inputs, 1), "t, 4 degrees of freedom");
+}
+
+// A rectangle whose half width is known to 1 / sqrt(2 nu) has a variance 1 + 1 / (2 nu) times as large (JCGM 101:2008,
+// 6.4.3): 1.125 with four degrees of freedom. Its fourth moment is below the normal one, so 0.67 % are three errors.
+TEST(Propagation, DrawsRectanglesWithInexactLimits) {
+  GradientMeasurement<double> const at = measured_at_table1();
+  MeasurementInput one = input(GradientInput::displacement, at.value[0], 0.01, InputDistribution::rectangular);
+  EXPECT_EQ(drawn_distribution({one}, 0), "rectangular");
+  one.degrees_of_freedom = 4;
+  EXPECT_EQ(drawn_distribution({one}, 0), "rectangular, limits inexact");
+  PropagatedResult const result = propagate(at, {one})[0];
+  EXPECT_NEAR(*result.sampled_standard / result.standard, std::sqrt(1.125), 0.0067 * std::sqrt(1.125));
 }
 
 // Chief rays through a uniform gradient, which no stop clips: the displacement per gradient is S, the gradient's
@@ -196,9 +292,28 @@ window_px = [32]
   PropagatedResult const gradient = propagate(gradient_measurement(loaded.setup, 32, 0.1), inputs)[0];
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     ASSERT_TRUE(inputs[i].traced) << inputs[i].key;
-    EXPECT_NEAR(-*inputs[i].traced * inputs[i].value, gradient.contributions[i].log_derivative * inputs[i].value, 1e-3)
-        << inputs[i].key;
+    EXPECT_NEAR(-*inputs[i].traced * inputs[i].value, log_derivative(gradient, i, inputs[i]), 1e-3) << inputs[i].key;
   }
+}
+
+// A density of 0 has no negative side: the difference is taken from the positive one. A dot's displacement goes with
+// 1 / n0, so that its logarithm has the derivative -K at the vacuum.
+TEST(Propagation, TracesFromOneSideWhatCannotBeNegative) {
+  SetupDocument document = SetupDocument::from_text(R"(schema = 1
+[camera]
+pixels = [64, 64]
+[medium]
+ambient_density_kg_m3 = { value = 0.0, sigma = 1.0 }
+[correlate]
+window_px = [32]
+)",
+                                                    "vacuum");
+  std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
+  CaseSetup const loaded = load_case_setup(std::move(document));
+  Device device = open_device("cpu");
+  std::optional<double> const slope = traced_log_derivative(loaded, uncertain.at(0), *device.renderer);
+  ASSERT_TRUE(slope);
+  EXPECT_NEAR(*slope, -2.26e-4, 1e-6);
 }
 
 // A double Gauss of 100 mm is no formula's: what counts are differences of rays through it. On the axis it is the thin
@@ -234,14 +349,14 @@ window_px = [32]
     GradientInput const known = inputs[i].key == "geometry.z_a_mm"   ? GradientInput::z_a
                                 : inputs[i].key == "geometry.z_d_mm" ? GradientInput::z_d
                                                                      : GradientInput::thickness;
-    auto const thin = propagate(at, {input(known, inputs[i].value, 1)});
+    MeasurementInput const thin_input = input(known, inputs[i].value, 1);
+    auto const thin = propagate(at, {thin_input});
     for (std::size_t k = 0; k < traced.size(); ++k) {  // of the gradient, and of the density across a window
-      EXPECT_NEAR(traced[k].contributions[i].log_derivative * inputs[i].value,
-                  thin[k].contributions[0].log_derivative * inputs[i].value, 0.01)
+      EXPECT_NEAR(log_derivative(traced[k], i, inputs[i]), log_derivative(thin[k], 0, thin_input), 0.01)
           << inputs[i].key << ", " << traced[k].key;
     }
   }
-  for (PropagatedResult const& one : traced) EXPECT_NEAR(one.sampled_standard / one.standard, 1, 0.0067) << one.key;
+  for (PropagatedResult const& one : traced) EXPECT_NEAR(*one.sampled_standard / one.standard, 1, 0.0067) << one.key;
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "studies/design/measurement_inputs.h"
+#include "studies/uncorrected_bias.h"
+
+namespace gladstone {
+namespace {
+
+/// By how much derivative by formula and by tracing may differ, d ln / d ln: what lies off the axis, and differences.
+constexpr double traced_tolerance = 0.02;
+
+std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
+
+/// Whether formula and tracing have the same derivative of the gradient; of none where there is no gradient, or it was
+/// not traced.
+bool same(MeasurementInput const& input, PropagatedResult const& gradient, Contribution const& contribution) {
+  if (!input.traced || gradient.value == 0) return true;
+  double const scale = input.value != 0 ? std::abs(input.value) : input.sigma;
+  return std::abs(-*input.traced - contribution.derivative / gradient.value) * scale <= traced_tolerance;
+}
+
+/// "undefined" of moments that a distribution has not.
+std::string sampled_text(std::optional<double> value, int digits) {
+  return value ? fmt::format("{:.{}g}", *value, digits) : "undefined";
+}
+
+}  // namespace
+
+std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs) {
+  std::vector<std::string> texts;
+  for (MeasurementInput const& input : inputs) {
+    for (InputCorrelation const& one : input.correlations) {
+      if (input.key < one.with) texts.push_back(fmt::format("{} and {}, {:.3g}", input.key, one.with, one.coefficient));
+    }
+  }
+  return texts;
+}
+
+std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
+  std::string text =
+      "uncertainty of a density gradient, and of the density that it makes across one window (JCGM 100:2008; all "
+      "inputs of type B)\n";
+  text += fmt::format("  {:<30}{:>12}{:>11} {:<28}{:>9}{:>9}{:>13}{:>13}\n", "input", "value", "sigma", "drawn from",
+                      "u(g)", "share", "dg/d(input)", "by rays");
+  PropagatedResult const& gradient = uncertainty.results.front();
+  for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
+    MeasurementInput const& input = uncertainty.inputs[i];
+    Contribution const& part = gradient.contributions[i];
+    text +=
+        fmt::format("  {:<30}{:>12.6g}{:>11.4g} {:<28}{:>9.2g}{:>7.1f} %{:>13.4g}{:>13}{}\n", input.key, input.value,
+                    input.sigma, drawn_distribution(uncertainty.inputs, i), part.standard, 100 * part.share,
+                    part.derivative, input.traced ? fmt::format("{:.4g}", -*input.traced * gradient.value) : "",
+                    same(input, gradient, part) ? "" : "  formula and rays differ");
+  }
+  text += "  g: density gradient [kg/m^4]; inputs in the units of their keys\n";
+  std::vector<std::string> const correlated = correlation_texts(uncertainty.inputs);
+  for (std::string const& pair : correlated) text += "  correlated: " + pair + '\n';
+  if (correlated.empty() && uncertainty.inputs.size() > 2)
+    text += "  taken for independent ([[correlations]] has none)\n";
+  for (PropagatedResult const& result : uncertainty.results) {
+    text += fmt::format(
+        "  {}: {:.6g}, combined standard uncertainty {:.3g}, effective degrees of freedom {}\n"
+        "    expanded uncertainty {:.3g}, coverage factor {:.3f}, coverage probability 95.45 %\n"
+        "    {} samples (JCGM 101:2008): mean {}, standard uncertainty {}, 95.45 % from {:.6g} to {:.6g}; {}\n",
+        result.key, result.value, result.standard, degrees_text(result.degrees_of_freedom), result.expanded(),
+        result.coverage_factor, propagation_samples, sampled_text(result.sampled_mean, 6),
+        sampled_text(result.sampled_standard, 3), result.sampled_low, result.sampled_high,
+        result.linear ? "the first order holds" : "not linear, or not normal: take the samples' interval");
+  }
+  text += fmt::format("  not in it: the uncorrected bias, {:.2g} % of a wave twice as long as the resolved one\n  {}\n",
+                      100 * (1 - uncertainty.share_resolved), uncorrected_bias_words(BudgetChain::bos));
+  return text;
+}
+
+nlohmann::ordered_json uncertainty_json(MeasurementUncertainty const& uncertainty) {
+  using Json = nlohmann::ordered_json;
+  auto const finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  auto const known = [](std::optional<double> value) { return value ? Json(*value) : Json(nullptr); };
+  Json json;
+  json["inputs"] = Json::array();
+  for (MeasurementInput const& input : uncertainty.inputs) {
+    json["inputs"].push_back({{"key", input.key},
+                              {"value", input.value},
+                              {"sigma", input.sigma},
+                              {"distribution", to_string(input.distribution)},
+                              {"drawn_from", drawn_distribution(uncertainty.inputs, json["inputs"].size())},
+                              {"degrees_of_freedom", finite(input.degrees_of_freedom)},
+                              {"traced_log_derivative", input.traced ? Json(-*input.traced) : Json(nullptr)}});
+  }
+  json["correlations"] = Json::array();
+  for (MeasurementInput const& input : uncertainty.inputs) {
+    for (InputCorrelation const& one : input.correlations) {
+      if (one.with < input.key) continue;
+      json["correlations"].push_back({{"keys", {input.key, one.with}}, {"coefficient", one.coefficient}});
+    }
+  }
+  json["results"] = Json::array();
+  for (PropagatedResult const& result : uncertainty.results) {
+    Json row{{"key", result.key},
+             {"value", result.value},
+             {"standard_uncertainty", result.standard},
+             {"effective_degrees_of_freedom", finite(result.degrees_of_freedom)},
+             {"coverage_factor", result.coverage_factor},
+             {"expanded_uncertainty", result.expanded()},
+             {"sampled_mean", known(result.sampled_mean)},
+             {"sampled_standard_uncertainty", known(result.sampled_standard)},
+             {"sampled_interval", {result.sampled_low, result.sampled_high}},
+             {"linear", result.linear},
+             {"contributions", Json::array()}};
+    for (std::size_t i = 0; i < uncertainty.inputs.size(); ++i) {
+      Contribution const& part = result.contributions[i];
+      Json one{{"key", uncertainty.inputs[i].key},
+               {"derivative", part.derivative},
+               {"log_derivative", finite(part.derivative / result.value)},
+               {"standard_uncertainty", part.standard},
+               {"share", part.share}};
+      if (&result == &uncertainty.results.front()) one["agrees_with_rays"] = same(uncertainty.inputs[i], result, part);
+      row["contributions"].push_back(std::move(one));
+    }
+    json["results"].push_back(std::move(row));
+  }
+  json["uncorrected_bias"] = {{"is", uncorrected_bias_words(BudgetChain::bos)},
+                              {"wave", "twice the resolved wavelength"},
+                              {"share_lost", 1 - uncertainty.share_resolved}};
+  return json;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,141 @@
+#include "studies/report/measured_files.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "analysis/vectors/vector_file.h"
+#include "analysis/vectors/vector_screening.h"
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/image_file.h"
+#include "studies/case_files.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::pair<char const*, char const*>, 2> frame_files{
+    {{"reference", case_file::reference}, {"flow", case_file::flow}}};
+
+bool is_hdf5(std::string const& path) { return path.ends_with(".h5") || path.ends_with(".hdf5"); }
+
+std::string pixels_of(CameraSetup const& camera) { return fmt::format("{} x {} px", camera.columns, camera.rows); }
+
+/// Leaves out what no camera can have seen. @throws DataError where places are not this camera's
+void screen(VectorFile& file, std::string const& path, std::string const& setup, CameraSetup const& camera) {
+  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
+  if (left_out.outside_image > 0) {
+    throw DataError(
+        path, fmt::format("has {} of {} vectors outside the {} of the camera of {} (their x from {:.6g} to {:.6g}, y "
+                          "from {:.6g} to {:.6g}); write camera.pixels = [columns, rows] of the frames that were "
+                          "correlated there, or, where places count from another origin, --conventions offset=NUMBER",
+                          left_out.outside_image, left_out.all() + file.field.size(), pixels_of(camera), setup,
+                          left_out.low_px.x, left_out.high_px.x, left_out.low_px.y, left_out.high_px.y));
+  }
+  std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
+  if (!refusal.empty()) throw DataError(path, refusal);
+  if (left_out.without_place() + left_out.displacement_beyond_image > 0) {
+    spdlog::warn("{}: vectors are left out: {}", path, left_out.text());
+  }
+  std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
+  if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
+}
+
+DisplacementField read_measured(std::string const& path, std::string const& setup, ReportOptions const& options,
+                                CameraSetup const& camera) {
+  VectorFile file = read_vectors(path);
+  if (!options.conventions.empty()) file.conventions = parse_conventions(options.conventions, file.conventions);
+  screen(file, path, setup, camera);
+  DisplacementField field = file.foreign || !options.conventions.empty()
+                                ? apply_conventions(std::move(file.field), file.conventions, camera.rows)
+                                : std::move(file.field);
+  if (field.columns == 0) arrange_as_grid(field);
+  return field;
+}
+
+}  // namespace
+
+MeasuredFiles measured_files(ReportOptions const& options) {
+  MeasuredFiles files;
+  files.setup = (fs::path(options.source) / case_file::setup).string();
+  files.vectors = options.vectors.empty() ? in_case(options.source, case_file::vectors) : options.vectors;
+  files.repeats = options.repeats;
+  if (!fs::exists(files.vectors)) {
+    throw DataError(files.vectors, options.vectors.empty()
+                                       ? "is not there; measure the displacement with gladstone correlate REFERENCE "
+                                         "FLOW -o " +
+                                             files.vectors + ", or name a file with --vectors"
+                                       : "does not exist; check --vectors");
+  }
+  files.sources.on_change("write the report again");
+  files.sources.add("setup", files.setup, SourceFiles::Holds::bytes);
+  files.frames = std::all_of(frame_files.begin(), frame_files.end(),
+                             [&](auto const& frame) { return fs::exists(fs::path(options.source) / frame.second); });
+  for (auto const& [name, file] : frame_files) {
+    if (files.frames) files.sources.add(name, (fs::path(options.source) / file).string(), SourceFiles::Holds::pixels);
+  }
+  auto const add = [&files](std::string const& name, std::string const& path) {
+    files.sources.add(name, path, is_hdf5(path) ? SourceFiles::Holds::datasets : SourceFiles::Holds::bytes);
+  };
+  add("vectors", files.vectors);
+  for (std::size_t i = 0; i < files.repeats.size(); ++i) add(fmt::format("repeat {}", i + 2), files.repeats[i]);
+  return files;
+}
+
+void require_frames_of(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera) {
+  if (!files.frames) return;
+  for (auto const& [name, file] : frame_files) {
+    std::string const path = (fs::path(options.source) / file).string();
+    Image<double> const frame = read_image(path);
+    if (frame.columns() != camera.columns || frame.rows() != camera.rows) {
+      throw DataError(
+          path,
+          fmt::format("has {} x {} px, the camera of {} has {}; write camera.pixels = [{}, {}] there, "
+                      "or bring the frames that this camera took",
+                      frame.columns(), frame.rows(), files.setup, pixels_of(camera), frame.columns(), frame.rows()));
+    }
+    std::string const told =
+        is_hdf5(files.vectors) ? Hdf5Reader(files.vectors).attribute(std::string(name) + "_sha256") : std::string();
+    if (told.empty() || told == files.sources.sha256(name)) continue;
+    throw DataError(files.vectors,
+                    fmt::format("was measured on another {} frame than {} (the SHA-256 of its pixels is {:.12}..., not "
+                                "{:.12}...); correlate the frames of the folder again, or bring those of the vectors",
+                                name, path, told, files.sources.sha256(name)));
+  }
+}
+
+std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOptions const& options,
+                                            CameraSetup const& camera) {
+  std::vector<DisplacementField> all{read_measured(files.vectors, files.setup, options, camera)};
+  for (std::string const& file : files.repeats) {
+    DisplacementField one = read_measured(file, files.setup, options, camera);
+    bool same = one.size() == all.front().size();
+    for (std::size_t i = 0; same && i < one.size(); ++i) {
+      same = length(one.position_px[i] - all.front().position_px[i]) < 1e-3;
+    }
+    if (!same) {
+      throw DataError(file, "has its vectors at other places than " + files.vectors +
+                                " (the scatter of repeats is told at every vector); correlate all of them with one "
+                                "configuration");
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+double spanned_share(DisplacementField const& field, CameraSetup const& camera) {
+  if (field.size() == 0) return 0;
+  Vec2d low = field.position_px.front(), high = low;
+  for (Vec2d const& p : field.position_px) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return (high.x - low.x) * (high.y - low.y) / (static_cast<double>(camera.columns) * camera.rows);
+}
+
+}  // namespace gladstone

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "studies/design/propagation.h"
+#include "studies/report/mean_of_repeats.h"
+#include "studies/report/measured_gradients.h"
+#include "studies/report/report_page.h"
+#include "studies/report/simulated_twin.h"
+
+namespace gladstone {
+
+/// What is known of a measurement's uncertainty, the displacement first of the inputs.
+struct MeasurementKnown {
+  MeasuredGradients const& gradients;
+  PropagatedResult const& typical;  ///< of a vector of typical displacement and uncertainty
+  std::vector<MeasurementInput> const& inputs;
+  MeanOfRepeats const& mean;
+  SimulatedTwin const* twin = nullptr;  ///< null: there is none
+  double sensitivity = 1;               ///< [px per kg/m^4]
+
+  bool simulated() const { return twin && twin->failed.empty(); }
+};
+
+/// In the words of the GUM (JCGM 100:2008).
+struct MeasurementStatements {
+  std::string measurand, expanded, displacement, setup, bias;
+
+  std::vector<std::string> all() const;
+};
+MeasurementStatements measurement_statements(MeasurementKnown const& known);
+
+/// The inputs with their parts in the uncertainty of the gradient.
+TextTable inputs_table(MeasurementKnown const& known);
+
+}  // namespace gladstone

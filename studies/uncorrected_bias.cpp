@@ -1,0 +1,28 @@
+#include "studies/uncorrected_bias.h"
+
+#include <cmath>
+
+namespace gladstone {
+
+std::string uncorrected_bias_words(BudgetChain chain) {
+  bool const piv = chain == BudgetChain::piv;
+  return std::string("The uncorrected bias is the true displacement, averaged over the window, less that of ") +
+         (piv ? "the flow" : "Eq. 9") + ", rms over the vectors: what " +
+         (piv ? "the medium, the imaging and the window" : "cone, dot, refraction, aberration and window") +
+         " change in every repeat alike. It is not corrected, and in no uncertainty.";
+}
+
+double uncorrected_bias_px(Comparison const& comparison) {
+  std::vector<Vec2d> const& theory =
+      comparison.chain == BudgetChain::piv ? comparison.flow_px : comparison.point.eq9_px;
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < comparison.mask.size(); ++i) {
+    if (!comparison.mask[i]) continue;
+    Vec2d const off = comparison.window.displacement_px[i] - theory[i];
+    squares += dot(off, off);
+    count += 2;
+  }
+  return std::sqrt(squares / count);
+}
+
+}  // namespace gladstone

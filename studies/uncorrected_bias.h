@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "studies/compare.h"
+
+namespace gladstone {
+
+/// What is meant by uncorrected bias wherever it is told: truth on the window less theory (Eq. 9, of PIV the flow). It
+/// is neither corrected nor in any uncertainty (JCGM 100:2008, F.2.4.5).
+std::string uncorrected_bias_words(BudgetChain chain);
+
+/// That of a comparison: rms over the vectors that count, per component [px].
+double uncorrected_bias_px(Comparison const& comparison);
+
+}  // namespace gladstone
