@@ -1,93 +1,83 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "analysis/uncertainty/eight_columns.h"
 #include "analysis/uncertainty/matched_windows.h"
 #include "analysis/uncertainty/pass_amplification.h"
+#include "analysis/uncertainty/window_statistics.h"
+#include "render/base/parallel.h"
 
 namespace gladstone {
 namespace {
 
-/// Terms of the difference have no more in common beyond this distance along an axis than chance makes: the spline that
-/// deforms spreads the noise of a pixel over its neighbours, and alternates from there on. Terms so far apart count by
-/// half, so that what alternates from pixel to pixel cancels.
-constexpr int reach_px = 2;
+constexpr std::size_t windows_per_piece = 64;
 
-/// Of a place that is anywhere within a pixel of the highest value [px^2]: a peak that is flat by chance says no more.
-constexpr double largest_variance = 1.0 / 3.0;
+/// The pixels of a window, eight of a row at a time.
+struct LanePixels {
+  ImagePair const& pair;
+  float scale;                     ///< of grey levels
+  std::vector<float> const& axis;  ///< weights along either axis, zeros behind the window up to a multiple of eight
+  int first_x, first_y;            ///< where the window begins in the image
 
-/// Sum of the products of two values at most reach_px apart along either axis: of terms, the variance of their sum.
-double sum_of_products(std::vector<float> const& term, int side, std::vector<float>& across) {
-  auto const share = [](int distance) { return std::abs(distance) == reach_px ? 0.5f : 1.0f; };
-  across.assign(term.size(), 0.0f);
-  for (int j = 0; j < side; ++j)
-    for (int d = -reach_px; d <= reach_px; ++d)
-      for (int i = std::max(0, -d); i < std::min(side, side - d); ++i)
-        across[static_cast<std::size_t>(j) * side + i] += share(d) * term[static_cast<std::size_t>(j) * side + i + d];
-  double sum = 0.0;
-  for (int j = 0; j < side; ++j)
-    for (int k = std::max(0, j - reach_px); k <= std::min(side - 1, j + reach_px); ++k) {
-      float line = 0.0f;
-      for (int i = 0; i < side; ++i)
-        line += term[static_cast<std::size_t>(j) * side + i] * across[static_cast<std::size_t>(k) * side + i];
-      sum += static_cast<double>(share(k - j)) * line;
+  MatchedPixels<FloatLanes> at(int x, int row) const {
+    int const column = first_x + x, image_row = first_y + row;
+    if (image_row < 0 || image_row >= pair.rows) return MatchedPixels<FloatLanes>{};
+    FloatLanes const weight = axis[static_cast<std::size_t>(row)] * load_lanes(axis.data() + x);
+    long long const from = static_cast<long long>(image_row) * pair.columns + column;
+    if (column < 0 || column + lane_count > pair.columns) return cut_off(column, from, weight);
+    FloatLanes const known = pair.available.empty() ? all_lanes(1.0f) : load_lanes(pair.available.data() + from);
+    return {weight * known, scale * load_lanes(pair.reference.data() + from),
+            scale * load_lanes(pair.flow.data() + from)};
+  }
+
+ private:
+  /// The same across the image's border.
+  MatchedPixels<FloatLanes> cut_off(int column, long long from, FloatLanes weight) const {
+    MatchedPixels<FloatLanes> pixels{};
+    for (int l = 0; l < lane_count; ++l) {
+      if (column + l < 0 || column + l >= pair.columns) continue;
+      auto const k = static_cast<std::size_t>(from + l);
+      pixels.weight[l] = weight[l] * (pair.available.empty() ? 1.0f : pair.available[k]);
+      pixels.reference[l] = scale * pair.reference[k];
+      pixels.flow[l] = scale * pair.flow[k];
     }
-  return sum;
+    return pixels;
+  }
+};
+
+/// @param memory WindowStatistics::values(side)
+StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<float>& memory) {
+  WindowStatistics<EightColumns> const window{memory.data(), side, 0, 1};
+  window.clear();
+  WindowSums<double> const light = window.sum_pixels(pixels);
+  if (!(light.weight > 0.0)) return {};
+  auto const mean_reference = static_cast<float>(light.reference / light.weight);
+  auto const mean_flow = static_cast<float>(light.flow / light.weight);
+  StatisticsSums sums;
+  for (int n = 0; n < window.steps(side); ++n) window.step(n, pixels, mean_reference, mean_flow, sums);
+  return sums;
 }
 
-/// Variance along an axis: of three points of a Gaussian peak, u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)), so
-/// that sigma_u = sigma(C+ - C-)/(4 C1 ln(C0/C1)), C1 the mean of both. The terms a_i b_(i+1) - a_(i+1) b_i of the
-/// difference are s_i d_(i+1) - s_(i+1) d_i of the frames' mean s and difference d, and summed by parts
-/// d_i (s_(i-1) - s_(i+1)): the noise of a pixel then stands in one term, while as it is written it stands in two, with
-/// opposite signs, whose covariance reaches as far as dots are wide. The frames have been matched by what is judged, so
-/// that the sum has lost what it would have been; with the share p_i of a term in the variance, noise being equal
-/// everywhere, the sum over pairs of terms has lost the part sum p_i p_k of it, which is made good.
-double variance_along(MatchedWindow const& w, int dx, int dy, std::vector<float>& term, std::vector<float>& share,
-                      std::vector<float>& scratch) {
-  share.assign(w.weight.size(), 0.0f);
-  term.assign(w.weight.size(), 0.0f);
-  double centre = 0.0, beside = 0.0, overlap = 0.0, whole = 0.0;
-  for (std::size_t k = 0; k < w.weight.size(); ++k) {
-    centre += static_cast<double>(w.weight[k]) * w.weight[k] * w.reference[k] * w.flow[k];
-    whole += static_cast<double>(w.weight[k]) * w.weight[k];
-  }
-  for (int j = 0; j + dy < w.side; ++j)
-    for (int i = 0; i + dx < w.side; ++i) {
-      std::size_t const here = w.at(i, j), there = w.at(i + dx, j + dy);
-      float const weight = w.weight[here] * w.weight[there];
-      float const sum_here = w.reference[here] + w.flow[here], sum_there = w.reference[there] + w.flow[there];
-      share[here] -= 0.5f * weight * sum_there;
-      share[there] += 0.5f * weight * sum_here;
-      beside +=
-          0.5 * static_cast<double>(weight) * (w.reference[here] * w.flow[there] + w.reference[there] * w.flow[here]);
-      overlap += static_cast<double>(weight);
-    }
-  // as the correlator has it: the fall-off of the weights divided out
-  beside *= whole / overlap;
-  if (!(beside > 0.0 && centre > beside)) return std::numeric_limits<double>::quiet_NaN();
-  double const slope = 4.0 * beside * std::log(centre / beside) * overlap / whole;
-  float squares = 0.0f;
-  for (std::size_t k = 0; k < term.size(); ++k) {
-    term[k] = share[k] * (w.flow[k] - w.reference[k]);
-    share[k] *= share[k];
-    squares += share[k];
-  }
-  double const lost = sum_of_products(share, w.side, scratch) / (static_cast<double>(squares) * squares);
-  double const variance = sum_of_products(term, w.side, scratch) / ((1.0 - lost) * slope * slope);
-  return std::clamp(variance, 0.0, largest_variance);
-}
+/// A power of two that brings grey levels near 1, so that their fourth powers are numbers, too.
+float scale_of(float contrast) { return contrast > 0.0f ? std::ldexp(1.0f, -std::ilogb(contrast)) : 1.0f; }
 
 }  // namespace
 
 std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input) {
-  double const nan = std::numeric_limits<double>::quiet_NaN();
   double const amplification = amplification_of_passes(input.settings), squared = amplification * amplification;
-  std::vector<double> u(input.field.size(), nan), v = u;
-  visit_matched_windows(input, [&](std::size_t i, MatchedWindow const& window) {
-    thread_local std::vector<float> term, share;
-    thread_local std::vector<float> scratch;
-    u[i] = squared * variance_along(window, 1, 0, term, share, scratch);
-    v[i] = squared * variance_along(window, 0, 1, term, share, scratch);
+  WindowShape const shape = window_shape(input.settings, input.grid);
+  float const scale = scale_of(input.matched.contrast);
+  std::vector<double> u(input.field.size(), std::numeric_limits<double>::quiet_NaN()), v = u;
+  parallel_chunks(u.size(), windows_per_piece, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> memory(static_cast<std::size_t>(WindowStatistics<EightColumns>::values(shape.side)));
+    for (std::size_t i = begin; i < end; ++i) {
+      if (input.field.status[i] != VectorStatus::valid) continue;
+      Vec2<int> const first = first_pixel(input.grid, i, shape.side);
+      StatisticsSums const sums =
+          sums_of_window({input.matched, scale, shape.axis, first.x, first.y}, shape.side, memory);
+      u[i] = squared * displacement_variance(sums, 0);
+      v[i] = squared * displacement_variance(sums, 1);
+    }
   });
   return sigma_of_variances(u, v, input.grid);
 }

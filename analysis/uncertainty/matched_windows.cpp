@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/correlation/standard_correlator.h"
+#include "analysis/uncertainty/neighbour_mean.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
@@ -50,23 +51,34 @@ void take_window(ImagePair const& pair, int first_x, int first_y, std::vector<fl
 
 }  // namespace
 
+WindowShape window_shape(CorrelationSettings const& settings, InterrogationGrid const& grid) {
+  constexpr std::size_t together = 8;
+  WindowWeighting const weighting = window_weighting(settings);
+  int const side = window_side_px(weighting, grid.window_px);
+  WindowShape shape{side, std::vector<float>((static_cast<std::size_t>(side) + together - 1) / together * together)};
+  for (int i = 0; i < side; ++i)
+    shape.axis[static_cast<std::size_t>(i)] =
+        static_cast<float>(axis_weight(weighting, i - 0.5 * (side - 1), static_cast<double>(grid.window_px)));
+  return shape;
+}
+
+Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int side) {
+  Vec2d const centre = grid.centre(vector);
+  return {static_cast<int>(std::lround(centre.x - 0.5 * (side - 1))),
+          static_cast<int>(std::lround(centre.y - 0.5 * (side - 1)))};
+}
+
 void visit_matched_windows(UncertaintyInput const& input,
                            std::function<void(std::size_t, MatchedWindow const&)> const& visit) {
-  WindowWeighting const weighting = window_weighting(input.settings);
-  int const nominal = input.grid.window_px, side = weighting == WindowWeighting::uniform ? nominal : 2 * nominal;
-  std::vector<float> axis(static_cast<std::size_t>(side));
-  for (int i = 0; i < side; ++i)
-    axis[static_cast<std::size_t>(i)] =
-        static_cast<float>(axis_weight(weighting, i - 0.5 * (side - 1), static_cast<double>(nominal)));
+  WindowShape const shape = window_shape(input.settings, input.grid);
   parallel_chunks(input.field.size(), windows_per_piece, [&](std::size_t begin, std::size_t end) {
-    std::size_t const pixels = static_cast<std::size_t>(side) * side;
-    MatchedWindow window{side, std::vector<float>(pixels), std::vector<float>(pixels), std::vector<float>(pixels)};
+    std::size_t const pixels = static_cast<std::size_t>(shape.side) * shape.side;
+    MatchedWindow window{shape.side, std::vector<float>(pixels), std::vector<float>(pixels),
+                         std::vector<float>(pixels)};
     for (std::size_t i = begin; i < end; ++i) {
       if (input.field.status[i] != VectorStatus::valid) continue;
-      Vec2d const centre = input.grid.centre(i);
-      int const first_x = static_cast<int>(std::lround(centre.x - 0.5 * (side - 1)));
-      int const first_y = static_cast<int>(std::lround(centre.y - 0.5 * (side - 1)));
-      take_window(input.matched, first_x, first_y, axis, window);
+      Vec2<int> const first = first_pixel(input.grid, i, shape.side);
+      take_window(input.matched, first.x, first.y, shape.axis, window);
       visit(i, window);
     }
   });
@@ -75,18 +87,10 @@ void visit_matched_windows(UncertaintyInput const& input,
 std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid) {
   std::vector<double> result(values.size());
   for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      double sum = 0.0, count = 0.0;
-      for (int y = std::max(0, row - 1); y <= std::min(grid.rows - 1, row + 1); ++y)
-        for (int x = std::max(0, column - 1); x <= std::min(grid.columns - 1, column + 1); ++x) {
-          double const value = values[static_cast<std::size_t>(y) * grid.columns + x];
-          if (std::isnan(value)) continue;
-          sum += value;
-          count += 1.0;
-        }
-      std::size_t const i = static_cast<std::size_t>(row) * grid.columns + column;
-      result[i] = std::isnan(values[i]) ? values[i] : sum / count;
-    }
+    for (int column = 0; column < grid.columns; ++column)
+      result[static_cast<std::size_t>(row) * grid.columns + column] =
+          mean_of_neighbours(column, row, grid.columns, grid.rows,
+                             [&](int x, int y) { return values[static_cast<std::size_t>(y) * grid.columns + x]; });
   return result;
 }
 

@@ -8,6 +8,16 @@
 
 namespace gladstone {
 
+/// What the windows of the last pass have in common.
+struct WindowShape {
+  int side;                 ///< pixels along an axis
+  std::vector<float> axis;  ///< weights along either; zeros behind them, up to a multiple of eight
+};
+WindowShape window_shape(CorrelationSettings const& settings, InterrogationGrid const& grid);
+
+/// Where in the image a vector's window begins.
+Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int side);
+
 /// The pixels of one window of matched frames, row by row.
 struct MatchedWindow {
   int side;                      ///< pixels along an axis
@@ -22,7 +32,7 @@ struct MatchedWindow {
 void visit_matched_windows(UncertaintyInput const& input,
                            std::function<void(std::size_t vector, MatchedWindow const& window)> const& visit);
 
-/// Mean of values and their valid neighbours on the grid, 3 x 3: variances that a few particles gave scatter.
+/// mean_of_neighbours() of every value.
 std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid);
 
 /// Standard uncertainties from the variances along both axes, averaged so [px].

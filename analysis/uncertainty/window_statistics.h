@@ -1,0 +1,225 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "analysis/correlation/window_ops.h"
+#include "render/base/host_device.h"
+
+/// The sums over one window of matched frames that tell by how much noise moves its correlation peak, by threads that
+/// share memory: the CPU's one thread takes eight columns of pixels at a time, those of a CUDA block one each.
+namespace gladstone {
+
+/// A column at a time.
+struct OneColumn {
+  using Value = float;
+  static constexpr int count = 1;
+  GLADSTONE_HD static float load(float const* from) { return *from; }
+  GLADSTONE_HD static void store(float* to, float value) { *to = value; }
+  GLADSTONE_HD static double sum(float value) { return static_cast<double>(value); }
+};
+
+/// Pixels of both frames, one of each column.
+template <class Value>
+struct MatchedPixels {
+  Value weight;     ///< that the correlator puts on either frame; 0 where one is not known
+  Value reference;  ///< finite
+  Value flow;
+};
+
+/// Of a window whose weighted, mean-free frames are A = w a and B = w b; s = a + b, d = b - a, and q = A + B. Two
+/// values stand for the axes x and y. The terms of the difference between the correlation on either side of the peak
+/// are t_i = w_i d_i (q_(i-1) - q_(i+1))/2, and p_i = w_i (q_(i-1) - q_(i+1))/2 what each has of the frames' noise.
+struct StatisticsSums {
+  double centre{};      ///< of A B
+  double whole{};       ///< of w^2
+  double beside[2]{};   ///< of (A_i B_(i+1) + A_(i+1) B_i)/2
+  double overlap[2]{};  ///< of w_i w_(i+1)
+  double shares[2]{};   ///< of p^2
+  double lost[2]{};     ///< of p_i^2 p_k^2, over neighbours as below
+  double terms[2]{};    ///< of t_i t_k, over neighbours as below
+
+  static constexpr int count = 12;
+  /// Calls visit(sum) for each, in one order.
+  template <class Visit>
+  GLADSTONE_HD void each(Visit const& visit) {
+    visit(centre);
+    visit(whole);
+    for (int axis = 0; axis < 2; ++axis) {
+      visit(beside[axis]);
+      visit(overlap[axis]);
+      visit(shares[axis]);
+      visit(lost[axis]);
+      visit(terms[axis]);
+    }
+  }
+};
+
+/// What one thread does for a window's sums between two barriers. No two threads write, nor one writes and another
+/// reads, the same place between two. In order, a barrier after each:
+///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' means;
+///  2. step(n) for n = 0 .. steps(side) - 1.
+/// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are there, and
+/// multiplied with those around them in step n + 3. Products are summed over neighbours up to two pixels apart along
+/// either axis, those two apart counted by half: terms have no more in common beyond this distance than chance makes,
+/// since the spline that deforms spreads the noise of a pixel over its neighbours, and alternates from there on; what
+/// alternates from pixel to pixel cancels. Products of rows above stand for those below, too.
+template <class Columns>
+struct WindowStatistics {
+  using Value = typename Columns::Value;
+
+  float* memory;  ///< values(side)
+  int side;       ///< of the window [px]
+  int thread;     ///< of `threads`, which take Columns::count columns each, and then the next ones
+  int threads;
+
+  static constexpr int margin = 8;  ///< columns of zeros on either side; terms reach two
+  GLADSTONE_HD static int pitch(int side) { return (side + 7) / 8 * 8 + 2 * margin; }
+  GLADSTONE_HD static int values(int side) { return rows * pitch(side); }
+  GLADSTONE_HD static int steps(int side) { return side + 3; }
+
+  GLADSTONE_HD void clear() const {
+    for (int k = thread * Columns::count; k < values(side); k += threads * Columns::count)
+      Columns::store(memory + k, Value{});
+  }
+
+  /// This thread's share of the weighted sums of both frames.
+  /// @param pixels at(x, row): the MatchedPixels of columns x .. x + Columns::count - 1, weight 0 beyond the window
+  template <class Pixels>
+  GLADSTONE_HD WindowSums<double> sum_pixels(Pixels const& pixels) const {
+    WindowSums<double> sums;
+    for (int row = 0; row < side; ++row) {
+      WindowSums<Value> here;
+      for (int x = first(); x < side; x += ahead()) {
+        MatchedPixels<Value> const pixel = pixels.at(x, row);
+        here.weight += pixel.weight;
+        here.reference += pixel.weight * pixel.reference;
+        here.flow += pixel.weight * pixel.flow;
+      }
+      sums.weight += Columns::sum(here.weight);
+      sums.reference += Columns::sum(here.reference);
+      sums.flow += Columns::sum(here.flow);
+    }
+    return sums;
+  }
+
+  /// @param mean_reference, mean_flow the weighted means over the window @param sums this thread's share of them
+  template <class Pixels>
+  GLADSTONE_HD void step(int n, Pixels const& pixels, float mean_reference, float mean_flow,
+                         StatisticsSums& sums) const {
+    if (n <= side) weigh_row(n, pixels, mean_reference, mean_flow);
+    if (n >= 2 && n < side + 2) form_terms(n - 2, sums);
+    if (n >= 3) multiply_terms(n - 3, sums);
+  }
+
+ private:
+  static constexpr int weighted_rows = 4;  ///< of each image in memory: one that is written, three that are read
+  static constexpr int image_count = 3;    ///< A, B, w
+  static constexpr int term_count = 4;     ///< p^2 and t along x, then along y
+  static constexpr int rows = image_count * weighted_rows + 2 * term_count + 2 * term_count;
+
+  GLADSTONE_HD int first() const { return thread * Columns::count; }
+  GLADSTONE_HD int ahead() const { return threads * Columns::count; }
+  GLADSTONE_HD float* row_in_memory(int number) const { return memory + number * pitch(side) + margin; }
+  /// Row -1 was cleared, and row `side` is written as zeros.
+  GLADSTONE_HD float* weighted(int image, int row) const {
+    return row_in_memory(image * weighted_rows + (row + weighted_rows) % weighted_rows);
+  }
+  GLADSTONE_HD float* terms(int which, int row) const {
+    return row_in_memory(image_count * weighted_rows + 2 * which + row % 2);
+  }
+  /// Sums of a row's terms over their neighbours along x; only the thread that wrote them reads them.
+  GLADSTONE_HD float* across(int which, int row) const {
+    return row_in_memory(image_count * weighted_rows + 2 * term_count + 2 * which + row % 2);
+  }
+
+  template <class Pixels>
+  GLADSTONE_HD void weigh_row(int row, Pixels const& pixels, float mean_reference, float mean_flow) const {
+    float *const a = weighted(0, row), *const b = weighted(1, row), *const w = weighted(2, row);
+    for (int x = first(); x < side; x += ahead()) {
+      MatchedPixels<Value> const pixel = row < side ? pixels.at(x, row) : MatchedPixels<Value>{};
+      Columns::store(a + x, pixel.weight * (pixel.reference - mean_reference));
+      Columns::store(b + x, pixel.weight * (pixel.flow - mean_flow));
+      Columns::store(w + x, pixel.weight);
+    }
+  }
+
+  GLADSTONE_HD void form_terms(int row, StatisticsSums& sums) const {
+    float const *const a = weighted(0, row), *const b = weighted(1, row), *const w = weighted(2, row);
+    float const *const a_above = weighted(0, row - 1), *const b_above = weighted(1, row - 1);
+    float const *const a_below = weighted(0, row + 1), *const b_below = weighted(1, row + 1);
+    float const* const w_below = weighted(2, row + 1);
+    float* const out[term_count] = {terms(0, row), terms(1, row), terms(2, row), terms(3, row)};
+    Value centre{}, whole{}, beside[2]{}, overlap[2]{}, shares[2]{};
+    for (int x = first(); x < side; x += ahead()) {
+      Value const a0 = Columns::load(a + x), b0 = Columns::load(b + x), w0 = Columns::load(w + x);
+      centre += a0 * b0;
+      whole += w0 * w0;
+      auto const along = [&](int axis, Value q_before, Value a_next, Value b_next, Value w_next) {
+        beside[axis] += 0.5f * (a0 * b_next + a_next * b0);
+        overlap[axis] += w0 * w_next;
+        Value const slope = 0.5f * (q_before - (a_next + b_next)), share = w0 * slope, square = share * share;
+        shares[axis] += square;
+        Columns::store(out[2 * axis] + x, square);
+        Columns::store(out[2 * axis + 1] + x, slope * (b0 - a0));
+      };
+      along(0, Columns::load(a + x - 1) + Columns::load(b + x - 1), Columns::load(a + x + 1), Columns::load(b + x + 1),
+            Columns::load(w + x + 1));
+      along(1, Columns::load(a_above + x) + Columns::load(b_above + x), Columns::load(a_below + x),
+            Columns::load(b_below + x), Columns::load(w_below + x));
+    }
+    sums.centre += Columns::sum(centre);
+    sums.whole += Columns::sum(whole);
+    for (int axis = 0; axis < 2; ++axis) {
+      sums.beside[axis] += Columns::sum(beside[axis]);
+      sums.overlap[axis] += Columns::sum(overlap[axis]);
+      sums.shares[axis] += Columns::sum(shares[axis]);
+    }
+  }
+
+  GLADSTONE_HD void multiply_terms(int row, StatisticsSums& sums) const {
+    auto const products = [&](int which) {
+      float const* const t = terms(which, row);
+      float const* const above = across(which, row + 1);  // of row - 1: there are two
+      float* const here = across(which, row);             // of row - 2 so far
+      Value sum{};
+      for (int x = first(); x < side; x += ahead()) {
+        Value const middle = Columns::load(t + x);
+        Value const line = middle + (Columns::load(t + x - 1) + Columns::load(t + x + 1)) +
+                           0.5f * (Columns::load(t + x - 2) + Columns::load(t + x + 2));
+        sum += middle * (line + 2.0f * Columns::load(above + x) + Columns::load(here + x));
+        Columns::store(here + x, line);
+      }
+      return Columns::sum(sum);
+    };
+    for (int axis = 0; axis < 2; ++axis) {
+      sums.lost[axis] += products(2 * axis);
+      sums.terms[axis] += products(2 * axis + 1);
+    }
+  }
+};
+
+/// Of a place that is anywhere within a pixel of the highest value [px^2]: a peak that is flat by chance says no more.
+constexpr double largest_variance = 1.0 / 3.0;
+
+/// Variance of a displacement along an axis (0: x, 1: y) [px^2], NaN where its peak has no top: of three points of a
+/// Gaussian peak, u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)), so that sigma_u = sigma(C+ - C-)/(4 C1
+/// ln(C0/C1)), C1 the mean of both. The terms a_i b_(i+1) - a_(i+1) b_i of the difference are s_i d_(i+1) - s_(i+1) d_i
+/// of the frames' sum s and difference d, up to a factor, and summed by parts d_i (s_(i-1) - s_(i+1)): the noise of a
+/// pixel then stands in one term, while as it is written it stands in two, with opposite signs, whose covariance
+/// reaches as far as dots are wide. The frames have been matched by what is judged, so that the sum has lost what it
+/// would have been; with the share p_i^2/sum p^2 of a term in the variance, noise being equal everywhere, the sum over
+/// pairs of terms has lost the part of those shares' products, which is made good.
+GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int axis) {
+  using std::log;
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  // as the correlator has it: the fall-off of the weights divided out
+  double const fall_off = sums.overlap[axis] / sums.whole, beside = sums.beside[axis] / fall_off;
+  if (!(beside > 0.0 && sums.centre > beside)) return nan;
+  double const slope = 4.0 * beside * log(sums.centre / beside) * fall_off;
+  double const lost = sums.lost[axis] / (sums.shares[axis] * sums.shares[axis]);
+  double const variance = sums.terms[axis] / ((1.0 - lost) * slope * slope);
+  return variance < 0.0 ? 0.0 : (variance > largest_variance ? largest_variance : variance);
+}
+
+}  // namespace gladstone
