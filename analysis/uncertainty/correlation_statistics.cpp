@@ -49,12 +49,11 @@ struct LanePixels {
 StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<float>& memory) {
   WindowStatistics<EightColumns> const window{memory.data(), side, 0, 1};
   window.clear();
-  WindowSums<double> const light = window.sum_pixels(pixels);
+  WindowLight<double> const light = window.sum_pixels(pixels);
   if (!(light.weight > 0.0)) return {};
-  auto const mean_reference = static_cast<float>(light.reference / light.weight);
-  auto const mean_flow = static_cast<float>(light.flow / light.weight);
+  WindowLevels const levels = levels_of(light);
   StatisticsSums sums;
-  for (int n = 0; n < window.steps(side); ++n) window.step(n, pixels, mean_reference, mean_flow, sums);
+  for (int n = 0; n < window.steps(side); ++n) window.step(n, pixels, levels, sums);
   return sums;
 }
 

@@ -27,9 +27,44 @@ struct MatchedPixels {
   Value flow;
 };
 
-/// Of a window whose weighted, mean-free frames are A = w a and B = w b; s = a + b, d = b - a, and q = A + B. Two
-/// values stand for the axes x and y. The terms of the difference between the correlation on either side of the peak
-/// are t_i = w_i d_i (q_(i-1) - q_(i+1))/2, and p_i = w_i (q_(i-1) - q_(i+1))/2 what each has of the frames' noise.
+/// Weighted sums over the pixels of both frames.
+template <class T>
+struct WindowLight {
+  T weight{}, reference{}, flow{};                   ///< of w, w a and w b
+  T squared{}, squared_reference{}, squared_flow{};  ///< of w^2, w^2 a and w^2 b
+  T energy_reference{}, energy_flow{};               ///< of w^2 a^2 and w^2 b^2
+
+  static constexpr int count = 8;
+  /// Calls visit(sum) for each, in one order.
+  template <class Visit>
+  GLADSTONE_HD void each(Visit const& visit) {
+    for (T* sum :
+         {&weight, &reference, &flow, &squared, &squared_reference, &squared_flow, &energy_reference, &energy_flow})
+      visit(*sum);
+  }
+};
+
+/// What makes the frames of a window mean-free and equally bright: what the lamp gave more in one of them is no
+/// difference between them.
+struct WindowLevels {
+  float reference, flow;  ///< weighted means
+  float gain;             ///< of the flow: then sums of A^2 and B^2 are equal
+};
+
+/// @pre light.weight > 0
+GLADSTONE_HD inline WindowLevels levels_of(WindowLight<double> const& light) {
+  using std::sqrt;
+  double const a = light.reference / light.weight, b = light.flow / light.weight;
+  double const reference = light.energy_reference + a * (a * light.squared - 2.0 * light.squared_reference);
+  double const flow = light.energy_flow + b * (b * light.squared - 2.0 * light.squared_flow);
+  bool const bright = reference > 0.0 && flow > 0.0;
+  return {static_cast<float>(a), static_cast<float>(b), bright ? static_cast<float>(sqrt(reference / flow)) : 1.0f};
+}
+
+/// Of a window whose weighted, mean-free and equally bright frames are A = w a and B = w b; s = a + b, d = b - a, and q
+/// = A + B. Two values stand for the axes x and y. The terms of the difference between the correlation on either side
+/// of the peak are t_i = w_i d_i (q_(i-1) - q_(i+1))/2, and p_i = w_i (q_(i-1) - q_(i+1))/2 what each has of the
+/// frames' noise.
 struct StatisticsSums {
   double centre{};      ///< of A B
   double whole{};       ///< of w^2
@@ -57,7 +92,7 @@ struct StatisticsSums {
 
 /// What one thread does for a window's sums between two barriers. No two threads write, nor one writes and another
 /// reads, the same place between two. In order, a barrier after each:
-///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' means;
+///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' levels;
 ///  2. step(n) for n = 0 .. steps(side) - 1.
 /// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are there, and
 /// multiplied with those around them in step n + 3. Products are summed over neighbours up to two pixels apart along
@@ -86,28 +121,38 @@ struct WindowStatistics {
   /// This thread's share of the weighted sums of both frames.
   /// @param pixels at(x, row): the MatchedPixels of columns x .. x + Columns::count - 1, weight 0 beyond the window
   template <class Pixels>
-  GLADSTONE_HD WindowSums<double> sum_pixels(Pixels const& pixels) const {
-    WindowSums<double> sums;
+  GLADSTONE_HD WindowLight<double> sum_pixels(Pixels const& pixels) const {
+    WindowLight<double> sums;
     for (int row = 0; row < side; ++row) {
-      WindowSums<Value> here;
+      WindowLight<Value> here;
       for (int x = first(); x < side; x += ahead()) {
         MatchedPixels<Value> const pixel = pixels.at(x, row);
-        here.weight += pixel.weight;
-        here.reference += pixel.weight * pixel.reference;
-        here.flow += pixel.weight * pixel.flow;
+        Value const w = pixel.weight, a = w * pixel.reference, b = w * pixel.flow;
+        here.weight += w;
+        here.reference += a;
+        here.flow += b;
+        here.squared += w * w;
+        here.squared_reference += w * a;
+        here.squared_flow += w * b;
+        here.energy_reference += a * a;
+        here.energy_flow += b * b;
       }
       sums.weight += Columns::sum(here.weight);
       sums.reference += Columns::sum(here.reference);
       sums.flow += Columns::sum(here.flow);
+      sums.squared += Columns::sum(here.squared);
+      sums.squared_reference += Columns::sum(here.squared_reference);
+      sums.squared_flow += Columns::sum(here.squared_flow);
+      sums.energy_reference += Columns::sum(here.energy_reference);
+      sums.energy_flow += Columns::sum(here.energy_flow);
     }
     return sums;
   }
 
-  /// @param mean_reference, mean_flow the weighted means over the window @param sums this thread's share of them
+  /// @param levels of the whole window @param sums this thread's share of them
   template <class Pixels>
-  GLADSTONE_HD void step(int n, Pixels const& pixels, float mean_reference, float mean_flow,
-                         StatisticsSums& sums) const {
-    if (n <= side) weigh_row(n, pixels, mean_reference, mean_flow);
+  GLADSTONE_HD void step(int n, Pixels const& pixels, WindowLevels const& levels, StatisticsSums& sums) const {
+    if (n <= side) weigh_row(n, pixels, levels);
     if (n >= 2 && n < side + 2) form_terms(n - 2, sums);
     if (n >= 3) multiply_terms(n - 3, sums);
   }
@@ -134,12 +179,12 @@ struct WindowStatistics {
   }
 
   template <class Pixels>
-  GLADSTONE_HD void weigh_row(int row, Pixels const& pixels, float mean_reference, float mean_flow) const {
+  GLADSTONE_HD void weigh_row(int row, Pixels const& pixels, WindowLevels const& levels) const {
     float *const a = weighted(0, row), *const b = weighted(1, row), *const w = weighted(2, row);
     for (int x = first(); x < side; x += ahead()) {
       MatchedPixels<Value> const pixel = row < side ? pixels.at(x, row) : MatchedPixels<Value>{};
-      Columns::store(a + x, pixel.weight * (pixel.reference - mean_reference));
-      Columns::store(b + x, pixel.weight * (pixel.flow - mean_flow));
+      Columns::store(a + x, pixel.weight * (pixel.reference - levels.reference));
+      Columns::store(b + x, pixel.weight * (levels.gain * (pixel.flow - levels.flow)));
       Columns::store(w + x, pixel.weight);
     }
   }

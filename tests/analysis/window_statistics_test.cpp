@@ -57,22 +57,22 @@ StatisticsSums sums_by_threads(PlainWindow const& window, int threads, bool fall
       step(Window{memory.data(), window.side, thread, threads}, static_cast<std::size_t>(thread));
     }
   };
-  std::vector<WindowSums<double>> light(static_cast<std::size_t>(threads));
+  std::vector<WindowLight<double>> light(static_cast<std::size_t>(threads));
   std::vector<StatisticsSums> shares(light.size());
   threads_do([&](Window const& own, std::size_t thread) {
     own.clear();
     light[thread] = own.sum_pixels(pixels);
   });
-  double weight = 0.0, reference = 0.0, flow = 0.0;
-  for (auto const& share : light) {
-    weight += share.weight;
-    reference += share.reference;
-    flow += share.flow;
+  WindowLight<double> whole;
+  for (auto& share : light) {
+    std::vector<double> parts;
+    share.each([&](double const& part) { parts.push_back(part); });
+    std::size_t k = 0;
+    whole.each([&](double& sum) { sum += parts[k++]; });
   }
+  WindowLevels const levels = levels_of(whole);
   for (int n = 0; n < Window::steps(window.side); ++n)
-    threads_do([&](Window const& own, std::size_t thread) {
-      own.step(n, pixels, static_cast<float>(reference / weight), static_cast<float>(flow / weight), shares[thread]);
-    });
+    threads_do([&](Window const& own, std::size_t thread) { own.step(n, pixels, levels, shares[thread]); });
   StatisticsSums sums;
   for (auto& share : shares) {
     std::vector<double> parts;
@@ -102,9 +102,15 @@ struct DefinedSums {
         reference += w[k] * a[k];
         flow += w[k] * b[k];
       }
+    double energy_reference = 0.0, energy_flow = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
       a[k] -= reference / weight;
       b[k] -= flow / weight;
+      energy_reference += w[k] * w[k] * a[k] * a[k];
+      energy_flow += w[k] * w[k] * b[k] * b[k];
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      b[k] *= std::sqrt(energy_reference / energy_flow);
       add(&StatisticsSums::centre, w[k] * w[k] * a[k] * b[k]);
       add(&StatisticsSums::whole, w[k] * w[k]);
     }
@@ -220,8 +226,8 @@ TEST(WindowStatistics, HaveTheNoiseOfAPixelInOneTerm) {
     PlainWindow noisy = window;
     noisy.flow[noisy.at(8, 8)] += c;
     noisy.reference[noisy.at(8, 8)] -= c;  // the frames' sum stays what it is
-    noisy.flow[noisy.at(12, 12)] -= c;     // and so do their means
-    noisy.reference[noisy.at(12, 12)] += c;
+    noisy.flow[noisy.at(8, 12)] -= c;      // and so do their means and brightness
+    noisy.reference[noisy.at(8, 12)] += c;
     return sums_by_threads<OneColumn>(noisy, 32, false);
   };
   StatisticsSums const none = with_noise(0.0f), some = with_noise(0.25f);
