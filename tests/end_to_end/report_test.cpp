@@ -191,6 +191,12 @@ window_px = [32, 16]
               HasSubstr("by the formula of the random error (F26), since the vectors have none"));
   EXPECT_THAT(read("text/still.md"), HasSubstr("The vectors span 2.4 % of the camera's 128 x 128 px"));
   expect_refused({"report", "measured", "--vectors", "nothing.csv"}, 2, {"nothing.csv", "check --vectors"});
+  // an ambient density of 0 is an uncertain number as any other: g K of 0.02 kg/m^3
+  write("measured/setup.toml", without_field + "[medium]\nambient_density_kg_m3 = { value = 0.0, sigma = 0.02 }\n");
+  succeed({"report", "measured", "--format", "md", "-o", "text/vacuum.md", "--quiet"});
+  EXPECT_THAT(read("text/vacuum.md"), testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(read("text/vacuum.md"),
+              HasSubstr("| medium.ambient\\_density\\_kg\\_m3 | B | 0 | 0.02 | normal | infinite | 0.00"));
 }
 
 // A setup of another camera than the one that took the frames, or another pair than was correlated.
