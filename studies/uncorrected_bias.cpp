@@ -6,10 +6,10 @@ namespace gladstone {
 
 std::string uncorrected_bias_words(BudgetChain chain) {
   bool const piv = chain == BudgetChain::piv;
-  return std::string("The uncorrected bias is the true displacement, averaged over the window, less that of ") +
-         (piv ? "the flow" : "Eq. 9") + ", rms over the vectors: what " +
-         (piv ? "the medium, the imaging and the window" : "cone, dot, refraction, aberration and window") +
-         " change in every repeat alike. It is not corrected, and in no uncertainty.";
+  return std::string("the true displacement, averaged over the window, less that of ") + (piv ? "the flow" : "Eq. 9") +
+         ", rms over the vectors. " +
+         (piv ? "Medium, imaging and window" : "Cone, dot, refraction, aberration and window") +
+         " make it in every repeat alike; it is not corrected, and in no uncertainty.";
 }
 
 double uncorrected_bias_px(Comparison const& comparison) {

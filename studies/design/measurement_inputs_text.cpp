@@ -70,8 +70,9 @@ std::string uncertainty_text(MeasurementUncertainty const& uncertainty) {
         sampled_text(result.sampled_standard, 3), result.sampled_low, result.sampled_high,
         result.linear ? "the first order holds" : "not linear, or not normal: take the samples' interval");
   }
-  text += fmt::format("  not in it: the uncorrected bias, {:.2g} % of a wave twice as long as the resolved one\n  {}\n",
-                      100 * (1 - uncertainty.share_resolved), uncorrected_bias_words(BudgetChain::bos));
+  text +=
+      fmt::format("  not in it: the uncorrected bias, {:.2g} % of a wave twice as long as the resolved one:\n    {}\n",
+                  100 * (1 - uncertainty.share_resolved), uncorrected_bias_words(BudgetChain::bos));
   return text;
 }
 

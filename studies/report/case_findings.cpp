@@ -16,10 +16,10 @@ std::string largest_term(ErrorBudget const& budget) {
   }
   if (!largest) return "";
   return fmt::format(
-      "The largest cause of error is {}, with a bias of ({:.2g}, {:.2g}) px, a random part of ({:.2g}, "
+      "The largest cause of error is {}, with a bias of ({}, {}) px, a random part of ({:.2g}, "
       "{:.2g}) px and an rms of {:.3g} px; the total rms is {:.3g} px.",
-      largest->name, largest->bias_u_px, largest->bias_v_px, largest->random_u_px, largest->random_v_px,
-      largest->rms_px, budget.total.rms_px);
+      largest->name, TableCell::px(largest->bias_u_px).text, TableCell::px(largest->bias_v_px).text,
+      largest->random_u_px, largest->random_v_px, largest->rms_px, budget.total.rms_px);
 }
 
 std::vector<std::string> uncertainty_statements(CaseView const& view) {
@@ -55,7 +55,7 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
       "window, by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty is "
       "{:.3g} px with a coverage factor of 2.",
       rms, all.budget.count, 2 * rms));
-  statements.push_back(fmt::format("The uncorrected bias is {:.3g} px. {}", uncorrected_bias_px(all),
+  statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
                                    uncorrected_bias_words(all.chain)));
   return statements;
 }

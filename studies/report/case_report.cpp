@@ -77,26 +77,11 @@ TextTable errors_table(CaseView const& view) {
     table.rows.resize(measures.size());
     for (std::size_t i = 0; i < measures.size(); ++i) {
       if (table.rows[i].empty()) table.rows[i].push_back({std::string(measures[i].first)});
-      table.rows[i].push_back(TableCell::of(measures[i].second));
+      bool const displacement = measures[i].first.ends_with("_px");
+      table.rows[i].push_back(displacement ? TableCell::px(measures[i].second) : TableCell::of(measures[i].second));
     }
   }
   return table;
-}
-
-nlohmann::json budget_json(ErrorBudget const& budget) {
-  nlohmann::json json = nlohmann::json::array();
-  auto const add = [&](BudgetTerm const& term) {
-    if (!term.known()) return;
-    json.push_back({{"name", term.name},
-                    {"rms", term.rms_px},
-                    {"bias_u", term.bias_u_px},
-                    {"bias_v", term.bias_v_px},
-                    {"random_u", term.random_u_px},
-                    {"random_v", term.random_v_px}});
-  };
-  for (BudgetTerm const& term : budget.terms) add(term);
-  add(budget.total);
-  return json;
 }
 
 /// Grey values of a frame from black to white as 8 bits, of its middle where it is large.
@@ -136,15 +121,31 @@ SourceFiles case_sources(std::string const& folder, Comparison const& compared) 
 
 }  // namespace
 
+nlohmann::json budget_json(ErrorBudget const& budget) {
+  nlohmann::json json = nlohmann::json::array();
+  auto const add = [&](BudgetTerm const& term) {
+    if (!term.known()) return;
+    json.push_back({{"name", term.name},
+                    {"rms", term.rms_px},
+                    {"bias_u", term.bias_u_px},
+                    {"bias_v", term.bias_v_px},
+                    {"random_u", term.random_u_px},
+                    {"random_v", term.random_v_px}});
+  };
+  for (BudgetTerm const& term : budget.terms) add(term);
+  add(budget.total);
+  return json;
+}
+
 TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
   TextTable table{title, {"cause", "bias u", "bias v", "random u", "random v", "rms"}, {}};
   auto const add = [&](BudgetTerm const& term) {
     table.rows.push_back({{term.name},
-                          TableCell::of(term.bias_u_px),
-                          TableCell::of(term.bias_v_px),
-                          TableCell::of(term.random_u_px),
-                          TableCell::of(term.random_v_px),
-                          TableCell::of(term.rms_px)});
+                          TableCell::px(term.bias_u_px),
+                          TableCell::px(term.bias_v_px),
+                          TableCell::px(term.random_u_px),
+                          TableCell::px(term.random_v_px),
+                          TableCell::px(term.rms_px)});
   };
   for (BudgetTerm const& term : budget.terms) add(term);
   add(budget.total);

@@ -59,6 +59,9 @@ struct CaseView {
 /// The terms of a budget, and their total.
 TextTable budget_table(std::string const& title, ErrorBudget const& budget);
 
+/// The same as data of the chart "budget", those that are known.
+nlohmann::json budget_json(ErrorBudget const& budget);
+
 /// What the budget's largest term is, in a sentence; empty where none is known.
 std::string largest_term(ErrorBudget const& budget);
 

@@ -38,8 +38,19 @@ std::string json_in_script(nlohmann::json const& json) {
   return safe;
 }
 
-std::string cell_of(TableCell const& cell) {
-  if (!cell.number) return "<td>" + escaped(cell.text) + "</td>";
+/// A name that may go on in the next line behind its points and underscores.
+std::string breakable(std::string_view name) {
+  std::string html;
+  for (char const c : name) {
+    html += escaped(std::string_view(&c, 1));
+    if (c == '.' || c == '_') html += "<wbr>";
+  }
+  return html;
+}
+
+/// @param numeric whether others of its column are numbers
+std::string cell_of(TableCell const& cell, bool numeric) {
+  if (!cell.number) return (numeric ? "<td class=\"number\">" : "<td>") + escaped(cell.text) + "</td>";
   return fmt::format("<td class=\"number\" data-value=\"{}\">{}</td>", *cell.number, escaped(cell.text));
 }
 
@@ -60,11 +71,15 @@ struct HtmlBlock {
   std::string operator()(TextTable const& table) const {
     std::string html = fmt::format("<div class=\"scroll\"><table{}>\n<caption>{}</caption>\n<thead><tr>",
                                    table.filtered ? " class=\"filtered\"" : "", escaped(table.caption));
-    for (std::string const& name : table.header) html += "<th scope=\"col\">" + escaped(name) + "</th>";
+    for (std::string const& name : table.header) html += "<th scope=\"col\">" + breakable(name) + "</th>";
     html += "</tr></thead>\n<tbody>\n";
+    std::vector<bool> numeric(table.header.size());
+    for (auto const& row : table.rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) numeric[i] = numeric[i] || row[i].number;
+    }
     for (auto const& row : table.rows) {
       html += "<tr>";
-      for (TableCell const& cell : row) html += cell_of(cell);
+      for (std::size_t i = 0; i < row.size(); ++i) html += cell_of(row[i], numeric[i]);
       html += "</tr>\n";
     }
     return html + "</tbody></table></div>\n";
@@ -104,6 +119,13 @@ struct HtmlBlock {
 TableCell TableCell::of(double number) {
   if (number != number) return {"unknown"};
   return {fmt::format("{:.4g}", number), number};
+}
+
+TableCell TableCell::px(double number) {
+  if (number != number) return {"unknown"};
+  std::string text = fmt::format("{:.5f}", number);
+  if (text == "-0.00000") text = "0.00000";
+  return {std::move(text), number};
 }
 
 std::string html_page(ReportPage const& page) {

@@ -22,6 +22,11 @@ std::string source_of_sigma(MeasuredGradients const& all) {
       all.estimated, all.count - all.estimated);
 }
 
+std::string degrees_text(double degrees) {
+  if (!(degrees < 1e6)) return "infinite";
+  return degrees < 100 ? fmt::format("{:.3g}", degrees) : fmt::format("{:.0f}", degrees);
+}
+
 std::string about_displacement(MeasurementKnown const& known) {
   if (known.mean.count == 1) {
     return fmt::format(
@@ -61,11 +66,11 @@ std::string about_setup(MeasurementKnown const& known) {
 
 std::string about_bias(MeasurementKnown const& known) {
   std::string const words = uncorrected_bias_words(BudgetChain::bos);
-  if (!known.simulated()) return "Unknown, without a simulated twin, is the uncorrected bias. " + words;
+  if (!known.simulated()) return "The uncorrected bias is unknown without a simulated twin: " + words;
   double const bias_px = uncorrected_bias_px(known.twin->comparison);
   return fmt::format(
       "The uncorrected bias is {:.3g} px, {:.3g} kg/m^4, in the simulated twin, whose medium is the density that was "
-      "measured; what is finer than the measurement resolved is not in the twin, so that it may be larger. {}",
+      "measured: {} What is finer than the measurement resolved is not in the twin, so that it may be larger.",
       bias_px, bias_px / known.sensitivity, words);
 }
 
@@ -87,8 +92,7 @@ MeasurementStatements measurement_statements(MeasurementKnown const& known) {
   said.expanded = fmt::format(
       "The expanded uncertainty in the median is U = {:.3g} kg/m^4 = k u_c with a coverage factor k = {:.2f} "
       "(effective degrees of freedom {}) for a coverage probability of 95.45 %.",
-      typical.coverage_factor * median, typical.coverage_factor,
-      typical.degrees_of_freedom < 1e6 ? fmt::format("{:.3g}", typical.degrees_of_freedom) : "infinite");
+      typical.coverage_factor * median, typical.coverage_factor, degrees_text(typical.degrees_of_freedom));
   said.displacement = about_displacement(known);
   said.setup = about_setup(known);
   said.bias = about_bias(known);
@@ -112,8 +116,8 @@ TextTable inputs_table(MeasurementKnown const& known) {
                           {drawn_distribution(known.inputs, i)},
                           finite ? TableCell::of(input.degrees_of_freedom) : TableCell{"infinite"},
                           TableCell::of(part.derivative),
-                          TableCell::of(part.standard),
-                          TableCell::of(100 * part.share)});
+                          {fmt::format("{:.3g}", part.standard), part.standard},
+                          {fmt::format("{:.1f}", 100 * part.share), 100 * part.share}});
   }
   return table;
 }

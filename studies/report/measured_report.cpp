@@ -49,7 +49,7 @@ SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, M
                        open_device(device.name()));
 }
 
-ReportSection causes_section(SimulatedTwin const* twin) {
+ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
   ReportSection causes{"Causes of error, by the simulated twin", {}};
   if (!twin || !twin->failed.empty()) {
     causes.blocks.push_back(Paragraph{twin ? "There is no simulated twin: " + twin->failed
@@ -63,6 +63,9 @@ ReportSection causes_section(SimulatedTwin const* twin) {
       "estimator's own together.",
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
+  page.data["budget"] = budget_json(twin->comparison.budget);
+  causes.blocks.push_back(
+      Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.budget)});
   causes.blocks.push_back(budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
                                        twin->comparison.budget));
   return causes;
@@ -146,7 +149,7 @@ ReportPage measured_report(ReportOptions const& options, Device const& device) {
   if (files.frames) page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
   if (gridded) page.sections.push_back(maps_section(page, field, all, camera, said.measurand));
   page.sections.push_back({"Uncertainty", {TextList{said.all()}, inputs_table(known)}});
-  page.sections.push_back(causes_section(known.twin));
+  page.sections.push_back(causes_section(page, known.twin));
   auto const draw = [&](std::string const& folder, std::string const& format) {
     std::vector<std::string> drawn;
     if (gridded) drawn.push_back(draw_measured_maps(folder + "/measured_maps." + format, field, all));

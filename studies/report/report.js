@@ -92,60 +92,77 @@
     return (axis.logarithmic ? d3.scaleLog() : d3.scaleLinear()).domain(range(numbers, axis.logarithmic)).range(across);
   }
 
+  /* A measure over an axis. guide: a value that would be right, drawn across where that measure is shown */
+  function curvesOf(plot, controls, first, guide) {
+    const across = free.find((axis) => axis.numeric) || free[0], other = free.find((axis) => axis !== across);
+    const chosen = { x: across.key, y: first, by: other ? other.key : "", log: false };
+    let zoomed = null;
+    const draw = () => {
+      const axis = axisOf(chosen.x), by = chosen.by && chosen.by !== chosen.x ? axisOf(chosen.by) : null;
+      const series = (by ? by.labels.map((label, i) => ({ label: label, rows: rows.filter((row) => place(row, by) === i) })) : [{ label: "all cases", rows: rows }])
+        .map((one, i) => ({ label: one.label, colour: colours[i % colours.length], points: gathered(one.rows, axis, chosen.y) })).filter((one) => one.points.length);
+      const all = [].concat(...series.map((one) => one.points));
+      const svg = stage(plot, chosen.y + unit(chosen.y) + " over " + axis.title + "; arrow keys tell the points");
+      const x = scaleOf(axis);
+      const y = (chosen.log ? d3.scaleLog() : d3.scaleLinear()).range([height - margin.bottom, margin.top]);
+      const right = guide && chosen.y === first ? [guide.value] : [];
+      const span = range([].concat(right, ...all.map((p) => [p.low, p.high])), chosen.log);
+      y.domain(chosen.log || span[0] < 0 ? span : [0, span[1]]).nice();
+      if (zoomed && x.invert) { x.domain(zoomed.x); y.domain(zoomed.y); }
+      const few = !zoomed && axis.numeric && axis.labels.length <= 12;  // then the study's own values are the tics
+      axes(svg, x, y, axis.title, chosen.y + unit(chosen.y), few ? (v) => axis.labels[axis.numbers.indexOf(v)] : null, null, few ? axis.numbers.filter(known) : null);
+      const clip = "clip" + Math.random().toString(36).slice(2);
+      svg.append("clipPath").attr("id", clip).append("rect").attr("x", margin.left).attr("y", margin.top - 6).attr("width", width - margin.left - margin.right).attr("height", height - margin.top - margin.bottom + 12);
+      if (x.invert) {
+        svg.append("g").attr("class", "brush").call(d3.brush().extent([[margin.left, margin.top], [width - margin.right, height - margin.bottom]]).on("end", function () {
+          const box = d3.event.selection;
+          if (!box) return;
+          zoomed = { x: [x.invert(box[0][0]), x.invert(box[1][0])], y: [y.invert(box[1][1]), y.invert(box[0][1])] };
+          draw();
+        }));
+      }
+      const room = svg.append("g").attr("clip-path", "url(#" + clip + ")");
+      const positive = (v) => (chosen.log ? Math.max(v, y.domain()[0]) : v);
+      right.forEach((value) => {
+        room.append("line").attr("class", "guide").attr("x1", margin.left).attr("x2", width - margin.right).attr("y1", y(value)).attr("y2", y(value)).attr("stroke", colours[6]).attr("stroke-dasharray", "5 4").attr("pointer-events", "none");
+      });
+      // what is no number has no way from one to the next: series stand side by side, each with its band as a bar
+      const aside = axis.numeric ? 0 : Math.min(14, (x.step() * 0.6) / series.length);
+      series.forEach((one, k) => one.points.forEach((p) => { p.at = x(p.x) + (k - (series.length - 1) / 2) * aside; }));
+      for (const one of series) {
+        if (axis.numeric) {
+          room.append("path").datum(one.points).attr("fill", one.colour).attr("fill-opacity", 0.14).attr("pointer-events", "none").attr("d", d3.area().x((p) => p.at).y0((p) => y(positive(p.low))).y1((p) => y(positive(p.high))));
+          room.append("path").datum(one.points).attr("fill", "none").attr("stroke", one.colour).attr("stroke-width", 2).attr("pointer-events", "none").attr("d", d3.line().x((p) => p.at).y((p) => y(positive(p.y))));
+        } else {
+          room.append("g").selectAll("line").data(one.points).enter().append("line").attr("stroke", one.colour).attr("stroke-width", 3).attr("stroke-opacity", 0.4).attr("pointer-events", "none").attr("x1", (p) => p.at).attr("x2", (p) => p.at).attr("y1", (p) => y(positive(p.low))).attr("y2", (p) => y(positive(p.high)));
+        }
+      }
+      const points = [].concat(...series.map((one) => one.points.map((p) => Object.assign({ series: one.label, colour: one.colour }, p))));
+      const marks = room.selectAll("circle").data(points).enter().append("circle").attr("r", 4.5).attr("cx", (p) => p.at).attr("cy", (p) => y(positive(p.y))).attr("fill", (p) => p.colour);
+      walkable(svg, marks, (p) => axis.title + " " + p.label + (by ? ", " + by.title + " " + p.series : "") + "\n" + chosen.y + " " + shown(p.y) + unit(chosen.y) + (p.n > 1 ? "\n10 to 90 %: " + shown(p.low) + " to " + shown(p.high) + ", " + p.n + " cases" : ""));
+      svg.on("dblclick", () => { zoomed = null; draw(); }).on("keydown.zoom", () => {
+        const key = d3.event.key;
+        if (key === "0") zoomed = null;
+        else if ((key === "+" || key === "-") && x.invert) {
+          const closer = (s) => { const [a, b] = s.range(), c = (a + b) / 2, h = ((b - a) / 2) * (key === "+" ? 0.6 : 1 / 0.6); return [s.invert(c - h), s.invert(c + h)]; };
+          zoomed = { x: closer(x), y: closer(y) };
+        } else return;
+        d3.event.preventDefault(); draw(); plot.select("svg").node().focus();
+      });
+      legend(plot, series.map((one) => ({ colour: one.colour, text: by ? by.title + " " + one.label : one.label })));
+      plot.append("p").attr("class", "hint").text((axis.numeric ? "Lines" : "Points") + " are medians, " + (axis.numeric ? "bands" : "bars") + " reach from 10 to 90 % of the cases" + (right.length ? "; dashed: " + guide.text : "") + ". Draw a box to zoom, double click or press 0 for all; + and - zoom, arrow keys tell the points.");
+    };
+    choice(controls, "over", keys(free), chosen.x, (v) => { chosen.x = v; zoomed = null; draw(); });
+    choice(controls, "measure", measures(), chosen.y, (v) => { chosen.y = v; zoomed = null; draw(); });
+    choice(controls, "a curve for each", [{ value: "", text: "nothing" }].concat(keys(free)), chosen.by, (v) => { chosen.by = v; draw(); });
+    tick(controls, "logarithmic", false, (on) => { chosen.log = on; zoomed = null; draw(); });
+    draw();
+  }
+
   const charts = {
-    curves(plot, controls) {
-      const chosen = { x: free[0].key, y: data.main, by: free.length > 1 ? free[1].key : "", log: false };
-      let zoomed = null;
-      const draw = () => {
-        const axis = axisOf(chosen.x), by = chosen.by && chosen.by !== chosen.x ? axisOf(chosen.by) : null;
-        const series = (by ? by.labels.map((label, i) => ({ label: label, rows: rows.filter((row) => place(row, by) === i) })) : [{ label: "all cases", rows: rows }])
-          .map((one, i) => ({ label: one.label, colour: colours[i % colours.length], points: gathered(one.rows, axis, chosen.y) })).filter((one) => one.points.length);
-        const all = [].concat(...series.map((one) => one.points));
-        const svg = stage(plot, chosen.y + unit(chosen.y) + " over " + axis.title + "; arrow keys tell the points");
-        const x = scaleOf(axis);
-        const y = (chosen.log ? d3.scaleLog() : d3.scaleLinear()).range([height - margin.bottom, margin.top]);
-        const span = range([].concat(...all.map((p) => [p.low, p.high])), chosen.log);
-        y.domain(chosen.log || span[0] < 0 ? span : [0, span[1]]).nice();
-        if (zoomed && x.invert) { x.domain(zoomed.x); y.domain(zoomed.y); }
-        const few = !zoomed && axis.numeric && axis.labels.length <= 12;  // then the study's own values are the tics
-        axes(svg, x, y, axis.title, chosen.y + unit(chosen.y), few ? (v) => axis.labels[axis.numbers.indexOf(v)] : null, null, few ? axis.numbers.filter(known) : null);
-        const clip = "clip" + Math.random().toString(36).slice(2);
-        svg.append("clipPath").attr("id", clip).append("rect").attr("x", margin.left).attr("y", margin.top - 6).attr("width", width - margin.left - margin.right).attr("height", height - margin.top - margin.bottom + 12);
-        if (x.invert) {
-          svg.append("g").attr("class", "brush").call(d3.brush().extent([[margin.left, margin.top], [width - margin.right, height - margin.bottom]]).on("end", function () {
-            const box = d3.event.selection;
-            if (!box) return;
-            zoomed = { x: [x.invert(box[0][0]), x.invert(box[1][0])], y: [y.invert(box[1][1]), y.invert(box[0][1])] };
-            draw();
-          }));
-        }
-        const room = svg.append("g").attr("clip-path", "url(#" + clip + ")");
-        const positive = (v) => (chosen.log ? Math.max(v, y.domain()[0]) : v);
-        for (const one of series) {
-          room.append("path").datum(one.points).attr("fill", one.colour).attr("fill-opacity", 0.14).attr("pointer-events", "none").attr("d", d3.area().x((p) => x(p.x)).y0((p) => y(positive(p.low))).y1((p) => y(positive(p.high))));
-          room.append("path").datum(one.points).attr("fill", "none").attr("stroke", one.colour).attr("stroke-width", 2).attr("pointer-events", "none").attr("d", d3.line().x((p) => x(p.x)).y((p) => y(positive(p.y))));
-        }
-        const points = [].concat(...series.map((one) => one.points.map((p) => Object.assign({ series: one.label, colour: one.colour }, p))));
-        const marks = room.selectAll("circle").data(points).enter().append("circle").attr("r", 4.5).attr("cx", (p) => x(p.x)).attr("cy", (p) => y(positive(p.y))).attr("fill", (p) => p.colour);
-        walkable(svg, marks, (p) => axis.title + " " + p.label + (by ? ", " + by.title + " " + p.series : "") + "\n" + chosen.y + " " + shown(p.y) + unit(chosen.y) + (p.n > 1 ? "\n10 to 90 %: " + shown(p.low) + " to " + shown(p.high) + ", " + p.n + " cases" : ""));
-        svg.on("dblclick", () => { zoomed = null; draw(); }).on("keydown.zoom", () => {
-          const key = d3.event.key;
-          if (key === "0") zoomed = null;
-          else if ((key === "+" || key === "-") && x.invert) {
-            const closer = (s) => { const [a, b] = s.range(), c = (a + b) / 2, h = ((b - a) / 2) * (key === "+" ? 0.6 : 1 / 0.6); return [s.invert(c - h), s.invert(c + h)]; };
-            zoomed = { x: closer(x), y: closer(y) };
-          } else return;
-          d3.event.preventDefault(); draw(); plot.select("svg").node().focus();
-        });
-        legend(plot, series.map((one) => ({ colour: one.colour, text: by ? by.title + " " + one.label : one.label })));
-        plot.append("p").attr("class", "hint").text("Lines are medians, bands reach from 10 to 90 % of the cases. Draw a box to zoom, double click or press 0 for all; + and - zoom, arrow keys tell the points.");
-      };
-      choice(controls, "over", keys(free), chosen.x, (v) => { chosen.x = v; zoomed = null; draw(); });
-      choice(controls, "measure", measures(), chosen.y, (v) => { chosen.y = v; zoomed = null; draw(); });
-      choice(controls, "a curve for each", [{ value: "", text: "nothing" }].concat(keys(free)), chosen.by, (v) => { chosen.by = v; draw(); });
-      tick(controls, "logarithmic", false, (on) => { chosen.log = on; zoomed = null; draw(); });
-      draw();
-    },
+    curves(plot, controls) { curvesOf(plot, controls, data.main, null); },
+
+    coverage(plot, controls) { curvesOf(plot, controls, data.coverage, { value: 0.6827, text: "68 %, as standard uncertainties of normal errors cover" }); },
 
     cells(plot, controls) {
       const chosen = { x: free[0].key, y: free[1].key, m: data.main };
@@ -225,6 +242,22 @@
     field(plot, controls) {
       const grid = data.grid, of = data.fields, chosen = { name: of[0].name, part: "magnitude" };
       const value = (f, i) => { const u = f.u[i], v = f.v[i]; return !known(u) || !known(v) ? null : chosen.part === "u" ? u : chosen.part === "v" ? v : Math.hypot(u, v); };
+      const paint = (canvas, values, colour, low, top) => {
+        const pen = canvas.getContext("2d"), picture = pen.createImageData(grid.columns, grid.rows);
+        values.forEach((v, i) => { const c = known(v) ? d3.rgb(colour(Math.max(low, Math.min(top, v)))) : { r: 128, g: 128, b: 128 }; picture.data.set([c.r, c.g, c.b, known(v) ? 255 : 60], 4 * i); });
+        pen.putImageData(picture, 0, 0);
+      };
+      /* All maps at once, small, each with its own colours: on paper they stand beside one another. */
+      const overview = () => {
+        const all = d3.select(plot.node().parentNode).append("div").attr("class", "maps").selectAll("div").data(of).enter().append("div");
+        all.append("canvas").attr("width", grid.columns).attr("height", grid.rows).attr("aria-hidden", "true");
+        all.append("span").text(function (f) {
+          const values = d3.range(grid.columns * grid.rows).map((i) => (known(f.u[i]) && known(f.v[i]) ? Math.hypot(f.u[i], f.v[i]) : null));
+          const top = d3.quantile(values.filter(known).sort(d3.ascending), 0.995) || 1;
+          paint(this.parentNode.firstChild, values, d3.scaleSequential(d3.interpolateViridis).domain([0, top]), 0, top);
+          return f.title + ", 0 to " + d3.format(".3~g")(top) + " " + (f.unit || "px");
+        });
+      };
       const draw = () => {
         plot.selectAll("*").remove();
         const f = of.find((one) => one.name === chosen.name), signed = chosen.part !== "magnitude";
@@ -233,9 +266,7 @@
         const colour = signed ? d3.scaleSequential(d3.interpolateRdBu).domain([top, low]) : d3.scaleSequential(d3.interpolateViridis).domain([low, top]);
         const canvas = plot.append("canvas").attr("width", grid.columns).attr("height", grid.rows).attr("tabindex", 0).attr("role", "img")
           .attr("aria-label", f.title + ", " + chosen.part + ", a colour a vector; arrow keys tell the vectors").style("width", "min(100%, " + 36 * grid.columns + "px, 44rem)");
-        const pen = canvas.node().getContext("2d"), picture = pen.createImageData(grid.columns, grid.rows);
-        values.forEach((v, i) => { const c = known(v) ? d3.rgb(colour(Math.max(low, Math.min(top, v)))) : { r: 128, g: 128, b: 128 }; picture.data.set([c.r, c.g, c.b, known(v) ? 255 : 60], 4 * i); });
-        pen.putImageData(picture, 0, 0);
+        paint(canvas.node(), values, colour, low, top);
         let at = 0;
         const words = (i) => "x " + shown(grid.x[i]) + ", y " + shown(grid.y[i]) + " px\n" + of.map((one) => (one.name === f.name ? "> " : "") + one.title + ": " + shown(one.u[i]) + ", " + shown(one.v[i]) + " " + (one.unit || "px")).join("\n");
         canvas.on("mousemove", function () {
@@ -248,10 +279,11 @@
           d3.event.preventDefault(); at = (at + step + values.length) % values.length; tell(words(at), this);
         });
         const bar = plot.append("svg").attr("viewBox", "0 0 460 44").style("max-width", "32rem").attr("aria-hidden", "true");
-        d3.range(100).forEach((i) => bar.append("rect").attr("x", 20 + 4.2 * i).attr("y", 2).attr("width", 4.4).attr("height", 14).attr("fill", colour(low + ((top - low) * i) / 99)));
+        d3.range(100).forEach((i) => bar.append("rect").attr("x", 20 + 4.2 * i).attr("y", 2).attr("width", 4.4).attr("height", 14).attr("shape-rendering", "crispEdges").attr("fill", colour(low + ((top - low) * i) / 99)));
         bar.append("g").attr("transform", "translate(0,16)").call(d3.axisBottom(d3.scaleLinear().domain([low, top]).range([20, 440])).ticks(6, "~g"));
-        plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ". Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
+        plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ", at x from " + shown(d3.min(grid.x)) + " to " + shown(d3.max(grid.x)) + " px, y from " + shown(d3.min(grid.y)) + " px (above) to " + shown(d3.max(grid.y)) + " px. Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
       };
+      overview();
       choice(controls, "show", of.map((f) => ({ value: f.name, text: f.title })), chosen.name, (v) => { chosen.name = v; draw(); });
       choice(controls, "component", ["magnitude", "u", "v"].map((p) => ({ value: p, text: p })), chosen.part, (v) => { chosen.part = v; draw(); });
       draw();
@@ -317,6 +349,14 @@
     controls.append(button); figure.insertBefore(controls, pair);
   });
 
+  /* ---- on paper nothing is folded away ---- */
+  let opened = [];
+  window.addEventListener("beforeprint", () => {
+    opened = Array.from(document.querySelectorAll("details:not([open])"));
+    opened.forEach((one) => { one.open = true; });
+  });
+  window.addEventListener("afterprint", () => opened.forEach((one) => { one.open = false; }));
+
   /* ---- tables ---- */
   document.querySelectorAll("table").forEach((table) => {
     const body = table.tBodies[0];
@@ -324,7 +364,7 @@
     const value = (row, i) => { const cell = row.cells[i], number = cell.dataset.value; return number === undefined ? cell.textContent : Number(number); };
     Array.from(table.tHead.rows[0].cells).forEach((head, i) => {
       const button = document.createElement("button");
-      button.type = "button"; button.textContent = head.textContent; head.textContent = ""; head.append(button);
+      button.type = "button"; button.append(...head.childNodes); head.append(button);
       button.addEventListener("click", () => {
         const down = head.getAttribute("aria-sort") === "ascending";
         Array.from(table.tHead.rows[0].cells).forEach((other) => other.removeAttribute("aria-sort"));

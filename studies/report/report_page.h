@@ -27,6 +27,8 @@ struct TableCell {
 
   /// Four significant digits; "unknown" for NaN.
   static TableCell of(double number);
+  /// Displacements and their errors: hundred-thousandths of a pixel, which no measurement tells from 0.
+  static TableCell px(double number);
 };
 struct TextTable {
   std::string caption;

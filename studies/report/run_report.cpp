@@ -11,12 +11,10 @@
 #include "studies/case_files.h"
 #include "studies/figures/study_axes.h"
 #include "studies/figures/study_figures.h"
-#include "studies/json_text.h"
 #include "studies/report/bench_view.h"
 #include "studies/report/report.h"
 #include "studies/report/study_view.h"
 #include "studies/sweep/job_array.h"
-#include "studies/sweep/study_columns.h"
 #include "studies/sweep/study_table.h"
 
 namespace gladstone {
@@ -24,76 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_table_rows = 20;  ///< without a search field
-constexpr std::size_t most_told = 12;        ///< values of an axis in a list
-
-nlohmann::json data_of(StudyView const& study) {
-  nlohmann::json data{{"main", study.main}, {"terms", study.terms}};
-  if (study.knows("signal_px")) data["second"] = "signal_px";
-  data["axes"] = data["measures"] = data["rows"] = nlohmann::json::array();
-  std::vector<FigureAxis> axes;
-  for (StudyAxis const& axis : study.table.axes) {
-    axes.push_back(figure_axis(axis, std::max<std::size_t>(2, std::min(most_places, axis.labels.size()))));
-    nlohmann::json numbers = nlohmann::json::array();
-    for (double const position : axes.back().position) numbers.push_back(known_or_null(position));
-    data["axes"].push_back({{"key", axis.key},
-                            {"title", axes.back().title},
-                            {"numeric", axes.back().numeric},
-                            {"logarithmic", axes.back().logarithmic},
-                            {"labels", axes.back().label},
-                            {"numbers", numbers}});
-  }
-  for (StudyColumn const& column : table_columns(study.table)) {
-    if (study.table.find_measure(column.name) && study.knows(column.name)) {
-      data["measures"].push_back({{"name", column.name}, {"unit", unit_of_column(column.name)}});
-    }
-  }
-  for (StudyRow const& row : study.table.rows) {
-    nlohmann::json one{{"case", row.index},
-                       {"status", to_string(row.status)},
-                       {"v", nlohmann::json::array()},
-                       {"m", nlohmann::json::array()}};
-    for (std::size_t k = 0; k < axes.size(); ++k) one["v"].push_back(axes[k].place_of[row.value[k]]);
-    for (auto const& measure : data["measures"]) {
-      one["m"].push_back(row.status == CaseStatus::ok
-                             ? known_or_null(study.of(row, measure["name"].get_ref<std::string const&>()))
-                             : nlohmann::json(nullptr));
-    }
-    data["rows"].push_back(std::move(one));
-  }
-  return data;
-}
-
-TextTable cases_table(StudyView const& study) {
-  TextTable table{
-      fmt::format("Every case; all {} measures stand in study.csv", study.table.measures.size()), {"case"}, {}};
-  std::vector<std::string> measures;
-  for (char const* name :
-       {"ray_truth.rms_px", "eq9.rms_px", "flow.rms_px", "ray_truth.bias_u_px", "ray_truth.bias_v_px",
-        "ray_truth.random_u_px", "ray_truth.random_v_px", "ray_truth.gross_fraction", "ray_truth.valid_fraction",
-        "uncertainty.window_truth.coverage_1", "signal_px"}) {
-    if (study.knows(name)) measures.emplace_back(name);
-  }
-  for (StudyAxis const& axis : study.table.axes) table.header.push_back(axis_title(axis.key));
-  table.header.insert(table.header.end(), measures.begin(), measures.end());
-  table.header.emplace_back("status");
-  for (StudyRow const& row : study.table.rows) {
-    std::vector<TableCell> cells{{std::to_string(row.index), static_cast<double>(row.index)}};
-    for (std::size_t k = 0; k < study.table.axes.size(); ++k) {
-      StudyAxis const& axis = study.table.axes[k];
-      TableCell cell{axis.labels[row.value[k]]};
-      if (axis.numeric && std::isfinite(axis.numbers[row.value[k]])) cell.number = axis.numbers[row.value[k]];
-      cells.push_back(std::move(cell));
-    }
-    for (std::string const& measure : measures) {
-      cells.push_back(row.status == CaseStatus::ok ? TableCell::of(study.of(row, measure)) : TableCell{""});
-    }
-    cells.push_back({row.error.empty() ? to_string(row.status) : row.error});
-    table.rows.push_back(std::move(cells));
-  }
-  table.filtered = table.rows.size() > most_table_rows;
-  return table;
-}
+constexpr std::size_t most_told = 12;  ///< values of an axis in a list
 
 /// The frames of a case, where the study has kept them.
 ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow const& row, std::string const& which) {
@@ -131,10 +60,10 @@ ReportSection setup_section(StudyView const& study, BenchView const* base) {
   for (StudyAxis const& axis : study.table.axes) {
     std::string values;
     for (std::size_t i = 0; i < axis.labels.size() && i < most_told; ++i) {
-      values += (i == 0 ? "" : ", ") + axis.labels[i];
+      values += (i == 0 ? "" : "; ") + axis.labels[i];
     }
     std::size_t const more = axis.labels.size() - std::min(axis.labels.size(), most_told);
-    axes.items.push_back(axis_title(axis.key) + ": " + values + (more > 0 ? fmt::format(" and {} more", more) : ""));
+    axes.items.push_back(axis_title(axis.key) + ": " + values + (more > 0 ? fmt::format("; and {} more", more) : ""));
   }
   section.blocks.insert(section.blocks.begin(),
                         {Paragraph{"Every case starts from one setup, the base. What the study changes of it:"}, axes});
@@ -180,7 +109,7 @@ ReportPage run_report(ReportOptions const& options) {
   for (std::string const& finding : {largest_cause(study), strongest_axis(study), uncertainty_finding(study)}) {
     if (!finding.empty()) page.findings.push_back(finding);
   }
-  page.data = data_of(study);
+  page.data = study_data(study);
   auto const free = std::count_if(study.table.axes.begin(), study.table.axes.end(),
                                   [](StudyAxis const& axis) { return axis.labels.size() > 1; });
   auto const manifest_entries = read_manifest(run);
@@ -200,6 +129,11 @@ ReportPage run_report(ReportOptions const& options) {
          {Paragraph{"The budget's terms lead from theory to the measurement. They correlate, so that their heights do "
                     "not add up in quadrature."},
           Chart{"causes", "rms of every cause", largest_cause(study)}}});
+  }
+  if (std::string const finding = uncertainty_finding(study); !finding.empty() && free > 0) {
+    page.data["coverage"] = coverage_measure;
+    page.sections.push_back(
+        {"Uncertainty", {Chart{"coverage", "Share of the errors that the estimated uncertainty covers", finding}}});
   }
   ReportSection extreme{"Best and worst case",
                         {frames_of(run, study, best, "Best"), frames_of(run, study, *worst, "Worst")}};

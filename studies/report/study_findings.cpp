@@ -18,7 +18,7 @@ StudyView::StudyView(std::string const& run) : table(read_study_table(run)) {
     throw DataError(run, "holds no finished case; run gladstone sweep run " + shell_word(run) + " first");
   }
   for (auto const& [measure, name] :
-       {std::pair{"eq9.rms_px", "Eq. 9, the displacement that the density gradient gives"},
+       {std::pair{"eq9.rms_px", "Eq. 9 (the displacement that the density gradient gives)"},
         std::pair{"flow.rms_px", "the displacement of the flow"}, std::pair{"ray_truth.rms_px", "ray truth"}}) {
     main = measure;
     against = name;
@@ -112,14 +112,14 @@ std::string strongest_axis(StudyView const& study) {
     }
     if (!(most > least) || !(most / least > strongest)) continue;
     strongest = most / least;
-    text = fmt::format("{} matters most: the median error is {:.3g} px at {} and {:.3g} px at {}.", places.title, least,
-                       least_at, most, most_at);
+    text = fmt::format("Of the axes {} matters most: the median error is {:.3g} px at {} and {:.3g} px at {}.",
+                       places.title, least, least_at, most, most_at);
   }
   return text;
 }
 
 std::string uncertainty_finding(StudyView const& study) {
-  std::vector<double> const coverage = study.values("uncertainty.window_truth.coverage_1");
+  std::vector<double> const coverage = study.values(coverage_measure);
   if (coverage.empty()) return "";
   return fmt::format(
       "The estimated uncertainty covers {:.0f} % of the errors in the median case ({:.0f} to {:.0f} %; "

@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "studies/report/report_page.h"
 #include "studies/sweep/study_table.h"
 
 namespace gladstone {
 
+/// Share of the errors against truth on the window that are below their estimated uncertainty.
+inline constexpr char const* coverage_measure = "uncertainty.window_truth.coverage_1";
 inline constexpr std::size_t most_places = 24;  ///< of an axis in a chart; more values are gathered
 
 /// A study as its report asks it.
@@ -33,6 +37,12 @@ struct StudyView {
   std::string title(StudyRow const& row) const;
   std::vector<double> values(std::string const& measure) const;
 };
+
+/// What charts are drawn from: axes, measures that some case knows, and the cases.
+nlohmann::json study_data(StudyView const& study);
+
+/// Every case with its axes and main measures.
+TextTable cases_table(StudyView const& study);
 
 /// What the study asks, and how far it is.
 std::string question_of(StudyView const& study);

@@ -1,6 +1,6 @@
 """Opens a report in headless Chromium as its reader would, and says what is wrong with it.
 
-usage: report_browser.py RUN_REPORT.html STUDY.csv CASE_REPORT.html
+usage: report_browser.py RUN_REPORT.html STUDY.csv CASE_REPORT.html MEASUREMENT_REPORT.html
 
 Ends with 77 where Chromium or Selenium are missing, with 1 where something is wrong."""
 
@@ -82,7 +82,9 @@ def check_charts(driver, kinds):
 
 def check_run(driver, page, table):
     open_page(driver, page)
-    check_charts(driver, ["curves", "cells", "scatter", "causes"])
+    check_charts(driver, ["curves", "cells", "scatter", "causes", "coverage"])
+    expect(len(driver.find_elements(By.CSS_SELECTOR, "figure[data-chart=coverage] line.guide")) == 1, "no line says what coverage is right")
+    expect(not driver.find_elements(By.CSS_SELECTOR, "figure[data-chart=curves] line.guide"), "a line says what error is right")
 
     curves = driver.find_element(By.CSS_SELECTOR, "figure[data-chart=curves]")
     ticks = lambda: [tick.text for tick in curves.find_elements(By.CSS_SELECTOR, ".axis .tick text")]
@@ -127,9 +129,38 @@ def check_run(driver, page, table):
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 
 
+def check_maps(driver):
+    """All maps stand side by side, each painted: a reader of the printed page sees them."""
+    data = json.loads(driver.execute_script("return document.getElementById('data').textContent"))
+    maps = driver.find_elements(By.CSS_SELECTOR, "figure[data-chart=field] .maps canvas")
+    expect(len(maps) == len(data["fields"]) > 3, "not every map stands beside the others")
+    painted = "const c = arguments[0]; return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size"
+    expect(driver.execute_script(painted, maps[0]) > 3, "the first map has no colours")
+
+
+def check_folds(driver):
+    """What is folded away on the screen is printed, and folded again."""
+    folded = lambda: len(driver.find_elements(By.CSS_SELECTOR, "details:not([open])"))
+    before = folded()
+    driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
+    expect(before > 0 and folded() == 0, "print leaves settings folded away")
+    driver.execute_script("window.dispatchEvent(new Event('afterprint'))")
+    expect(folded() == before, "settings stay unfolded after print")
+
+
+def check_measurement(driver, page):
+    open_page(driver, page)
+    check_charts(driver, ["field", "budget"])
+    check_maps(driver)
+    check_folds(driver)
+    text = driver.find_element(By.TAG_NAME, "main").text
+    expect("nan" not in text.lower().split(), "a number is none")
+
+
 def check_case(driver, page):
     open_page(driver, page)
     check_charts(driver, ["field", "histogram", "budget", "reliability"])
+    check_maps(driver)
     button = driver.find_element(By.CSS_SELECTOR, "figure.frames button")
     pictures = driver.find_elements(By.CSS_SELECTOR, "figure.frames img")
     shown = lambda: sum(picture.is_displayed() for picture in pictures)
@@ -148,6 +179,7 @@ def main():
     try:
         check_run(driver, sys.argv[1], sys.argv[2])
         check_case(driver, sys.argv[3])
+        check_measurement(driver, sys.argv[4])
     finally:
         driver.quit()
     print("report: " + ("no misses" if not misses else f"{len(misses)} misses"))

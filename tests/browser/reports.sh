@@ -46,12 +46,17 @@ run="study of stops, äöü"
 "$program" render setup.toml -o case --quiet --device cpu >/dev/null
 "$program" correlate case --quiet --device cpu >/dev/null
 "$program" report case --quiet --device cpu
+# the same frames as a measurement: without a field and without truth
+mkdir measured
+sed -e '/medium.field/,/wavelength_mm/d' -e 's/z_d_mm = 250.0/z_d_mm = { value = 250.0, sigma = 2.0 }/' setup.toml >measured/setup.toml
+cp case/reference.tif case/flow.tif case/vectors.h5 measured/
+"$program" report measured --quiet --device cpu
 if command -v tidy >/dev/null; then
-  for page in "$run/a report.html" case/report.html; do
+  for page in "$run/a report.html" case/report.html measured/report.html; do
     tidy -q -e --gnu-emacs yes "$page" 2>tidy.log || { cat tidy.log; exit 1; }
   done
 fi
 # Selenium is where Debian puts it
 python=/usr/bin/python3
 [ -x "$python" ] || python=python3
-exec "$python" -B "$source/report_browser.py" "$run/a report.html" "$run/study.csv" case/report.html
+exec "$python" -B "$source/report_browser.py" "$run/a report.html" "$run/study.csv" case/report.html measured/report.html

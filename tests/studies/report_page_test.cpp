@@ -60,6 +60,19 @@ TEST(ReportPage, SaysThatANumberIsUnknown) {
   TableCell const cell = TableCell::of(std::nan(""));
   EXPECT_EQ(cell.text, "unknown");
   EXPECT_FALSE(cell.number);
+  ReportPage page;
+  page.sections = {{"s", {TextTable{"t", {"a_b.c", "b"}, {{{"x"}, TableCell::of(1)}, {{"y"}, cell}}}}}};
+  EXPECT_THAT(html_page(page), HasSubstr("<th scope=\"col\">a_<wbr>b.<wbr>c</th>"));
+  EXPECT_THAT(html_page(page), HasSubstr("<td>y</td><td class=\"number\">unknown</td>"));
+}
+
+// Displacements are told to 1e-5 px, and a bias that is none has no sign; what is sorted by is the number itself.
+TEST(ReportPage, ShowsPixelsInHundredThousandths) {
+  EXPECT_EQ(TableCell::px(-4.738e-05).text, "-0.00005");
+  EXPECT_EQ(TableCell::px(-3.5e-07).text, "0.00000");
+  EXPECT_EQ(*TableCell::px(-3.5e-07).number, -3.5e-07);
+  EXPECT_EQ(TableCell::px(0.0667).text, "0.06670");
+  EXPECT_EQ(TableCell::px(std::nan("")).text, "unknown");
 }
 
 }  // namespace
