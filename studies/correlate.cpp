@@ -112,7 +112,7 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   std::unique_ptr<Correlator> const correlator = device.correlator(settings);
   Measurement measurement{correlator->correlate_pair(frames), 0, device.correlates_on(settings)};
   judge_pair(measurement.field, frames, *correlator, settings);
-  estimate_uncertainty(measurement.field, frames, settings);
+  complete_uncertainty(measurement.field, frames, settings);
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }

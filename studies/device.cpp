@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/uncertainty/uncertainty.h"
 #include "cuda/backend.h"
 #include "render/base/error.h"
 #include "render/base/parallel.h"
@@ -19,21 +20,25 @@ namespace {
 
 /// The correlator of a GPU; what that does not have the CPU does, unless only the GPU is wanted.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
-  std::string const missing = missing_on_gpu(settings);
-  bool const estimated = settings.uncertainty != "none";
-  if (only_gpu && (estimated || !missing.empty()))
-    throw DeviceError(
-        fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto",
-                    missing.empty() ? fmt::format("uncertainty = \"{}\"", settings.uncertainty) : missing));
-  if (estimated)
-    spdlog::info("correlate.uncertainty = \"{}\" is estimated on the CPU, {} threads", settings.uncertainty,
-                 thread_count());
-  if (missing.empty()) return cuda::make_correlator(settings);
-  spdlog::info("correlate.{} is computed on the CPU, {} threads", missing, thread_count());
-  return make_correlator(settings);
+  std::string const left = left_to_cpu(settings);
+  if (left.empty()) return cuda::make_correlator(settings);
+  if (only_gpu)
+    throw DeviceError(fmt::format("--device cuda: correlate.{} is computed on the CPU alone; use --device auto", left));
+  if (!missing_on_gpu(settings).empty()) {
+    spdlog::info("correlate.{} is computed on the CPU, {} threads", left, thread_count());
+    return make_correlator(settings);
+  }
+  spdlog::info("correlate.{} is estimated on the CPU, {} threads", left, thread_count());
+  return cuda::make_correlator(settings);
 }
 
 }  // namespace
+
+std::string left_to_cpu(CorrelationSettings const& settings) {
+  std::string const missing = missing_on_gpu(settings);
+  if (!missing.empty() || uncertainty_on_gpu(settings.uncertainty)) return missing;
+  return fmt::format("uncertainty = \"{}\"", settings.uncertainty);
+}
 
 Device open_device(std::string const& wanted) {
   std::string instead;

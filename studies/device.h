@@ -21,6 +21,9 @@ struct Device {
   }
 };
 
+/// What of these settings a GPU leaves to the CPU, as `uncertainty = "image_matching"`; empty: nothing.
+std::string left_to_cpu(CorrelationSettings const& settings);
+
 /// @param wanted "cpu", "cuda", or "auto": the GPU where one can be used. Says on the log which it is.
 /// @throws DeviceError where "cuda" cannot be had, with the reason
 Device open_device(std::string const& wanted);

@@ -20,7 +20,8 @@ class Correlator {
   /// @return one vector per window of final_grid(): displacement = flow - reference [px], belonging to the
   /// mid-position;
   ///         NaN where the status is masked (half the window unknown) or invalid (no signal, or spurious without a
-  ///         sound neighbour). sigma_px is empty. The same bits for any number of threads.
+  ///         sound neighbour). sigma_px is empty but where a device estimates it along with the vectors. The same bits
+  ///         for any number of threads.
   /// @throws DataError where the sizes differ or a window does not fit, Interrupted
   virtual DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const = 0;
   /// The same for frames wherever they are kept; those that are on the correlator's own device stay there.

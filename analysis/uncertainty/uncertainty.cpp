@@ -1,5 +1,6 @@
 #include "analysis/uncertainty/uncertainty.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -16,11 +17,12 @@ namespace {
 struct NamedUncertainty {
   char const* name;
   UncertaintyMethod estimate;
+  bool on_gpu = false;  ///< whether the correlator of CUDA has it, too
 };
 
 /// Every uncertainty method, one row each.
 constexpr std::array uncertainties{
-    NamedUncertainty{"correlation_statistics", correlation_statistics},
+    NamedUncertainty{"correlation_statistics", correlation_statistics, true},
     NamedUncertainty{"image_matching", image_matching},
     NamedUncertainty{"peak_ratio", peak_ratio_uncertainty},
     NamedUncertainty{"moment_of_correlation", moment_of_correlation},
@@ -67,6 +69,12 @@ std::vector<std::string> uncertainty_methods() {
   return names;
 }
 
+bool uncertainty_on_gpu(std::string const& method) {
+  for (NamedUncertainty const& row : uncertainties)
+    if (method == row.name) return row.on_gpu;
+  return true;
+}
+
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (settings.uncertainty == "none") return;
@@ -78,6 +86,12 @@ void estimate_uncertainty(DisplacementField& field, FramePair const& frames, Cor
   GLADSTONE_EXPECTS(field.sigma_px.size() == field.size());
   for (std::size_t i = 0; i < field.size(); ++i)
     if (field.status[i] != VectorStatus::valid) field.sigma_px[i] = {nan, nan};
+}
+
+void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings) {
+  bool const left_out =
+      std::find(field.reason.begin(), field.reason.end(), VectorReason::uncorrelated) != field.reason.end();
+  if (field.sigma_px.empty() || left_out) estimate_uncertainty(field, frames, settings);
 }
 
 }  // namespace gladstone

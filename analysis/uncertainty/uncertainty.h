@@ -48,9 +48,16 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input);
 /// Names of the methods, in the order of their table, without "none".
 std::vector<std::string> uncertainty_methods();
 
+/// Whether the correlator of CUDA estimates it along with the vectors, too. @param method one of these, or "none"
+bool uncertainty_on_gpu(std::string const& method);
+
 /// Estimates field.sigma_px by settings.uncertainty; leaves the field as it is for "none". Vectors that are neither
 /// valid nor replaced get NaN, and so do replaced ones: what stands there was not measured in their window.
 /// @param field what a correlator gave for the frames with these settings
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
+
+/// The same after a correlator that may have estimated it along with the vectors, and the pair's verdict. What stands
+/// there stays, unless the verdict has left vectors out since: then none may rest on them, and all are estimated again.
+void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -6,7 +6,9 @@
 #include "analysis/correlation/lane_correlation.h"
 #include "analysis/correlation/methods/robust_phase.h"
 #include "analysis/correlation/standard_correlator.h"
+#include "analysis/uncertainty/pass_amplification.h"
 #include "cuda/correlation/correlation_kernels.h"
+#include "cuda/correlation/correlation_statistics.h"
 #include "cuda/device/device_array.h"
 #include "cuda/device/device_frames.h"
 #include "render/base/interrupt.h"
@@ -42,6 +44,24 @@ class DeviceAxisWeights {
   AxisWeightsView view_;
 };
 
+/// Room for the windows that are worked on together where one does not fit into shared memory.
+struct WindowScratch {
+  DeviceArray<float> memory;
+  int slots = 0;
+
+  /// For no more than 264 of `windows`; fewer where the device has little left. @param values of each
+  void make(std::size_t values, std::size_t windows) {
+    if (values == 0) return;
+    for (auto wanted = std::min<std::size_t>(windows, 264);; wanted = (wanted + 1) / 2) try {
+        memory = DeviceArray<float>(values * wanted, "correlation of large windows");
+        slots = static_cast<int>(wanted);
+        return;
+      } catch (OutOfDeviceMemory const&) {
+        if (wanted == 1) throw;
+      }
+  }
+};
+
 }  // namespace
 
 /// Device memory and tables for pairs of one size.
@@ -51,11 +71,13 @@ class CorrelationPlan {
       : schedule_(settings),
         phase_only_(settings.method == "rpc"),
         nine_points_(settings.subpixel == "gauss2d"),
+        with_sigma_(settings.uncertainty == "correlation_statistics"),
+        amplification_(with_sigma_ ? amplification_of_passes(settings) : 1.0),
         columns_(columns),
         rows_(rows) {
     std::size_t const pixels = static_cast<std::size_t>(columns) * rows;
     original_ = Pair(pixels);
-    if (schedule_.passes() > 1) {
+    if (deforms()) {
       deformed_ = Pair(pixels);
       constexpr int margin = BsplineView<float>::margin_before + BsplineView<float>::margin_after;
       std::size_t const coefficients = static_cast<std::size_t>(columns + margin) * (rows + margin);
@@ -68,7 +90,7 @@ class CorrelationPlan {
       passes_.push_back(make_pass(pass));
       Pass const& made = passes_.back();
       most_vectors = std::max(most_vectors, made.grid.size());
-      if (!schedule_.is_last(pass))
+      if (with_sigma_ || !schedule_.is_last(pass))
         most_nodes = std::max(most_nodes, static_cast<std::size_t>(made.predictor.columns) * made.predictor.rows);
     }
     windows_ = DeviceArray<WindowCorrelation>(most_vectors, purpose);
@@ -78,7 +100,10 @@ class CorrelationPlan {
     measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
     measured_.zero();  // the gaps between its members are copied to the host, too
     list_ = DeviceArray<Replacement>(most_vectors, purpose);
-    if (schedule_.passes() > 1) {
+    if (with_sigma_)
+      for (DeviceArray<Vec2d>* of_vectors : {&variances_, &sigma_})
+        *of_vectors = DeviceArray<Vec2d>(passes_.back().grid.size(), purpose);
+    if (deforms()) {
       nodes_ = DeviceArray<Vec2d>(most_vectors, purpose);
       smoothed_ = DeviceArray<Vec2d>(most_vectors, purpose);
       known_ = DeviceArray<char>(most_vectors, purpose);
@@ -98,11 +123,11 @@ class CorrelationPlan {
   DeviceImage uploaded(int which) const { return {uploaded_[which].data(), columns_, rows_}; }
 
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) {
-    if (slots_ == 0) make_scratch();  // last, since it takes what is left
+    if (!has_scratch_) make_scratch();  // last, since it takes what is left
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
     prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
     BsplineView<float> spline[2] = {};
-    if (schedule_.passes() > 1)  // the deformed pair is not needed yet: scratch
+    if (deforms())  // the deformed pair is not needed yet: scratch
       filter_pair(original, taps_.data(), static_cast<int>(taps_.size()), deformed.pixels,
                   {spline_[0].data(), spline_[1].data()}, spline);
     for (int pass = 0;; ++pass) {
@@ -114,10 +139,16 @@ class CorrelationPlan {
       take_vectors(windows_.data(), vectors_.data(), now.grid, deformed_by(pass), schedule_.limit_px(), before(pass),
                    ambiguous_[pass % 2].data());
       validate(vectors_.data(), now.grid, schedule_.rule(pass), list_.data(), list_size_.data());
-      if (schedule_.is_last(pass)) return download(now.grid);
-      make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
-                     predictor(pass), extended_.data());
+      if (schedule_.is_last(pass)) break;
+      make_predictor_of(pass);
     }
+    if (with_sigma_) {
+      int const last = schedule_.passes() - 1;
+      make_predictor_of(last);
+      deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, predictor(last), deformed);
+      estimate_sigma_of(passes_[last], deformed);
+    }
+    return download(passes_.back().grid);
   }
 
  private:
@@ -175,8 +206,6 @@ class CorrelationPlan {
                     : AmbiguousPlaces{{}, nullptr};
   }
 
-  /// Room for the windows that are worked on together where one does not fit into shared memory: fewer where the device
-  /// has little left.
   void make_scratch() {
     std::size_t values = 0, windows = 0;
     for (Pass const& pass : passes_)
@@ -184,14 +213,28 @@ class CorrelationPlan {
         values = std::max(values, pass.lines.window_values());
         windows = std::max(windows, pass.grid.size());
       }
-    if (values == 0) return;
-    for (auto slots = std::min<std::size_t>(windows, 264);; slots = (slots + 1) / 2) try {
-        scratch_ = DeviceArray<float>(values * slots, "correlation of large windows");
-        slots_ = static_cast<int>(slots);
-        return;
-      } catch (OutOfDeviceMemory const&) {
-        if (slots == 1) throw;
-      }
+    scratch_.make(values, windows);
+    Pass const& last = passes_.back();
+    if (with_sigma_ && statistics_need_scratch(last.side))
+      scratch_of_sigma_.make(statistics_values(last.side), last.grid.size());
+    has_scratch_ = true;
+  }
+
+  void make_predictor_of(int pass) {
+    make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
+                   predictor(pass), extended_.data());
+  }
+
+  void estimate_sigma_of(Pass const& pass, DevicePair const& matched) {
+    MatchedWindows const windows{.pair = matched,
+                                 .grid = pass.grid,
+                                 .x = pass.x.view(),
+                                 .y = pass.y.view(),
+                                 .side = pass.side,
+                                 .margin = (pass.x.view().size - pass.side) / 2,
+                                 .vectors = vectors_.data(),
+                                 .amplification = amplification_};
+    estimate_sigma(windows, scratch_of_sigma_.memory.data(), scratch_of_sigma_.slots, variances_.data(), sigma_.data());
   }
 
   void correlate_windows(Pass const& pass, DevicePair const& pair) {
@@ -211,7 +254,7 @@ class CorrelationPlan {
     else if (factored_size(job.size) == job.size)
       correlate_windows_by_factors(job, peaks_.data());
     else
-      correlate_windows_by_lines(job, pass.lines, scratch_.data(), slots_, peaks_.data());
+      correlate_windows_by_lines(job, pass.lines, scratch_.memory.data(), scratch_.slots, peaks_.data());
     measure_peaks(job, peaks_.data(), nine_points_, windows_.data());
   }
 
@@ -219,11 +262,19 @@ class CorrelationPlan {
     finish(windows_.data(), vectors_.data(), grid, measured_.data());
     std::vector<MeasuredVector> measured(grid.size());
     measured_.download(measured.data(), measured.size());
-    return displacement_field(grid, measured);
+    DisplacementField field = displacement_field(grid, measured);
+    field.sigma_px.resize(sigma_.size());
+    sigma_.download(field.sigma_px.data(), sigma_.size());
+    return field;
   }
+
+  /// Whether the frames are deformed at all.
+  bool deforms() const { return schedule_.passes() > 1 || with_sigma_; }
 
   CorrelationSchedule schedule_;
   bool phase_only_, nine_points_;
+  bool with_sigma_;  ///< by correlation statistics, after the last pass
+  double amplification_;
   int columns_;
   int rows_;
   std::vector<Pass> passes_;
@@ -242,8 +293,9 @@ class CorrelationPlan {
   DeviceArray<int> list_size_{1, purpose};
   DeviceArray<Vec2d> nodes_, smoothed_, extended_;
   DeviceArray<char> known_;
-  DeviceArray<float> scratch_;
-  int slots_ = 0;
+  DeviceArray<Vec2d> variances_, sigma_;
+  WindowScratch scratch_, scratch_of_sigma_;
+  bool has_scratch_ = false;
 };
 
 struct CudaCorrelator::State {

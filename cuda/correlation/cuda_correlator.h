@@ -9,7 +9,8 @@ namespace gladstone::cuda {
 
 /// StandardCorrelator on the device: the same per-pixel, per-window and per-vector functions, with the transform done
 /// beside them. Between the passes nothing leaves the device. Its memory is kept for the next pair of the same size;
-/// calls from several threads wait for each other.
+/// calls from several threads wait for each other. By uncertainty = "correlation_statistics" the vectors come with what
+/// estimate_uncertainty() gives for them as they are; by any other without sigma_px.
 class CudaCorrelator final : public Correlator {
  public:
   explicit CudaCorrelator(CorrelationSettings const& settings);

@@ -1,7 +1,12 @@
 #include "studies/device.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "cuda/backend.h"
+#include "render/base/error.h"
 #include "studies/benchmark/particle_pair.h"
 #include "studies/correlate.h"
 
@@ -30,6 +35,83 @@ TEST(Measurement, NamesTheDeviceThatCorrelated) {
   settings.method = "scc";
   settings.subpixel = "parabola";
   EXPECT_EQ(device_of(), "cpu");
+}
+
+// A GPU has scc, rpc, both Gaussian fits and correlation statistics; of anything else the first that it lacks is named.
+TEST(LeftToCpu, NamesWhatAGpuDoesNotHave) {
+  CorrelationSettings settings;
+  EXPECT_EQ(left_to_cpu(settings), "");
+  settings.uncertainty = "correlation_statistics";
+  EXPECT_EQ(left_to_cpu(settings), "");
+  for (char const* method : {"image_matching", "peak_ratio", "moment_of_correlation", "combination"}) {
+    settings.uncertainty = method;
+    EXPECT_EQ(left_to_cpu(settings), std::string("uncertainty = \"") + method + "\"");
+  }
+  settings.method = "zncc";
+  EXPECT_EQ(left_to_cpu(settings), "method = \"zncc\"");
+}
+
+// Skipped where there is no GPU.
+TEST(CudaDevice, RefusesWhatIsLeftToTheCpu) {
+  if (cuda::DeviceState const state = cuda::device_state(); !state.usable) GTEST_SKIP() << state.text;
+  Device const only = open_device("cuda"), any = open_device("auto");
+  CorrelationSettings settings;
+  settings.uncertainty = "correlation_statistics";
+  EXPECT_NE(only.correlator(settings), nullptr);
+  settings.uncertainty = "combination";
+  EXPECT_NE(any.correlator(settings), nullptr);
+  try {
+    only.correlator(settings);
+    ADD_FAILURE() << "not refused";
+  } catch (DeviceError const& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("correlate.uncertainty = \"combination\" is computed on the CPU"));
+  }
+}
+
+/// A correlator that brings the uncertainty of its vectors along, as a GPU's does.
+class WithSigma final : public Correlator {
+ public:
+  explicit WithSigma(CorrelationSettings const& settings) : correlator_(make_correlator(settings)) {}
+  DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override {
+    DisplacementField field = correlator_->correlate(reference, flow);
+    field.sigma_px.assign(field.size(), {0.25, 0.5});
+    return field;
+  }
+
+ private:
+  std::unique_ptr<Correlator> correlator_;
+};
+
+// What came with the vectors stays: nothing estimates it twice. Where half of the frames have nothing in common, and
+// the verdict leaves their vectors out, the others' is estimated again without them.
+TEST(Measurement, KeepsTheUncertaintyThatCameWithTheVectors) {
+  Device const device{std::make_unique<NominalGpu>(),
+                      [](CorrelationSettings const& settings) { return std::make_unique<WithSigma>(settings); }};
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  settings.uncertainty = "correlation_statistics";
+  auto const still = [](Vec2d) { return Vec2d{0.5, 0.0}; };
+  ParticlePair pair = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02}, still);
+  ParticlePair const other = render_particle_pair({.columns = 256, .rows = 256, .noise = 0.02, .seed = 2}, still);
+  Device const without{std::make_unique<NominalGpu>(), make_correlator};
+  auto const measured = [&](Device const& by) {
+    return correlate_frames("a.tif", pair.reference, "b.tif", pair.flow, settings, by).field;
+  };
+  for (Vec2d const& sigma : measured(device).sigma_px) EXPECT_EQ(sigma, (Vec2d{0.25, 0.5}));
+  for (int j = 0; j < 256; ++j)
+    for (int i = 128; i < 256; ++i) pair.flow(i, j) = other.flow(i, j);
+  DisplacementField const half = measured(device), expected = measured(without);
+  ASSERT_EQ(half.sigma_px.size(), expected.size());
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < half.size(); ++i) {
+    left_out += half.reason[i] == VectorReason::uncorrelated;
+    for (double Vec2d::*axis : {&Vec2d::x, &Vec2d::y}) {
+      double const sigma = half.sigma_px[i].*axis, right = expected.sigma_px[i].*axis;
+      EXPECT_TRUE(sigma == right || (std::isnan(sigma) && std::isnan(right))) << i;
+    }
+  }
+  EXPECT_GT(left_out, half.size() / 8);
+  EXPECT_LT(left_out, half.size());
 }
 
 }  // namespace

@@ -149,14 +149,19 @@ BENCHMARK(single_pass)
     ->Iterations(10)
     ->Unit(benchmark::kMillisecond);
 
-/// The demo's passes. @param range(0) side of the images [px]
-void multi_pass(benchmark::State& state) { correlate(state, {}, static_cast<int>(state.range(0))); }
+/// The demo's passes. @param range(0) side of the images [px] @param range(1) 1: with correlation statistics
+void multi_pass(benchmark::State& state) {
+  CorrelationSettings settings;
+  if (state.range(1) != 0) settings.uncertainty = "correlation_statistics";
+  correlate(state, settings, static_cast<int>(state.range(0)));
+}
 BENCHMARK(multi_pass)
     ->Name("cuda_correlate_multi_pass")
-    ->ArgName("size")
-    ->Arg(512)
-    ->Arg(1024)
-    ->Arg(4096)
+    ->ArgNames({"size", "sigma"})
+    ->Args({512, 0})
+    ->Args({1024, 0})
+    ->Args({1024, 1})
+    ->Args({4096, 0})
     ->UseManualTime()
     ->Iterations(20)
     ->Repetitions(3)
