@@ -49,9 +49,9 @@ struct LanePixels {
 StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<float>& memory) {
   WindowStatistics<EightColumns> const window{memory.data(), side, 0, 1};
   window.clear();
-  WindowLight<double> const light = window.sum_pixels(pixels);
+  WindowSums<double> const light = window.sum_pixels(pixels);
   if (!(light.weight > 0.0)) return {};
-  WindowLevels const levels = levels_of(light);
+  WindowLevels const means = means_of(light), levels = equally_bright(means, window.sum_squares(pixels, means));
   StatisticsSums sums;
   for (int n = 0; n < window.steps(side); ++n) window.step(n, pixels, levels, sums);
   return sums;

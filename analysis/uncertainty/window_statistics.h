@@ -5,6 +5,7 @@
 
 #include "analysis/correlation/window_ops.h"
 #include "render/base/host_device.h"
+#include "render/base/vec.h"
 
 /// The sums over one window of matched frames that tell by how much noise moves its correlation peak, by threads that
 /// share memory: the CPU's one thread takes eight columns of pixels at a time, those of a CUDA block one each.
@@ -27,42 +28,26 @@ struct MatchedPixels {
   Value flow;
 };
 
-/// Weighted sums over the pixels of both frames.
-template <class T>
-struct WindowLight {
-  T weight{}, reference{}, flow{};                   ///< of w, w a and w b
-  T squared{}, squared_reference{}, squared_flow{};  ///< of w^2, w^2 a and w^2 b
-  T energy_reference{}, energy_flow{};               ///< of w^2 a^2 and w^2 b^2
-
-  static constexpr int count = 8;
-  /// Calls visit(sum) for each, in one order.
-  template <class Visit>
-  GLADSTONE_HD void each(Visit const& visit) {
-    for (T* sum :
-         {&weight, &reference, &flow, &squared, &squared_reference, &squared_flow, &energy_reference, &energy_flow})
-      visit(*sum);
-  }
-};
-
-/// What makes the frames of a window mean-free and equally bright: what the lamp gave more in one of them is no
-/// difference between them.
+/// What a window's frames are freed of: their weighted means, and what the lamp gave more in one of them.
 struct WindowLevels {
-  float reference, flow;  ///< weighted means
-  float gain;             ///< of the flow: then sums of A^2 and B^2 are equal
+  float reference = 0.0f;  ///< means
+  float flow = 0.0f;
+  float flow_gain = 1.0f;  ///< makes the weighted squares of both, means taken off, sum to the same
 };
 
-/// @pre light.weight > 0
-GLADSTONE_HD inline WindowLevels levels_of(WindowLight<double> const& light) {
-  using std::sqrt;
-  double const a = light.reference / light.weight, b = light.flow / light.weight;
-  double const reference = light.energy_reference + a * (a * light.squared - 2.0 * light.squared_reference);
-  double const flow = light.energy_flow + b * (b * light.squared - 2.0 * light.squared_flow);
-  bool const bright = reference > 0.0 && flow > 0.0;
-  return {static_cast<float>(a), static_cast<float>(b), bright ? static_cast<float>(sqrt(reference / flow)) : 1.0f};
+GLADSTONE_HD inline WindowLevels means_of(WindowSums<double> const& sums) {
+  return {static_cast<float>(sums.reference / sums.weight), static_cast<float>(sums.flow / sums.weight), 1.0f};
 }
 
-/// Of a window whose weighted, mean-free and equally bright frames are A = w a and B = w b; s = a + b, d = b - a, and q
-/// = A + B. Two values stand for the axes x and y. The terms of the difference between the correlation on either side
+/// @param squares of the reference and of the flow frame
+GLADSTONE_HD inline WindowLevels equally_bright(WindowLevels levels, Vec2d squares) {
+  using std::sqrt;
+  if (squares.y > 0.0) levels.flow_gain = static_cast<float>(sqrt(squares.x / squares.y));
+  return levels;
+}
+
+/// Of a window whose frames are A = w a and B = w b, mean-free, equally bright and weighted; s = a + b, d = b - a, and
+/// q = A + B. Two values stand for the axes x and y. The terms of the difference between the correlation on either side
 /// of the peak are t_i = w_i d_i (q_(i-1) - q_(i+1))/2, and p_i = w_i (q_(i-1) - q_(i+1))/2 what each has of the
 /// frames' noise.
 struct StatisticsSums {
@@ -92,8 +77,9 @@ struct StatisticsSums {
 
 /// What one thread does for a window's sums between two barriers. No two threads write, nor one writes and another
 /// reads, the same place between two. In order, a barrier after each:
-///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' levels;
-///  2. step(n) for n = 0 .. steps(side) - 1.
+///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' means;
+///  2. sum_squares(), which make them equally bright;
+///  3. step(n) for n = 0 .. steps(side) - 1.
 /// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are there, and
 /// multiplied with those around them in step n + 3. Products are summed over neighbours up to two pixels apart along
 /// either axis, those two apart counted by half: terms have no more in common beyond this distance than chance makes,
@@ -121,35 +107,42 @@ struct WindowStatistics {
   /// This thread's share of the weighted sums of both frames.
   /// @param pixels at(x, row): the MatchedPixels of columns x .. x + Columns::count - 1, weight 0 beyond the window
   template <class Pixels>
-  GLADSTONE_HD WindowLight<double> sum_pixels(Pixels const& pixels) const {
-    WindowLight<double> sums;
+  GLADSTONE_HD WindowSums<double> sum_pixels(Pixels const& pixels) const {
+    WindowSums<double> sums;
     for (int row = 0; row < side; ++row) {
-      WindowLight<Value> here;
+      WindowSums<Value> here;
       for (int x = first(); x < side; x += ahead()) {
         MatchedPixels<Value> const pixel = pixels.at(x, row);
-        Value const w = pixel.weight, a = w * pixel.reference, b = w * pixel.flow;
-        here.weight += w;
-        here.reference += a;
-        here.flow += b;
-        here.squared += w * w;
-        here.squared_reference += w * a;
-        here.squared_flow += w * b;
-        here.energy_reference += a * a;
-        here.energy_flow += b * b;
+        here.weight += pixel.weight;
+        here.reference += pixel.weight * pixel.reference;
+        here.flow += pixel.weight * pixel.flow;
       }
       sums.weight += Columns::sum(here.weight);
       sums.reference += Columns::sum(here.reference);
       sums.flow += Columns::sum(here.flow);
-      sums.squared += Columns::sum(here.squared);
-      sums.squared_reference += Columns::sum(here.squared_reference);
-      sums.squared_flow += Columns::sum(here.squared_flow);
-      sums.energy_reference += Columns::sum(here.energy_reference);
-      sums.energy_flow += Columns::sum(here.energy_flow);
     }
     return sums;
   }
 
-  /// @param levels of the whole window @param sums this thread's share of them
+  /// This thread's share of the weighted squares of both. @param means of both
+  template <class Pixels>
+  GLADSTONE_HD Vec2d sum_squares(Pixels const& pixels, WindowLevels const& means) const {
+    Vec2d sums;
+    for (int row = 0; row < side; ++row) {
+      Value reference{}, flow{};
+      for (int x = first(); x < side; x += ahead()) {
+        MatchedPixels<Value> const pixel = pixels.at(x, row);
+        Value const a = pixel.weight * (pixel.reference - means.reference);
+        Value const b = pixel.weight * (pixel.flow - means.flow);
+        reference += a * a;
+        flow += b * b;
+      }
+      sums += {Columns::sum(reference), Columns::sum(flow)};
+    }
+    return sums;
+  }
+
+  /// @param sums this thread's share of them
   template <class Pixels>
   GLADSTONE_HD void step(int n, Pixels const& pixels, WindowLevels const& levels, StatisticsSums& sums) const {
     if (n <= side) weigh_row(n, pixels, levels);
@@ -184,7 +177,7 @@ struct WindowStatistics {
     for (int x = first(); x < side; x += ahead()) {
       MatchedPixels<Value> const pixel = row < side ? pixels.at(x, row) : MatchedPixels<Value>{};
       Columns::store(a + x, pixel.weight * (pixel.reference - levels.reference));
-      Columns::store(b + x, pixel.weight * (levels.gain * (pixel.flow - levels.flow)));
+      Columns::store(b + x, levels.flow_gain * (pixel.weight * (pixel.flow - levels.flow)));
       Columns::store(w + x, pixel.weight);
     }
   }

@@ -38,7 +38,8 @@ template <bool in_shared>
 __global__ void __launch_bounds__(most_threads)
     find_variances(MatchedWindows const __grid_constant__ windows, float* scratch, Vec2d* variances) {
   extern __shared__ __align__(16) float shared[];
-  __shared__ double light_slots[WindowLight<double>::count * most_warps];
+  __shared__ double light_slots[3 * most_warps];
+  __shared__ double square_slots[2 * most_warps];
   __shared__ double sum_slots[StatisticsSums::count * most_warps];
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   int const side = windows.side, thread = static_cast<int>(threadIdx.x);
@@ -57,21 +58,21 @@ __global__ void __launch_bounds__(most_threads)
                               windows.y.weight(row) + windows.margin, windows.x.first(column) + windows.margin,
                               windows.y.first(row) + windows.margin};
     own.clear();
-    WindowLight<double> light = own.sum_pixels(pixels);
-    double parts[WindowLight<double>::count];
-    int k = 0;
-    light.each([&](double const& sum) { parts[k++] = sum; });
-    block_sums(parts, light_slots);
-    k = 0;
-    light.each([&](double& sum) { sum = parts[k++]; });
-    WindowLevels const levels = levels_of(light);
+    WindowSums<double> const share = own.sum_pixels(pixels);
+    double light[3] = {share.weight, share.reference, share.flow};
+    block_sums(light, light_slots);
+    WindowLevels const means = means_of({light[0], light[1], light[2]});
+    Vec2d const squares_share = own.sum_squares(pixels, means);
+    double squares[2] = {squares_share.x, squares_share.y};
+    block_sums(squares, square_slots);
+    WindowLevels const levels = equally_bright(means, {squares[0], squares[1]});
     StatisticsSums sums;
     for (int n = 0; n < Statistics::steps(side); ++n) {
       own.step(n, pixels, levels, sums);
       __syncthreads();
     }
     double all[StatisticsSums::count];
-    k = 0;
+    int k = 0;
     sums.each([&](double const& sum) { all[k++] = sum; });
     block_sums(all, sum_slots);
     if (thread != 0) continue;
