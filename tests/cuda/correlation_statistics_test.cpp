@@ -117,6 +117,12 @@ TEST_F(CudaSigma, OfOtherPassesIsThatOfTheCpu) {
   EXPECT_GT(expect_sigma_of_the_cpu(settings, pair), 500u);
 }
 
+TEST_F(CudaSigma, OfFramesOfOtherBrightnessIsThatOfTheCpu) {
+  ParticlePair pair = moved_dots(shear, 0.03);
+  for (double& level : pair.flow) level = 0.5 * level + 20.0;
+  EXPECT_GT(expect_sigma_of_the_cpu(with_statistics(), pair), 500u);
+}
+
 // One pass, whose frames are deformed for the uncertainty alone; windows of fewer pixels than a warp has threads, and
 // of more than a block.
 TEST_F(CudaSigma, OfSmallAndLargeWindowsIsThatOfTheCpu) {
@@ -168,7 +174,9 @@ TEST_F(CudaSigma, LeavesTheVectorsAndIsTheSameEveryTime) {
     }
 }
 
-// Where a window does not fit into shared memory a block has it in the device's, one window after the other.
+// Where a window does not fit into shared memory a block has it in the device's, one window after the other. The two
+// kernels add in the same order, but may fuse other products: 4e-6 of what these come to without signs, twenty times
+// the variance at most.
 TEST_F(CudaSigma, IsTheSameWithLittleSharedMemory) {
   ParticlePair const pair = moved_dots(shear, 0.03, 400, 400);
   CorrelationSettings settings = with_statistics({64, 32});
@@ -178,8 +186,9 @@ TEST_F(CudaSigma, IsTheSameWithLittleSharedMemory) {
   DisplacementField const field = cuda::make_correlator(settings)->correlate(pair.reference, pair.flow);
   ASSERT_GT(field.size(), 264u) << "more windows than are worked on together";
   for (std::size_t i = 0; i < field.size(); ++i) {
-    ASSERT_FALSE(std::isnan(expected.sigma_px[i].x));
-    EXPECT_EQ(field.sigma_px[i], expected.sigma_px[i]) << i;
+    ASSERT_TRUE(std::isfinite(expected.sigma_px[i].x) && std::isfinite(expected.sigma_px[i].y));
+    EXPECT_NEAR(field.sigma_px[i].x / expected.sigma_px[i].x, 1.0, 4e-5) << i;
+    EXPECT_NEAR(field.sigma_px[i].y / expected.sigma_px[i].y, 1.0, 4e-5) << i;
   }
 }
 
