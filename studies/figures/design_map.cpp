@@ -111,10 +111,10 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
     }
     if (sensitivity.empty()) continue;
     add_line(plot, command, sensitivity, resolution, "lines linewidth 1 linecolor '#b0b0b0'", "");
-    plot.command(
-        fmt::format("set label {} at first {:.6g},{:.6g} center offset 0,0.8 font 'DejaVu Sans,9' textcolor '#707070'",
-                    GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
-                    *std::max_element(resolution.begin(), resolution.end())));
+    plot.command(fmt::format(
+        "set label {} at first {:.6g},{:.6g} right offset -0.6,0.2 font 'DejaVu Sans,9' textcolor '#707070'",
+        GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
+        *std::max_element(resolution.begin(), resolution.end())));
   }
   // what is required is shown wherever it lies
   if (requirements && requirements->resolution) y.hold(*requirements->resolution / mm);

@@ -64,11 +64,15 @@ void place(GnuplotFigure& plot, double low, double high) {
   plot.command(fmt::format("set bmargin at screen {:.6f}; set tmargin at screen {:.6f}", low / height, high / height));
 }
 
-void distance(GnuplotFigure& plot, double from, double to, double at, std::string const& name) {
+void arrow(GnuplotFigure& plot, double from, double to, double at) {
   plot.command(
       fmt::format("set arrow from first {:.6g},graph {:.3f} to first {:.6g},graph {:.3f} heads size screen 0.006,20 "
                   "linecolor '#606060'",
                   from / mm, at, to / mm, at));
+}
+
+void distance(GnuplotFigure& plot, double from, double to, double at, std::string const& name) {
+  arrow(plot, from, to, at);
   plot.command(fmt::format("set label {} at first {:.6g},graph {:.3f} center front boxed textcolor '#202020'",
                            GnuplotFigure::quoted(fmt::format("{} = {:.5g} mm", name, (to - from) / mm)),
                            0.5 * (from + to) / mm, at));
@@ -134,7 +138,10 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
     distance(plot, l.dots_z, 0, 0.14, "Z_D");
     distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
   }
-  name_part(plot, "z_i", 0.5 * (l.lens_z + l.sensor_z), 0.14);
+  // the image distance is too short to hold its name
+  arrow(plot, l.lens_z, l.sensor_z, 0.14);
+  plot.command(fmt::format("set label {} at graph 1,0.06 right front textcolor '#202020'",
+                           GnuplotFigure::quoted(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm))));
   name_part(plot, words.seen, l.dots_z + (dots ? 0.03 : 0.08) * length, dots ? 0.95 : 0.82);
   if (!words.medium.empty()) name_part(plot, words.medium, dots ? 0 : 0.08 * length, 0.89);
   name_part(plot, fmt::format("pupil {:.4g} mm", 2 * l.pupil_radius / mm), l.lens_z, 0.83);
