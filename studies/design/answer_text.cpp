@@ -68,8 +68,9 @@ std::string outcome_text(AnsweredQuestion const& answered, BranchOutcome const& 
   if (outcome.skipped)
     return fmt::format("    {}: skipped, {} excludes it\n", name, bound_name(outcome.solution.worst));
   if (outcome.solution.worst == Bound::resolution && !outcome.solution.feasible()) {
-    return fmt::format("    {}: misses {}, of which the chain passes {:.3f} at best\n", name,
-                       bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation);
+    return fmt::format("    {}: misses {}: the chain passes {:.3f} of that wavelength, not {:.3f}\n", name,
+                       bound_name(Bound::resolution), transfer_at_resolution - outcome.solution.violation,
+                       transfer_at_resolution);
   }
   if (!outcome.solution.feasible()) {
     return fmt::format("    {}: misses {} by {:.3g} %\n", name, bound_name(outcome.solution.worst),

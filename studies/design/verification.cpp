@@ -16,7 +16,10 @@ constexpr double coverage = 2;  ///< standard errors that two numbers may differ
 /// out in first order (docs/design.md), relative.
 constexpr double random_error_accuracy = 0.2, closed_form_accuracy = 0.02;
 
-/// The cause whose simulated part is farthest from the predicted one.
+/// The part of a difference that a cause is to be off by, to be its reason.
+constexpr double least_explained = 0.5;
+
+/// The cause whose simulated part is farthest from the predicted one, if that comes near the difference of the whole.
 std::string why_biased(SimulatedBench const& simulated) {
   SystematicCause const* farthest = nullptr;
   auto const off = [](SystematicCause const& cause) { return std::abs(cause.simulated - cause.predicted); };
@@ -24,6 +27,11 @@ std::string why_biased(SimulatedBench const& simulated) {
     if (std::isfinite(off(cause)) && (!farthest || off(cause) > off(*farthest))) farthest = &cause;
   }
   if (!farthest) return "no cause is known";
+  double const difference = std::abs(simulated.bias_px.value - simulated.predicted_bias_px);
+  if (off(*farthest) < least_explained * difference) {
+    return fmt::format("{} is off by {:.2g} px, no cause by more: the rest is the estimator's", farthest->name,
+                       off(*farthest));
+  }
   std::string text = fmt::format("{}: {:.3g} px", farthest->name, farthest->simulated);
   if (farthest->predicted == 0) return text + ", which no formula has";
   text += fmt::format(" instead of {:.3g} px", farthest->predicted);
@@ -148,9 +156,12 @@ std::vector<Limit> tightened(std::vector<Limit> limits, VerifiedBench const& mis
 }  // namespace
 
 bool VerifiedQuantity::agrees() const {
-  double const error =
-      std::hypot(predicted_error, std::isfinite(simulated.standard_error) ? simulated.standard_error : 0);
-  return std::abs(simulated.value - predicted) <= coverage * error;
+  double const found_error = std::isfinite(simulated.standard_error) ? simulated.standard_error : 0;
+  if (!rms) return std::abs(simulated.value - predicted) <= coverage * std::hypot(predicted_error, found_error);
+  auto const square_error = [](double value, double error) { return error * (2 * value + error); };
+  double const difference = simulated.value * simulated.value - predicted * predicted;
+  return std::abs(difference) <=
+         coverage * std::hypot(square_error(predicted, predicted_error), square_error(simulated.value, found_error));
 }
 
 bool VerifiedRequirement::kept() const {
@@ -173,17 +184,18 @@ void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& re
   if (!simulated.failed.empty()) return;
   Bench<double> const bench = bench_at(verified.outcome.branch, verified.outcome.solution.logarithms);
   auto const add = [&](char const* key, double predicted, double accuracy, Estimate found, double unit,
-                       std::string const& why) {
+                       std::string const& why, bool rms = false) {
     VerifiedQuantity quantity{key,
                               predicted / unit,
                               accuracy * std::abs(predicted) / unit,
                               {found.value / unit, found.standard_error / unit},
+                              rms,
                               why};
     if (quantity.agrees()) quantity.why.clear();
     verified.quantities.push_back(std::move(quantity));
   };
   add("random_px", bench.random_error(), random_error_accuracy, simulated.random_px, 1, why_random(simulated));
-  add("bias_px", simulated.predicted_bias_px, closed_form_accuracy, simulated.bias_px, 1, why_biased(simulated));
+  add("bias_px", simulated.predicted_bias_px, closed_form_accuracy, simulated.bias_px, 1, why_biased(simulated), true);
   add("resolution_mm", resolved_wavelength(bench), closed_form_accuracy, simulated.resolution, mm,
       std::isfinite(simulated.resolution.value) ? why_resolved(simulated, bench)
                                                 : "the waves were not told from one another");

@@ -16,7 +16,8 @@ struct VerifiedQuantity {
   double predicted = 0;        ///< in the key's unit, as the two that follow
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
-  std::string why;  ///< of a disagreement
+  bool rms = false;  ///< a root mean square, of which the square has the errors of a normal distribution
+  std::string why;   ///< of a disagreement
 
   /// Within two standard errors of both together.
   bool agrees() const;

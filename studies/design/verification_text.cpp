@@ -26,9 +26,9 @@ std::string bench_text(VerifiedBench const& one, DesignQuestion const& question)
   text += "    " + place + '\n';
   if (!one.simulated.failed.empty()) return text + "    could not be simulated: " + one.simulated.failed + '\n';
   for (VerifiedQuantity const& quantity : one.quantities) {
-    text += fmt::format("    {:<18}{:>12.5g}{:>12.5g} +- {:<9.2g}{}\n", quantity.key, quantity.predicted,
-                        quantity.simulated.value, quantity.simulated.standard_error,
-                        quantity.why.empty() ? "" : quantity.why);
+    text += fmt::format("    {:<18}{:>12.5g} +- {:<9.2g}{:>12.5g} +- {:<9.2g}{}\n", quantity.key, quantity.predicted,
+                        quantity.predicted_error, quantity.simulated.value, quantity.simulated.standard_error,
+                        quantity.why);
   }
   for (VerifiedRequirement const& requirement : one.requirements) {
     if (requirement.kept()) continue;
@@ -74,8 +74,8 @@ std::string verification_text(Verification const& verification, DesignQuestion c
   SimulatedBench const& first = verification.benches.front().simulated;
   std::string text = fmt::format(
       "verified by rendering and correlating the middle {} x {} px, {} patterns of dots and noise\n"
-      "    {:<18}{:>12}{:>12} +- {:<9}{}\n",
-      first.columns, first.rows, first.repeats, "", "predicted", "simulated", "error", "where they disagree");
+      "    {:<18}{:>12} +- {:<9}{:>12} +- {:<9}{}\n",
+      first.columns, first.rows, first.repeats, "", "predicted", "error", "simulated", "error", "where they disagree");
   for (VerifiedBench const& one : verification.benches) text += bench_text(one, question);
   if (!verification.any()) return text + "  none could be simulated: the formulas alone recommend\n";
   if (!verification.chosen) {

@@ -111,6 +111,28 @@ TEST(Verification, NamesTheCauseThatTheFormulasHaveWrong) {
   EXPECT_THAT(quantity(verified, "bias_px").why, HasSubstr("cone: 0.012 px instead of 0.007 px"));
 }
 
+// A mean of squares that is nothing but noise lies within its error of nothing, however far its root seems off.
+TEST(Verification, JudgesABiasByItsSquare) {
+  BenchGiven const given = table1_given();
+  for (auto const& [error2, agrees] : {std::pair{3e-5, true}, {2e-5, false}}) {
+    VerifiedBench verified = as_predicted(given);
+    verified.simulated.predicted_bias_px = 4e-4;
+    verified.simulated.bias_px = {0.007, std::sqrt(4.9e-5 + error2) - 0.007};  // 4.9e-5 is 1.6 or 2.4 of its errors
+    compare_with_formulas(verified, {});
+    EXPECT_EQ(quantity(verified, "bias_px").agrees(), agrees) << error2;
+  }
+}
+
+TEST(Verification, NamesNoCauseThatDoesNotExplain) {
+  BenchGiven const given = table1_given();
+  VerifiedBench verified = as_predicted(given);
+  verified.simulated.bias_px.value = 0.014;
+  verified.simulated.causes[1].simulated = 0.0025;
+  compare_with_formulas(verified, {});
+  EXPECT_EQ(quantity(verified, "bias_px").why,
+            "window is off by 0.0005 px, no cause by more: the rest is the estimator's");
+}
+
 TEST(Verification, KeepsARequirementWithinTwoStandardErrors) {
   BenchGiven const given = table1_given();
   double const wavelength = resolved_wavelength(table1_bench(given));  // with a standard error of 0.1 %
