@@ -44,6 +44,10 @@ struct Comparison {
   SourceFiles sources;    ///< what the files held that were compared; nothing for vectors that never were in files
   bool verified = false;  ///< the vectors were measured on the very frames that the truth belongs to
 
+  /// Truth that the correlated frames hold of each window: what errors are measured against where they are the
+  /// estimator's and the noise's alone.
+  WindowTruth const& recorded() const { return frames_deformed ? deformed_window : window; }
+
   std::size_t vectors_in_file() const { return measured.size() + left_out.without_place(); }
 };
 

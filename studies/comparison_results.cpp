@@ -73,9 +73,8 @@ nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
     }
   }
   json["bins"] = nlohmann::ordered_json::array();
-  std::vector<Vec2d> const& measured_truth = comparison.frames_deformed ? deformed_window : window;
-  for (UncertaintyBin const& bin :
-       uncertainty_bins(measured.displacement_px, measured_truth, measured.sigma_px, comparison.mask))
+  for (UncertaintyBin const& bin : uncertainty_bins(measured.displacement_px, comparison.recorded().displacement_px,
+                                                    measured.sigma_px, comparison.mask))
     json["bins"].push_back(
         {{"count", bin.count}, {"rms_sigma_px", bin.rms_sigma_px}, {"rms_error_px", bin.rms_error_px}});
   return json;

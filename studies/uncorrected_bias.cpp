@@ -18,7 +18,7 @@ double uncorrected_bias_px(Comparison const& comparison) {
   double squares = 0, count = 0;
   for (std::size_t i = 0; i < comparison.mask.size(); ++i) {
     if (!comparison.mask[i]) continue;
-    Vec2d const off = comparison.window.displacement_px[i] - theory[i];
+    Vec2d const off = comparison.recorded().displacement_px[i] - theory[i];
     squares += dot(off, off);
     count += 2;
   }

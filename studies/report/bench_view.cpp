@@ -7,9 +7,11 @@
 
 #include "render/base/text_file.h"
 #include "studies/design/sheet.h"
+#include "studies/expected_particles.h"
 #include "studies/figures/design_map.h"
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
+#include "studies/figures/piv_map.h"
 #include "studies/passing_folder.h"
 
 namespace gladstone {
@@ -27,6 +29,35 @@ std::string text_of_layout(Bench<double> const& b) {
       b.z_d / mm, b.focal_length / mm, b.f_number, b.z_a / mm, b.given->camera.columns * b.pixel_at_medium() / mm,
       b.given->camera.rows * b.pixel_at_medium() / mm, b.given->camera.columns * b.pixel_at_dots() / mm,
       b.given->camera.rows * b.pixel_at_dots() / mm, b.cone_diameter() / mm);
+}
+
+std::string text_of_layout(Setup const& setup) {
+  ImagingGeometry const imaging = setup.imaging();
+  double const seen = setup.camera.pixel_pitch / imaging.magnification;
+  return fmt::format(
+      "Seen from the side, to scale: the laser sheet is {:.4g} mm thick and stands Z_A = {:.5g} mm before the lens at "
+      "f/{:.4g}, the sensor {:.5g} mm behind it. The camera sees {:.4g} x {:.4g} mm of the sheet (M = {:.4g}).",
+      setup.piv->laser.thickness / mm, setup.z_a / mm, setup.lens.f_number, imaging.image_distance / mm,
+      setup.camera.columns * seen / mm, setup.camera.rows * seen / mm, imaging.magnification);
+}
+
+std::string text_of_stop(Setup const& setup) {
+  ExpectedParticles const expected = expected_particles(setup);
+  return fmt::format(
+      "What each stop makes of the particles. At f/{:.4g}, the set-up's, an image is {:.3g} px wide (e^-2; 2 to 4 px "
+      "suit correlation), {:.3g} px at the sheet's edge, and the median particle has {:.3g} electrons at its peak.",
+      setup.lens.f_number, expected.image_diameter_px, expected.sheet_edge_diameter_px, expected.peak_electrons.median);
+}
+
+bool is_drawn(Setup const& setup) {
+  if (setup.calibration() || setup.pose || setup.camera.tilted() || setup.lenslets || !setup.windows.empty())
+    return false;
+  if (setup.piv) {
+    LaserSetup const& laser = setup.piv->laser;
+    bool const upright = std::abs(laser.normal.z) > 1 - 1e-9 && laser.tilt == std::array<double, 2>{};
+    if (!upright || laser.centre.z != 0) return false;
+  }
+  return std::isfinite(setup.lens.f_number);
 }
 
 /// A figure that the page holds; without gnuplot its words.
@@ -50,37 +81,46 @@ std::string map_text(Bench<double> const& b) {
       b.sensitivity(), resolved_wavelength(b) / mm);
 }
 
+void write_layout(std::string const& path, BenchView const& view) {
+  if (view.piv) return write_piv_layout(path, *view.piv);
+  write_layout_figure(path, view.bench);
+}
+
+void write_map(std::string const& path, BenchView const& view) {
+  if (view.piv) return write_piv_map(path, *view.piv);
+  write_design_map(path, view.bench, std::nullopt);
+}
+
 }  // namespace
 
 std::optional<BenchView> bench_view(CaseSetup loaded) {
-  Setup const& setup = loaded.setup;
-  if (setup.piv || setup.calibration() || setup.pose || setup.camera.tilted() || setup.lenslets ||
-      !setup.windows.empty() || !std::isfinite(setup.lens.f_number) || loaded.correlate.window_px.empty()) {
-    return std::nullopt;
-  }
+  if (!is_drawn(loaded.setup) || loaded.correlate.window_px.empty()) return std::nullopt;
+  if (loaded.setup.piv) return BenchView{nullptr, {}, std::move(loaded.setup)};
   loaded.setup.medium.field.kind = FieldKind::none;
   auto given = std::make_unique<BenchGiven>(bench_given(loaded));
   Bench<double> const bench = bench_of(loaded.setup, *given);
-  return BenchView{std::move(given), bench};
+  return BenchView{std::move(given), bench, std::nullopt};
 }
 
-std::string layout_text(BenchView const& view) { return text_of_layout(view.bench); }
+std::string layout_text(BenchView const& view) {
+  return view.piv ? text_of_layout(*view.piv) : text_of_layout(view.bench);
+}
 
 ReportBlock layout_block(BenchView const& view, std::string const& whose) {
   return drawn_block("Layout of " + whose, layout_text(view),
-                     [&view](std::string const& path) { write_layout_figure(path, view.bench); });
+                     [&view](std::string const& path) { write_layout(path, view); });
 }
 
 ReportSection bench_section(BenchView const& view, std::string const& whose) {
-  ReportBlock map = drawn_block("Design map of " + whose, map_text(view.bench),
-                                [&view](std::string const& path) { write_design_map(path, view.bench, std::nullopt); });
+  ReportBlock map = drawn_block("Design map of " + whose, view.piv ? text_of_stop(*view.piv) : map_text(view.bench),
+                                [&view](std::string const& path) { write_map(path, view); });
   return {"Set-up", {layout_block(view, whose), std::move(map)}};
 }
 
 std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view) {
   std::vector<std::string> const drawn{folder + "/layout." + format, folder + "/design_map." + format};
-  write_layout_figure(drawn.front(), view.bench);
-  write_design_map(drawn.back(), view.bench, std::nullopt);
+  write_layout(drawn.front(), view);
+  write_map(drawn.back(), view);
   return drawn;
 }
 

@@ -9,6 +9,10 @@
 
 namespace gladstone {
 
+char const* recorded_truth_name(Comparison const& comparison) {
+  return comparison.frames_deformed ? "truth on the window of deformed frames" : "truth on the window";
+}
+
 std::string largest_term(ErrorBudget const& budget) {
   BudgetTerm const* largest = nullptr;
   for (BudgetTerm const& term : budget.terms) {
@@ -24,9 +28,10 @@ std::string largest_term(ErrorBudget const& budget) {
 
 std::vector<std::string> uncertainty_statements(CaseView const& view) {
   Comparison const& all = view.comparison;
+  char const* const truth = recorded_truth_name(all);
   std::vector<std::string> statements;
-  UncertaintyQuality const quality =
-      uncertainty_quality(all.measured.displacement_px, all.window.displacement_px, all.measured.sigma_px, all.mask);
+  UncertaintyQuality const quality = uncertainty_quality(all.measured.displacement_px, all.recorded().displacement_px,
+                                                         all.measured.sigma_px, all.mask);
   if (!all.measured.sigma_px.empty() && quality.count > 0) {
     std::vector<double> sigmas;
     for (std::size_t i = 0; i < all.mask.size(); ++i) {
@@ -37,10 +42,9 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
     }
     statements.push_back(fmt::format(
         "The estimator's standard uncertainty is {:.3g} px in the median ({:.3g} to {:.3g} px for 10 to 90 % of the "
-        "components). It covers {:.1f} % of the errors against truth on the window (68.3 % would be right), twice of "
-        "it "
-        "{:.1f} % (95.4 %); {} components; left out: {} vectors with gross errors, {} without an uncertainty.",
-        quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1,
+        "components). It covers {:.1f} % of the errors against {} (68.3 % would be right), twice of "
+        "it {:.1f} % (95.4 %); {} components; left out: {} vectors with gross errors, {} without an uncertainty.",
+        quantile(sigmas, 0.5), quantile(sigmas, 0.1), quantile(sigmas, 0.9), 100 * quality.coverage_1, truth,
         100 * quality.coverage_2, quality.count, quality.gross, quality.without_sigma));
     statements.push_back(fmt::format("Its rms is {:.2f} times the rms error. {}", quality.rms_ratio,
                                      quality.rms_ratio < 0.85 ? "It is too small: enlarge it by the inverse before use."
@@ -48,13 +52,13 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
                                                                 : "That is within 15 %."));
   }
   double const rms =
-      summarize_errors(all.measured.displacement_px, all.window.displacement_px, all.mask, all.vectors_in_file())
+      summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask, all.vectors_in_file())
           .rms_px;
   statements.push_back(fmt::format(
-      "The combined standard uncertainty of a component is {:.3g} px, of type B: the rms error against truth on the "
-      "window, by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty is "
+      "The combined standard uncertainty of a component is {:.3g} px, of type B: the rms error against {}, "
+      "by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty is "
       "{:.3g} px with a coverage factor of 2.",
-      rms, all.budget.count, 2 * rms));
+      rms, truth, all.budget.count, 2 * rms));
   statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
                                    uncorrected_bias_words(all.chain)));
   return statements;

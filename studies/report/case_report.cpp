@@ -38,13 +38,17 @@ void add_maps(CaseView& view) {
     view.add_field("eq9", "Eq. 9", all.point.eq9_px);
     view.add_field("eq9_cone", "cone-averaged Eq. 9", all.point.eq9_cone_px);
   }
-  view.add_field("sigma", "estimated uncertainty", all.measured.sigma_px);
+  bool const estimated =
+      std::any_of(all.measured.sigma_px.begin(), all.measured.sigma_px.end(),
+                  [](Vec2d const& sigma) { return std::isfinite(sigma.x) || std::isfinite(sigma.y); });
+  if (estimated) view.add_field("sigma", "estimated uncertainty", all.measured.sigma_px);
   view.add_error("error_truth", "against ray truth", truth);
   if (view.piv) {
     view.add_error("error_flow", "against the flow", all.flow_px);
   } else {
     view.add_error("error_eq9", "against Eq. 9", all.point.eq9_px);
   }
+  view.add_error("error_recorded", std::string("against ") + recorded_truth_name(all), all.recorded().displacement_px);
   for (BudgetStage const& cause : budget_differences(all)) {
     view.add_field(cause.name, "cause: " + cause.name, cause.displacement_px);
   }
@@ -55,7 +59,7 @@ nlohmann::json reliability_of(Comparison const& all) {
   nlohmann::json bins = nlohmann::json::array();
   if (all.measured.sigma_px.empty()) return bins;
   for (UncertaintyBin const& bin :
-       uncertainty_bins(all.measured.displacement_px, all.window.displacement_px, all.measured.sigma_px, all.mask))
+       uncertainty_bins(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px, all.mask))
     bins.push_back({{"sigma", bin.rms_sigma_px}, {"error", bin.rms_error_px}, {"n", bin.count}});
   return bins;
 }
@@ -71,6 +75,7 @@ TextTable errors_table(CaseView const& view) {
                       {{"Eq. 9", &all.point.eq9_px}, {"cone-averaged Eq. 9", &all.point.eq9_cone_px}});
   }
   references.emplace_back("truth on the window", &all.window.displacement_px);
+  if (all.frames_deformed) references.emplace_back(recorded_truth_name(all), &all.recorded().displacement_px);
   for (auto const& [name, truth] : references) {
     table.header.push_back(name);
     auto const measures = error_measures(all.measured.displacement_px, *truth, all.mask, all.vectors_in_file());
@@ -207,10 +212,9 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
         "reliability", "Does the estimated uncertainty tell the error?",
         fmt::format(
             "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
-            "against truth on the window is {:.3g} px in the first and {:.3g} px in the last. On the dashed line "
-            "they are equal.",
+            "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
             bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(),
-            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
+            recorded_truth_name(all), bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
     page.data["reliability"] = std::move(bins);
   }
   page.sections.push_back(std::move(uncertainty));

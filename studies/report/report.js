@@ -6,6 +6,9 @@
   const spoken = document.getElementById("spoken");
   const width = 920, height = 420, margin = { left: 84, right: 18, top: 14, bottom: 64 };
   const known = (x) => x !== null && x !== undefined && isFinite(x);
+  // a scale's own format of ticks takes as many digits as their step asks for, and one too few where that is a rounded sum
+  const plain = d3.format("~g");
+  const ticked = (scale, count, format) => (format || scale.base ? scale.tickFormat(count, format || plain) : plain);
   const shown = (x) => (known(x) ? d3.format(".4~g")(x) : "unknown");
   const unit = (name) => { const m = data.measures && data.measures.find((one) => one.name === name); return m && m.unit !== "1" ? " [" + m.unit + "]" : ""; };
 
@@ -39,8 +42,8 @@
   function axes(svg, x, y, xTitle, yTitle, xTicks, yTicks, xValues) {
     svg.selectAll(".axis, .grid, .title").remove();
     const bottom = d3.axisBottom(x), left = d3.axisLeft(y);
-    if (xValues) bottom.tickValues(xValues).tickFormat(xTicks); else if (x.ticks) bottom.ticks(8, xTicks || "~g"); else bottom.tickFormat(xTicks || null);
-    if (y.ticks) left.ticks(6, yTicks || "~g"); else left.tickFormat(yTicks || null);
+    if (xValues) bottom.tickValues(xValues).tickFormat(xTicks); else if (x.ticks) bottom.ticks(8).tickFormat(ticked(x, 8, xTicks)); else bottom.tickFormat(xTicks || null);
+    if (y.ticks) left.ticks(6).tickFormat(ticked(y, 6, yTicks)); else left.tickFormat(yTicks || null);
     if (y.ticks) svg.append("g").attr("class", "grid").attr("transform", "translate(" + margin.left + ",0)").call(d3.axisLeft(y).ticks(6).tickSize(-(width - margin.left - margin.right)).tickFormat(""));
     svg.append("g").attr("class", "axis").attr("transform", "translate(0," + (height - margin.bottom) + ")").call(bottom).selectAll("text").attr("font-size", 12)
       .each(function () { const text = d3.select(this), full = text.text(); if (full.length > 22) text.text(full.slice(0, 21) + "…").append("title").text(full); });
@@ -280,7 +283,7 @@
         });
         const bar = plot.append("svg").attr("viewBox", "0 0 460 44").style("max-width", "32rem").attr("aria-hidden", "true");
         d3.range(100).forEach((i) => bar.append("rect").attr("x", 20 + 4.2 * i).attr("y", 2).attr("width", 4.4).attr("height", 14).attr("shape-rendering", "crispEdges").attr("fill", colour(low + ((top - low) * i) / 99)));
-        bar.append("g").attr("transform", "translate(0,16)").call(d3.axisBottom(d3.scaleLinear().domain([low, top]).range([20, 440])).ticks(6, "~g"));
+        bar.append("g").attr("transform", "translate(0,16)").call(d3.axisBottom(d3.scaleLinear().domain([low, top]).range([20, 440])).ticks(6).tickFormat(plain));
         plot.append("p").attr("class", "hint").text(f.title + " [" + (f.unit || "px") + "], " + chosen.part + ", at x from " + shown(d3.min(grid.x)) + " to " + shown(d3.max(grid.x)) + " px, y from " + shown(d3.min(grid.y)) + " px (above) to " + shown(d3.max(grid.y)) + " px. Grey: unknown. The pointer, or the arrow keys, tell all values of a vector; up to half a per cent of the values lie beyond the colours.");
       };
       overview();

@@ -82,17 +82,17 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
     ++told;
   }
   EXPECT_GT(told, 0u);
-  // the uncorrected bias is what leads from Eq. 9 to truth on the window, rms; four digits of a number, three of it
-  // told
-  double squares = 0, components = 0;
+  // the uncorrected bias is what leads from Eq. 9 to truth on the window of deformed frames, rms; four digits of a
+  // number, three of it told
+  double squares = 0, errors = 0, components = 0;
   for (char const* component : {"u", "v"}) {
     std::map<std::string, nlohmann::json> fields;
     for (nlohmann::json const& one : data["fields"]) fields[one["name"]] = one[component];
     for (std::size_t i = 0; i < fields["error_eq9"].size(); ++i) {
       if (fields["error_eq9"][i].is_null()) continue;
-      double const off = fields["error_eq9"][i].get<double>() - fields["estimator"][i].get<double>() -
-                         fields["noise"][i].get<double>();
-      squares += off * off;
+      double const error = fields["error_recorded"][i].get<double>();
+      squares += std::pow(fields["error_eq9"][i].get<double>() - error, 2);
+      errors += error * error;
       components += 1;
     }
   }
@@ -100,6 +100,10 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   ASSERT_NE(said.find(head), std::string::npos);
   double const bias = std::stod(said.substr(said.find(head) + head.size()));
   EXPECT_NEAR(bias, std::sqrt(squares / components), 0.005 * bias + 1e-6);
+  std::string const combined = "The combined standard uncertainty of a component is ";
+  double const rms = std::stod(said.substr(said.find(combined) + combined.size()));
+  EXPECT_NEAR(rms, std::sqrt(errors / components), 0.005 * rms + 1e-6);
+  EXPECT_THAT(said, HasSubstr("the rms error against truth on the window of deformed frames, "));
   EXPECT_THAT(said, HasSubstr("px: the true displacement, averaged over the window, less that "
                               "of Eq. 9, rms over the vectors"));
   for (char const* const frame : {"reference", "flow"}) {
@@ -111,6 +115,22 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   EXPECT_THAT(html, HasSubstr("Layout of the case"));
   EXPECT_THAT(html, HasSubstr("<img alt=\"Seen from the side, to scale: the dots stand Z_D = "));
   EXPECT_THAT(html, HasSubstr("Design map of the case"));
+}
+
+TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
+  succeed({"render", GLADSTONE_DATA_DIR "/../studies/cases/piv.toml", "-o", "piv", "--set", "camera.pixels=[96, 96]",
+           "--quiet"});
+  succeed({"correlate", "piv", "--set", "correlate.window_px=[24]", "--quiet"});
+  succeed({"report", "piv", "--figures", "drawn", "--quiet"});
+  std::string const html = read("piv/report.html");
+  EXPECT_THAT(html, HasSubstr("<img alt=\"Seen from the side, to scale: the laser sheet is 1 mm thick and stands Z_A = "
+                              "750 mm before the lens at f/16"));
+  EXPECT_THAT(html, HasSubstr("What each stop makes of the particles. At f/16"));
+  EXPECT_THAT(html, HasSubstr("the rms error against truth on the window, "));  // one pass deforms nothing
+  EXPECT_THAT(html, testing::Not(HasSubstr("estimated uncertainty\"")));        // none was asked for
+  for (char const* const figure : {"drawn/layout.png", "drawn/design_map.png"}) {
+    EXPECT_TRUE(std::filesystem::exists(in(figure))) << figure;
+  }
 }
 
 // Frames and vectors that somebody measured, with a setup that describes the bench and no truth: what is told rests on
