@@ -29,8 +29,9 @@ PeakFit fit_gauss3(PeakPatch const& patch);
 PeakFit fit_gauss2d(PeakPatch const& patch);
 /// Vertex of the parabola through three points along either axis.
 PeakFit fit_parabola(PeakPatch const& patch);
-/// Centre of mass of three points along either axis, less their lowest: pulls towards whole pixels where peaks are
-/// narrow (Westerweel, Meas. Sci. Technol. 8 (1997) 1379), and is here to show it.
+/// Centre of mass of three points along either axis, negative ones left out (Raffel et al., Particle Image Velocimetry,
+/// 3rd ed. (2018), three-point estimators): pulls towards whole pixels, since a peak is wider than three points
+/// (Westerweel, Meas. Sci. Technol. 8 (1997) 1379), and is here to show it. Passes that deform the frames win it back.
 PeakFit fit_centroid(PeakPatch const& patch);
 
 /// Names of the fits, in the order of their table.

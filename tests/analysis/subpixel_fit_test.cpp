@@ -53,11 +53,26 @@ TEST(Parabola, IsExactForParabolas) {
   EXPECT_NEAR(patch.value[1][1] * std::exp(fit.log_rise), 5.0, 1e-12);
 }
 
-// A triangle's centre of mass less its lowest value: of 1, 4, 2 it is 1/(0 + 3 + 1).
-TEST(Centroid, IsTheCentreOfMassAboveTheLowest) {
+// Of 1, 4, 2 it is (2 - 1)/(1 + 4 + 2); of -1, 4, 2 it is 2/6.
+TEST(Centroid, IsTheCentreOfMass) {
   PeakPatch patch{{{0.5, 1.0, 0.5}, {1.0, 4.0, 2.0}, {0.5, 1.0, 0.5}}};
-  EXPECT_DOUBLE_EQ(fit_centroid(patch).x, 0.25);
+  EXPECT_DOUBLE_EQ(fit_centroid(patch).x, 1.0 / 7);
   EXPECT_DOUBLE_EQ(fit_centroid(patch).y, 0.0);
+  patch.value[1][0] = -1.0;
+  EXPECT_DOUBLE_EQ(fit_centroid(patch).x, 1.0 / 3);
+}
+
+// Passes add what a fit finds of what is left: they come to an end where the fit's slope is between 0 and 2, whatever
+// the width of the peak.
+TEST(EverySubpixelFit, LetsPassesConverge) {
+  for (std::string const& name : subpixel_fits()) {
+    for (double const width : {0.7, 1.06, 1.5, 2.5}) {
+      double const inverse = 1 / (width * width), step = 1e-3;
+      double const slope = subpixel_fit(name)(gaussian_patch(step, 0.0, inverse, 0.0, inverse)).x / step;
+      EXPECT_GT(slope, 0.05) << name << ' ' << width;
+      EXPECT_LT(slope, 1.95) << name << ' ' << width;
+    }
+  }
 }
 
 // By symmetry nothing moves a symmetric peak.

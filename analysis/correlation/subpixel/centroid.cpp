@@ -7,9 +7,9 @@ namespace gladstone {
 PeakFit fit_centroid(PeakPatch const& patch) {
   auto const& v = patch.value;
   auto const centre_of_mass = [&](double left, double right) {
-    double const lowest = std::min(left, right);
-    double const mass = (left - lowest) + (v[1][1] - lowest) + (right - lowest);
-    return mass > 0.0 ? (right - left) / mass : 0.0;
+    left = std::max(left, 0.0);
+    right = std::max(right, 0.0);
+    return (right - left) / (left + v[1][1] + right);
   };
   // the mass gives no height: that of the Gaussian stands for it
   return {centre_of_mass(v[1][0], v[1][2]), centre_of_mass(v[0][1], v[2][1]), fit_gauss3(patch).log_rise};
