@@ -109,13 +109,18 @@ std::string infeasible_text(AnsweredQuestion const& answered) {
   for (Bound const bound : answered.answer.conflicts) {
     text += fmt::format("  {} = {:.6g}\n", bound_name(bound), required_value(answered, bound));
   }
+  auto const add = [&](std::vector<Relaxation> const& relaxations) {
+    for (Relaxation const& relaxation : relaxations) {
+      text +=
+          fmt::format("  {} = {:.6g} instead of {:.6g}\n", bound_name(relaxation.bound),
+                      relaxation.value / bound_key(relaxation.bound).unit, required_value(answered, relaxation.bound));
+    }
+  };
   if (answered.answer.conflicts.empty()) text += "  the limits of the free keys and those of every bench\n";
   if (!answered.answer.relaxations.empty()) text += "one of these would do, everything else kept\n";
-  for (Relaxation const& relaxation : answered.answer.relaxations) {
-    text +=
-        fmt::format("  {} = {:.6g} instead of {:.6g}\n", bound_name(relaxation.bound),
-                    relaxation.value / bound_key(relaxation.bound).unit, required_value(answered, relaxation.bound));
-  }
+  add(answered.answer.relaxations);
+  if (!answered.answer.together.empty()) text += "none of them alone would do; these together would\n";
+  add(answered.answer.together);
   return text;
 }
 
@@ -169,10 +174,13 @@ Json answer_json(AnsweredQuestion const& answered) {
   if (answered.verification) json.update(verification_json(*answered.verification));
   json["conflicts"] = Json::array();
   for (Bound const bound : answer.conflicts) json["conflicts"].push_back(bound_name(bound));
-  json["relaxations"] = Json::array();
-  for (Relaxation const& relaxation : answer.relaxations) {
-    json["relaxations"].push_back(
-        {{"key", bound_name(relaxation.bound)}, {"value", relaxation.value / bound_key(relaxation.bound).unit}});
+  for (auto const& [key, relaxations] :
+       {std::pair{"relaxations", &answer.relaxations}, {"relaxations_together", &answer.together}}) {
+    json[key] = Json::array();
+    for (Relaxation const& relaxation : *relaxations) {
+      json[key].push_back(
+          {{"key", bound_name(relaxation.bound)}, {"value", relaxation.value / bound_key(relaxation.bound).unit}});
+    }
   }
   json["choices"] = Json::array();
   for (BranchOutcome const& outcome : answer.outcomes) {

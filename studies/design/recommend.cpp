@@ -4,6 +4,8 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <numeric>
+#include <optional>
 
 #include "render/base/interrupt.h"
 #include "render/base/parallel.h"
@@ -137,30 +139,59 @@ std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, Search&
   return {};
 }
 
-/// The least that a limit has to give way, the others kept: the share of it by which the most lenient bench exceeds it.
+constexpr double most_lenient = 1e3;  ///< no limit gives way further
+
+/// Those limits, every one more lenient by a factor.
+DesignProblem relaxed(DesignProblem problem, std::vector<std::size_t> const& those, double factor) {
+  for (std::size_t const index : those) problem.limits[index].value = moved(problem.limits[index], 1 / factor);
+  return problem;
+}
+
+/// The least factor by which those limits have to give way, the others kept; nothing where none would do.
+std::optional<double> least_factor(DesignProblem const& problem, std::vector<std::size_t> const& those,
+                                   Search& search) {
+  if (!search.feasible(relaxed(problem, those, most_lenient))) return std::nullopt;
+  double low = 1, high = most_lenient;
+  while (high / low > 1.001) {
+    double const middle = std::sqrt(low * high);
+    (search.feasible(relaxed(problem, those, middle)) ? high : low) = middle;
+  }
+  return high;
+}
+
+/// Limits that together would do where none alone does: all by the least share, less those that need not give way.
+void add_joint_relaxation(Recommendation& answer, DesignProblem const& problem, Search& search) {
+  std::vector<std::size_t> those(problem.limits.size());
+  std::iota(those.begin(), those.end(), std::size_t{0});
+  std::optional<double> factor = least_factor(problem, those, search);
+  if (!factor) return;
+  for (std::size_t i = problem.limits.size(); i-- > 0;) {
+    std::vector<std::size_t> fewer = those;
+    fewer.erase(std::find(fewer.begin(), fewer.end(), i));
+    if (fewer.empty() || !search.feasible(relaxed(problem, fewer, *factor))) continue;
+    those = std::move(fewer);
+  }
+  for (std::size_t const index : those) {
+    answer.together.push_back({problem.limits[index].bound, moved(problem.limits[index], 1 / *factor)});
+  }
+}
+
+/// The least that each limit of a conflict has to give way, the others kept; width and height of the view do so
+/// together.
 void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::vector<std::size_t> const& conflict,
                      Search& search) {
-  constexpr double most = 1e3;  // no one gives way further
   for (std::size_t const index : conflict) {
     answer.conflicts.push_back(problem.limits[index].bound);
-    auto const feasible_at = [&](double factor) {
-      DesignProblem relaxed = problem;
-      // width and height of the view give way together
-      for (std::size_t i = 0; i < problem.limits.size(); ++i) {
-        bool const same =
-            i == index || (from_below(problem.limits[i].bound) && from_below(problem.limits[index].bound));
-        if (same) relaxed.limits[i].value = moved(problem.limits[i], 1 / factor);
-      }
-      return search.feasible(relaxed);
-    };
-    if (!feasible_at(most)) continue;
-    double low = 1, high = most;
-    while (high / low > 1.001) {
-      double const middle = std::sqrt(low * high);
-      (feasible_at(middle) ? high : low) = middle;
+    std::vector<std::size_t> those;
+    for (std::size_t i = 0; i < problem.limits.size(); ++i) {
+      bool const both_views = from_below(problem.limits[i].bound) && from_below(problem.limits[index].bound);
+      if (i == index || both_views) those.push_back(i);
     }
-    answer.relaxations.push_back({problem.limits[index].bound, moved(problem.limits[index], 1 / high)});
+    if (std::optional<double> const factor = least_factor(problem, those, search)) {
+      answer.relaxations.push_back({problem.limits[index].bound, moved(problem.limits[index], 1 / *factor)});
+    }
   }
+  if (answer.relaxations.empty()) add_joint_relaxation(answer, problem, search);
 }
 
 /// Once more where nothing is feasible, from the best benches of the problem with one limit dropped.

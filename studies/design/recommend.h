@@ -20,7 +20,7 @@ struct RequirementCost {
   double change = 0;  ///< of the objective, relative; infinite: nothing is feasible then
 };
 
-/// A requirement that alone, the others kept, would have to give way, and how far. In SI.
+/// A requirement that would have to give way, and how far. In SI.
 struct Relaxation {
   Bound bound;
   double value;
@@ -41,9 +41,9 @@ struct Recommendation {
   std::vector<FrontPoint> front;  ///< against `front_bound`; empty: nothing conflicts with the objective
   Bound front_bound = Bound::focus;
   // where none is
-  std::vector<Bound> conflicts;  ///< the fewest requirements that cannot be kept together
-  std::vector<Relaxation> relaxations;
-
+  std::vector<Bound> conflicts;         ///< the fewest requirements that cannot be kept together
+  std::vector<Relaxation> relaxations;  ///< of which one would do, the others kept
+  std::vector<Relaxation> together;     ///< where no single one would: these would, by one share of each
   bool feasible() const { return !outcomes.empty() && outcomes.front().solution.feasible(); }
 };
 
@@ -59,7 +59,7 @@ bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const&
                   std::vector<KnownBenches> const& known = {});
 
 /// The best bench, what binds and what each requirement costs; or the smallest set of requirements that conflict, and
-/// how far each of them would have to give way for the others to be kept.
+/// how far each of them would have to give way for the others to be kept; where none alone would do, which together.
 /// @param required the user's limits; those of every bench come on top
 Recommendation recommend(Objective objective, std::vector<Limit> const& required,
                          std::vector<DesignBranch> const& branches);

@@ -105,6 +105,27 @@ TEST(Design, NamesBothWhereTwoConflict) {
   EXPECT_EQ(answer.relaxations.size(), 2u);
 }
 
+// Two that cannot be had, each for itself: neither gives way enough for the other. By the same share of both, the
+// greater need of the two.
+TEST(Design, RelaxesTogetherWhereNoSingleOneWouldDo) {
+  BenchGiven const given = table1_given();
+  std::vector<Limit> const required{{Bound::uncertainty_max, 1e-4}, {Bound::view_width, 0.3}, {Bound::z_total, 100}};
+  Recommendation const answer = recommend(Objective::resolution, required, {free_distances(given)});
+  EXPECT_FALSE(answer.feasible());
+  EXPECT_TRUE(answer.relaxations.empty());
+  ASSERT_EQ(answer.together.size(), 2u);
+  EXPECT_EQ(answer.together[0].bound, Bound::uncertainty_max);
+  EXPECT_EQ(answer.together[1].bound, Bound::view_width);
+  double const factor = answer.together[0].value / 1e-4;
+  EXPECT_GT(factor, 1);
+  EXPECT_NEAR(0.3 / answer.together[1].value, factor, 1e-9);
+  std::vector<Limit> lenient = required, short_of_it = required;
+  for (int i = 0; i < 2; ++i) lenient[i].value = answer.together[i].value;
+  EXPECT_TRUE(any_feasible({Objective::resolution, lenient}, {free_distances(given)}));
+  for (int i = 0; i < 2; ++i) short_of_it[i].value = lenient[i].value * (i == 0 ? 0.99 : 1.01);
+  EXPECT_FALSE(any_feasible({Objective::resolution, short_of_it}, {free_distances(given)}));
+}
+
 /// A question drawn by its seed: requirements about what a bench of the middle has.
 struct DrawnQuestion {
   Objective objective;
