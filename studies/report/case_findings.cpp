@@ -51,14 +51,14 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
                                      : quality.rms_ratio > 1.15 ? "It is too large, which is safe but wasteful."
                                                                 : "That is within 15 %."));
   }
-  double const rms =
-      summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask, all.vectors_in_file())
-          .rms_px;
+  ErrorSummary const error =
+      summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask, all.vectors_in_file());
+  double const u = std::hypot(error.bias_u_px, error.random_u_px), v = std::hypot(error.bias_v_px, error.random_v_px);
   statements.push_back(fmt::format(
-      "The combined standard uncertainty of a component is {:.3g} px, of type B: the rms error against {}, "
-      "by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty is "
-      "{:.3g} px with a coverage factor of 2.",
-      rms, truth, all.budget.count, 2 * rms));
+      "The combined standard uncertainty is {:.3g} px of the component u and {:.3g} px of v, of type B: the rms error "
+      "against {}, by estimator and noise, over the {} vectors of this simulated measurement. The expanded uncertainty "
+      "is {:.3g} and {:.3g} px with a coverage factor of 2.",
+      u, v, truth, all.budget.count, 2 * u, 2 * v));
   statements.push_back(fmt::format("The uncorrected bias is {:.3g} px: {}", uncorrected_bias_px(all),
                                    uncorrected_bias_words(all.chain)));
   return statements;
