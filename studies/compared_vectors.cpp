@@ -83,10 +83,14 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
     auto const lookup = [&map](Vec2d c) { return map.at(c); };
     vectors.detected = detect_conventions(file, lookup, camera.rows);
     vectors.report = vectors.detected->report;
-    if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, vectors.report);
+    if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) {
+      throw DataError(path,
+                      vectors.report + ", or say with --conventions how it is to be read if it is as wrong as that");
+    }
     file.conventions = vectors.detected->conventions;
     bool const told = vectors.detected->verdict != DetectedConventions::Verdict::cannot_be_told;
-    if (!told || vectors.detected->ambiguous) spdlog::warn("{}: {}", path, vectors.report);
+    if (!told || vectors.detected->ambiguous)
+      spdlog::warn("{}: {}; say which with --conventions", path, vectors.report);
   }
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
   if (!file.foreign && path.ends_with(".h5")) {

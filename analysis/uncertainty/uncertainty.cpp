@@ -63,6 +63,17 @@ std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input) {
   return result;
 }
 
+std::string uncertainty_caveat(CorrelationSettings const& settings) {
+  if (settings.uncertainty == "none") return "";
+  std::string const method = "uncertainty by " + settings.uncertainty + " says too little ";
+  if (settings.method == "rpc" || settings.method == "spc") {
+    return method + "of correlate.method = \"" + settings.method +
+           "\", whose weighting of phases amplifies noise (docs/estimators.md); take \"scc\" where it matters";
+  }
+  bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
+  return matched ? "" : method + "of a single pass, in which windows cut dots apart (docs/estimators.md); take several";
+}
+
 std::vector<std::string> uncertainty_methods() {
   std::vector<std::string> names;
   for (NamedUncertainty const& row : uncertainties) names.emplace_back(row.name);

@@ -51,6 +51,10 @@ std::vector<std::string> uncertainty_methods();
 /// Whether the correlator of CUDA estimates it along with the vectors, too. @param method one of these, or "none"
 bool uncertainty_on_gpu(std::string const& method);
 
+/// What is to be known of an uncertainty with these settings: the methods tell what noise does to peaks of linear
+/// correlation in frames that passes have matched, and too little of others (docs/estimators.md). Empty: nothing.
+std::string uncertainty_caveat(CorrelationSettings const& settings);
+
 /// Estimates field.sigma_px by settings.uncertainty; leaves the field as it is for "none". Vectors that are neither
 /// valid nor replaced get NaN, and so do replaced ones: what stands there was not measured in their window.
 /// @param field what a correlator gave for the frames with these settings

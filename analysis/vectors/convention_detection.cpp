@@ -180,9 +180,7 @@ std::string misfit_report(VectorFile const& file, DetectedConventions const& det
   }
   return fmt::format(
       "{} vectors fit no convention: at best they differ from the truth by {:.3g} px rms, where the truth itself is "
-      "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}. {}; mend the file, "
-      "or say "
-      "with --conventions how it is to be read if it is as wrong as that",
+      "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}. {}; mend the file",
       file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried, cause);
 }
 
@@ -200,8 +198,7 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
   if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
-        "; by so small a displacement, below {} px, conventions cannot be told, and the format's own were kept: say "
-        "which with --conventions",
+        "; by so small a displacement, below {} px, conventions cannot be told, and the format's own were kept",
         telling_signal_px);
   } else if (detected.verdict == Verdict::noisy) {
     report += fmt::format(
@@ -215,7 +212,7 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
         100.0 * fit.slope);
   }
   if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told)
-    report += "; ambiguous: say which with --conventions";
+    report += "; another reading fits as well, and the format's own was kept";
   return report;
 }
 

@@ -120,6 +120,9 @@ DisplacementField foreign_field(ForeignCode& code, MadeCase const& made, std::ve
   if (std::string const refusal = refusal_of_places(file.field, left_out, made.columns(), made.rows());
       !refusal.empty())
     throw DataError(path, refusal);
+  auto const is_known = [](Vec2d const& d) { return std::isfinite(d.x) && std::isfinite(d.y); };
+  if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_known))
+    throw DataError(path, "holds no displacement that is a number; export the vectors with their values");
   if (file.foreign && !code.conventions) {
     DetectedConventions const detected = detect_conventions(file, made.truth, made.rows());
     if (detected.verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, detected.report);

@@ -116,7 +116,14 @@ std::string infeasible_text(AnsweredQuestion const& answered) {
                       relaxation.value / bound_key(relaxation.bound).unit, required_value(answered, relaxation.bound));
     }
   };
-  if (answered.answer.conflicts.empty()) text += "  the limits of the free keys and those of every bench\n";
+  if (auto const& nearest = answered.answer.without_requirements) {
+    text += "  the limits of the free keys and those of every bench, whatever is required; the nearest bench\n" +
+            outcome_text(answered, *nearest);
+    if (nearest->solution.worst == Bound::full_well) {
+      text += fmt::format("    {:.3g} times the light (radiance or exposure) would do for it\n",
+                          std::exp(-nearest->solution.violation));
+    }
+  }
   if (!answered.answer.relaxations.empty()) text += "one of these would do, everything else kept\n";
   add(answered.answer.relaxations);
   if (!answered.answer.together.empty()) text += "none of them alone would do; these together would\n";
@@ -181,6 +188,12 @@ Json answer_json(AnsweredQuestion const& answered) {
       json[key].push_back(
           {{"key", bound_name(relaxation.bound)}, {"value", relaxation.value / bound_key(relaxation.bound).unit}});
     }
+  }
+  if (auto const& nearest = answer.without_requirements) {
+    bool const known = std::isfinite(nearest->solution.violation);
+    json["without_requirements"] = {{"name", branch_name(nearest->branch, answered.variants, answered.question)},
+                                    {"bound", bound_name(nearest->solution.worst)},
+                                    {"excess", known ? Json(std::expm1(nearest->solution.violation)) : Json(nullptr)}};
   }
   json["choices"] = Json::array();
   for (BranchOutcome const& outcome : answer.outcomes) {

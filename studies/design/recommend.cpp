@@ -255,7 +255,9 @@ Recommendation recommend(Objective objective, std::vector<Limit> const& required
     add_costs_and_front(answer, problem, search);
     answer.binding = binding_of(problem, answer.outcomes.front());
   } else {
-    add_relaxations(answer, problem, smallest_conflict(problem, search), search);
+    std::vector<std::size_t> const conflict = smallest_conflict(problem, search);
+    if (conflict.empty()) answer.without_requirements = search.solved({objective, {}}).front();
+    add_relaxations(answer, problem, conflict, search);
   }
   return answer;
 }

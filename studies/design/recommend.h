@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,9 @@ struct Recommendation {
   std::vector<FrontPoint> front;  ///< against `front_bound`; empty: nothing conflicts with the objective
   Bound front_bound = Bound::focus;
   // where none is
-  std::vector<Bound> conflicts;         ///< the fewest requirements that cannot be kept together
+  std::vector<Bound> conflicts;  ///< the fewest requirements that cannot be kept together
+  /// Where none is kept even without them: of every branch\'s best without any, the one that misses least.
+  std::optional<BranchOutcome> without_requirements;
   std::vector<Relaxation> relaxations;  ///< of which one would do, the others kept
   std::vector<Relaxation> together;     ///< where no single one would: these would, by one share of each
   bool feasible() const { return !outcomes.empty() && outcomes.front().solution.feasible(); }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "analysis/vectors/vector_file.h"
@@ -56,6 +57,14 @@ DisplacementField read_measured(std::string const& path, std::string const& setu
                                 : std::move(file.field);
   if (field.columns == 0) arrange_as_grid(field);
   return field;
+}
+
+/// Equal to the last bit, NaN where NaN.
+bool same_vectors(DisplacementField const& a, DisplacementField const& b) {
+  auto const same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return std::equal(a.displacement_px.begin(), a.displacement_px.end(), b.displacement_px.begin(),
+                    b.displacement_px.end(),
+                    [&](Vec2d const& x, Vec2d const& y) { return same(x.x, y.x) && same(x.y, y.y); });
 }
 
 }  // namespace
@@ -122,6 +131,11 @@ std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOp
       throw DataError(file, "has its vectors at other places than " + files.vectors +
                                 " (the scatter of repeats is told at every vector); correlate all of them with one "
                                 "configuration");
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (!same_vectors(all[k], one)) continue;
+      throw DataError(file, "has the same vectors as " + (k == 0 ? files.vectors : files.repeats[k - 1]) +
+                                " (a repeat is another measurement, or it tells no scatter); leave it out");
     }
     all.push_back(std::move(one));
   }

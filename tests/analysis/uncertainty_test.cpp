@@ -107,6 +107,23 @@ TEST(UncertaintyBins, FollowTheErrors) {
 
 // Half of all normal errors lie within 0.67 sigma; what each method gives on 1024 px stands in docs/estimators.md.
 // About 290 windows that share no pixel: 0.68 scatters by 0.02 a component and seed.
+TEST(Uncertainty, SaysWhereItIsTooSmall) {
+  CorrelationSettings settings;
+  EXPECT_EQ(uncertainty_caveat(settings), "");  // none is estimated
+  settings.uncertainty = "correlation_statistics";
+  EXPECT_EQ(uncertainty_caveat(settings), "");
+  for (std::string const method : {"rpc", "spc"}) {
+    settings.method = method;
+    EXPECT_NE(uncertainty_caveat(settings).find('"' + method + '"'), std::string::npos);
+  }
+  settings.method = "mqd";
+  settings.window_px = {32};
+  settings.final_passes = 1;
+  EXPECT_NE(uncertainty_caveat(settings).find("a single pass"), std::string::npos);
+  settings.final_passes = 2;
+  EXPECT_EQ(uncertainty_caveat(settings), "");
+}
+
 TEST(CorrelationStatistics, CoversTwoThirdsOfTheErrors) {
   auto const vortex = [](Vec2d p) { return Vec2d{-0.02 * (p.y - 192.0), 0.02 * (p.x - 192.0)}; };
   for (double const noise : {0.01, 0.05, 0.1}) {

@@ -321,6 +321,8 @@ window_px = [32, 16]
     EXPECT_NEAR(mean, scatter * 150.9, 0.01 * scatter * 150.9);
   }
   write("measured/other.csv", "x_px,y_px,u_px,v_px\n10,10,0.1,0\n20,10,0.1,0\n");
+  expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/1.csv"}, 2,
+                 {"measured/1.csv", "has the same vectors as measured/1.csv", "leave it out"});
   expect_refused({"report", "measured", "--vectors", "measured/1.csv", "--repeats", "measured/other.csv"}, 2,
                  {"other.csv", "at other places"});
   expect_refused({"report", "case1", "--repeats", "measured/2.csv"}, 2, {"is no measurement"});

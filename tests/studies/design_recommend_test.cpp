@@ -105,6 +105,19 @@ TEST(Design, NamesBothWhereTwoConflict) {
   EXPECT_EQ(answer.relaxations.size(), 2u);
 }
 
+// Pixels that are full wherever the target stands keep every bench out, whatever is required.
+TEST(Design, NamesWhatKeepsEveryBenchOut) {
+  BenchGiven given = table1_given();
+  given.camera.exposure_e = 1000 * given.camera.noise.full_well_e;
+  Recommendation const answer =
+      recommend(Objective::resolution, {{Bound::uncertainty_max, 1.0}}, {free_distances(given)});
+  EXPECT_FALSE(answer.feasible());
+  EXPECT_TRUE(answer.conflicts.empty());
+  ASSERT_TRUE(answer.without_requirements);
+  EXPECT_EQ(answer.without_requirements->solution.worst, Bound::full_well);
+  EXPECT_GT(answer.without_requirements->solution.violation, std::log(10.0));
+}
+
 // Two that cannot be had, each for itself: neither gives way enough for the other. By the same share of both, the
 // greater need of the two.
 TEST(Design, RelaxesTogetherWhereNoSingleOneWouldDo) {
