@@ -30,9 +30,12 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
   Comparison const& all = view.comparison;
   char const* const truth = recorded_truth_name(all);
   std::vector<std::string> statements;
-  UncertaintyQuality const quality = uncertainty_quality(all.measured.displacement_px, all.recorded().displacement_px,
-                                                         all.measured.sigma_px, all.mask);
-  if (!all.measured.sigma_px.empty() && quality.count > 0) {
+  UncertaintyQuality quality{};  // of vectors without an uncertainty there is none
+  if (!all.measured.sigma_px.empty()) {
+    quality = uncertainty_quality(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px,
+                                  all.mask);
+  }
+  if (quality.count > 0) {
     std::vector<double> sigmas;
     for (std::size_t i = 0; i < all.mask.size(); ++i) {
       if (!all.mask[i]) continue;

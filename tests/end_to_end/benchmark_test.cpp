@@ -105,8 +105,9 @@ TEST_F(Benchmark, RefusesWhatItCannotScore) {
   expect_refused({"benchmark", "-o", "b", "--vectors", "default=."}, 2, {"name of one of our estimators"});
   std::filesystem::create_directories(in("empty"));
   expect_refused({"benchmark", "-o", "b", "--cases", "shear", "--vectors", "mine=empty"}, 2, {"empty", "shear.csv"});
+  std::filesystem::create_directories(in("unknown"));
   write("unknown/shear.csv", "x_px,y_px,u_px,v_px\n100,100,nan,nan\n120,100,nan,nan\n");
-  expect_refused({"benchmark", "-o", "b", "--cases", "shear", "--vectors", "mine=unknown"}, 1,
+  expect_refused({"benchmark", "-o", "b", "--cases", "shear", "--vectors", "mine=unknown"}, 2,
                  {"unknown/shear.csv", "no displacement that is a number"});
 }
 

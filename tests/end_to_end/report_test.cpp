@@ -121,6 +121,24 @@ TEST_F(Reports, OfACaseAddUpTheirCauses) {
   EXPECT_THAT(html, HasSubstr("Design map of the case"));
 }
 
+// A code's vectors mostly have no uncertainty.
+TEST_F(Reports, OfACaseTakeVectorsOfAnotherCode) {
+  render("case");
+  succeed({"correlate", "case", "-o", "ours.csv", "--quiet"});
+  std::istringstream ours(read("ours.csv"));
+  std::string line, theirs = "x y u v\n";
+  std::getline(ours, line);
+  while (std::getline(ours, line)) {
+    std::istringstream values(line);
+    std::string value;
+    for (int k = 0; k < 4 && std::getline(values, value, ','); ++k) theirs += value + (k < 3 ? ' ' : '\n');
+  }
+  write("theirs.txt", theirs);
+  succeed({"report", "case", "--vectors", "theirs.txt", "-o", "theirs.html", "--quiet"});
+  EXPECT_THAT(read("theirs.html"), HasSubstr("The combined standard uncertainty is "));
+  EXPECT_THAT(read("theirs.html"), testing::Not(HasSubstr("The estimator's standard uncertainty is ")));
+}
+
 TEST_F(Reports, OfPivShowTheSheetAndWhatAStopMakesOfIt) {
   succeed({"render", GLADSTONE_DATA_DIR "/../studies/cases/piv.toml", "-o", "piv", "--set", "camera.pixels=[96, 96]",
            "--quiet"});
