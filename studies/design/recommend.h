@@ -43,7 +43,7 @@ struct Recommendation {
   Bound front_bound = Bound::focus;
   // where none is
   std::vector<Bound> conflicts;  ///< the fewest requirements that cannot be kept together
-  /// Where none is kept even without them: of every branch\'s best without any, the one that misses least.
+  /// Where none is kept even without them: of every branch's best without any, the one that misses least.
   std::optional<BranchOutcome> without_requirements;
   std::vector<Relaxation> relaxations;  ///< of which one would do, the others kept
   std::vector<Relaxation> together;     ///< where no single one would: these would, by one share of each
