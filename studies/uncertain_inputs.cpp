@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 #include "render/base/nearest_name.h"
 #include "studies/correlation_matrix.h"
@@ -113,7 +114,8 @@ class Reader {
 class CorrelationReader {
  public:
   CorrelationReader(SetupDocument& document, std::vector<UncertainInput>& inputs)
-      : root_(document.root()),
+      : document_(document),
+        root_(document.root()),
         inputs_(inputs),
         coefficients_(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(inputs.size()),
                                                 static_cast<Eigen::Index>(inputs.size()))) {}
@@ -164,6 +166,7 @@ class CorrelationReader {
     auto const found =
         std::find_if(inputs_.begin(), inputs_.end(), [&key](UncertainInput const& one) { return one.key == key; });
     if (found == inputs_.end()) {
+      if (has_sigma(key)) return std::nullopt;  // what is wrong with its value is said where it stands
       std::vector<std::string> names;
       for (UncertainInput const& input : inputs_) names.push_back(input.key);
       auto const nearest = nearest_name(key, names);
@@ -181,6 +184,15 @@ class CorrelationReader {
     return static_cast<std::size_t>(found - inputs_.begin());
   }
 
+  /// Whether a dotted key is written with a sigma, whatever its value is.
+  bool has_sigma(std::string const& key) const {
+    std::vector<std::string> path;
+    std::istringstream steps(key);
+    for (std::string step; std::getline(steps, step, '.');) path.push_back(step);
+    SetupNode const* const node = document_.find(path);
+    return node && node->kind == SetupNode::Kind::table && node->find("sigma");
+  }
+
   void enter(std::size_t a, std::size_t b, double coefficient, SetupTable& table) {
     for (InputCorrelation const& other : inputs_[a].correlations) {
       if (other.with != inputs_[b].key) continue;
@@ -193,6 +205,7 @@ class CorrelationReader {
     inputs_[b].correlations.push_back({inputs_[a].key, coefficient});
   }
 
+  SetupDocument const& document_;
   SetupTable root_;
   std::vector<UncertainInput>& inputs_;
   Eigen::MatrixXd coefficients_;

@@ -37,7 +37,9 @@ std::string about_displacement(MeasurementKnown const& known) {
   return fmt::format(
       "The uncertainty of the displacement is of type A: the standard deviation of the mean of {} repeats, {:.3g} px "
       "rms over vectors and components, with {} degree{} of freedom at each of them. What the measurements say of "
-      "themselves, of type B, would make it {:.3g} px in the median; it is not added.",
+      "themselves, of type B, would make it {:.3g} px in the median; it is not added. What all repeats have alike does "
+      "not "
+      "scatter and is not in it: of dots that stayed where they are, the error that goes with their pattern.",
       known.mean.count, known.inputs.front().sigma, known.mean.count - 1, known.mean.count == 2 ? "" : "s",
       known.mean.estimated_px);
 }

@@ -331,6 +331,7 @@ window_px = [32, 16]
   EXPECT_THAT(findings, HasSubstr("coverage factor k = 13.97"));
   EXPECT_THAT(read("measured/report.html"), HasSubstr("<td>t, 1 degree of freedom</td>"));
   EXPECT_THAT(read("measured/report.html"), HasSubstr("is of type A: the standard deviation of the mean of 2 repeats"));
+  EXPECT_THAT(read("measured/report.html"), HasSubstr("the error that goes with their pattern"));
   nlohmann::json const data = data_of("measured/report.html");
   for (nlohmann::json const& one : data["fields"]) {
     if (one["name"] != "random") continue;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "studies/case.h"
 
 namespace gladstone {
@@ -147,6 +149,16 @@ TEST(UncertainInputs, AreCorrelatedAsNumbersCanBe) {
   EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5\nsigma = 1")), HasSubstr("is no key of correlations"));
   EXPECT_THAT(correlation_complaint(pair_of(both_distances, "0.5") + pair_of(both_distances, "0.5")),
               HasSubstr("setup.toml:17:1: correlations"));
+  // a value that is no number is told once, where it stands
+  std::string const bad = std::regex_replace(std::string(correlated), std::regex("z_d_mm = \\{ value = [0-9.]+"),
+                                             "z_d_mm = { value = \"far\"");
+  ASSERT_NE(bad, correlated);
+  try {
+    load_case_setup(SetupDocument::from_text(bad + pair_of(both_distances, "0.5"), "setup.toml"));
+    FAIL() << "a value of \"far\" passed";
+  } catch (SetupError const& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("geometry.z_d_mm"), testing::Not(HasSubstr("correlations"))));
+  }
   // two that go with a third cannot go against one another: the determinant is 1 - 3 (0.9)^2 - 2 (0.9)^3 < 0
   std::string const with_lens = pair_of(R"(["lens.focal_length_mm", "geometry.z_a_mm"])", "0.9") +
                                 pair_of(R"(["lens.focal_length_mm", "geometry.z_d_mm"])", "0.9");
