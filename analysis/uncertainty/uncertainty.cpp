@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/correlation/vector_validation.h"
@@ -69,6 +70,11 @@ std::string uncertainty_caveat(CorrelationSettings const& settings) {
   if (settings.method == "rpc" || settings.method == "spc") {
     return method + "of correlate.method = \"" + settings.method +
            "\", whose weighting of phases amplifies noise (docs/estimators.md); take \"scc\" where it matters";
+  }
+  if (correlation_method(settings.method).optical_flow) {
+    return method + "of correlate.method = \"" + settings.method +
+           "\", an optical flow, which errs by more than a window's noise (docs/estimators.md); take \"scc\" where it "
+           "matters";
   }
   bool const matched = settings.window_px.size() > 1 || settings.final_passes > 1;
   return matched ? "" : method + "of a single pass, in which windows cut dots apart (docs/estimators.md); take several";

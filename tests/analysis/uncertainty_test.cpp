@@ -112,7 +112,7 @@ TEST(Uncertainty, SaysWhereItIsTooSmall) {
   EXPECT_EQ(uncertainty_caveat(settings), "");  // none is estimated
   settings.uncertainty = "correlation_statistics";
   EXPECT_EQ(uncertainty_caveat(settings), "");
-  for (std::string const method : {"rpc", "spc"}) {
+  for (std::string const method : {"rpc", "spc", "dis", "horn_schunck"}) {
     settings.method = method;
     EXPECT_NE(uncertainty_caveat(settings).find('"' + method + '"'), std::string::npos);
   }
