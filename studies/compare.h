@@ -47,6 +47,9 @@ struct Comparison {
   /// Truth that the correlated frames hold of each window: what errors are measured against where they are the
   /// estimator's and the noise's alone.
   WindowTruth const& recorded() const { return frames_deformed ? deformed_window : window; }
+  char const* recorded_name() const {
+    return frames_deformed ? "truth on the window of deformed frames" : "truth on the window";
+  }
 
   std::size_t vectors_in_file() const { return measured.size() + left_out.without_place(); }
 };

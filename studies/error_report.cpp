@@ -4,7 +4,25 @@
 
 #include <vector>
 
+#include "analysis/errors/uncertainty_quality.h"
+
 namespace gladstone {
+namespace {
+
+/// How well the vectors' own uncertainties tell their errors; nothing where there are none.
+std::string uncertainty_line(Comparison const& comparison) {
+  DisplacementField const& measured = comparison.measured;
+  if (measured.sigma_px.empty()) return "";
+  UncertaintyQuality const quality = uncertainty_quality(
+      measured.displacement_px, comparison.recorded().displacement_px, measured.sigma_px, comparison.mask);
+  if (quality.count == 0) return "";
+  return fmt::format(
+      "  standard uncertainties: {:.1f} % of the errors against {} lie within one, {:.1f} % within two (of a normal "
+      "distribution 68.3 and 95.4 %); rms(sigma)/rms(error) {:.2f}\n",
+      100 * quality.coverage_1, comparison.recorded_name(), 100 * quality.coverage_2, quality.rms_ratio);
+}
+
+}  // namespace
 
 std::string error_report(Comparison const& comparison) {
   struct Row {
@@ -34,6 +52,7 @@ std::string error_report(Comparison const& comparison) {
                       comparison.chain == BudgetChain::piv ? "particles" : "dots");
   if (comparison.left_out.all() > 0) text += "  left out as well: " + comparison.left_out.text() + '\n';
   if (comparison.detected) text += "  " + comparison.report + '\n';
+  text += uncertainty_line(comparison);
   text += '\n';
   text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "random u",
                       "random v", "rms");

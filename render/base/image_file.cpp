@@ -80,9 +80,13 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
-    throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
-                                      "{:.3g} MB; copy it again",
-                                      sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
+    // OpenImageIO tells of pixels of one bit, not compressed, as of bytes, and reads them wrong
+    bool const perhaps_bits = spec.bits == 8 && !packed && stored <= 8.0 * static_cast<double>(file_bytes);
+    throw DataError(path, fmt::format("is damaged or cut short{}: its header tells of {}, {:.3g} MB, and the file has "
+                                      "{:.3g} MB; {}",
+                                      perhaps_bits ? ", or has one bit a pixel" : "", sizes, stored / 1e6,
+                                      static_cast<double>(file_bytes) / 1e6,
+                                      perhaps_bits ? "write it with 8 or 16 bits a pixel" : "copy it again"));
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
   // the library's tile or strip, the samples as stored and as numbers, and the picture

@@ -127,8 +127,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                               {"device", measurement.device},
                               {"seconds_correlate", measurement.seconds}};
     print_result(options, json_text(json),
-                 fmt::format("{}: {} vectors, {} replaced, {} invalid, {:.2f} s", written, field.size(), counts[1],
-                             counts[3], measurement.seconds));
+                 fmt::format("{}: {} vectors, {} replaced, {} masked, {} invalid, {:.2f} s", written, field.size(),
+                             counts[1], counts[2], counts[3], measurement.seconds));
     return any_valid ? ok : check_missed;
   };
 }

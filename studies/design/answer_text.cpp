@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "studies/design/verification_text.h"
@@ -164,9 +165,10 @@ std::string answer_text(AnsweredQuestion const& answered) {
   for (std::size_t i = 0; i < std::min(most_alternatives, answered.answer.outcomes.size()); ++i) {
     text += outcome_text(answered, answered.answer.outcomes[i]);
   }
-  std::size_t skipped = 0;
-  for (BranchOutcome const& outcome : answered.answer.outcomes) skipped += outcome.skipped;
-  if (skipped > 0) text += fmt::format("  {} were skipped, each by one bound (--json names it)\n", skipped);
+  std::map<std::string, int> skipped_by;
+  for (BranchOutcome const& outcome : answered.answer.outcomes)
+    if (outcome.skipped) ++skipped_by[bound_name(outcome.solution.worst)];
+  for (auto const& [bound, count] : skipped_by) text += fmt::format("  {} skipped: {} excludes them\n", count, bound);
   for (SkippedVariant const& variant : answered.skipped) {
     text += fmt::format("  {}: skipped, it does not go with the setup: {}\n", variant.name(), variant.reason);
   }

@@ -111,6 +111,19 @@ FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable limits, S
   return found;
 }
 
+/// Whether prescription files stand among focal lengths: they have a list of their own.
+bool refuse_prescriptions(SetupDocument& document, SetupTable limits, SetupTable inventory, ChoiceKey const& key) {
+  SetupNode const* const node = document.find({"inventory", key.inventory});
+  auto const is_text = [](SetupNode const& one) { return one.kind == SetupNode::Kind::text; };
+  if (!node || std::none_of(node->elements.begin(), node->elements.end(), is_text)) return false;
+  limits.pass_over(key.limit);
+  inventory.pass_over(key.inventory);
+  inventory.problem(key.inventory,
+                    "must be numbers (of ideal lenses, in mm); write files of prescriptions as "
+                    "inventory.lenses = [\"...\"]");
+  return true;
+}
+
 std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, SetupTable inventory) {
   SetupTable free = document.root().table("free");
   std::vector<std::string> const keys = texts(document, "free", "keys");
@@ -136,7 +149,9 @@ std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, Se
   for (std::size_t i = 0; i < choice_count; ++i) {
     ChoiceKey const& key = choice_keys[i];
     if (std::find(keys.begin(), keys.end(), key.path) != keys.end()) {
-      found.push_back(read_free_choice(static_cast<Choice>(i), free, limits, inventory));
+      Choice const choice = static_cast<Choice>(i);
+      if (choice == Choice::focal_length && refuse_prescriptions(document, limits, inventory, key)) continue;
+      found.push_back(read_free_choice(choice, free, limits, inventory));
       continue;
     }
     limits.refuse(key.limit,

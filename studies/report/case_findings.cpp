@@ -9,10 +9,6 @@
 
 namespace gladstone {
 
-char const* recorded_truth_name(Comparison const& comparison) {
-  return comparison.frames_deformed ? "truth on the window of deformed frames" : "truth on the window";
-}
-
 std::string largest_term(ErrorBudget const& budget) {
   BudgetTerm const* largest = nullptr;
   for (BudgetTerm const& term : budget.terms) {
@@ -28,7 +24,7 @@ std::string largest_term(ErrorBudget const& budget) {
 
 std::vector<std::string> uncertainty_statements(CaseView const& view) {
   Comparison const& all = view.comparison;
-  char const* const truth = recorded_truth_name(all);
+  char const* const truth = all.recorded_name();
   std::vector<std::string> statements;
   UncertaintyQuality quality{};  // of vectors without an uncertainty there is none
   if (!all.measured.sigma_px.empty()) {

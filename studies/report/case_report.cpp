@@ -48,7 +48,7 @@ void add_maps(CaseView& view) {
   } else {
     view.add_error("error_eq9", "against Eq. 9", all.point.eq9_px);
   }
-  view.add_error("error_recorded", std::string("against ") + recorded_truth_name(all), all.recorded().displacement_px);
+  view.add_error("error_recorded", std::string("against ") + all.recorded_name(), all.recorded().displacement_px);
   for (BudgetStage const& cause : budget_differences(all)) {
     view.add_field(cause.name, "cause: " + cause.name, cause.displacement_px);
   }
@@ -75,7 +75,7 @@ TextTable errors_table(CaseView const& view) {
                       {{"Eq. 9", &all.point.eq9_px}, {"cone-averaged Eq. 9", &all.point.eq9_cone_px}});
   }
   references.emplace_back("truth on the window", &all.window.displacement_px);
-  if (all.frames_deformed) references.emplace_back(recorded_truth_name(all), &all.recorded().displacement_px);
+  if (all.frames_deformed) references.emplace_back(all.recorded_name(), &all.recorded().displacement_px);
   for (auto const& [name, truth] : references) {
     table.header.push_back(name);
     auto const measures = error_measures(all.measured.displacement_px, *truth, all.mask, all.vectors_in_file());
@@ -213,8 +213,8 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
         fmt::format(
             "In {} bins of equal count the estimated uncertainty grows from {:.3g} to {:.3g} px, and the rms error "
             "against {} is {:.3g} px in the first and {:.3g} px in the last. On the dashed line they are equal.",
-            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(),
-            recorded_truth_name(all), bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
+            bins.size(), bins.front()["sigma"].get<double>(), bins.back()["sigma"].get<double>(), all.recorded_name(),
+            bins.front()["error"].get<double>(), bins.back()["error"].get<double>())});
     page.data["reliability"] = std::move(bins);
   }
   page.sections.push_back(std::move(uncertainty));

@@ -62,9 +62,6 @@ TextTable budget_table(std::string const& title, ErrorBudget const& budget);
 /// The same as data of the chart "budget", those that are known.
 nlohmann::json budget_json(ErrorBudget const& budget);
 
-/// What Comparison::recorded() is, in words.
-char const* recorded_truth_name(Comparison const& comparison);
-
 /// What the budget's largest term is, in a sentence; empty where none is known.
 std::string largest_term(ErrorBudget const& budget);
 
