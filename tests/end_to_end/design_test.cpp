@@ -52,6 +52,15 @@ TEST_F(Design, PrintsTheSheetOfASetup) {
   EXPECT_THAT(text, HasSubstr("green"));
 }
 
+// A lens of 2 m sees 40 mm from nowhere within 1.5 m.
+TEST_F(Design, NamesTheBoundThatSkipsCombinations) {
+  std::string text = tunnel;
+  text.replace(text.find("[50, 105]"), 9, "[50, 2000]");
+  write("tunnel.toml", text);
+  EXPECT_THAT(succeed({"design", "tunnel.toml", "--verify", "0"}),
+              HasSubstr("2 skipped: requirements.field_of_view_mm[0] excludes them"));
+}
+
 TEST_F(Design, DrawsLayoutAndMap) {
   auto const json = json_of({"design", "setup.toml", "--figures", "figures", "--figure-format", "svg", "--quiet"});
   if (json["figures"].empty()) GTEST_SKIP() << "no gnuplot here";
