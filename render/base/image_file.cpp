@@ -80,7 +80,7 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
-    // OpenImageIO tells of pixels of one bit, not compressed, as of bytes, and reads them wrong
+    // where no entry tells the bits of a sample, TIFF means one, and OpenImageIO reads bytes
     bool const perhaps_bits = spec.bits == 8 && !packed && stored <= 8.0 * static_cast<double>(file_bytes);
     throw DataError(path, fmt::format("is damaged or cut short{}: its header tells of {}, {:.3g} MB, and the file has "
                                       "{:.3g} MB; {}",

@@ -197,6 +197,33 @@ std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) 
   return bytes;
 }
 
+// TIFF's default is one bit a sample, so that pictures of black and white may leave the entry BitsPerSample (258) out.
+TEST(ImageFile, OneBitAPixelIsNotReadWrong) {
+  std::string const path = temporary("bits.tif");
+  constexpr std::uint32_t columns = 256, rows = 200, entries = 8, pixels_at = 10 + 12 * entries + 4;
+  constexpr std::uint32_t entry[entries][2] = {{256, columns},   {257, rows}, {259, 1},    {262, 1},
+                                               {273, pixels_at}, {277, 1},    {278, rows}, {279, columns / 8 * rows}};
+  std::string bytes;
+  auto const put = [&bytes](std::uint32_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xffu);
+  };
+  bytes += "II";
+  put(42, 2);
+  put(8, 4);
+  put(entries, 2);
+  for (auto const& [tag, value] : entry) {
+    put(tag, 2);
+    put(4, 2);  // of 32 bits
+    put(1, 4);
+    put(value, 4);
+  }
+  put(0, 4);
+  bytes.append(columns / 8 * rows, '\x55');
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_THAT([&] { read_image(path); },
+              ThrowsMessage<DataError>(AllOf(HasSubstr("or has one bit a pixel"), HasSubstr("8 or 16 bits"))));
+}
+
 // 50,000 x 50,000 px of 16 bits are 5 GB; the file has 128 kB, and packed as densely as can be 0.3 GB.
 TEST(ImageFile, AHeaderIsHeldAgainstTheSizeOfItsFile) {
   for (char const* packing : {"none", "zip", "lzw"}) {
