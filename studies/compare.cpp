@@ -7,7 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "analysis/correlation/correlator.h"
+#include "analysis/correlation/standard_correlator.h"
+#include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
@@ -133,13 +134,12 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   DisplacementField const& measured = comparison.measured;
 
   CorrelationSettings const& settings = vectors.settings;
-  WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
-                            window_support_px(settings)};
-  auto const truth_by = [&](auto const& truth_on) {
-    return truth_on(dots.reference_px, dots.displacement_px, correlation_flux(dots), measured.position_px, weight, at);
-  };
-  comparison.window = truth_by(window_truth);
-  comparison.deformed_window = truth_by(deformed_window_truth);
+  CameraSetup const& camera = prepared.scene.setup.camera;
+  std::vector<double> const flux = correlation_flux(dots);
+  comparison.window = window_truth(dots.reference_px, dots.displacement_px, flux, measured.position_px,
+                                   correlation_window(window_weighting(settings), settings.window_px.back()), at);
+  comparison.deformed_window = deformed_window_truth(dots.reference_px, dots.displacement_px, flux,
+                                                     measured.position_px, settings, camera.columns, camera.rows, at);
   comparison.frames_deformed = settings.window_px.size() > 1 || settings.final_passes > 1;
   if (rendered) {
     Detector const detector(prepared.scene.setup.camera, rendered->exposure_e);

@@ -5,7 +5,6 @@
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/optical_flow/optical_flow_correlator.h"
 #include "analysis/correlation/standard_correlator.h"
-#include "analysis/correlation/window_ops.h"
 
 namespace gladstone {
 std::vector<std::string> correlation_methods() {
@@ -25,16 +24,6 @@ std::string missing_on_gpu(CorrelationSettings const& settings) {
     if (settings.method == method.name && !method.on_gpu) return fmt::format("method = \"{}\"", method.name);
   if (settings.deformation == "sinc") return "deformation = \"sinc\"";
   return subpixel_fit_on_gpu(settings.subpixel) ? "" : fmt::format("subpixel = \"{}\"", settings.subpixel);
-}
-
-double window_weight(CorrelationSettings const& settings, double dx_px, double dy_px) {
-  double const window = settings.window_px.back();
-  WindowWeighting const weighting = window_weighting(settings);
-  return axis_weight(weighting, dx_px, window) * axis_weight(weighting, dy_px, window);
-}
-
-double window_support_px(CorrelationSettings const& settings) {
-  return window_half_support(window_weighting(settings), static_cast<double>(settings.window_px.back()));
 }
 
 InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, int rows) {

@@ -39,13 +39,6 @@ std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings)
 /// What these settings ask for that the correlator of CUDA does not have, as `method = "spc"`; empty: it has all.
 std::string missing_on_gpu(CorrelationSettings const& settings);
 
-/// Weight W put on either image at an offset from a window's centre [px] in the last pass; 1 at the centre. A particle
-/// counts with W^2 in the product of both images.
-double window_weight(CorrelationSettings const& settings, double dx_px, double dy_px);
-
-/// Half-width of the square beyond which window_weight is 0 [px].
-double window_support_px(CorrelationSettings const& settings);
-
 /// The windows of the last pass, where the vectors stand.
 InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, int rows);
 

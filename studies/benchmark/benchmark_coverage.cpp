@@ -62,7 +62,7 @@ std::vector<CoverageRow> measure_coverage(int seeds, Device const& device) {
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
         std::vector<Vec2d> const point = truth_at_vectors(field, truth);
-        WindowTruths const on = window_truths_of(field, pair, settings);
+        WindowTruths const on = window_truths_of(field, pair, settings, pixels, pixels);
         VectorMask mask = benchmark_mask(field, pixels, pixels);
         for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && field.status[i] == VectorStatus::valid;
         for (std::string const& method : uncertainty_methods()) {

@@ -128,8 +128,8 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
                           number(row.deformed_window.without_sigma)});
   section.blocks.push_back(Paragraph{
       "Both components pooled, gross errors left out, against the truth on the deformed windows, which is "
-      "what several passes measure: a plane through the displacements of a window's dots, at its centre. "
-      "The two columns after rms(sigma) are against the mean of these displacements, and against the truth at the "
+      "what the passes make of the dots' true displacements without noise. "
+      "The two columns after rms(sigma) are against the mean of a window's dots, and against the truth at the "
       "place, whose differences no method knows of. Vectors that are left out, grossly wrong or without sigma, "
       "are counted."});
   section.blocks.push_back(std::move(table));

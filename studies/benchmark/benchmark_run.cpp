@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <map>
 
-#include "analysis/correlation/correlator.h"
-#include "analysis/errors/window_truth.h"
+#include "analysis/correlation/standard_correlator.h"
+#include "analysis/errors/deformed_window_truth.h"
 #include "analysis/uncertainty/uncertainty.h"
 #include "analysis/vectors/convention_detection.h"
 #include "analysis/vectors/vector_file.h"
@@ -152,15 +152,13 @@ bool runs_on(BenchmarkEstimator const& estimator, std::string const& of_case) {
 }  // namespace
 
 WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
-                              CorrelationSettings const& settings) {
-  WindowWeight const weight{[&settings](double dx, double dy) { return window_weight(settings, dx, dy); },
-                            window_support_px(settings)};
-  auto const by = [&](auto const& truth) {
-    return truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px, weight,
-                 TruthAt::mid_position)
-        .displacement_px;
-  };
-  return {by(window_truth), by(deformed_window_truth)};
+                              CorrelationSettings const& settings, int columns, int rows) {
+  return {window_truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px,
+                       correlation_window(window_weighting(settings), settings.window_px.back()))
+              .displacement_px,
+          deformed_window_truth(dots.dot_reference_px, dots.dot_displacement_px, dots.dot_light, field.position_px,
+                                settings, columns, rows)
+              .displacement_px};
 }
 
 std::vector<BenchmarkEstimator> const& benchmark_estimators() {
@@ -216,7 +214,8 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
       score(estimator.name, measured.field, measured.seconds);
       if (estimator.name != "default") continue;
       std::vector<Vec2d> const point = truth_at_vectors(measured.field, made.truth);
-      WindowTruths const on = window_truths_of(measured.field, made.dots, estimator.settings);
+      WindowTruths const on =
+          window_truths_of(measured.field, made.dots, estimator.settings, made.columns(), made.rows());
       VectorMask const mask = benchmark_mask(measured.field, made.columns(), made.rows());
       for (std::string const& method : uncertainty_methods()) {
         CorrelationSettings settings = estimator.settings;

@@ -91,7 +91,7 @@ struct WindowTruths {
   std::vector<Vec2d> window, deformed_window;
 };
 WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
-                              CorrelationSettings const& settings);
+                              CorrelationSettings const& settings, int columns, int rows);
 
 /// Coverage of every uncertainty method, default passes, over seeds that nothing was chosen on: uniform, shear, vortex
 /// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise.

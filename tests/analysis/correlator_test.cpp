@@ -429,24 +429,6 @@ TEST(Correlator, RefusesImagesThatDoNotSuit) {
   EXPECT_THROW(correlator->correlate(Image<double>(63, 128), Image<double>(63, 128)), DataError);
 }
 
-// The sum of the weights over pixels is that of the nominal window, but for what is cut off beyond twice its width:
-// erf(sqrt(pi)) = 0.9878 per axis.
-TEST(WindowWeight, HasTheAreaOfTheNominalWindow) {
-  CorrelationSettings settings = with_windows({64, 32});
-  for (char const* weighting : {"gaussian", "uniform"}) {
-    settings.weighting = weighting;
-    double const half = window_support_px(settings);
-    EXPECT_EQ(half, settings.weighting == "gaussian" ? 32.0 : 16.0);
-    EXPECT_EQ(window_weight(settings, half + 0.5, 0.0), 0.0);
-    EXPECT_DOUBLE_EQ(window_weight(settings, 0.0, 0.0), 1.0);
-    double sum = 0.0;
-    for (double y = -half + 0.5; y < half; y += 1.0)
-      for (double x = -half + 0.5; x < half; x += 1.0) sum += window_weight(settings, x, y);
-    double const kept = settings.weighting == "gaussian" ? std::erf(std::sqrt(pi)) : 1.0;
-    EXPECT_NEAR(sum / (32.0 * 32.0), kept * kept, 1e-4);
-  }
-}
-
 TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {
   SetupDocument document = SetupDocument::from_text("", "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));

@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/errors/deformed_window_truth.h"
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/parallel.h"
+#include "render/base/units.h"
 #include "studies/benchmark/particle_pair.h"
 
 namespace gladstone {
@@ -20,6 +25,12 @@ std::vector<Vec2d> random_points(std::size_t count, double size) {
   std::vector<Vec2d> points(count);
   for (Vec2d& p : points) p = {uniform(random), uniform(random)};
   return points;
+}
+
+/// W = exp(-(dx^2 + dy^2)/(2 sigma^2)) within the square |dx|, |dy| <= half_width.
+WindowWeight gaussian_window(double sigma_px, double half_width_px) {
+  return {[=](double dx, double dy) { return std::exp(-0.5 * (dx * dx + dy * dy) / (sigma_px * sigma_px)); },
+          half_width_px};
 }
 
 std::vector<Vec2d> displaced(std::vector<Vec2d> const& points) {
@@ -63,7 +74,7 @@ TEST(WindowTruth, LeavesOutWindowsWithFewerThanThreeDots) {
   std::vector<Vec2d> d(7, Vec2d{1.0, 1.0});
   d[5] = {nan, 1.0};  // a dot whose rays were all lost
   std::vector<Vec2d> const centres{{1, 0}, {31, 0}, {60, 0}, {500, 500}};
-  WindowTruth const truth = window_truth(position, d, {}, centres, top_hat_window(8.0));
+  WindowTruth const truth = window_truth(position, d, {}, centres, correlation_window(WindowWeighting::uniform, 8.0));
   EXPECT_EQ(truth.left_out, 3u);
   EXPECT_EQ(truth.displacement_px[0], (Vec2d{1.0, 1.0}));
   for (std::size_t i : {1u, 2u, 3u}) EXPECT_TRUE(std::isnan(truth.displacement_px[i].x));
@@ -71,7 +82,7 @@ TEST(WindowTruth, LeavesOutWindowsWithFewerThanThreeDots) {
 
 TEST(WindowTruth, OfNoDotsLeavesAllOut) {
   std::vector<Vec2d> const centres(3);
-  EXPECT_EQ(window_truth({}, {}, {}, centres, top_hat_window(8.0)).left_out, 3u);
+  EXPECT_EQ(window_truth({}, {}, {}, centres, correlation_window(WindowWeighting::uniform, 8.0)).left_out, 3u);
 }
 
 // The cell grid finds exactly the dots of the support: the same sums as over all dots, to rounding.
@@ -108,92 +119,136 @@ TEST(WindowTruth, AgreesWithTheSumOverAllDotsForAnyNumberOfThreads) {
   }
 }
 
-// A linear field is its own plane: at the window's centre it has exactly its value there, wherever the dots are, and
-// with three of them as with hundreds. The mean differs by the gradient times the distance of their centre.
-TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
-  auto const field = [](Vec2d p) { return Vec2d{0.5 + 0.02 * p.x - 0.03 * p.y, -1.0 + 0.04 * p.y}; };
-  std::vector<Vec2d> position = random_points(300, 100.0);
-  position.insert(position.end(), {{203.0, 204.0}, {212.0, 205.0}, {206.0, 213.0}});
+// One pass deforms nothing: the mean of the window's dots, to the last bit.
+TEST(DeformedWindowTruth, OfOnePassIsTheMeanOfTheWindow) {
+  CorrelationSettings settings;
+  settings.window_px = {32};
+  std::vector<Vec2d> const position = random_points(300, 128.0), centres{{50.0, 50.0}, {3.0, 60.0}, {400.0, 0.0}};
   std::vector<Vec2d> d;
   std::vector<double> flux;
   for (Vec2d const& p : position) {
-    d.push_back(field(p));
+    d.push_back({0.02 * p.x, std::sin(p.y)});
     flux.push_back(1.0 + 0.3 * std::sin(p.x));
   }
-  std::vector<Vec2d> const centres{{50.0, 50.0}, {3.0, 60.0}, {200.0, 200.0}};
-  WindowWeight const weight = gaussian_window(8.0, 16.0);
-  WindowTruth const mean = window_truth(position, d, flux, centres, weight, TruthAt::reference);
-  WindowTruth const plane = deformed_window_truth(position, d, flux, centres, weight, TruthAt::reference);
-  for (std::size_t i = 0; i < centres.size(); ++i) {
-    EXPECT_NEAR(plane.displacement_px[i].x, field(centres[i]).x, 1e-12) << i;
-    EXPECT_NEAR(plane.displacement_px[i].y, field(centres[i]).y, 1e-12) << i;
+  for (TruthAt const at : {TruthAt::mid_position, TruthAt::reference}) {
+    WindowTruth const one = deformed_window_truth(position, d, flux, centres, settings, 128, 128, at);
+    WindowTruth const mean =
+        window_truth(position, d, flux, centres, correlation_window(WindowWeighting::gaussian, 32), at);
+    EXPECT_EQ(one.left_out, 1u);
+    for (std::size_t i = 0; i + 1 < centres.size(); ++i) EXPECT_EQ(one.displacement_px[i], mean.displacement_px[i]);
+    EXPECT_TRUE(std::isnan(one.displacement_px[2].x));
   }
-  EXPECT_GT(length(mean.displacement_px[1] - field(centres[1])), 0.01);  // dots on one side alone
-  EXPECT_GT(length(mean.displacement_px[2] - field(centres[2])), 0.1);
 }
 
-// d = k x^2/2 over a lattice that is symmetric about the window: no slope there, and the mean is k/2 times the second
-// moment of W^2 about the centre. About x = x0, where the field slopes, the plane has the same on top of the value.
-TEST(DeformedWindowTruth, OfAQuadraticFieldAddsCurvatureTimesTheSecondMoment) {
-  double const k = 0.01, sigma = 4.0, half_width = 12.0;
+// A lattice of dots is symmetric about every window inside, so that of a linear field nothing is left to later passes;
+// a dot without a displacement, a window that does not fit the frame and a centre that is not a number harm nothing.
+TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
+  auto const field = [](Vec2d p) { return Vec2d{0.5 + 0.02 * p.x - 0.03 * p.y, -1.0 + 0.04 * p.y}; };
   std::vector<Vec2d> position, d;
-  for (int x = 0; x <= 80; ++x)
-    for (int y = 0; y <= 40; ++y) {
+  for (int y = -40; y < 168; ++y)
+    for (int x = -40; x < 168; ++x) {
       position.push_back({static_cast<double>(x), static_cast<double>(y)});
-      d.push_back({0.5 * k * (x - 20.0) * (x - 20.0), 0.0});
+      d.push_back(field(position.back()));
     }
-  double moment = 0.0, sum = 0.0;
-  for (int x = -12; x <= 12; ++x) {
-    double const w = std::exp(-x * x / (sigma * sigma));
-    moment += w * x * x;
-    sum += w;
-  }
-  moment /= sum;
-  std::vector<Vec2d> const centres{{20.0, 20.0}, {50.0, 20.0}};
-  WindowTruth const plane =
-      deformed_window_truth(position, d, {}, centres, gaussian_window(sigma, half_width), TruthAt::reference);
-  EXPECT_NEAR(plane.displacement_px[0].x, 0.5 * k * moment, 1e-12);
-  EXPECT_NEAR(plane.displacement_px[1].x, 0.5 * k * (900.0 + moment), 1e-10);
-}
-
-// Where dots stand in line nothing tells the gradient across: the mean. Two dots are too few for either.
-TEST(DeformedWindowTruth, IsTheMeanOfDotsInLine) {
-  std::vector<Vec2d> const position{{1, 2}, {2, 3}, {4, 5}, {30, 0}, {31, 0}};
-  std::vector<Vec2d> const d{{1, 0}, {2, 1}, {6, 2}, {1, 1}, {1, 1}};
-  std::vector<Vec2d> const centres{{0, 0}, {30, 0}};
-  WindowTruth const truth = deformed_window_truth(position, d, {}, centres, top_hat_window(16.0), TruthAt::reference);
-  EXPECT_NEAR(truth.displacement_px[0].x, 3.0, 1e-15);
-  EXPECT_NEAR(truth.displacement_px[0].y, 1.0, 1e-15);
+  double const nan = std::nan("");
+  position.push_back({64.0, 64.0});
+  d.push_back({nan, nan});
+  CorrelationSettings settings;
+  settings.window_px = {256, 32, 24};
+  std::vector<Vec2d> const centres{{50.5, 50.5}, {11.5, 60.5}, {nan, 60.0}};
+  WindowTruth const truth = deformed_window_truth(position, d, {}, centres, settings, 128, 128, TruthAt::reference);
   EXPECT_EQ(truth.left_out, 1u);
-  EXPECT_TRUE(std::isnan(truth.displacement_px[1].x));
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(truth.displacement_px[i].x, field(centres[i]).x, 1e-12) << i;
+    EXPECT_NEAR(truth.displacement_px[i].y, field(centres[i]).y, 1e-12) << i;
+  }
 }
 
-// What decides which truth holds: frames of a shear, without noise, so coarse with dots that a window's dots lie off
-// its centre. One pass measures their mean, several the value at the centre.
-TEST(DeformedWindowTruth, IsWhatSeveralPassesMeasure) {
-  auto const shear = [](Vec2d p) { return Vec2d{0.02 * (p.y - 127.5), 0.0}; };
-  ParticlePair const pair = render_particle_pair({.particles_per_px = 10.0 / 1024.0, .seed = 3}, shear);
-  for (bool const several : {false, true}) {
+// The gain of a wave, over dots as dense as pixels. A window gives it h = exp(-pi (w/L)^2/2), the transform of W^2
+// (cut at exp(-2 pi), 2 parts in 1000); of what it leaves, 1 - h, the next pass gains its own h:
+// g_k = h_k + (1 - h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 the predictor passes p = 3/4 + 1/4
+// cos(2 pi spacing/L), cubic convolution all of it.
+TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
+  constexpr double wave_px = 96.0;
+  std::vector<Vec2d> position, d;
+  for (int y = 0; y < 64; ++y)
+    for (int x = -64; x < 256; ++x) {
+      position.push_back({static_cast<double>(x), static_cast<double>(y)});
+      d.push_back({0.0, std::cos(2.0 * pi * (x - 96.0) / wave_px)});
+    }
+  std::vector<Vec2d> const centre{{96.0, 32.0}};
+  auto const window_gain = [](double window_px) { return std::exp(-0.5 * pi * std::pow(window_px / wave_px, 2)); };
+  for (std::vector<int> const& windows : {std::vector{64}, std::vector{64, 32}, std::vector{64, 32, 16}}) {
     CorrelationSettings settings;
-    if (!several) settings.window_px = {32};
+    settings.window_px = windows;
+    settings.overlap = 0.95;  // spacing 3, 2, 1 px
+    double gain = 0.0, spacing_px = 0.0;
+    for (int const window_px : windows) {
+      double const h = window_gain(window_px), p = 0.75 + 0.25 * std::cos(2.0 * pi * spacing_px / wave_px);
+      gain = h + (1.0 - h) * p * gain;
+      spacing_px = std::max(1.0, std::round(0.05 * window_px));
+    }
+    double const found =
+        deformed_window_truth(position, d, {}, centre, settings, 192, 64, TruthAt::reference).displacement_px[0].y;
+    EXPECT_NEAR(found, gain, 2e-3) << windows.size();
+  }
+}
+
+// What decides which truth holds: frames without noise. Of a shear, so coarse with dots that a window's dots lie off
+// its centre, one pass measures their mean, several the value at the centre; of a wave of 64 px several measure what
+// their windows leave of it.
+TEST(DeformedWindowTruth, IsWhatThePassesMeasure) {
+  auto const shear = [](Vec2d p) { return Vec2d{0.02 * (p.y - 127.5), 0.0}; };
+  auto const wave = [](Vec2d p) { return Vec2d{0.0, 0.5 * std::sin(2.0 * pi * p.x / 64.0)}; };
+  struct Of {
+    std::function<Vec2d(Vec2d)> flow;
+    double particles;  ///< in 32 x 32 px
+    std::vector<int> windows;
+    bool mean_is_right, place_is_right;
+  };
+  for (Of const& of : {Of{shear, 10.0, {32}, true, false}, Of{shear, 10.0, {64, 48, 32, 24, 20}, false, true},
+                       Of{wave, 40.0, {64, 48, 32, 24, 20}, false, false}}) {
+    ParticlePair const pair = render_particle_pair({.particles_per_px = of.particles / 1024.0, .seed = 3}, of.flow);
+    CorrelationSettings settings;
+    settings.window_px = of.windows;
     DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
-    WindowWeight const weight{[&](double dx, double dy) { return window_weight(settings, dx, dy); },
-                              window_support_px(settings)};
-    auto const rms_against = [&](auto const& truth_of) {
-      WindowTruth const truth = truth_of(pair.dot_reference_px, pair.dot_displacement_px, pair.dot_light,
-                                         field.position_px, weight, TruthAt::mid_position);
+    auto const rms_against = [&](auto const& truth_at) {
       double sum = 0.0, count = 0.0;
       for (std::size_t i = 0; i < field.size(); ++i) {
         Vec2d const at = field.position_px[i];
         if (field.status[i] != VectorStatus::valid || std::min({at.x, at.y, 255 - at.x, 255 - at.y}) < 32) continue;
-        double const error = field.displacement_px[i].x - truth.displacement_px[i].x;
-        sum += error * error;
+        Vec2d const error = field.displacement_px[i] - truth_at(i);
+        sum += dot(error, error);
         count += 1.0;
       }
       return std::sqrt(sum / count);
     };
-    double const mean = rms_against(window_truth), plane = rms_against(deformed_window_truth);
-    EXPECT_GT(several ? mean : plane, 2.0 * (several ? plane : mean)) << several << ' ' << mean << ' ' << plane;
+    auto const& [reference, moved, light] = std::tie(pair.dot_reference_px, pair.dot_displacement_px, pair.dot_light);
+    WindowTruth const means = window_truth(reference, moved, light, field.position_px,
+                                           correlation_window(WindowWeighting::gaussian, settings.window_px.back()));
+    WindowTruth const passes = deformed_window_truth(reference, moved, light, field.position_px, settings, 256, 256);
+    double const mean = rms_against([&](std::size_t i) { return means.displacement_px[i]; }),
+                 place = rms_against([&](std::size_t i) { return of.flow(field.position_px[i]); }),
+                 deformed = rms_against([&](std::size_t i) { return passes.displacement_px[i]; });
+    EXPECT_LT(deformed, of.mean_is_right ? 1.001 * mean : 0.5 * mean) << mean;
+    EXPECT_LT(deformed, of.place_is_right ? 1.1 * place : 0.5 * place) << place;
+  }
+}
+
+// The sum of the weights over pixels is that of the nominal window, but for what is cut off beyond twice its width:
+// erf(sqrt(pi)) = 0.9878 per axis.
+TEST(CorrelationWindow, HasTheAreaOfTheNominalWindow) {
+  for (WindowWeighting const weighting : {WindowWeighting::gaussian, WindowWeighting::uniform}) {
+    WindowWeight const window = correlation_window(weighting, 32);
+    double const half = window.half_width_px;
+    EXPECT_EQ(half, weighting == WindowWeighting::gaussian ? 32.0 : 16.0);
+    EXPECT_EQ(window.value(half + 0.5, 0.0), 0.0);
+    EXPECT_DOUBLE_EQ(window.value(0.0, 0.0), 1.0);
+    double sum = 0.0;
+    for (double y = -half + 0.5; y < half; y += 1.0)
+      for (double x = -half + 0.5; x < half; x += 1.0) sum += window.value(x, y);
+    double const kept = weighting == WindowWeighting::gaussian ? std::erf(std::sqrt(pi)) : 1.0;
+    EXPECT_NEAR(sum / (32.0 * 32.0), kept * kept, 1e-4);
   }
 }
 

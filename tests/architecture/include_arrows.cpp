@@ -50,7 +50,7 @@ std::vector<Room> const& table() {
       {"analysis/preparation", {"render/base"}, {"Eigen"}, {"OpenCV", "fmt"}},
       {"analysis/correlation", {"render/base", "analysis/preparation"}, {"Eigen"}, {"x86 intrinsics", "OpenCV", "fmt"}},
       {"analysis/uncertainty", {"render/base", "analysis/correlation"}, {"Eigen"}, {"fmt"}},
-      {"analysis/errors", {"render/base"}, {"Eigen", "Ceres"}, {"fmt"}},
+      {"analysis/errors", {"render/base", "analysis/correlation"}, {"Eigen", "Ceres"}, {"fmt"}},
       {"analysis/calibration", {"render/base"}, {"Eigen"}, {"OpenCV", "Ceres", "fmt"}},
       {"cuda/device", render, {"Eigen", "CUDA"}, {"fmt"}},
       {"cuda/rays", render + Names{"render/rays", "cuda/device"}, {"Eigen", "CUDA"}, {"fmt"}},

@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     DisplacementField const field = apply_conventions(std::move(file.field), file.conventions, 128);
     std::vector<Vec2d> const dots{{10, 10}, {14, 10}, {10, 14}, {14, 14}, {100, 90}};
     std::vector<Vec2d> const moved(dots.size(), Vec2d{0.5, 0.25});
-    window_truth(dots, moved, {}, field.position_px, top_hat_window(32));
+    window_truth(dots, moved, {}, field.position_px, correlation_window(WindowWeighting::uniform, 32));
   });
   return 0;
 }
