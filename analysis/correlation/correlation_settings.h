@@ -11,7 +11,7 @@ namespace gladstone {
 
 /// Table [correlate] of a setup: how displacement is measured.
 struct CorrelationSettings {
-  std::vector<int> window_px{64, 48, 32, 24, 20};  ///< nominal window of every pass [px]; even, 4 .. 512, never growing
+  std::vector<int> window_px{64, 32, 24, 20};  ///< nominal window of every pass [px]; even, 4 .. 512, never growing
   double overlap = 0.6;                            ///< part of a window shared with the next, [0, 0.95]
   std::string method = "scc";                      ///< a name of correlation_methods()
   std::string subpixel = "gauss3";                 ///< a name of subpixel_fits()

@@ -73,6 +73,14 @@ inline FloatLanes larger_lanes(FloatLanes a, FloatLanes b) {
 #endif
 }
 
+inline FloatLanes smaller_lanes(FloatLanes a, FloatLanes b) {
+#if defined(__AVX__)
+  return __builtin_ia32_minps256(a, b);
+#else
+  return select_lanes(a < b, a, b);
+#endif
+}
+
 /// Bit l: whether lane l of a mask is set.
 inline unsigned bits_of_lanes(IntLanes mask) {
 #if defined(__AVX__)

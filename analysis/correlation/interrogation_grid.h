@@ -39,14 +39,19 @@ struct InterrogationGrid {
   }
 };
 
+/// Distance of neighbouring windows [px], whole.
+inline int grid_spacing_px(int window_px, double overlap) {
+  int const spacing = static_cast<int>(std::lround(window_px * (1.0 - overlap)));
+  return spacing > 1 ? spacing : 1;
+}
+
 /// The grid of a pass on an image of the given size.
 /// @param overlap fraction of a window that it shares with the next, [0, 1); the spacing is rounded to whole pixels
 inline InterrogationGrid make_interrogation_grid(int image_columns, int image_rows, int window_px, double overlap) {
   GLADSTONE_EXPECTS(window_px > 0 && overlap >= 0.0 && overlap < 1.0);
   InterrogationGrid grid;
   grid.window_px = window_px;
-  int const spacing = static_cast<int>(std::lround(window_px * (1.0 - overlap)));
-  grid.spacing_px = spacing > 1 ? spacing : 1;
+  grid.spacing_px = grid_spacing_px(window_px, overlap);
   grid.columns = image_columns < window_px ? 0 : (image_columns - window_px) / grid.spacing_px + 1;
   grid.rows = image_rows < window_px ? 0 : (image_rows - window_px) / grid.spacing_px + 1;
   if (grid.columns == 0 || grid.rows == 0) grid.columns = grid.rows = 0;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "analysis/correlation/window_deformation.h"
+#include "render/base/parallel.h"
 
 namespace gladstone {
 
@@ -12,10 +13,12 @@ class KnownTiles {
   explicit KnownTiles(ImagePair const& pair) : columns_((pair.columns + tile - 1) / tile) {
     if (pair.available.empty()) return;
     known_.assign(static_cast<std::size_t>(columns_) * ((pair.rows + tile - 1) / tile), true);
-    for (int j = 0; j < pair.rows; ++j)
-      for (int i = 0; i < pair.columns; ++i)
-        if (pair.available[static_cast<std::size_t>(j) * pair.columns + i] == 0.0f)
-          known_[static_cast<std::size_t>(j / tile) * columns_ + i / tile] = false;
+    parallel_chunks(static_cast<std::size_t>(pair.rows), tile, [&](std::size_t begin, std::size_t end) {
+      char* const known = known_.data() + begin / tile * static_cast<std::size_t>(columns_);
+      for (std::size_t j = begin; j < end; ++j)
+        for (int i = 0; i < pair.columns; ++i)
+          if (pair.available[j * static_cast<std::size_t>(pair.columns) + i] == 0.0f) known[i / tile] = false;
+    });
   }
 
   /// @pre the rectangle lies inside the image; it may be empty

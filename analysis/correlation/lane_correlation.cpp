@@ -53,8 +53,9 @@ class FreeWorkplaces {
 }  // namespace
 
 LaneCorrelation::LaneCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
-                                 KnownTiles const& tiles, LaneFourier const& fourier, bool with_margin)
-    : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, with_margin) {
+                                 KnownTiles const& tiles, WindowMeans const& means, LaneFourier const& fourier,
+                                 bool with_margin)
+    : job_(job), x_(x), y_(y), fourier_(fourier), windows_(job, x, y, tiles, means, with_margin) {
   int const size = fourier.size(), side = windows_.side();
   pitch_ = LaneFourier::pitch(size);
   half_pitch_ = (size / 2 + 1) | 1;
@@ -149,11 +150,12 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
   AxisWeights const x(job.grid, job.grid.columns, job.pair.columns, job.weighting);
   AxisWeights const y(job.grid, job.grid.rows, job.pair.rows, job.weighting);
   KnownTiles const tiles(job.pair);
+  WindowMeans const means(job, x.view(), y.view());
   LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));
   Progress progress(job.label, job.grid.size());
   FreeWorkplaces workplaces([&] {
     return std::unique_ptr<Workplace>(new Workplace{
-        {job, x.view(), y.view(), tiles, fourier, method.with_margin}, LanePlane(radius), make_visitor()});
+        {job, x.view(), y.view(), tiles, means, fourier, method.with_margin}, LanePlane(radius), make_visitor()});
   });
   parallel_chunks(job.grid.size(), windows_per_chunk, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<Workplace> here = workplaces.take();

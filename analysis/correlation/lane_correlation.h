@@ -46,7 +46,7 @@ struct LanePlaneView {
 class LaneCorrelation {
  public:
   LaneCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
-                  KnownTiles const& tiles, LaneFourier const& fourier, bool with_margin);
+                  KnownTiles const& tiles, WindowMeans const& means, LaneFourier const& fourier, bool with_margin);
 
   /// Length of the transforms that a job needs.
   static int transform_size(InterrogationJob const& job, bool with_margin);

@@ -21,32 +21,39 @@ struct LanePositions {
   }
 
   /// The spline where all lanes are moved by as many whole pixels as one of them.
+  /// @tparam opposite at (column + l - dx, row - dy): what lies t past a node lies 1 - t past the one before on the other
+  ///                  side, with the same weights in the opposite order
+  template <bool opposite>
   FloatLanes sum(BsplineView<float> const& image, int base_x, int base_y) const {
     using View = BsplineView<float>;
     constexpr int before = (degree - 1) / 2;
+    auto const place = [](int k) { return opposite ? degree - k : k; };
     float const* c = image.coefficients + static_cast<long long>(base_y - before + View::margin_before) * image.stride +
                      (base_x - before + View::margin_before);
     FloatLanes all{};
     for (int j = 0; j <= degree; ++j, c += image.stride) {
-      FloatLanes line = weight_x[0] * load_lanes(c);
-      for (int i = 1; i <= degree; ++i) line += weight_x[i] * load_lanes(c + i);
-      all += weight_y[j] * line;
+      FloatLanes line = weight_x[place(0)] * load_lanes(c);
+      for (int i = 1; i <= degree; ++i) line += weight_x[place(i)] * load_lanes(c + i);
+      all += weight_y[place(j)] * line;
     }
     return all;
   }
 
+  template <bool opposite>
   FloatLanes sample(BsplineView<float> const& image) const {
+    float const sign = opposite ? -1.0f : 1.0f;
     FloatLanes result{};
     for (unsigned left = (1u << lane_count) - 1u; left != 0;) {
-      int const lane = __builtin_ctz(left), base_x = column + whole_x[lane];
-      IntLanes const alike = (whole_x == whole_x[lane]) & (whole_y == whole_y[lane]);
+      int const lane = __builtin_ctz(left), x = whole_x[lane], y = whole_y[lane];
+      int const base_x = column + (opposite ? -1 - x : x);
+      IntLanes const alike = (whole_x == x) & (whole_y == y);
       unsigned const bits = bits_of_lanes(alike);
       if (base_x >= -1 && base_x + lane_count <= image.columns) {
-        int const base_y = BsplineView<float>::clamp(row + whole_y[lane], image.rows);
-        result = select_lanes(alike, sum(image, base_x, base_y), result);
+        int const base_y = BsplineView<float>::clamp(row + (opposite ? -1 - y : y), image.rows);
+        result = select_lanes(alike, sum<opposite>(image, base_x, base_y), result);
       } else {
         for (int l = 0; l < lane_count; ++l)
-          if ((bits >> l & 1u) != 0u) result[l] = image.sample<degree>(column + l, row, dx[l], dy[l]);
+          if ((bits >> l & 1u) != 0u) result[l] = image.sample<degree>(column + l, row, sign * dx[l], sign * dy[l]);
       }
       left &= ~bits;
     }
@@ -71,8 +78,9 @@ void deform_row(LaneDeformation const& pair, int j, std::span<float const> u, st
   int i = 0;
   for (; i + lane_count <= columns; i += lane_count) {
     FloatLanes const half_u = 0.5f * load_lanes(u.data() + i), half_v = 0.5f * load_lanes(v.data() + i);
-    store_lanes(out.reference + i, LanePositions<degree>(i, j, -half_u, -half_v).sample(pair.reference));
-    store_lanes(out.flow + i, LanePositions<degree>(i, j, half_u, half_v).sample(pair.flow));
+    LanePositions<degree> const positions(i, j, half_u, half_v);
+    store_lanes(out.flow + i, positions.template sample<false>(pair.flow));
+    store_lanes(out.reference + i, positions.template sample<true>(pair.reference));
     FloatLanes const x = count_up + static_cast<float>(i), y = all_lanes(static_cast<float>(j));
     FloatLanes here =
         inside_lanes(pair.reference, x - half_u, y - half_v) * inside_lanes(pair.flow, x + half_u, y + half_v);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "analysis/correlation/bspline_image.h"
 
@@ -19,7 +18,7 @@ struct DeformedRow {
 struct LaneDeformation {
   BsplineView<float> reference;
   BsplineView<float> flow;
-  std::vector<float> const& available;  ///< 1 where both images are known, 0 elsewhere; empty: everywhere
+  std::span<float const> available;  ///< 1 where both images are known, 0 elsewhere; empty: everywhere
 
   /// @param degree of the splines, 3 or 5, or windowed_sinc
   /// @param u, v   displacement of every pixel of row j [px]

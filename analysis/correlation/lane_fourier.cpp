@@ -102,6 +102,7 @@ constexpr int radix_of(int left) {
   if (left % 24 == 0) return 6;
   for (int const radix : {3, 5})
     if (left % radix == 0) return radix;
+  if (left == 128) return 2;  // and then 8 twice; after 8 first, two passes of 4
   if (left % 8 == 0 && left != 16) return 8;
   return left % 4 == 0 ? 4 : 2;
 }

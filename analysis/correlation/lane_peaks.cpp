@@ -62,20 +62,43 @@ void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
                           : refined_peak(view, peaks[k].x, peaks[k].y, peaks[k].height).height;
 }
 
-/// The third highest sample of maxima that are not close to each other; 0 where there are fewer.
-float third_highest(PlanePeak<float> const* maxima, std::size_t count) {
-  PlanePeak<float> const none{};
-  PlanePeak<float> const *first = &none, *second = &none, *third = &none;
-  for (PlanePeak<float> const* peak = maxima; peak != maxima + count; ++peak) {
-    if (!(peak->height > third->height)) continue;
-    third = peak->height > second->height ? std::exchange(second, peak) : peak;
-    if (second->height > first->height) std::swap(first, second);
+/// Whether a maximum can be as high as `enough` between its samples. Along an axis a Gaussian through neighbours of a
+/// and b times its height rises by exp(log(a/b)^2 / (8 |log(a b)|)), at most (a b)^(-1/8) since neither is above 1; the
+/// eighth powers are compared, less what rounding may take. A neighbour that is not positive leaves largest_rise.
+/// @pre largest_rise times the maximum is as high
+bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float enough) {
+  float const v = peak.height;
+  if (v >= enough) return true;
+  float const left = view(peak.x - 1, peak.y), right = view(peak.x + 1, peak.y);
+  float const above = view(peak.x, peak.y - 1), below = view(peak.x, peak.y + 1);
+  if (!(std::min(std::min(left, right), std::min(above, below)) > 0.0f)) return true;
+  float const part = 1.0f / v, beside = left * part * (right * part) * (above * part) * (below * part);
+  float const ratio = v / enough, square = ratio * ratio, fourth = square * square;
+  return !(1.001f * fourth * fourth < beside);
+}
+
+/// Takes v into the three largest numbers so far, in all lanes or of one.
+template <class T, class Larger, class Smaller>
+void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller) {
+  for (T& place : largest) {
+    T const rest = smaller(place, v);
+    place = larger(place, v);
+    v = rest;
   }
-  if (!are_close(*first, *second) && !are_close(*first, *third) && !are_close(*second, *third)) return third->height;
-  PeakList<float> highest;
-  for (std::size_t k = 0; k < count; ++k)
-    if (can_enter(highest, maxima[k].height)) insert_peak(highest, maxima[k]);
-  return highest.count == PeakList<float>::capacity ? highest.peak[2].height : 0.0f;
+}
+
+/// The third largest of positive numbers, the last lanes filled up with 0; 0 where there are fewer.
+float third_largest(float const* numbers, std::size_t count) {
+  FloatLanes by_lane[3]{};
+  for (std::size_t k = 0; k < count; k += lane_count)
+    take_in(by_lane, load_lanes(numbers + k), larger_lanes, smaller_lanes);
+  float largest[3]{};
+  for (FloatLanes const& lanes : by_lane)
+    for (int l = 0; l < lane_count; ++l)
+      take_in(
+          largest, lanes[l], [](float a, float b) { return a > b ? a : b; },
+          [](float a, float b) { return a < b ? a : b; });
+  return largest[2];
 }
 
 }  // namespace
@@ -84,7 +107,9 @@ LanePeaks::LanePeaks(InterrogationJob const& job, bool falls_off) : job_(job), f
   std::size_t const count = static_cast<std::size_t>(2 * job.search_radius_px + 1);
   found_.resize((count + 7) / 8 * 8);
   // no two maxima are neighbours
-  for (auto& list : maxima_) list.resize((count + 1) / 2 * ((count + 1) / 2));
+  std::size_t const most = (count + 1) / 2 * ((count + 1) / 2);
+  for (auto& list : maxima_) list.resize(most);
+  for (auto& list : heights_) list.resize(most + lane_count);
   for (auto& row : highest_) row.resize(count);
 }
 
@@ -106,8 +131,8 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
     for (int x = 0; x < count; ++x) {
       FloatLanes const v = row[x];
       std::size_t const at = static_cast<std::size_t>(x);
-      IntLanes const mask =
-          (v > 0.0f) & (v > row[x - 1]) & (v >= row[x + 1]) & (v > (*above)[at]) & (v >= (*below)[at]);
+      FloatLanes const before = larger_lanes(larger_lanes((*above)[at], row[x - 1]), FloatLanes{});
+      IntLanes const mask = (v > before) & (v >= larger_lanes((*below)[at], row[x + 1]));
       found_[at] = static_cast<unsigned char>(bits_of_lanes(mask));
     }
     // eight places at a time: bit 8 x + lane
@@ -116,8 +141,10 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
       __builtin_memcpy(&bits, found_.data() + first, sizeof bits);
       for (; bits != 0; bits &= bits - 1) {
         int const bit = __builtin_ctzll(bits), x = first + bit / 8, lane = bit % 8;
-        maxima_[lane][static_cast<std::size_t>(counts_[lane]++)] = {x - radius, y,
-                                                                    reinterpret_cast<float const*>(row + x)[lane]};
+        float const height = reinterpret_cast<float const*>(row + x)[lane];
+        std::size_t const place = static_cast<std::size_t>(counts_[lane]++);
+        maxima_[lane][place] = {x - radius, y, height};
+        heights_[lane][place] = height;
       }
     }
     std::vector<FloatLanes>* const free = above;
@@ -127,19 +154,48 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
   }
 }
 
+/// The third highest sample of maxima that are not close to each other; 0 where there are fewer.
+float LanePeaks::third_highest(int lane) const {
+  std::size_t const count = static_cast<std::size_t>(counts_[lane]);
+  PlanePeak<float> const* const maxima = maxima_[lane].data();
+  PeakList<float> highest;
+  float const third = third_largest(heights_[lane].data(), count);
+  visit_high(lane, third, [&](PlanePeak<float> const& peak) {
+    if (highest.count < PeakList<float>::capacity) highest.peak[highest.count++] = peak;
+  });
+  auto const& [a, b, c] = highest.peak;
+  if (highest.count == PeakList<float>::capacity && !are_close(a, b) && !are_close(a, c) && !are_close(b, c))
+    return third;
+  highest = {};
+  for (std::size_t k = 0; k < count; ++k)
+    if (can_enter(highest, maxima[k].height)) insert_peak(highest, maxima[k]);
+  return highest.count == PeakList<float>::capacity ? highest.peak[2].height : 0.0f;
+}
+
+/// Calls visit with the maxima of a lane whose sample is at least so high, in their order.
+template <class Visit>
+void LanePeaks::visit_high(int lane, float least, Visit const& visit) const {
+  int const count = counts_[lane];
+  for (int first = 0; first < count; first += lane_count) {
+    unsigned bits = bits_of_lanes(load_lanes(heights_[lane].data() + first) >= least);
+    if (count - first < lane_count) bits &= (1u << (count - first)) - 1u;
+    for (; bits != 0; bits &= bits - 1) visit(maxima_[lane][static_cast<std::size_t>(first + __builtin_ctz(bits))]);
+  }
+}
+
 /// find_peaks() of one window, the heights between the samples eight maxima at a time. No maximum that stays below
 /// three others can be or remove one of those three: such are left out, unless in the end there are no three as high.
 PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
-  PlanePeak<float> const* const maxima = maxima_[lane].data();
-  std::size_t const all = static_cast<std::size_t>(counts_[lane]);
   LanePlaneView const view{plane, lane};
+  std::fill_n(heights_[lane].data() + counts_[lane], lane_count, 0.0f);
   PeakList<float> found;
-  for (float least = third_highest(maxima, all);; least = 0.0f) {
-    float const enough = static_cast<float>(nearly_as_high / largest_rise) * least;  // for prefer_nearest(), too
+  for (float least = third_highest(lane);; least = 0.0f) {
+    float const enough = static_cast<float>(nearly_as_high) * least;  // for prefer_nearest(), too
     found = {};
     refined_.clear();
-    for (std::size_t k = 0; k < all; ++k)
-      if (maxima[k].height >= enough) refined_.push_back(maxima[k]);
+    visit_high(lane, enough / static_cast<float>(largest_rise), [&](PlanePeak<float> const& peak) {
+      if (can_reach(view, peak, enough)) refined_.push_back(peak);
+    });
     for (std::size_t k = 0; k < refined_.size(); k += lane_count)
       refine(view, refined_.data() + k, static_cast<int>(std::min<std::size_t>(lane_count, refined_.size() - k)));
     for (PlanePeak<float> const& peak : refined_)

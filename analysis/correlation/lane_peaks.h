@@ -21,6 +21,9 @@ class LanePeaks {
 
  private:
   void find_maxima(LanePlane const& plane);
+  float third_highest(int lane) const;
+  template <class Visit>
+  void visit_high(int lane, float least, Visit const& visit) const;
   PeakList<float> rank(LanePlane const& plane, int lane);
   MeasuredPeak measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const;
   void measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
@@ -32,6 +35,7 @@ class LanePeaks {
   std::vector<unsigned char> found_;    // of a row, one bit a lane
   int counts_[lane_count] = {};
   std::vector<PlanePeak<float>> maxima_[lane_count];  // in reading order
+  std::vector<float> heights_[lane_count];            // of these, and 0 behind them
   std::vector<PlanePeak<float>> refined_;             // those of a window whose height between the samples is known
 };
 

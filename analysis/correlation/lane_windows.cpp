@@ -17,18 +17,11 @@ struct LaneSums {
   float mean_flow(float all) const { return sum_of_lanes(flow) / all; }
 };
 
-/// The first `count` of eight values, 0 behind them.
-FloatLanes load_some(float const* from, int count) {
-  FloatLanes v{};
-  __builtin_memcpy(&v, from, sizeof(float) * static_cast<std::size_t>(count));
-  return v;
-}
-
 }  // namespace
 
 LaneWindows::LaneWindows(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
-                         KnownTiles const& tiles, bool with_margin)
-    : job_(job), x_(x), y_(y), tiles_(tiles) {
+                         KnownTiles const& tiles, WindowMeans const& means, bool with_margin)
+    : job_(job), x_(x), y_(y), tiles_(tiles), means_(means) {
   bool const uniform = job.weighting == WindowWeighting::uniform;
   offset_ = uniform ? job.grid.window_px / 2 : 0;
   side_ = uniform ? job.grid.window_px : 2 * job.grid.window_px;
@@ -76,30 +69,8 @@ void LaneWindows::place_lane(int lane, std::size_t window) {
       !tiles_.all_known(first_x - margin_, first_y - margin_, first_x - margin_ + padded_, first_y + side_ + margin_))
     return copy_lane(lane, first_x, first_y, wx, wy);
   std::size_t const at = static_cast<std::size_t>(first_y) * pair.columns + first_x;
-  Source source{pair.reference.data() + at, pair.flow.data() + at, pair.columns, 0.0f, 0.0f};
-  LaneSums sums;
-  int const whole = side_ / lane_count * lane_count, rest = side_ - whole;
-  for (int j = 0; j < side_; ++j) {
-    float const* a = source.reference + static_cast<std::size_t>(j) * source.stride;
-    float const* b = source.flow + static_cast<std::size_t>(j) * source.stride;
-    FloatLanes reference{}, flow{};
-    for (int i = 0; i < whole; i += lane_count) {
-      FloatLanes const w = load_lanes(wx + i);
-      reference += w * load_lanes(a + i);
-      flow += w * load_lanes(b + i);
-    }
-    if (rest > 0) {
-      FloatLanes const w = load_some(wx + whole, rest);
-      reference += w * load_some(a + whole, rest);
-      flow += w * load_some(b + whole, rest);
-    }
-    sums.reference += wy[j] * reference;
-    sums.flow += wy[j] * flow;
-  }
-  float const weight = static_cast<float>(x_.sum(column_[lane]) * y_.sum(row_[lane]));
-  source.mean_reference = sums.mean_reference(weight);
-  source.mean_flow = sums.mean_flow(weight);
-  source_[lane] = source;
+  Vec2<float> const means = means_.of(column_[lane], row_[lane]);
+  source_[lane] = {pair.reference.data() + at, pair.flow.data() + at, pair.columns, means.x, means.y};
 }
 
 /// A window at the border or with unknown pixels is copied, its mean taken off and 0 where nothing is known.
@@ -162,38 +133,40 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
 
 }  // namespace
 
+/// @return sums of the squares of its real and of its imaginary parts
 template <WindowTerm term>
-void LaneWindows::row_of_term(int j, ComplexLanes* out) const {
+ComplexLanes LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   int const line = j - margin_;
   bool const in_window = line >= 0 && line < side_;
+  ComplexLanes squares{};
   FloatLanes const wy = in_window ? weight_y_[static_cast<std::size_t>(line)] : FloatLanes{};
   for (int i = 0; i < padded_; i += lane_count) {
     FloatLanes a[lane_count], b[lane_count];
     auto const at = [&](int lane) { return static_cast<std::ptrdiff_t>(line) * source_[lane].stride + (i - margin_); };
     read_columns([&](int lane) { return source_[lane].reference + at(lane); }, a);
     read_columns([&](int lane) { return source_[lane].flow + at(lane); }, b);
-    for (int k = 0; k < lane_count; ++k)
+    for (int k = 0; k < lane_count; ++k) {
       out[i + k] =
           term_of<term>(wy * weight_x_[static_cast<std::size_t>(i + k)], a[k] - mean_reference_, b[k] - mean_flow_);
+      squares.re += out[i + k].re * out[i + k].re;
+      squares.im += out[i + k].im * out[i + k].im;
+    }
   }
+  return squares;
 }
 
-/// Adds up the squares of a row of w A and w B. What a border cuts off has no weight.
-void LaneWindows::gather_energies(int j, ComplexLanes const* row) {
+/// Adds up the squares of a row of w A and w B, in the core apart. What a border cuts off has no weight.
+void LaneWindows::gather_energies(int j, ComplexLanes const* row, ComplexLanes const& whole) {
+  reference_ += whole.re;
+  flow_ += whole.im;
   int const core_first = margin_ + job_.grid.window_px / 2 - offset_, core_end = core_first + job_.grid.window_px;
-  ComplexLanes outer{}, core{};
-  auto const add = [&](int first, int end, ComplexLanes& sum) {
-    for (int i = first; i < end; ++i) {
-      sum.re += row[i].re * row[i].re;
-      sum.im += row[i].im * row[i].im;
-    }
-  };
-  add(margin_, core_first, outer);
-  add(core_first, core_end, core);
-  add(core_end, margin_ + side_, outer);
-  reference_ += outer.re + core.re;
-  flow_ += outer.im + core.im;
   if (j < core_first || j >= core_end) return;
+  bool const is_whole = side_ == job_.grid.window_px;
+  ComplexLanes core = is_whole ? whole : ComplexLanes{};
+  for (int i = is_whole ? core_end : core_first; i < core_end; ++i) {
+    core.re += row[i].re * row[i].re;
+    core.im += row[i].im * row[i].im;
+  }
   core_reference_ += core.re;
   core_flow_ += core.im;
 }
@@ -201,18 +174,20 @@ void LaneWindows::gather_energies(int j, ComplexLanes const* row) {
 void LaneWindows::row(int j, WindowTerm term, ComplexLanes* out) {
   switch (term) {
     case WindowTerm::frames:
-      row_of_term<WindowTerm::frames>(j, out);
-      return gather_energies(j, out);
+      return gather_energies(j, out, row_of_term<WindowTerm::frames>(j, out));
     case WindowTerm::reference_energy:
-      return row_of_term<WindowTerm::reference_energy>(j, out);
+      row_of_term<WindowTerm::reference_energy>(j, out);
+      return;
     case WindowTerm::flow_energy:
-      return row_of_term<WindowTerm::flow_energy>(j, out);
+      row_of_term<WindowTerm::flow_energy>(j, out);
+      return;
     case WindowTerm::search:
-      row_of_term<WindowTerm::frames>(j, out);
-      gather_energies(j, out);
-      return row_of_term<WindowTerm::search>(j, out);
+      gather_energies(j, out, row_of_term<WindowTerm::frames>(j, out));
+      row_of_term<WindowTerm::search>(j, out);
+      return;
     case WindowTerm::search_energy:
-      return row_of_term<WindowTerm::search_energy>(j, out);
+      row_of_term<WindowTerm::search_energy>(j, out);
+      return;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "analysis/correlation/float_lanes.h"
 #include "analysis/correlation/interrogation_job.h"
 #include "analysis/correlation/known_tiles.h"
+#include "analysis/correlation/window_means.h"
 
 namespace gladstone {
 
@@ -23,7 +24,7 @@ class LaneWindows {
  public:
   /// @param with_margin whether rows are read beyond the weights, too
   LaneWindows(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y, KnownTiles const& tiles,
-              bool with_margin);
+              WindowMeans const& means, bool with_margin);
 
   /// Side of the pixels that a window reads [px].
   int side() const { return side_ + 2 * margin_; }
@@ -53,12 +54,13 @@ class LaneWindows {
   void copy_lane(int lane, int first_x, int first_y, float const* weight_x, float const* weight_y);
   void gather_weights();
   template <WindowTerm term>
-  void row_of_term(int j, ComplexLanes* out) const;
-  void gather_energies(int j, ComplexLanes const* row);
+  ComplexLanes row_of_term(int j, ComplexLanes* out) const;
+  void gather_energies(int j, ComplexLanes const* row, ComplexLanes const& whole);
 
   InterrogationJob const& job_;
   AxisWeightsView x_, y_;
   KnownTiles const& tiles_;
+  WindowMeans const& means_;
   int offset_;  // of the pixels that count from the first of the support
   int side_;
   int margin_ = 0;  // search range on either side

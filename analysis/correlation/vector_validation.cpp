@@ -69,20 +69,20 @@ std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int 
   return filled;
 }
 
-std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns) {
+std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns, double part) {
   GLADSTONE_EXPECTS(columns > 0 && nodes.size() % columns == 0);
   int const rows = static_cast<int>(nodes.size()) / columns;
   std::vector<Vec2d> across(nodes.begin(), nodes.end()), result;
   for (int j = 0; j < rows; ++j)
     for (int i = 1; i + 1 < columns; ++i) {
       std::size_t const k = static_cast<std::size_t>(j) * columns + i;
-      across[k] = smoothed(nodes[k - 1], nodes[k], nodes[k + 1]);
+      across[k] = smoothed(nodes[k - 1], nodes[k], nodes[k + 1], part);
     }
   result = across;
   for (int j = 1; j + 1 < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       std::size_t const k = static_cast<std::size_t>(j) * columns + i;
-      result[k] = smoothed(across[k - columns], across[k], across[k + columns]);
+      result[k] = smoothed(across[k - columns], across[k], across[k + columns], part);
     }
   return result;
 }

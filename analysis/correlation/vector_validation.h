@@ -34,10 +34,10 @@ struct Neighbours {
     for (int round = 0; round < capacity; ++round)
       for (int k = 0; k < capacity / 2; ++k) {
         int const i = 2 * k + round % 2;
-        if (i + 1 >= capacity || !(v[i] > v[i + 1])) continue;
-        T const high = v[i];
-        v[i] = v[i + 1];
-        v[i + 1] = high;
+        if (i + 1 >= capacity) continue;
+        T const a = v[i], b = v[i + 1];
+        v[i] = b < a ? b : a;
+        v[i + 1] = b < a ? a : b;
       }
     T below{}, above{};
     for (int k = 0; k < capacity; ++k) {
@@ -56,12 +56,19 @@ struct Neighbours {
 /// the distance from the neighbours' median over (median of the neighbours' own distances + epsilon), both joined as
 /// the length of a vector. Above about 2 a vector is spurious.
 /// @param epsilon expected noise [px]
-/// @param enough  a bound that is not above this may stand for the residual: it takes half the time @pre count > 0
+/// @param enough  a bound that is not above this may stand for the residual: it takes less time @pre count > 0
 template <class T>
 GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon, T enough = T(0)) {
   using std::abs;
+  // a median is no farther than the farthest neighbour, and the neighbours' own distances only lower the residual
+  Vec2<T> farthest{};
+  for (int k = 0; k < Neighbours<T>::capacity; ++k) {
+    if (k >= neighbours.count) continue;
+    T const x = abs(vector.x - neighbours.value[k].x), y = abs(vector.y - neighbours.value[k].y);
+    farthest = {x > farthest.x ? x : farthest.x, y > farthest.y ? y : farthest.y};
+  }
+  if (T const bound = length(farthest) / epsilon; bound <= enough) return bound;
   Vec2<T> const median = neighbours.median();
-  // the neighbours' own distances only lower it
   Vec2<T> const most{(vector.x - median.x) / epsilon, (vector.y - median.y) / epsilon};
   if (length(most) <= enough) return length(most);
   T const spread_x = neighbours.median_of([&](int k) { return abs(neighbours.value[k].x - median.x); });
@@ -260,9 +267,9 @@ GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows,
   return true;
 }
 
-/// The middle of three nodes in a line after averaging with weights (1 6 1)/8.
-GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after) {
-  return 0.125 * (before + 6.0 * middle + after);
+/// The middle of three nodes in a line after averaging. @param part of its value that comes from the two others
+GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, double part) {
+  return 0.5 * part * (before + after) + (1.0 - part) * middle;
 }
 
 /// Finds spurious vectors among the valid ones of a grid, row by row, and replaces them: by the next correlation peak
@@ -278,8 +285,7 @@ void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule
 /// the rim inwards; zero everywhere where the grid has no vector at all.
 std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int columns);
 
-/// A light 3x3 average, weights (1 6 1)/8 along each axis, left out across the rim, so that linear fields pass
-/// unchanged.
-std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns);
+/// A light 3x3 average, smoothed() along each axis, left out across the rim, so that linear fields pass unchanged.
+std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns, double part);
 
 }  // namespace gladstone

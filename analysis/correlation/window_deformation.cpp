@@ -1,6 +1,7 @@
 #include "analysis/correlation/window_deformation.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -27,16 +28,14 @@ struct GreyLevels {
   }
   /// Takes `level` off the values and looks at them on the way.
   void take(double const* values, std::size_t count, double level, float* out) {
-    constexpr std::size_t lanes = 8;
+    constexpr std::size_t lanes = 16;
     double least[lanes], most[lanes], zero[lanes] = {};
     std::fill_n(least, lanes, low);
     std::fill_n(most, lanes, high);
     auto const look = [&](double value, std::size_t l) {
-      double const gap = value - value;  // 0, or NaN where it is not finite
-      bool const finite = gap == 0.0;
-      zero[l] += gap;
-      least[l] = finite && value < least[l] ? value : least[l];
-      most[l] = finite && value > most[l] ? value : most[l];
+      least[l] = value < least[l] ? value : least[l];
+      most[l] = value > most[l] ? value : most[l];
+      zero[l] += value - value;  // NaN from the first on that is not finite
     };
     std::size_t i = 0;
     for (; i + lanes <= count; i += lanes)
@@ -48,7 +47,14 @@ struct GreyLevels {
       out[i] = static_cast<float>(values[i] - level);
       look(values[i], 0);
     }
-    for (std::size_t l = 0; l < lanes; ++l) include({least[l], most[l], !(zero[l] == 0.0)});
+    GreyLevels seen;
+    for (std::size_t l = 0; l < lanes; ++l) seen.include({least[l], most[l], !(zero[l] == 0.0)});
+    if (seen.gaps) {  // the extremes may be infinite: once more, of the finite ones
+      seen = {.gaps = true};
+      for (i = 0; i < count; ++i)
+        if (std::isfinite(values[i])) seen.include({values[i], values[i]});
+    }
+    include(seen);
   }
 };
 
@@ -161,6 +167,7 @@ void PairDeformer::deform(DensePredictor const& predictor, ImagePair& pair) cons
   pair.flow.resize(pair.reference.size());
   pair.available.resize(pair.reference.size());
   LaneDeformation const deformation{reference_.view(), flow_.view(), original_.available};
+  std::atomic<bool> all_known{true};
   parallel_chunks(static_cast<std::size_t>(pair.rows), rows_per_chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<float> u(static_cast<std::size_t>(pair.columns)), v(u);
     for (std::size_t j = begin; j < end; ++j) {
@@ -169,9 +176,12 @@ void PairDeformer::deform(DensePredictor const& predictor, ImagePair& pair) cons
       deformation.row(degree_, static_cast<int>(j), u, v,
                       {pair.reference.data() + at, pair.flow.data() + at, pair.available.data() + at});
     }
+    auto const known = pair.available.begin() + static_cast<std::ptrdiff_t>(begin) * pair.columns;
+    if (!std::all_of(known, known + static_cast<std::ptrdiff_t>(end - begin) * pair.columns,
+                     [](float here) { return here == 1.0f; }))
+      all_known = false;
   });
-  if (std::all_of(pair.available.begin(), pair.available.end(), [](float known) { return known == 1.0f; }))
-    pair.available.clear();
+  if (all_known) pair.available.clear();
 }
 
 }  // namespace gladstone

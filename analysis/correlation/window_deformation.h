@@ -8,6 +8,7 @@
 #include "analysis/correlation/interrogation_grid.h"
 #include "analysis/correlation/predictor_view.h"
 #include "render/base/image.h"
+#include "render/base/unset_vector.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
@@ -16,9 +17,9 @@ namespace gladstone {
 struct ImagePair {
   int columns = 0;
   int rows = 0;
-  std::vector<float> reference;
-  std::vector<float> flow;
-  std::vector<float> available;  ///< 1 where both are known, 0 elsewhere; empty: everywhere
+  UnsetVector<float> reference;
+  UnsetVector<float> flow;
+  UnsetVector<float> available;  ///< 1 where both are known, 0 elsewhere; empty: everywhere
   float contrast = 0.0f;         ///< largest minus smallest grey level of the two images
 };
 

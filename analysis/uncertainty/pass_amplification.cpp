@@ -22,8 +22,8 @@ double window_response(WindowWeighting weighting, double f, double window_px) {
   return phase == 0.0 ? 1.0 : std::sin(phase) / phase;
 }
 
-/// Along an axis; f in 1/node.
-double predictor_response(double f) {
+/// Along an axis; f in 1/node. @param smoothing CorrelationSchedule::smoothing()
+double predictor_response(double f, double smoothing) {
   constexpr int steps = 64;
   double sum = 0.0;
   for (int k = 0; k < steps; ++k) {
@@ -32,7 +32,7 @@ double predictor_response(double f) {
     cubic_convolution(t, weight);
     for (int node = 0; node < 4; ++node) sum += weight[node] * std::cos(2.0 * pi * f * (node - 1 - t)) / steps;
   }
-  return sum * (0.75 + 0.25 * std::cos(2.0 * pi * f));
+  return sum * (1.0 - smoothing * (1.0 - std::cos(2.0 * pi * f)));
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ double amplification_of_passes(CorrelationSettings const& settings) {
     for (int k = 0; k < frequencies; ++k) {
       double const f = highest * (k + 0.5) / frequencies / last_px;
       window.back().push_back(window_response(schedule.weighting(), f, grid.window_px));
-      predictor.back().push_back(predictor_response(f * grid.spacing_px));
+      predictor.back().push_back(predictor_response(f * grid.spacing_px, schedule.smoothing(pass)));
     }
   }
   double all = 0.0, alone = 0.0;

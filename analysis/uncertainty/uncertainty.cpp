@@ -32,16 +32,17 @@ constexpr std::array uncertainties{
 
 /// Both frames deformed by the whole field, its gaps filled.
 ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, FramePair const& frames,
-                         int spline_degree) {
+                         CorrelationSchedule const& schedule) {
   std::vector<GridVector> vectors(field.size());
   for (std::size_t i = 0; i < vectors.size(); ++i) {
     vectors[i].displacement = field.displacement_px[i];
     vectors[i].status = field.counts(i) ? VectorStatus::valid : VectorStatus::invalid;
   }
-  std::vector<Vec2d> const nodes = smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns);
+  std::vector<Vec2d> const nodes = smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns,
+                                                         schedule.smoothing(schedule.passes() - 1));
   Image<double> const& reference = frames.reference();
   DensePredictor const predictor(grid, nodes, reference.columns(), reference.rows());
-  return PairDeformer(reference, frames.flow(), spline_degree).deform(predictor);
+  return PairDeformer(reference, frames.flow(), schedule.spline_degree()).deform(predictor);
 }
 
 }  // namespace
@@ -97,7 +98,7 @@ void estimate_uncertainty(DisplacementField& field, FramePair const& frames, Cor
   if (settings.uncertainty == "none") return;
   InterrogationGrid const grid = final_grid(settings, frames.reference().columns(), frames.reference().rows());
   GLADSTONE_EXPECTS(grid.size() == field.size());
-  ImagePair const matched = matched_frames(field, grid, frames, CorrelationSchedule(settings).spline_degree());
+  ImagePair const matched = matched_frames(field, grid, frames, CorrelationSchedule(settings));
   for (NamedUncertainty const& row : uncertainties)
     if (settings.uncertainty == row.name) field.sigma_px = row.estimate({field, matched, grid, settings});
   GLADSTONE_EXPECTS(field.sigma_px.size() == field.size());

@@ -134,9 +134,10 @@ void finish(WindowCorrelation const* windows, GridVector const* vectors, Interro
             MeasuredVector* measured);
 /// The vectors as the next pass' predictor: filled, smoothed, continued past the image.
 /// @param nodes, known, list, count scratch: a place for every vector
+/// @param smoothing CorrelationSchedule::smoothing()
 /// @param smoothed  the same @param extended predictor.columns * predictor.rows, where predictor.nodes points
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
-                    Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended);
+                    double smoothing, Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended);
 /// Deforms the original pair.
 void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& flow, int degree,
                  DevicePair const& original, PredictorView const& predictor, DevicePair const& deformed);

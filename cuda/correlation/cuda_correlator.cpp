@@ -221,8 +221,8 @@ class CorrelationPlan {
   }
 
   void make_predictor_of(int pass) {
-    make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(), smoothed_.data(),
-                   predictor(pass), extended_.data());
+    make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(),
+                   schedule_.smoothing(pass), smoothed_.data(), predictor(pass), extended_.data());
   }
 
   void estimate_sigma_of(Pass const& pass, DevicePair const& matched) {

@@ -39,17 +39,17 @@ __global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, Predict
 }
 
 /// Node k of smoothed_displacement.
-__device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows) {
+__device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows, double part) {
   int const column = k % columns, row = k / columns;
   auto const across = [&](int at) {
-    return column > 0 && column + 1 < columns ? smoothed(nodes[at - 1], nodes[at], nodes[at + 1]) : nodes[at];
+    return column > 0 && column + 1 < columns ? smoothed(nodes[at - 1], nodes[at], nodes[at + 1], part) : nodes[at];
   };
-  return row > 0 && row + 1 < rows ? smoothed(across(k - columns), across(k), across(k + columns)) : across(k);
+  return row > 0 && row + 1 < rows ? smoothed(across(k - columns), across(k), across(k + columns), part) : across(k);
 }
 
-__global__ void smooth_nodes(Vec2d const* nodes, int columns, int rows, Vec2d* out) {
+__global__ void smooth_nodes(Vec2d const* nodes, int columns, int rows, double part, Vec2d* out) {
   int const k = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (k < columns * rows) out[k] = smoothed_node(nodes, k, columns, rows);
+  if (k < columns * rows) out[k] = smoothed_node(nodes, k, columns, rows, part);
 }
 
 /// Takes over the sound vectors and lists the others.
@@ -94,7 +94,7 @@ unsigned blocks(int count) { return static_cast<unsigned>((count + threads - 1) 
 }  // namespace
 
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
-                    Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended) {
+                    double smoothing, Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended) {
   InterrogationGrid const& grid = predictor.grid;
   int const size = static_cast<int>(grid.size());
   check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
@@ -102,7 +102,7 @@ void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replac
   check_launch("gather_nodes");
   fill_nodes<<<1, threads_of_rounds>>>(nodes, known, grid.columns, grid.rows, list, count);
   check_launch("fill_nodes");
-  smooth_nodes<<<blocks(size), threads>>>(nodes, grid.columns, grid.rows, smoothed);
+  smooth_nodes<<<blocks(size), threads>>>(nodes, grid.columns, grid.rows, smoothing, smoothed);
   check_launch("smooth_nodes");
   extend_nodes<<<blocks(predictor.columns * predictor.rows), threads>>>(grid, smoothed, predictor, extended);
   check_launch("extend_nodes");

@@ -60,13 +60,19 @@ TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
         DisplacementField const a = make_correlator(fast)->correlate(images->reference, images->flow);
         DisplacementField const b = make_correlator(slow)->correlate(images->reference, images->flow);
         ASSERT_EQ(a.size(), b.size());
-        std::size_t different = 0;
+        std::size_t different = 0, other_rivals = 0;
         for (std::size_t i = 0; i < a.size(); ++i) {
           EXPECT_EQ(std::isnan(a.raw_px[i].x), std::isnan(b.raw_px[i].x));
           different += length(a.raw_px[i] - b.raw_px[i]) > 1e-4;
+          // every maximum's height between the samples there, here of those alone that can be among the highest
+          other_rivals += std::abs(a.peak_ratio[i] - b.peak_ratio[i]) > 1e-3 * b.peak_ratio[i];
         }
         // two peaks of equal height may change places, where windows hold a few dots
         EXPECT_LE(different, a.size() / 500) << weighting << ' ' << window;
+        // over uniform windows of 32 px and more the line beyond the search range wraps (plane_transform_size()): where a
+        // rival is a maximum at the rim, one place in eight, its height may differ
+        bool const rim_wraps = weighting == std::string("uniform") && window >= 32;
+        EXPECT_LE(other_rivals, a.size() / (rim_wraps ? 8 : 500)) << weighting << ' ' << window;
         EXPECT_EQ(std::count(a.status.begin(), a.status.end(), VectorStatus::masked),
                   std::count(b.status.begin(), b.status.end(), VectorStatus::masked));
       }

@@ -142,8 +142,25 @@ TEST(MultiPass, TrustsTheFirstPassAlone) {
   CorrelationSchedule const schedule(settings);
   EXPECT_EQ(schedule.rule(0).trusted_ratio, 2.0);
   EXPECT_EQ(schedule.rule(1).trusted_ratio, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(schedule.rule(4).trusted_ratio, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(schedule.rule(4).epsilon_px, settings.median_epsilon_px);
+  int const last = schedule.passes() - 1;
+  EXPECT_EQ(schedule.rule(last).trusted_ratio, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(schedule.rule(last).epsilon_px, settings.median_epsilon_px);
+  EXPECT_EQ(schedule.rule(last - 1).epsilon_px, 0.5);
+}
+
+// Nodes 26, 13, 10 and 8 px apart: part (spacing)^2, the curvature of the response, is the same of all predictors, and
+// the frames that the result deforms are smoothed no more than those of the last pass.
+TEST(MultiPass, SmoothsItsPredictorsOverOneLength) {
+  CorrelationSettings settings;
+  settings.window_px = {64, 32, 24, 20};
+  settings.overlap = 0.6;
+  CorrelationSchedule const schedule(settings);
+  EXPECT_DOUBLE_EQ(schedule.smoothing(0), 0.25 * 100.0 / 676.0);
+  EXPECT_DOUBLE_EQ(schedule.smoothing(1), 0.25 * 100.0 / 169.0);
+  EXPECT_EQ(schedule.smoothing(2), 0.25);
+  EXPECT_EQ(schedule.smoothing(3), 0.25);
+  settings.window_px = {32};
+  EXPECT_EQ(CorrelationSchedule(settings).smoothing(0), 0.25);
 }
 
 // What is measured is kept beside what replaces it.
@@ -433,7 +450,7 @@ TEST(CorrelationSettings, DefaultsAreThoseOfTheTypeAndAreWrittenOut) {
   SetupDocument document = SetupDocument::from_text("", "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
   EXPECT_FALSE(document.has_problems());
-  EXPECT_EQ(read.window_px, (std::vector<int>{64, 48, 32, 24, 20}));
+  EXPECT_EQ(read.window_px, (std::vector<int>{64, 32, 24, 20}));
   EXPECT_EQ(read.overlap, 0.6);
   EXPECT_EQ(read.method, "scc");
   EXPECT_FALSE(read.max_displacement_px);

@@ -166,10 +166,10 @@ TEST(SmoothedDisplacement, KeepsAPlaneAndDampsAZigzag) {
       plane.push_back({0.5 * i - 0.25 * j, 1.0 + 2.0 * j});
       zigzag.push_back({(i + j) % 2 == 0 ? 1.0 : -1.0, 0.0});
     }
-  std::vector<Vec2d> const smooth = smoothed_displacement(plane, 8);
+  std::vector<Vec2d> const smooth = smoothed_displacement(plane, 8, 0.25);
   for (std::size_t i = 0; i < plane.size(); ++i) EXPECT_EQ(smooth[i], plane[i]);
   // the weights (1 6 1)/8 halve the fastest oscillation along each axis
-  EXPECT_DOUBLE_EQ(smoothed_displacement(zigzag, 8)[3 * 8 + 3].x, 0.25 * zigzag[3 * 8 + 3].x);
+  EXPECT_DOUBLE_EQ(smoothed_displacement(zigzag, 8, 0.25)[3 * 8 + 3].x, 0.25 * zigzag[3 * 8 + 3].x);
 }
 
 }  // namespace

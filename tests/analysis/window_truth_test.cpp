@@ -166,8 +166,9 @@ TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
 
 // The gain of a wave, over dots as dense as pixels. A window gives it h = exp(-pi (w/L)^2/2), the transform of W^2
 // (cut at exp(-2 pi), 2 parts in 1000); of what it leaves, 1 - h, the next pass gains its own h:
-// g_k = h_k + (1 - h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 the predictor passes p = 3/4 + 1/4
-// cos(2 pi spacing/L), cubic convolution all of it.
+// g_k = h_k + (1 - h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 the predictor passes p = 1 - s (1 -
+// cos(2 pi spacing/L)), cubic convolution all of it; s = 1/4 before the last pass, and over the same length in pixels
+// before that.
 TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
   constexpr double wave_px = 96.0;
   std::vector<Vec2d> position, d;
@@ -182,11 +183,12 @@ TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
     CorrelationSettings settings;
     settings.window_px = windows;
     settings.overlap = 0.95;  // spacing 3, 2, 1 px
-    double gain = 0.0, spacing_px = 0.0;
-    for (int const window_px : windows) {
-      double const h = window_gain(window_px), p = 0.75 + 0.25 * std::cos(2.0 * pi * spacing_px / wave_px);
+    auto const spacing_px = [&](std::size_t pass) { return std::max(1.0, std::round(0.05 * windows[pass])); };
+    double gain = window_gain(windows[0]);
+    for (std::size_t pass = 1; pass < windows.size(); ++pass) {
+      double const before = spacing_px(pass - 1), s = 0.25 * std::pow(spacing_px(windows.size() - 2) / before, 2);
+      double const h = window_gain(windows[pass]), p = 1.0 - s * (1.0 - std::cos(2.0 * pi * before / wave_px));
       gain = h + (1.0 - h) * p * gain;
-      spacing_px = std::max(1.0, std::round(0.05 * window_px));
     }
     double const found =
         deformed_window_truth(position, d, {}, centre, settings, 192, 64, TruthAt::reference).displacement_px[0].y;
@@ -206,8 +208,8 @@ TEST(DeformedWindowTruth, IsWhatThePassesMeasure) {
     std::vector<int> windows;
     bool mean_is_right, place_is_right;
   };
-  for (Of const& of : {Of{shear, 10.0, {32}, true, false}, Of{shear, 10.0, {64, 48, 32, 24, 20}, false, true},
-                       Of{wave, 40.0, {64, 48, 32, 24, 20}, false, false}}) {
+  for (Of const& of : {Of{shear, 10.0, {32}, true, false}, Of{shear, 10.0, {64, 32, 24, 20}, false, true},
+                       Of{wave, 40.0, {64, 32, 24, 20}, false, false}}) {
     ParticlePair const pair = render_particle_pair({.particles_per_px = of.particles / 1024.0, .seed = 3}, of.flow);
     CorrelationSettings settings;
     settings.window_px = of.windows;

@@ -19,8 +19,10 @@ class OpticalFlowCorrelator final : public Correlator {
     InterrogationGrid const grid = final_grid(settings_, pair.columns, pair.rows);
     bool const any_contrast = pair.contrast > 0.0f;
     DenseFlow dense(pair.columns, pair.rows);
-    if (any_contrast)
-      dense = estimate_({pair.columns, pair.rows, pair.reference}, {pair.columns, pair.rows, pair.flow});
+    auto const grey = [&](auto const& values) {
+      return GreyImage{pair.columns, pair.rows, {values.begin(), values.end()}};
+    };
+    if (any_contrast) dense = estimate_(grey(pair.reference), grey(pair.flow));
     double const limit = CorrelationSchedule(settings_).limit_px(), nan = std::numeric_limits<double>::quiet_NaN();
     std::vector<MeasuredVector> vectors(grid.size());
     for (std::size_t i = 0; i < vectors.size(); ++i) {

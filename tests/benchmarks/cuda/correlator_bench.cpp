@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "analysis/correlation/lane_correlation.h"
 #include "cuda/backend.h"
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/cuda_correlator.h"
@@ -55,13 +56,13 @@ void set_rate(benchmark::State& state, std::size_t vectors) {
 
 /// From window to subpixel shift alone: two launches, 4096 x 4096 px, windows 1/4 of their size apart.
 /// @param range(0) nominal window [px] @param range(1) 1: the kernel of its support alone; 0: by factors
-void correlate_windows(benchmark::State& state) {
+void correlate_windows(benchmark::State& state, WindowWeighting weighting) {
   if (no_device(state)) return;
   DevicePairOfImages const images(4096);
   int const size = images.size;
   std::size_t const pixels = static_cast<std::size_t>(size) * size;
   InterrogationGrid const grid = make_interrogation_grid(size, size, static_cast<int>(state.range(0)), 0.75);
-  AxisWeights const weights(grid, grid.columns, size, WindowWeighting::gaussian);
+  AxisWeights const weights(grid, grid.columns, size, weighting);
   char const* const purpose = "benchmark";
   DeviceArray<float> const axis(weights.weights().data(), weights.weights().size(), purpose);
   DeviceArray<double> const lags(weights.autocorrelations().data(), weights.autocorrelations().size(), purpose);
@@ -75,7 +76,9 @@ void correlate_windows(benchmark::State& state) {
   DeviceArray<cuda::LevelKeys> keys(1, purpose);
   DeviceArray<cuda::WindowPeaks> peaks(grid.size(), purpose);
   DeviceArray<WindowCorrelation> results(grid.size(), purpose);
-  std::vector<cuda::Complex> const host_roots = cuda::unit_roots(2 * grid.window_px);
+  int const side = window_side_px(weighting, grid.window_px), radius = grid.window_px / 2;
+  int const transform = cuda::factored_size(plane_transform_size(weighting, grid.window_px, radius));
+  std::vector<cuda::Complex> const host_roots = cuda::unit_roots(transform);
   DeviceArray<cuda::Complex> const roots(host_roots.data(), host_roots.size(), purpose);
   cuda::DevicePair const pair{greys.data(), size, size};
   cuda::prepare_pair(images.first(), images.second(), keys.data(), contrast.data(), pair);
@@ -84,12 +87,12 @@ void correlate_windows(benchmark::State& state) {
                             .grid = grid,
                             .x = view,
                             .y = view,
-                            .side = view.size,
-                            .margin = 0,
-                            .size = view.size,
+                            .side = side,
+                            .margin = (view.size - side) / 2,
+                            .size = transform,
                             .roots = roots.data(),
                             .particles = nullptr,
-                            .search_radius_px = grid.window_px / 2};
+                            .search_radius_px = radius};
   bool const own_kernel = state.range(1) != 0;
   auto const correlate = [&] {
     if (own_kernel)
@@ -108,7 +111,15 @@ void correlate_windows(benchmark::State& state) {
   }
   set_rate(state, grid.size());
 }
-BENCHMARK(correlate_windows)
+BENCHMARK_CAPTURE(correlate_windows, uniform, WindowWeighting::uniform)
+    ->Name("cuda_correlate_uniform_windows")
+    ->ArgNames({"window", "own"})
+    ->Args({32, 0})
+    ->UseManualTime()
+    ->Iterations(20)
+    ->Repetitions(3)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(correlate_windows, gaussian, WindowWeighting::gaussian)
     ->Name("cuda_correlate_windows")
     ->ArgNames({"window", "own"})
     ->Args({32, 1})
