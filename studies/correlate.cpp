@@ -66,10 +66,6 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   if (known_part(prepared) == 0.0)
     measurement.field.warnings.emplace_back(
         "the masks leave no pixel of the frames (so that every vector is masked); make correlate.mask smaller");
-  auto const counts = [](VectorStatus status) { return status <= VectorStatus::replaced; };
-  bool const any = std::any_of(measurement.field.status.begin(), measurement.field.status.end(), counts);
-  if (std::string caveat = uncertainty_caveat(settings); any && !caveat.empty())
-    measurement.field.warnings.push_back(std::move(caveat));
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }
@@ -117,6 +113,10 @@ Measurement correlate_frames(FramePair const& frames, CorrelationSettings const&
   Measurement measurement{correlator->correlate_pair(frames), 0, device.correlates_on(settings)};
   judge_pair(measurement.field, frames, *correlator, settings);
   complete_uncertainty(measurement.field, frames, settings);
+  auto const counts = [](VectorStatus status) { return status <= VectorStatus::replaced; };
+  bool const any = std::any_of(measurement.field.status.begin(), measurement.field.status.end(), counts);
+  if (std::string caveat = uncertainty_caveat(settings); any && !caveat.empty())
+    measurement.field.warnings.push_back(std::move(caveat));
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }

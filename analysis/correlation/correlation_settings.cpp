@@ -6,6 +6,7 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/subpixel_fit.h"
+#include "analysis/uncertainty/uncertainty.h"
 
 namespace gladstone {
 CorrelationSettings read_correlation_settings(SetupTable table) {
@@ -30,13 +31,16 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
   settings.median_threshold =
       table.number_or_word("median_threshold", {settings.median_threshold, {}}, {"off"}, Range::positive()).number;
   settings.median_epsilon_px = table.number("median_epsilon_px", settings.median_epsilon_px, Range::positive());
+  settings.displacement_threshold =
+      table.number_or_word("displacement_threshold", {settings.displacement_threshold, {}}, {"off"}, Range::positive())
+          .number;
   settings.trusted_peak_ratio = table
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  settings.uncertainty = table.word(
-      "uncertainty", settings.uncertainty,
-      {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation", "combination"});
+  std::vector<std::string> estimators = uncertainty_methods();
+  estimators.insert(estimators.begin(), "none");
+  settings.uncertainty = table.word("uncertainty", settings.uncertainty, estimators);
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =

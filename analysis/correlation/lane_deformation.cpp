@@ -21,7 +21,8 @@ struct LanePositions {
   }
 
   /// The spline where all lanes are moved by as many whole pixels as one of them.
-  /// @tparam opposite at (column + l - dx, row - dy): what lies t past a node lies 1 - t past the one before on the other
+  /// @tparam opposite at (column + l - dx, row - dy): what lies t past a node lies 1 - t past the one before on the
+  /// other
   ///                  side, with the same weights in the opposite order
   template <bool opposite>
   FloatLanes sum(BsplineView<float> const& image, int base_x, int base_y) const {

@@ -159,13 +159,13 @@ float LanePeaks::third_highest(int lane) const {
   std::size_t const count = static_cast<std::size_t>(counts_[lane]);
   PlanePeak<float> const* const maxima = maxima_[lane].data();
   PeakList<float> highest;
+  int as_high = 0;  // more than three of equal ones
   float const third = third_largest(heights_[lane].data(), count);
   visit_high(lane, third, [&](PlanePeak<float> const& peak) {
-    if (highest.count < PeakList<float>::capacity) highest.peak[highest.count++] = peak;
+    if (as_high++ < PeakList<float>::capacity) highest.peak[highest.count++] = peak;
   });
   auto const& [a, b, c] = highest.peak;
-  if (highest.count == PeakList<float>::capacity && !are_close(a, b) && !are_close(a, c) && !are_close(b, c))
-    return third;
+  if (as_high == PeakList<float>::capacity && !are_close(a, b) && !are_close(a, c) && !are_close(b, c)) return third;
   highest = {};
   for (std::size_t k = 0; k < count; ++k)
     if (can_enter(highest, maxima[k].height)) insert_peak(highest, maxima[k]);

@@ -187,7 +187,8 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
   }
   Tally const found(field);
   std::string const why_not = reason_not_to_judge(found, settings);
-  field.verdict = why_not.empty() ? correlates : "not judged: " + why_not;
+  bool const any = std::any_of(field.status.begin(), field.status.end(), is_sound);
+  field.verdict = !why_not.empty() ? "not judged: " + why_not : any ? correlates : "does not correlate";
   if (found.part(found.doubtful) < suspicious) return;
   Reach const reach(settings);
   if (std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings)) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -105,7 +106,8 @@ class StandardCorrelator final : public Correlator {
         std::transform(vectors.begin(), vectors.end(), windows.begin(), measured.begin(), measured_vector);
         return displacement_field(grid, measured);
       }
-      std::vector<Vec2d> const nodes = smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns, schedule_.smoothing(pass));
+      std::vector<Vec2d> const nodes =
+          smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns, schedule_.smoothing(pass));
       predictor.emplace(grid, nodes, columns, rows);
     }
   }
@@ -126,7 +128,8 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
                  settings.trusted_peak_ratio.value_or(std::numeric_limits<double>::infinity()),
                  settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity()),
                  settings.least_peak_ratio.value_or(0.0),
-                 settings.least_correlation.value_or(0.0)},
+                 settings.least_correlation.value_or(0.0),
+                 settings.displacement_threshold.value_or(std::numeric_limits<double>::infinity())},
       weighting_(window_weighting(settings)),
       spline_degree_(settings.deformation == "sinc"    ? windowed_sinc
                      : settings.deformation == "cubic" ? 3
@@ -149,13 +152,15 @@ ValidationRule CorrelationSchedule::rule(int pass) const {
     rule.least_peak_ratio = rule.least_correlation = 0.0;
   }
   if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
+  // without a predictor the whole is what the pass found
+  if (pass == 0 || !is_last(pass)) rule.displacement_threshold = std::numeric_limits<double>::infinity();
   return rule;
 }
 
 double CorrelationSchedule::smoothing(int pass) const {
   int const last_predictor = std::max(0, passes() - 2);
   double const finest_px = grid_spacing_px(windows_[last_predictor], overlap_);
-  return 0.25 * std::min(1.0, std::pow(finest_px / grid_spacing_px(windows_[pass], overlap_), 2));
+  return 0.25 * std::min(1.0, finest_px / grid_spacing_px(windows_[pass], overlap_));
 }
 
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
@@ -206,7 +211,8 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
 }
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
-  keep_freed_memory();  // a pair after the other: pages took a sixth of the time of one pass
+  static std::once_flag once;
+  std::call_once(once, keep_freed_memory);  // a pair after the other: pages took a sixth of the time of one pass
   return std::make_unique<StandardCorrelator>(settings);
 }
 

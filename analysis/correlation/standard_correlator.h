@@ -36,10 +36,10 @@ class CorrelationSchedule {
   /// what is left over a few pixels far, where a chance peak has hardly room for rivals.
   ValidationRule rule(int pass) const;
   /// Part of a node that smoothing takes from its neighbours on either side, along an axis (smoothed()), where a pass's
-  /// vectors become a predictor: 1/4 in the last predictor and in the frames that the result itself deforms, and before
-  /// that as much as smooths over the same length in pixels. Nodes d apart keep 1 - part (1 - cos(2 pi d/L)) of a wave
-  /// of length L, about 1 - part/2 (2 pi d/L)^2; 1/4 on every grid would cost wide grids the waves that their passes
-  /// are there to follow, and their large windows have little noise to lose.
+  /// vectors become a predictor: 1/4 in the last predictor and in the frames that the result itself deforms, less on
+  /// wider grids before it, in inverse proportion to their spacing. Nodes d apart keep 1 - part (1 - cos(2 pi d/L)) of
+  /// a wave of length L: 1/4 on every grid would cost wide grids the waves that their passes are there to follow, and
+  /// their large windows have little noise to lose.
   double smoothing(int pass) const;
   /// Largest displacement along either axis [px]; infinite where there is no limit but the windows'.
   double limit_px() const { return last_rule_.limit_px; }

@@ -10,15 +10,12 @@ namespace {
 
 constexpr std::size_t vectors_per_chunk = 256;
 
-}  // namespace
-
-void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
-  GLADSTONE_EXPECTS(columns > 0 && vectors.size() % columns == 0);
+void validate_by(Judgement by, std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   int const count = static_cast<int>(vectors.size()), rows = count / columns;
   std::vector<char> doubtful(vectors.size());
   parallel_chunks(vectors.size(), vectors_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      doubtful[i] = is_spurious(vectors.data(), static_cast<int>(i), columns, rows, rule);
+      doubtful[i] = is_spurious(vectors.data(), static_cast<int>(i), columns, rows, rule, by);
   });
   std::vector<int> spurious;
   for (int i = 0; i < count; ++i)
@@ -40,6 +37,13 @@ void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule
     if (replaced.empty()) break;
     spurious = std::move(left);
   }
+}
+
+}  // namespace
+
+void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
+  GLADSTONE_EXPECTS(columns > 0 && vectors.size() % columns == 0);
+  for (int by = 0; by < judgements(rule); ++by) validate_by(static_cast<Judgement>(by), vectors, columns, rule);
 }
 
 std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int columns) {

@@ -100,6 +100,8 @@ struct ValidationRule {
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
   double least_peak_ratio = 0.0;   ///< below it a vector is spurious whatever its neighbours say
   double least_correlation = 0.0;  ///< the same for the coefficient of its peak [1]
+  /// Of the residual of whole displacements (is_unlike()); infinite: no test.
+  double displacement_threshold = std::numeric_limits<double>::infinity();
 };
 
 /// Most by which a trusted window may differ from its neighbours' median [px]. Windows that overlap share dots: did
@@ -211,6 +213,36 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
                                 is_near(displacement, without_slope(around.displacement, around.offset)));
 }
 
+/// A window whose correlation is below this part of its neighbours' median correlates worse than they do.
+constexpr double as_correlated = 0.9;
+
+/// Whether a displacement as a whole differs from those around it, and its window correlates worse than theirs. A gross
+/// error of an earlier pass is in the predictor, and what the last pass adds to it is small: the median test of what it
+/// adds finds nothing. Gradients as steep as the grid is fine make whole displacements differ, too, but leave a window
+/// as correlated as those beside it. At the rim, where the median is off by the gradient, the neighbours less their
+/// slope must say so as well.
+template <class Usable>
+GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int rows, ValidationRule const& rule,
+                            Usable const& usable) {
+  double const threshold = rule.displacement_threshold;
+  if (!(threshold < std::numeric_limits<double>::infinity())) return false;
+  Neighbours<double> offset, again;
+  Neighbours<double> const around = neighbours_of(
+      i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
+  auto const differs = [&](Neighbours<double> const& from) {
+    return normalised_median_residual(vectors[i].displacement, from, rule.epsilon_px, threshold) > threshold;
+  };
+  if (around.count < fewest_neighbours || !differs(around)) return false;
+  if (around.count < Neighbours<double>::capacity && !differs(without_slope(around, offset))) return false;
+  Neighbours<double> const correlation = neighbours_of(
+      i, columns, rows,
+      [&](int k) {
+        return Vec2d{vectors[k].correlation, 0.0};
+      },
+      usable, again);
+  return vectors[i].correlation < as_correlated * correlation.median().x;
+}
+
 /// Whether vector i is valid but its peak is too low or too much like the next, or it does not agree with its valid
 /// neighbours (validate_vectors).
 GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
@@ -223,6 +255,21 @@ GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int colum
          !is_trusted(vector, around.increment, rule);
 }
 
+/// What vectors are judged by, one after the other: those that the first takes out no longer speak for others.
+enum class Judgement { increments, displacements };
+
+GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
+                                     ValidationRule const& rule, Judgement by) {
+  if (by == Judgement::increments) return is_spurious(vectors, i, columns, rows, rule);
+  return vectors[i].status == VectorStatus::valid &&
+         is_unlike(vectors, i, columns, rows, rule, [&](int k) { return vectors[k].status == VectorStatus::valid; });
+}
+
+/// The judgements that a rule asks for.
+GLADSTONE_HD inline int judgements(ValidationRule const& rule) {
+  return rule.displacement_threshold < std::numeric_limits<double>::infinity() ? 2 : 1;
+}
+
 /// What a spurious vector is replaced by, and where it is from.
 struct VectorReplacement {
   Vec2d value;
@@ -233,11 +280,23 @@ struct VectorReplacement {
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, VectorReplacement& found) {
   GridVector const& vector = vectors[i];
-  Surroundings const around(vectors, i, columns, rows, [&](int k) { return is_sound(vectors[k].status); });
+  auto const usable = [&](int k) { return is_sound(vectors[k].status); };
+  Surroundings const around(vectors, i, columns, rows, usable);
   if (around.increment.count < fewest_neighbours) return false;
+  if (is_unlike(vectors, i, columns, rows, rule,
+                usable)) {  // its predictor is wrong, and so is all that was found by it
+    Neighbours<double> offset;
+    Neighbours<double> const displacement = neighbours_of(
+        i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
+    found = {without_slope(displacement, offset).median(), VectorReason::neighbours};
+    return true;
+  }
   found = {around.is_whole() ? vector.predictor + around.increment.median()
                              : without_slope(around.displacement, around.offset).median(),
            VectorReason::neighbours};
+  // where neighbours decide nothing no other peak is better, nor where even this one is too low
+  if (!(rule.threshold < std::numeric_limits<double>::infinity()) || vector.correlation < rule.least_correlation)
+    return true;
   for (int k = vector.alternative_count - 1; k >= 0; --k)
     if (agrees(vector.alternatives[k], vector.predictor, around, rule))
       found = {vector.alternatives[k], VectorReason::other_peak};
@@ -278,7 +337,8 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, doub
 /// gradients are already taken off; at the rim, where the predictor is continued from further inside, also the sum
 /// (agrees()), and the median there is that of the displacements less their plane. A vector with fewer than three
 /// neighbours is left as it is, and so is one whose window is_trusted(): where structures are as fine as the grid, the
-/// median cuts their crests off. The result does not depend on any order.
+/// median cuts their crests off. Then, where the rule says so, whole displacements are judged alike (is_unlike()). The
+/// result does not depend on any order.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Displacement at every node, for a predictor: masked and invalid ones are filled from their neighbours' medians, from

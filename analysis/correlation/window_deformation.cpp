@@ -68,6 +68,22 @@ double middle_level(Image<double> const& reference, Image<double> const& flow) {
   return some.low <= some.high ? 0.5 * (some.low + some.high) : 0.0;
 }
 
+/// Brings contrasts far from 1 there by a power of two, which changes no digit: products of four levels stay within
+/// float's range, and the terms of energies beside weights in one transform.
+void bring_into_range(ImagePair& pair) {
+  constexpr float least = 1e-3f, most = 1e7f;
+  if ((pair.contrast >= least && pair.contrast <= most) || !(pair.contrast > 0.0f) || !std::isfinite(pair.contrast))
+    return;
+  int const power = -std::ilogb(pair.contrast);
+  parallel_chunks(pair.reference.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      pair.reference[i] = std::ldexp(pair.reference[i], power);
+      pair.flow[i] = std::ldexp(pair.flow[i], power);
+    }
+  });
+  pair.contrast = std::ldexp(pair.contrast, power);
+}
+
 }  // namespace
 
 ImagePair make_image_pair(Image<double> const& reference, Image<double> const& flow) {
@@ -89,7 +105,10 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   GreyLevels all;
   for (GreyLevels const& piece : levels) all.include(piece);
   pair.contrast = all.low <= all.high ? static_cast<float>(all.high - all.low) : 0.0f;
-  if (!all.gaps) return pair;
+  if (!all.gaps) {
+    bring_into_range(pair);
+    return pair;
+  }
   // unknown pixels take the middle of all, whichever level was taken off
   float const middle = all.low <= all.high ? static_cast<float>(0.5 * (all.low + all.high) - level) : 0.0f;
   pair.available.resize(reference.size());
@@ -99,6 +118,7 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
     if (!in_flow) pair.flow[i] = middle;
     pair.available[i] = in_reference && in_flow ? 1.0f : 0.0f;
   }
+  bring_into_range(pair);
   return pair;
 }
 

@@ -17,10 +17,10 @@ __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid
   ambiguous[i] = vector.ambiguous != Ambiguity::none;
 }
 
-__global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
-                              int* count) {
+__global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Judgement by,
+                              Replacement* list, int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < columns * rows && is_spurious(vectors, i, columns, rows, rule))
+  if (i < columns * rows && is_spurious(vectors, i, columns, rows, rule, by))
     list[atomicAdd(count, 1)] = {i, Replacement::open, {}};
 }
 
@@ -70,11 +70,14 @@ void take_vectors(WindowCorrelation const* windows, GridVector* vectors, Interro
 
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count) {
-  check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
-  find_spurious<<<blocks(grid), threads>>>(vectors, grid.columns, grid.rows, rule, list, count);
-  check_launch("find_spurious");
-  replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
-  check_launch("replace_spurious");
+  for (int by = 0; by < judgements(rule); ++by) {
+    check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
+    find_spurious<<<blocks(grid), threads>>>(vectors, grid.columns, grid.rows, rule, static_cast<Judgement>(by), list,
+                                             count);
+    check_launch("find_spurious");
+    replace_spurious<<<1, threads_of_rounds>>>(vectors, grid.columns, grid.rows, rule, list, count);
+    check_launch("replace_spurious");
+  }
 }
 
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,

@@ -69,8 +69,8 @@ TEST(Scc, IsOpenCVsPlaneToTenMicropixels) {
         }
         // two peaks of equal height may change places, where windows hold a few dots
         EXPECT_LE(different, a.size() / 500) << weighting << ' ' << window;
-        // over uniform windows of 32 px and more the line beyond the search range wraps (plane_transform_size()): where a
-        // rival is a maximum at the rim, one place in eight, its height may differ
+        // over uniform windows of 32 px and more the line beyond the search range wraps (plane_transform_size()): where
+        // a rival is a maximum at the rim, one place in eight, its height may differ
         bool const rim_wraps = weighting == std::string("uniform") && window >= 32;
         EXPECT_LE(other_rivals, a.size() / (rim_wraps ? 8 : 500)) << weighting << ' ' << window;
         EXPECT_EQ(std::count(a.status.begin(), a.status.end(), VectorStatus::masked),
@@ -135,6 +135,25 @@ TEST(EveryMethod, TakesItsGreyLevelsRelatively) {
   }
 }
 
+// Frames in other units of light, 1e-9 or 1e12 of a grey level, are the same frames: a power of two changes no digit.
+// zncc and mqd transform energies beside weights, whose rounding is that of the larger: 5e-4 px, as above.
+TEST(EveryMethod, MeasuresInAnyUnitOfLight) {
+  ParticlePair const pair = render_particle_pair({.columns = 128, .rows = 128}, [](Vec2d) { return Vec2d{0.4, 1.3}; });
+  for (char const* method : {"scc", "rpc", "spc", "zncc", "mqd"})
+    for (double const unit : {0x1p-30, 0x1p40}) {
+      ParticlePair scaled = pair;
+      for (Image<double>* image : {&scaled.reference, &scaled.flow})
+        for (double& value : *image) value *= unit;
+      auto const correlator = make_correlator(one_pass(method));
+      DisplacementField const a = correlator->correlate(pair.reference, pair.flow);
+      DisplacementField const b = correlator->correlate(scaled.reference, scaled.flow);
+      for (std::size_t i = 0; i < a.size(); ++i)
+        EXPECT_LT(length(a.displacement_px[i] - b.displacement_px[i]),
+                  method == std::string("zncc") || method == std::string("mqd") ? 5e-4 : 1e-6)
+            << method << ' ' << unit;
+    }
+}
+
 // --device cuda refuses by this name what --device auto gives to the CPU.
 TEST(MissingOnGpu, IsEverythingButSccAndRpcByGaussians) {
   CorrelationSettings settings;
@@ -173,8 +192,30 @@ TEST(MedianThreshold, Off) {
   });
   CorrelationSettings settings;
   settings.median_threshold.reset();
+  settings.displacement_threshold.reset();
   DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
   EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::replaced), 0);
+}
+
+// Without the median test no other peak agrees better: what a level takes out its neighbours replace, never a lower
+// peak of the same window.
+TEST(MedianThreshold, OffLeavesReplacementToTheNeighbours) {
+  ParticlePair const pair = render_particle_pair({.noise = 0.03}, [](Vec2d) { return Vec2d{0.3, -0.3}; });
+  for (auto const level : {&CorrelationSettings::least_peak_ratio, &CorrelationSettings::least_correlation}) {
+    CorrelationSettings settings;
+    settings.median_threshold.reset();
+    settings.*level = level == &CorrelationSettings::least_peak_ratio ? 3.0 : 0.88;
+    DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
+    std::size_t replaced = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      if (field.status[i] != VectorStatus::replaced) continue;
+      ++replaced;
+      EXPECT_EQ(field.reason[i], VectorReason::neighbours);
+      EXPECT_LT(length(field.displacement_px[i] - Vec2d{0.3, -0.3}), 0.1);
+    }
+    EXPECT_GT(replaced, 0u);
+    EXPECT_LT(replaced, field.size());
+  }
 }
 
 }  // namespace

@@ -148,15 +148,35 @@ TEST(MultiPass, TrustsTheFirstPassAlone) {
   EXPECT_EQ(schedule.rule(last - 1).epsilon_px, 0.5);
 }
 
-// Nodes 26, 13, 10 and 8 px apart: part (spacing)^2, the curvature of the response, is the same of all predictors, and
-// the frames that the result deforms are smoothed no more than those of the last pass.
-TEST(MultiPass, SmoothsItsPredictorsOverOneLength) {
+// Noise of 10 % and five dots a window: one vector in thirty is grossly wrong, most of them since an earlier pass was.
+// Judged as a whole a third fewer of the vectors that count as measured are (docs/estimators.md: 1024 x 1024 px).
+TEST(MultiPass, JudgesWholeDisplacements) {
+  auto const truth = constant(0.4, -0.4);
+  ParticlePair const pair = render_particle_pair(
+      {.columns = 512, .rows = 512, .particles_per_px = 5.0 / 1024.0, .noise = 0.1, .seed = 9}, truth);
+  auto const gross = [&](std::optional<double> threshold) {
+    CorrelationSettings settings;
+    settings.displacement_threshold = threshold;
+    DisplacementField const field = make_correlator(settings)->correlate(pair.reference, pair.flow);
+    std::ptrdiff_t count = 0;
+    for (std::size_t i = 0; i < field.size(); ++i)
+      count += field.status[i] == VectorStatus::valid && length(field.displacement_px[i] - truth({})) > 1.0;
+    return count;
+  };
+  std::ptrdiff_t const without = gross({});
+  EXPECT_GT(without, 60);
+  EXPECT_LT(static_cast<double>(gross(2.0)), 0.8 * static_cast<double>(without));
+}
+
+// Nodes 26, 13, 10 and 8 px apart: part times spacing is the same of all predictors, and the frames that the result
+// deforms are smoothed no more than those of the last pass.
+TEST(MultiPass, SmoothsWiderGridsLess) {
   CorrelationSettings settings;
   settings.window_px = {64, 32, 24, 20};
   settings.overlap = 0.6;
   CorrelationSchedule const schedule(settings);
-  EXPECT_DOUBLE_EQ(schedule.smoothing(0), 0.25 * 100.0 / 676.0);
-  EXPECT_DOUBLE_EQ(schedule.smoothing(1), 0.25 * 100.0 / 169.0);
+  EXPECT_DOUBLE_EQ(schedule.smoothing(0), 0.25 * 10.0 / 26.0);
+  EXPECT_DOUBLE_EQ(schedule.smoothing(1), 0.25 * 10.0 / 13.0);
   EXPECT_EQ(schedule.smoothing(2), 0.25);
   EXPECT_EQ(schedule.smoothing(3), 0.25);
   settings.window_px = {32};
@@ -463,7 +483,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   SetupDocument document = SetupDocument::from_text(
       "[correlate]\nwindow_px = [48, 24]\noverlap = 0.75\nmethod = \"scc\"\nsubpixel = \"gauss3\"\n"
       "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nmedian_threshold = 3\n"
-      "median_epsilon_px = 0.3\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n"
+      "median_epsilon_px = 0.3\ndisplacement_threshold = 2.5\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n"
       "least_peak_ratio = 1.2\nleast_correlation = 0.4\nuncertainty = \"image_matching\"\n",
       "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
@@ -475,6 +495,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   EXPECT_EQ(read.final_passes, 2);
   EXPECT_EQ(read.median_threshold, 3.0);
   EXPECT_EQ(read.median_epsilon_px, 0.3);
+  EXPECT_EQ(read.displacement_threshold, 2.5);
   EXPECT_EQ(read.least_peak_ratio, 1.2);
   EXPECT_EQ(read.least_correlation, 0.4);
   EXPECT_EQ(read.uncertainty, "image_matching");

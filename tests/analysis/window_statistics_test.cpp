@@ -302,9 +302,9 @@ TEST(CorrelationStatistics, AreThoseOfTheMatchedWindows) {
       vectors[i].displacement = field.displacement_px[i];
       vectors[i].status = field.status[i];
     }
-    DensePredictor const predictor(grid,
-                                   smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns, 0.25),
-                                   frames.reference().columns(), frames.reference().rows());
+    DensePredictor const predictor(
+        grid, smoothed_displacement(filled_displacement(vectors, grid.columns), grid.columns, 0.25),
+        frames.reference().columns(), frames.reference().rows());
     ImagePair const matched =
         PairDeformer(frames.reference(), frames.flow(), CorrelationSchedule(settings).spline_degree())
             .deform(predictor);

@@ -167,8 +167,8 @@ TEST(DeformedWindowTruth, OfALinearFieldIsItsValueAtTheCentre) {
 // The gain of a wave, over dots as dense as pixels. A window gives it h = exp(-pi (w/L)^2/2), the transform of W^2
 // (cut at exp(-2 pi), 2 parts in 1000); of what it leaves, 1 - h, the next pass gains its own h:
 // g_k = h_k + (1 - h_k) p g_(k-1). With nodes on every second pixel of a wave of 96 the predictor passes p = 1 - s (1 -
-// cos(2 pi spacing/L)), cubic convolution all of it; s = 1/4 before the last pass, and over the same length in pixels
-// before that.
+// cos(2 pi spacing/L)), cubic convolution all of it; s = 1/4 before the last pass, and before that less in inverse
+// proportion to the spacing.
 TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
   constexpr double wave_px = 96.0;
   std::vector<Vec2d> position, d;
@@ -186,7 +186,7 @@ TEST(DeformedWindowTruth, GivesAWaveTheGainOfItsPasses) {
     auto const spacing_px = [&](std::size_t pass) { return std::max(1.0, std::round(0.05 * windows[pass])); };
     double gain = window_gain(windows[0]);
     for (std::size_t pass = 1; pass < windows.size(); ++pass) {
-      double const before = spacing_px(pass - 1), s = 0.25 * std::pow(spacing_px(windows.size() - 2) / before, 2);
+      double const before = spacing_px(pass - 1), s = 0.25 * spacing_px(windows.size() - 2) / before;
       double const h = window_gain(windows[pass]), p = 1.0 - s * (1.0 - std::cos(2.0 * pi * before / wave_px));
       gain = h + (1.0 - h) * p * gain;
     }

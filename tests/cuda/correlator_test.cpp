@@ -118,7 +118,8 @@ TEST_F(CudaCorrelation, ByPhasesIsThatOfTheCpu) {
   CorrelationSettings settings;
   settings.method = "rpc";
   for (char const* weighting : {"gaussian", "uniform"})
-    for (std::vector<int> const& windows : {std::vector<int>{64, 48, 32, 24, 20}, std::vector<int>{22}}) {
+    for (std::vector<int> const& windows :
+         {std::vector<int>{64, 32, 24, 20}, std::vector<int>{48, 20}, std::vector<int>{22}}) {
       settings.weighting = weighting;
       settings.window_px = windows;
       expect_same(settings, smooth_pair(400, 300, 0.02));

@@ -36,7 +36,7 @@ class OpticalFlowCorrelator final : public Correlator {
       };
       if (known_part(pair, grid, i) < smallest_known_part)
         take_out(VectorStatus::masked, VectorReason::masked);
-      else if (!any_contrast)
+      else if (!has_signal(pair, pair.reference, grid, i) || !has_signal(pair, pair.flow, grid, i))
         take_out(VectorStatus::invalid, VectorReason::no_signal);
       else if (!is_within(value, limit))
         take_out(VectorStatus::invalid, VectorReason::beyond_limit);
@@ -45,6 +45,23 @@ class OpticalFlowCorrelator final : public Correlator {
   }
 
  private:
+  /// Whether a window of one frame is more than one level, as plane_scale() asks.
+  static bool has_signal(ImagePair const& pair, UnsetVector<float> const& frame, InterrogationGrid const& grid,
+                         std::size_t vector) {
+    Vec2d const centre = grid.centre(vector);
+    int const x = static_cast<int>(std::lround(centre.x - 0.5 * (grid.window_px - 1)));
+    int const y = static_cast<int>(std::lround(centre.y - 0.5 * (grid.window_px - 1)));
+    double sum = 0.0, squares = 0.0;
+    for (int j = y; j < y + grid.window_px; ++j)
+      for (int i = x; i < x + grid.window_px; ++i) {
+        double const level = frame[static_cast<std::size_t>(j) * pair.columns + i];
+        sum += level;
+        squares += level * level;
+      }
+    double const pixels = static_cast<double>(grid.window_px) * grid.window_px, mean = sum / pixels;
+    return squares / pixels - mean * mean > std::pow(smallest_contrast * pair.contrast, 2);
+  }
+
   /// Of a window's own pixels.
   static double known_part(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
