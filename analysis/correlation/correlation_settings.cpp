@@ -6,7 +6,6 @@
 
 #include "analysis/correlation/correlator.h"
 #include "analysis/correlation/subpixel_fit.h"
-#include "analysis/uncertainty/uncertainty.h"
 
 namespace gladstone {
 CorrelationSettings read_correlation_settings(SetupTable table) {
@@ -38,9 +37,9 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
                                     .number_or_word("trusted_peak_ratio", {settings.trusted_peak_ratio, {}},
                                                     {"none", "off"}, Range::at_least(1.0))
                                     .number;
-  std::vector<std::string> estimators = uncertainty_methods();
-  estimators.insert(estimators.begin(), "none");
-  settings.uncertainty = table.word("uncertainty", settings.uncertainty, estimators);
+  settings.uncertainty = table.word(
+      "uncertainty", settings.uncertainty,
+      {"none", "correlation_statistics", "image_matching", "peak_ratio", "moment_of_correlation", "combination"});
   settings.least_peak_ratio =
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =
