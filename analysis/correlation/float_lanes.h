@@ -92,6 +92,9 @@ inline unsigned bits_of_lanes(IntLanes mask) {
 #endif
 }
 
+/// In one order.
+inline float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
+
 /// The largest whole numbers not above numbers below 2^31.
 inline IntLanes floor_lanes(FloatLanes a) {
   IntLanes const cut = __builtin_convertvector(a, IntLanes);

@@ -7,8 +7,6 @@ namespace {
 
 int whole_lanes(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
-float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
-
 /// Weighted sums over the pixels of a window, gathered row by row.
 struct LaneSums {
   FloatLanes weight{}, reference{}, flow{};

@@ -1,14 +1,10 @@
 #include "analysis/correlation/window_means.h"
 
-#include <algorithm>
-
 #include "analysis/correlation/float_lanes.h"
 #include "render/base/parallel.h"
 
 namespace gladstone {
 namespace {
-
-float sum_of(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
 /// sum[i] += weight value[i]. @pre count is a multiple of lane_count
 void add_row(float weight, float const* value, float* sum, int count) {
@@ -22,7 +18,7 @@ float weighted_sum(float const* weight, float const* value, int count) {
   for (; i + lane_count <= count; i += lane_count) sum += load_lanes(weight + i) * load_lanes(value + i);
   float rest = 0.0f;
   for (; i < count; ++i) rest += weight[i] * value[i];
-  return sum_of(sum) + rest;
+  return sum_of_lanes(sum) + rest;
 }
 
 }  // namespace

@@ -45,12 +45,16 @@ class OpticalFlowCorrelator final : public Correlator {
   }
 
  private:
+  static Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector) {
+    Vec2d const centre = grid.centre(vector);
+    double const half = 0.5 * (grid.window_px - 1);
+    return {static_cast<int>(std::lround(centre.x - half)), static_cast<int>(std::lround(centre.y - half))};
+  }
+
   /// Whether a window of one frame is more than one level, as plane_scale() asks.
   static bool has_signal(ImagePair const& pair, UnsetVector<float> const& frame, InterrogationGrid const& grid,
                          std::size_t vector) {
-    Vec2d const centre = grid.centre(vector);
-    int const x = static_cast<int>(std::lround(centre.x - 0.5 * (grid.window_px - 1)));
-    int const y = static_cast<int>(std::lround(centre.y - 0.5 * (grid.window_px - 1)));
+    auto const [x, y] = first_pixel(grid, vector);
     double sum = 0.0, squares = 0.0;
     for (int j = y; j < y + grid.window_px; ++j)
       for (int i = x; i < x + grid.window_px; ++i) {
@@ -65,9 +69,7 @@ class OpticalFlowCorrelator final : public Correlator {
   /// Of a window's own pixels.
   static double known_part(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
-    Vec2d const centre = grid.centre(vector);
-    int const x = static_cast<int>(std::lround(centre.x - 0.5 * (grid.window_px - 1)));
-    int const y = static_cast<int>(std::lround(centre.y - 0.5 * (grid.window_px - 1)));
+    auto const [x, y] = first_pixel(grid, vector);
     double known = 0.0;
     for (int j = y; j < y + grid.window_px; ++j)
       for (int i = x; i < x + grid.window_px; ++i)
