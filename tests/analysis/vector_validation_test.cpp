@@ -159,7 +159,9 @@ TEST(WholeDisplacements, GiveAWrongPredictorAway) {
       validate_vectors(grid, 10, {.displacement_threshold = threshold});
       for (std::size_t i = 0; i < grid.size(); ++i)
         EXPECT_EQ(grid[i].status, replaced && i == planted ? VectorStatus::replaced : VectorStatus::valid) << i;
-      if (replaced) EXPECT_LT(length(grid[planted].displacement - truth), 0.15);
+      if (replaced) {
+        EXPECT_LT(length(grid[planted].displacement - truth), 0.15);
+      }
     }
   std::vector<GridVector> steep = smooth_grid(10, 6);
   for (std::size_t i = 0; i < steep.size(); ++i) {
