@@ -103,7 +103,8 @@ void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
                   error.fineness == 1 ? "render.rays_per_dot = \"auto\" takes a finer table; " : ""));
 }
 
-std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth) {
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
+                           double pupil_margin) {
   std::int64_t unseen = 0, rays = std::numeric_limits<std::int64_t>::max();  // the fewest of one
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (!std::isnan(truth.displacement_px[i].x)) continue;
@@ -119,7 +120,7 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
             ? fmt::format(
                   "some {:.2g} of a dot's {} rays pass the stop, since the flow bends them by up to {:.3g} mm; "
                   "take more rays (render.rays_per_dot), or reduce the gradients or Z_D",
-                  passing, rays, scene.pupil_margin / unit::millimetre)
+                  passing, rays, pupil_margin / unit::millimetre)
             : "the flow bends their rays past the lens; reduce the gradients or Z_D";
     warn(warnings, fmt::format("{} of {} dots are not seen in one of the frames, and their truth is nan: {}", unseen,
                                scene.dots.centre.size(), why));

@@ -33,8 +33,10 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
 /// Warns of what the deflection table leaves of truth and images, where it is more than is asked.
 void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error);
 
-/// Warns of dots that are not seen. @return how many sources are not, of any kind
-std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth);
+/// Warns of dots that are not seen. @param pupil_margin that the rendering took [m]
+/// @return how many sources are not, of any kind
+std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
+                           double pupil_margin);
 
 /// Warns of pixels that are saturated.
 /// @param light_e electrons that light sets free in the brightest pixel

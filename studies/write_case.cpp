@@ -143,7 +143,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   }
   OutputFile::write_text(place(case_file::setup), resolved);
 
-  outcome.unseen = warn_of_unseen(warnings, scene, rendering.truth);
+  outcome.unseen = warn_of_unseen(warnings, scene, rendering.truth, rendered.pupil_margin);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
   warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, scene.setup.piv ? "particles" : "dots");
   outcome.reference_sha256 = origin.sources.sha256("reference");

@@ -17,6 +17,7 @@
 #include "render/base/output_folder.h"
 #include "render/base/setup_node.h"
 #include "render/focused_dots/focused_dots.h"
+#include "studies/case_warnings.h"
 #include "studies/correlate.h"
 #include "studies/quiet_log.h"
 #include "studies/scene_renderer.h"
@@ -266,6 +267,12 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
   result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
   result.warnings = prepared.warnings;
+  Rendering const& rendering = *rendered.rendering;
+  warn_of_saturation(result.warnings, prepared.scene.setup.camera, frames.saturated_reference, frames.saturated_flow,
+                     rendered.exposure_e * rendering.in_place->brightest());
+  warn_of_unseen(result.warnings, prepared.scene, rendering.truth, rendered.pupil_margin);
+  warn_of_truth(result.warnings, rendering, truth_accuracy(rendering.truth, truth_tolerance_px), prepared.rays,
+                prepared.scene.setup.piv ? "particles" : "dots");
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
   result.vectors = vector_errors(comparison);

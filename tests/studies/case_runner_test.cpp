@@ -70,6 +70,25 @@ TEST_F(CaseRunners, TellOfACaseBeforeItIsLetGo) {
   }
 }
 
+// Truth of few rays, and a frame that light fills: what `render` would say of the case.
+TEST_F(CaseRunners, WarnOfTruthAndFramesAsRenderDoes) {
+  auto const cases = plan(R"(base = "base.toml"
+[axes]
+"medium.field" = [{ label = "wave", kind = "sinusoid", amplitude_kg_m3 = 0.02, wavelength_mm = 2.0 }]
+"render.method" = ["rays"]
+"camera.exposure" = [2000.0, 60000.0]
+)");
+  ASSERT_EQ(cases.size(), 2u);
+  CaseRunner one = runner(Sharing::yes);
+  CaseResult const first = one.run(cases[0]), second = one.run(cases[1]);
+  ASSERT_EQ(first.error + second.error, "");
+  std::vector<std::string> const &dim = first.warnings, &bright = second.warnings;
+  for (auto const& warnings : {dim, bright})
+    EXPECT_THAT(warnings, testing::Contains(testing::HasSubstr("truth: displacements are known to")));
+  EXPECT_THAT(dim, testing::Not(testing::Contains(testing::HasSubstr("saturated"))));
+  EXPECT_THAT(bright, testing::Contains(testing::HasSubstr("saturated")));
+}
+
 // What "auto" comes to depends on the camera's grey levels, and the frames on what it comes to.
 TEST_F(CaseRunners, PlannedRaysAreSharedWhereTheyAreTheSame) {
   auto const cases = plan(R"(base = "base.toml"
