@@ -176,7 +176,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
                              return prepare_frames(frames, settings.preparation);
                            }};
   Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
-  measurement.field.verdict = "not judged: an ensemble of pairs";
+  judge_ensemble(measurement.field, pairs, settings);
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }

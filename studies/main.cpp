@@ -149,6 +149,8 @@ int guarded(int argc, char** argv) {
     return bad_input;
   } catch (Interrupted const& error) {
     return fail("", error.what(), interrupted_by_user);
+  } catch (NoValidVector const& error) {
+    return fail("", error.what(), check_missed);
   } catch (DeviceError const& error) {
     return fail("device error: ", error.what(), device_error);
   } catch (std::exception const& error) {

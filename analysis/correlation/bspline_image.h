@@ -82,6 +82,7 @@ GLADSTONE_HD void interpolation_weights(T t, T* w) {
 
 /// Index of the pixel that reflection at the centres of the outermost pixels puts at i.
 GLADSTONE_HD inline int mirrored_index(int i, int count) {
+  if (i >= 0 && i < count) return i;
   if (count == 1) return 0;
   int const period = 2 * (count - 1);
   int const k = (i < 0 ? -i : i) % period;
@@ -97,7 +98,8 @@ inline std::vector<double> bspline_poles(int degree) {
 }
 
 /// That filter as a sum over neighbours, for devices where recursion is slow: coefficient i is the sum over k of
-/// tap |k| times sample i + k. @return the taps from k = 0 on, down to 1e-14 of the first
+/// tap |k| times sample i + k. @return the taps from k = 0 on, down to 1e-10 of the first, below what a float
+/// tells
 inline std::vector<double> bspline_taps(int degree) {
   constexpr int most = 48;
   std::vector<double> taps(most, 0.0);
@@ -110,7 +112,7 @@ inline std::vector<double> bspline_taps(int degree) {
       for (int m = -most + 1; m < most; ++m) next[k] += gain * std::pow(z, std::abs(k - m)) * taps[std::abs(m)];
     taps = next;
   }
-  while (std::abs(taps.back()) < 1e-14 * taps.front()) taps.pop_back();
+  while (std::abs(taps.back()) < 1e-10 * taps.front()) taps.pop_back();
   return taps;
 }
 

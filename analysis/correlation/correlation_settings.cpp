@@ -44,6 +44,7 @@ CorrelationSettings read_correlation_settings(SetupTable table) {
       table.number_or_word("least_peak_ratio", {{}, "off"}, {"off"}, Range::at_least(1.0)).number;
   settings.least_correlation =
       table.number_or_word("least_correlation", {{}, "off"}, {"off"}, Range::at_least(0.0, 1.0)).number;
+  settings.replace = table.boolean("replace", settings.replace);
   settings.preparation = read_frame_preparation(table);
   return settings;
 }

@@ -27,6 +27,7 @@ struct CorrelationSettings {
   std::optional<double> displacement_threshold = 2.0;
   std::optional<double> least_peak_ratio;   ///< below it a vector of the last pass is spurious, >= 1; none: no test
   std::optional<double> least_correlation;  ///< the same for the coefficient of its peak, 0 .. 1
+  bool replace = true;                      ///< spurious vectors of the last pass; else they are invalid
   /// How sigma_px is estimated: a name of uncertainty_methods(), or "none".
   std::string uncertainty = "none";
   /// Peak ratio from which a vector of the first pass may differ from its neighbours (is_trusted()); none: no vector

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "analysis/correlation/correlation_methods.h"
@@ -23,6 +25,7 @@ constexpr double deviations = 2.0;
 /// Part of a measurement from which it is looked into, and from which it is spoken of.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
+constexpr double too_many_failed = 0.2;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Fewest windows that can agree with their neighbours: one and those by which it is judged.
@@ -32,6 +35,11 @@ char const* const correlates = "correlates";
 
 bool has_signal(VectorReason reason) {
   return reason != VectorReason::masked && reason != VectorReason::outside && reason != VectorReason::no_signal;
+}
+
+bool is_of_a_test(VectorReason reason) {
+  return reason == VectorReason::other_peak || reason == VectorReason::neighbours ||
+         reason == VectorReason::not_replaced;
 }
 
 /// Vectors with a signal, and parts of them.
@@ -45,6 +53,7 @@ struct Tally {
       compared += std::isfinite(field.correlation[i]);
       uncorrelated += field.reason[i] == VectorReason::uncorrelated;
       beyond += field.reason[i] == VectorReason::beyond_limit;
+      failed += is_of_a_test(field.reason[i]);
       ambiguous += field.ambiguous[i] != Ambiguity::none;
       doubtful += field.ambiguous[i] != Ambiguity::none || field.reason[i] != VectorReason::measured;
     }
@@ -55,7 +64,7 @@ struct Tally {
   }
   std::size_t known = 0;     ///< neither masked nor outside the frames
   std::size_t compared = 0;  ///< with a correlation coefficient
-  std::size_t signal = 0, uncorrelated = 0, beyond = 0, ambiguous = 0, doubtful = 0;
+  std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, ambiguous = 0, doubtful = 0;
 };
 
 bool same_bits(Image<double> const& a, Image<double> const& b) {
@@ -129,6 +138,26 @@ std::string beyond_text(Tally const& tally, Reach const& reach) {
       100.0 * tally.part(tally.beyond), reach.what, reach.remedy);
 }
 
+std::string failed_text(DisplacementField const& field, Tally const& tally, CorrelationSettings const& settings) {
+  struct Test {
+    FailedTest test;
+    char const* name;
+  };
+  constexpr std::array tests{Test{FailedTest::median, "median"}, Test{FailedTest::displacement, "whole displacement"},
+                             Test{FailedTest::peak_ratio, "peak ratio"}, Test{FailedTest::correlation, "correlation"}};
+  std::string by_test;
+  for (auto const& [test, name] : tests) {
+    auto const count = static_cast<std::size_t>(std::count(field.failed.begin(), field.failed.end(), test));
+    if (count > 0)
+      by_test += fmt::format("{}{} {:.0f} %", by_test.empty() ? "" : ", ", name, 100.0 * tally.part(count));
+  }
+  return fmt::format("{:.0f} % of the vectors failed a test ({}), and {}; look at the frames and use larger windows{}",
+                     100.0 * tally.part(tally.failed), by_test,
+                     settings.replace ? "are replaced: by another peak or by their neighbours" : "are invalid",
+                     settings.replace ? ", or set correlate.replace = false to leave these vectors out"
+                                      : ", or allow more in the test");
+}
+
 }  // namespace
 
 void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings) {
@@ -160,6 +189,7 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
     field.displacement_px[i] = {nan, nan};
     field.status[i] = VectorStatus::invalid;
     field.reason[i] = VectorReason::uncorrelated;
+    if (!field.failed.empty()) field.failed[i] = FailedTest::none;
   }
 }
 
@@ -174,12 +204,16 @@ std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& s
   return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" leaves vectors that disagree";
 }
 
-}  // namespace
+/// What is looked into where vectors alone do not tell.
+struct Evidence {
+  FramePair const& frames;  ///< of an ensemble the first pair
+  std::function<bool()> same_pictures;
+  std::function<DisplacementField()> chance;
+};
 
-void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
-                CorrelationSettings const& settings) {
-  name_windows_outside(field, frames, settings);
-  if (stands_still(field) && same_bits(frames.reference(), frames.flow())) {
+void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
+  name_windows_outside(field, evidence.frames, settings);
+  if (stands_still(field) && evidence.same_pictures()) {
     field.warnings.emplace_back(
         "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
     field.verdict = "not judged: both frames are the same picture";
@@ -191,7 +225,7 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
   field.verdict = !why_not.empty() ? "not judged: " + why_not : any ? correlates : "does not correlate";
   if (found.part(found.doubtful) < suspicious) return;
   Reach const reach(settings);
-  if (std::optional<PatternPeriod> const period = pattern_period(frames.reference(), settings)) {
+  if (std::optional<PatternPeriod> const period = pattern_period(evidence.frames.reference(), settings)) {
     if (found.part(found.ambiguous) >= worth_a_warning)
       field.warnings.push_back(fmt::format(
           "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within {}: only a displacement "
@@ -202,7 +236,7 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
   } else if (found.compared > 0) {
     // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
-    leave_out_chance(field, correlator.correlate(frames.reference(), upside_down(frames.flow())), settings);
+    leave_out_chance(field, evidence.chance(), settings);
   }
   Tally const left(field);
   if (field.verdict == correlates && left.nothing_left()) field.verdict = "does not correlate";
@@ -210,6 +244,33 @@ void judge_pair(DisplacementField& field, FramePair const& frames, Correlator co
   if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
     field.warnings.push_back(beyond_text(left, reach));
+  if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left, settings));
+}
+
+}  // namespace
+
+void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
+                CorrelationSettings const& settings) {
+  judge(field,
+        {frames, [&] { return same_bits(frames.reference(), frames.flow()); },
+         [&] { return correlator.correlate(frames.reference(), upside_down(frames.flow())); }},
+        settings);
+}
+
+void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings) {
+  auto const all_same = [&] {
+    for (std::size_t k = 0; k < pairs.size; ++k) {
+      HostFrames const frames = pairs.frames(k);
+      if (!same_bits(frames.reference(), frames.flow())) return false;
+    }
+    return true;
+  };
+  auto const turned = [&](std::size_t k) {
+    HostFrames const frames = pairs.frames(k);
+    return HostFrames(frames.reference(), upside_down(frames.flow()));
+  };
+  auto const chance = [&] { return correlate_ensemble({pairs.size, turned}, settings); };
+  judge(field, {pairs.frames(0), all_same, chance}, settings);
 }
 
 }  // namespace gladstone

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/correlation/correlator.h"
+#include "analysis/correlation/ensemble.h"
 
 /// What a measurement as a whole is worth.
 namespace gladstone {
@@ -18,7 +19,8 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 
 /// Judges a pair by its vectors: calls those uncorrelated that cannot be told from chance, and puts into the field's
 /// warnings, each as "problem (why); suggestion", what the user should know: frames that are the same, that do not
-/// correlate, a pattern whose period makes displacements ambiguous within the search range. A pair whose vectors
+/// correlate, a pattern whose period makes displacements ambiguous within the search range, a fifth of the vectors or
+/// more that are not as measured because they failed a test. A pair whose vectors
 /// agree (at most one in twenty replaced, invalid or ambiguous) gives no reason to look further, and takes no time.
 /// The field's verdict is "correlates" then, and wherever some vectors are more than chance; "does not correlate" where
 /// none is left; "not judged: " and why where vectors cannot tell: one picture twice, no signal, everything masked, a
@@ -28,5 +30,9 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 /// @throws as Correlator::correlate
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings);
+
+/// The same for the vectors of an ensemble. Chance is what the ensemble gives whose flow frames are turned upside down.
+/// @param field what correlate_ensemble() gave for the pairs
+void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings);
 
 }  // namespace gladstone

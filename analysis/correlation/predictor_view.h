@@ -41,11 +41,11 @@ GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Val
   return value(edge) + (static_cast<double>(steps) / base) * (value(edge) - value(inner));
 }
 
-/// Node (column, row) of a grid, or of its straight continuation. @param nodes grid.size() of them
-GLADSTONE_HD inline Vec2d extended_node(InterrogationGrid const& grid, Vec2d const* nodes, int column, int row) {
+/// Node (column, row) of a grid, or of its straight continuation. @param node(k) the k-th of its grid.size()
+template <class Node>
+GLADSTONE_HD Vec2d extended_node(InterrogationGrid const& grid, Node const& node, int column, int row) {
   return extended(grid, row, grid.rows, [&](int j) {
-    return extended(grid, column, grid.columns,
-                    [&](int i) { return nodes[static_cast<long long>(j) * grid.columns + i]; });
+    return extended(grid, column, grid.columns, [&](int i) { return node(j * grid.columns + i); });
   });
 }
 

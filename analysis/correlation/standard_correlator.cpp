@@ -11,7 +11,6 @@
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/ensemble.h"
-#include "analysis/correlation/outside_windows.h"
 #include "analysis/correlation/plane_sums.h"
 #include "analysis/correlation/window_deformation.h"
 #include "render/base/contracts.h"
@@ -129,7 +128,8 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
                  settings.max_displacement_px.value_or(std::numeric_limits<double>::infinity()),
                  settings.least_peak_ratio.value_or(0.0),
                  settings.least_correlation.value_or(0.0),
-                 settings.displacement_threshold.value_or(std::numeric_limits<double>::infinity())},
+                 settings.displacement_threshold.value_or(std::numeric_limits<double>::infinity()),
+                 settings.replace},
       weighting_(window_weighting(settings)),
       spline_degree_(settings.deformation == "sinc"    ? windowed_sinc
                      : settings.deformation == "cubic" ? 3
@@ -150,6 +150,7 @@ ValidationRule CorrelationSchedule::rule(int pass) const {
   if (!is_last(pass)) {
     rule.epsilon_px = std::max(rule.epsilon_px, 0.5);
     rule.least_peak_ratio = rule.least_correlation = 0.0;
+    rule.replaces = true;
   }
   if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
   // without a predictor the whole is what the pass found
@@ -189,6 +190,7 @@ DisplacementField displacement_field(InterrogationGrid const& grid, std::span<Me
     field.raw_px.push_back(vectors[i].raw);
     field.correlation.push_back(vectors[i].correlation);
     field.reason.push_back(vectors[i].reason);
+    field.failed.push_back(vectors[i].failed);
     field.ambiguous.push_back(vectors[i].ambiguous);
   }
   return field;
@@ -205,9 +207,7 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
     throw DataError("ensemble", fmt::format("correlate.uncertainty = \"{}\" is of single pairs (it compares matched "
                                             "frames); use \"none\"",
                                             settings.uncertainty));
-  DisplacementField field = StandardCorrelator(settings).correlate_all(pairs);
-  name_windows_outside(field, pairs.frames(0), settings);
-  return field;
+  return StandardCorrelator(settings).correlate_all(pairs);
 }
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {

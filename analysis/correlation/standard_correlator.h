@@ -110,6 +110,7 @@ struct MeasuredVector {
   double correlation;
   VectorStatus status;
   VectorReason reason;
+  FailedTest failed;
   Ambiguity ambiguous;
 };
 
@@ -123,6 +124,7 @@ GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, Win
   result.correlation = measured ? (vector.correlation < 1.0 ? vector.correlation : 1.0) : nan;
   result.status = vector.status;
   result.reason = vector.reason;
+  result.failed = vector.failed;
   result.ambiguous = measured ? vector.ambiguous : Ambiguity::none;
   return result;
 }

@@ -12,15 +12,16 @@ constexpr std::size_t vectors_per_chunk = 256;
 
 void validate_by(Judgement by, std::span<GridVector> vectors, int columns, ValidationRule const& rule) {
   int const count = static_cast<int>(vectors.size()), rows = count / columns;
-  std::vector<char> doubtful(vectors.size());
+  std::vector<FailedTest> failed(vectors.size());
   parallel_chunks(vectors.size(), vectors_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      doubtful[i] = is_spurious(vectors.data(), static_cast<int>(i), columns, rows, rule, by);
+      failed[i] = failed_test(vectors.data(), static_cast<int>(i), columns, rows, rule, by);
   });
   std::vector<int> spurious;
   for (int i = 0; i < count; ++i)
-    if (doubtful[i]) spurious.push_back(i);
-  for (int const i : spurious) take_out(vectors[i]);
+    if (failed[i] != FailedTest::none) spurious.push_back(i);
+  for (int const i : spurious) take_out(vectors[i], failed[i]);
+  if (!rule.replaces) return;
 
   // rounds from the rim of a spurious patch inwards; within a round only what was sound before counts
   while (!spurious.empty()) {

@@ -88,6 +88,7 @@ struct GridVector {
   Ambiguity ambiguous = Ambiguity::none;
   VectorStatus status = VectorStatus::invalid;
   VectorReason reason = VectorReason::no_signal;
+  FailedTest failed = FailedTest::none;
 };
 
 GLADSTONE_HD inline bool is_measured(GridVector const& vector) { return vector.raw.x == vector.raw.x; }
@@ -102,6 +103,7 @@ struct ValidationRule {
   double least_correlation = 0.0;  ///< the same for the coefficient of its peak [1]
   /// Of the residual of whole displacements (is_unlike()); infinite: no test.
   double displacement_threshold = std::numeric_limits<double>::infinity();
+  bool replaces = true;  ///< spurious vectors; else they are invalid
 };
 
 /// Most by which a trusted window may differ from its neighbours' median [px]. Windows that overlap share dots: did
@@ -243,26 +245,25 @@ GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int r
   return vectors[i].correlation < as_correlated * correlation.median().x;
 }
 
-/// Whether vector i is valid but its peak is too low or too much like the next, or it does not agree with its valid
-/// neighbours (validate_vectors).
-GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
-                                     ValidationRule const& rule) {
-  GridVector const& vector = vectors[i];
-  if (vector.status != VectorStatus::valid) return false;
-  if (vector.peak_ratio < rule.least_peak_ratio || vector.correlation < rule.least_correlation) return true;
-  Surroundings const around(vectors, i, columns, rows, [&](int k) { return vectors[k].status == VectorStatus::valid; });
-  return around.increment.count >= fewest_neighbours && !agrees(vector.displacement, vector.predictor, around, rule) &&
-         !is_trusted(vector, around.increment, rule);
-}
-
 /// What vectors are judged by, one after the other: those that the first takes out no longer speak for others.
 enum class Judgement { increments, displacements };
 
-GLADSTONE_HD inline bool is_spurious(GridVector const* vectors, int i, int columns, int rows,
-                                     ValidationRule const& rule, Judgement by) {
-  if (by == Judgement::increments) return is_spurious(vectors, i, columns, rows, rule);
-  return vectors[i].status == VectorStatus::valid &&
-         is_unlike(vectors, i, columns, rows, rule, [&](int k) { return vectors[k].status == VectorStatus::valid; });
+/// The test that a valid vector i fails: its peak is too low or too much like the next, or it does not agree with its
+/// valid neighbours (validate_vectors).
+GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int columns, int rows,
+                                           ValidationRule const& rule, Judgement by) {
+  GridVector const& vector = vectors[i];
+  auto const valid = [&](int k) { return vectors[k].status == VectorStatus::valid; };
+  if (!valid(i)) return FailedTest::none;
+  if (by == Judgement::displacements)
+    return is_unlike(vectors, i, columns, rows, rule, valid) ? FailedTest::displacement : FailedTest::none;
+  if (vector.peak_ratio < rule.least_peak_ratio) return FailedTest::peak_ratio;
+  if (vector.correlation < rule.least_correlation) return FailedTest::correlation;
+  Surroundings const around(vectors, i, columns, rows, valid);
+  bool const stands = around.increment.count < fewest_neighbours ||
+                      agrees(vector.displacement, vector.predictor, around, rule) ||
+                      is_trusted(vector, around.increment, rule);
+  return stands ? FailedTest::none : FailedTest::median;
 }
 
 /// The judgements that a rule asks for.
@@ -304,15 +305,17 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
 }
 
 /// Takes a spurious vector out, and puts what replaces it in its place. The limit binds replacements, too.
-GLADSTONE_HD inline void take_out(GridVector& vector) {
+GLADSTONE_HD inline void take_out(GridVector& vector, FailedTest failed) {
   vector.status = VectorStatus::invalid;
-  vector.reason = VectorReason::no_neighbours;
+  vector.reason = VectorReason::not_replaced;
+  vector.failed = failed;
 }
 GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by, ValidationRule const& rule) {
   bool const allowed = is_within(by.value, rule.limit_px);
   vector.displacement = by.value;
   vector.status = allowed ? VectorStatus::replaced : VectorStatus::invalid;
   vector.reason = allowed ? by.reason : VectorReason::beyond_limit;
+  if (!allowed) vector.failed = FailedTest::none;
 }
 
 /// Finds what fills the unknown node i from the known around it. @return false where there is none
@@ -333,12 +336,12 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, doub
 
 /// Finds spurious vectors among the valid ones of a grid, row by row, and replaces them: by the next correlation peak
 /// that agrees with the sound neighbours, else by their median (status replaced); where too few neighbours are sound,
-/// or the median is beyond the limit, invalid. What is judged is what a pass adds to its predictor: there steep
-/// gradients are already taken off; at the rim, where the predictor is continued from further inside, also the sum
-/// (agrees()), and the median there is that of the displacements less their plane. A vector with fewer than three
-/// neighbours is left as it is, and so is one whose window is_trusted(): where structures are as fine as the grid, the
-/// median cuts their crests off. Then, where the rule says so, whole displacements are judged alike (is_unlike()). The
-/// result does not depend on any order.
+/// the median is beyond the limit, or the rule says not to replace, invalid. What is judged is what a pass adds to its
+/// predictor: there steep gradients are already taken off; at the rim, where the predictor is continued from further
+/// inside, also the sum (agrees()), and the median there is that of the displacements less their plane. A vector with
+/// fewer than three neighbours is left as it is, and so is one whose window is_trusted(): where structures are as fine
+/// as the grid, the median cuts their crests off. Then, where the rule says so, whole displacements are judged alike
+/// (is_unlike()). The result does not depend on any order.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Displacement at every node, for a predictor: masked and invalid ones are filled from their neighbours' medians, from

@@ -132,7 +132,8 @@ DensePredictor::DensePredictor(InterrogationGrid const& grid, std::span<Vec2d co
   nodes_.resize(static_cast<std::size_t>(columns_) * rows_);
   for (int j = 0; j < rows_; ++j)
     for (int i = 0; i < columns_; ++i)
-      nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended_node(grid, nodes.data(), i - ghosts_, j - ghosts_);
+      nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended_node(
+          grid, [&](int k) { return nodes[k]; }, i - ghosts_, j - ghosts_);
   for (int i = 0; i < image_columns; ++i) {
     PredictorView::Taps const x = view().taps(i, columns_);
     column_first_.push_back(x.first);

@@ -69,6 +69,7 @@ void take_vectors(DisplacementField& field, std::vector<std::size_t> const& orde
   reorder(field.raw_px, order);
   reorder(field.correlation, order);
   reorder(field.reason, order);
+  reorder(field.failed, order);
   reorder(field.ambiguous, order);
   field.columns = field.rows = 0;
 }
@@ -115,6 +116,7 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   auto const raw = [&](std::size_t i) { return field.raw_px.empty() ? field.displacement_px[i] : field.raw_px[i]; };
   auto const correlation = [&](std::size_t i) { return field.correlation.empty() ? nan : field.correlation[i]; };
   auto const reason = [&](std::size_t i) { return field.reason.empty() ? 0 : static_cast<int>(field.reason[i]); };
+  auto const failed = [&](std::size_t i) { return field.failed.empty() ? 0 : static_cast<int>(field.failed[i]); };
   auto const ambiguous = [&](std::size_t i) {
     return !field.ambiguous.empty() && field.ambiguous[i] != Ambiguity::none ? 1 : 0;
   };
@@ -165,8 +167,9 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   write("/correlation", "1", "correlation coefficient of the peak that u_raw_px, v_raw_px is", correlation);
   write_codes("/reason",
               "0 as measured, 1 replaced by another peak, 2 replaced by the neighbours' median, 3 masked, 4 no signal, "
-              "5 spurious with too few sound neighbours, 6 no peak in range, 7 uncorrelated, 8 moved out of the frames",
+              "5 spurious and not replaced, 6 no peak in range, 7 uncorrelated, 8 moved out of the frames",
               reason);
+  write_codes("/failed_test", "0 none, 1 median, 2 whole displacement, 3 peak ratio, 4 correlation", failed);
   write_codes("/ambiguous", "1 where another displacement fits (nearly) as well", ambiguous);
   if (!field.verdict.empty()) file.attribute("/", "verdict", field.verdict);
   file.attribute("/", "warnings", fmt::format("{}", fmt::join(field.warnings, "\n")));

@@ -113,6 +113,7 @@ void measure_peaks(WindowJob const& job, WindowPeaks const* peaks, bool nine_poi
 /// A vector or node that is being replaced.
 struct Replacement {
   int index;
+  FailedTest failed;
   enum State : int { open, found, done } state;
   VectorReplacement by;
 };
@@ -135,9 +136,9 @@ void finish(WindowCorrelation const* windows, GridVector const* vectors, Interro
 /// The vectors as the next pass' predictor: filled, smoothed, continued past the image.
 /// @param nodes, known, list, count scratch: a place for every vector
 /// @param smoothing CorrelationSchedule::smoothing()
-/// @param smoothed  the same @param extended predictor.columns * predictor.rows, where predictor.nodes points
+/// @param extended  predictor.columns * predictor.rows, where predictor.nodes points
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
-                    double smoothing, Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended);
+                    double smoothing, PredictorView const& predictor, Vec2d* extended);
 /// Deforms the original pair.
 void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& flow, int degree,
                  DevicePair const& original, PredictorView const& predictor, DevicePair const& deformed);

@@ -105,7 +105,6 @@ class CorrelationPlan {
         *of_vectors = DeviceArray<Vec2d>(passes_.back().grid.size(), purpose);
     if (deforms()) {
       nodes_ = DeviceArray<Vec2d>(most_vectors, purpose);
-      smoothed_ = DeviceArray<Vec2d>(most_vectors, purpose);
       known_ = DeviceArray<char>(most_vectors, purpose);
       extended_ = DeviceArray<Vec2d>(most_nodes, purpose);
     }
@@ -123,6 +122,12 @@ class CorrelationPlan {
   DeviceImage uploaded(int which) const { return {uploaded_[which].data(), columns_, rows_}; }
 
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) {
+    enqueue(reference, flow);
+    return download();
+  }
+
+  /// Queues all work up to the vectors, which stay on the device.
+  void enqueue(DeviceImage const& reference, DeviceImage const& flow) {
     if (!has_scratch_) make_scratch();  // last, since it takes what is left
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
     prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
@@ -148,7 +153,7 @@ class CorrelationPlan {
       deform_pair(spline[0], spline[1], schedule_.spline_degree(), original, predictor(last), deformed);
       estimate_sigma_of(passes_[last], deformed);
     }
-    return download(passes_.back().grid);
+    finish(windows_.data(), vectors_.data(), passes_.back().grid, measured_.data());
   }
 
  private:
@@ -222,7 +227,7 @@ class CorrelationPlan {
 
   void make_predictor_of(int pass) {
     make_predictor(vectors_.data(), nodes_.data(), known_.data(), list_.data(), list_size_.data(),
-                   schedule_.smoothing(pass), smoothed_.data(), predictor(pass), extended_.data());
+                   schedule_.smoothing(pass), predictor(pass), extended_.data());
   }
 
   void estimate_sigma_of(Pass const& pass, DevicePair const& matched) {
@@ -258,8 +263,8 @@ class CorrelationPlan {
     measure_peaks(job, peaks_.data(), nine_points_, windows_.data());
   }
 
-  DisplacementField download(InterrogationGrid const& grid) {
-    finish(windows_.data(), vectors_.data(), grid, measured_.data());
+  DisplacementField download() {
+    InterrogationGrid const& grid = passes_.back().grid;
     std::vector<MeasuredVector> measured(grid.size());
     measured_.download(measured.data(), measured.size());
     DisplacementField field = displacement_field(grid, measured);
@@ -291,7 +296,7 @@ class CorrelationPlan {
   DeviceArray<MeasuredVector> measured_;
   DeviceArray<Replacement> list_;
   DeviceArray<int> list_size_{1, purpose};
-  DeviceArray<Vec2d> nodes_, smoothed_, extended_;
+  DeviceArray<Vec2d> nodes_, extended_;
   DeviceArray<char> known_;
   DeviceArray<Vec2d> variances_, sigma_;
   WindowScratch scratch_, scratch_of_sigma_;
@@ -336,6 +341,12 @@ DisplacementField CudaCorrelator::correlate(DeviceImage const& reference, Device
   check_image_sizes(state_->settings, reference.columns, reference.rows, flow.columns, flow.rows);
   std::lock_guard const lock(state_->busy);
   return state_->plan_for(reference.columns, reference.rows).correlate(reference, flow);
+}
+
+void CudaCorrelator::enqueue(DeviceImage const& reference, DeviceImage const& flow) const {
+  check_image_sizes(state_->settings, reference.columns, reference.rows, flow.columns, flow.rows);
+  std::lock_guard const lock(state_->busy);
+  state_->plan_for(reference.columns, reference.rows).enqueue(reference, flow);
 }
 
 }  // namespace gladstone::cuda

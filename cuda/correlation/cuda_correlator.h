@@ -22,6 +22,8 @@ class CudaCorrelator final : public Correlator {
   DisplacementField correlate_pair(FramePair const& frames) const override;
   /// The same for images that are on the device already, complete on the default stream.
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
+  /// Queues the same work and returns before it is done: the vectors stay on the device, until the next pair's.
+  void enqueue(DeviceImage const& reference, DeviceImage const& flow) const;
 
  private:
   struct State;

@@ -31,13 +31,6 @@ __global__ void deform_pixels(BsplineView<float> reference, BsplineView<float> f
       pixel.available > 0.0f ? GreyPair{pixel.reference, pixel.flow} : GreyPair{unknown, unknown};
 }
 
-__global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, PredictorView predictor, Vec2d* extended) {
-  int const k = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (k >= predictor.columns * predictor.rows) return;
-  extended[k] =
-      extended_node(grid, nodes, k % predictor.columns - predictor.ghosts, k / predictor.columns - predictor.ghosts);
-}
-
 /// Node k of smoothed_displacement.
 __device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows, double part) {
   int const column = k % columns, row = k / columns;
@@ -47,9 +40,14 @@ __device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows,
   return row > 0 && row + 1 < rows ? smoothed(across(k - columns), across(k), across(k + columns), part) : across(k);
 }
 
-__global__ void smooth_nodes(Vec2d const* nodes, int columns, int rows, double part, Vec2d* out) {
+/// Smooths nodes and continues them beyond the grid.
+__global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, double part, PredictorView predictor,
+                             Vec2d* extended) {
   int const k = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (k < columns * rows) out[k] = smoothed_node(nodes, k, columns, rows, part);
+  if (k >= predictor.columns * predictor.rows) return;
+  extended[k] = extended_node(
+      grid, [&](int node) { return smoothed_node(nodes, node, grid.columns, grid.rows, part); },
+      k % predictor.columns - predictor.ghosts, k / predictor.columns - predictor.ghosts);
 }
 
 /// Takes over the sound vectors and lists the others.
@@ -60,7 +58,7 @@ __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, 
   bool const sound = is_sound(vectors[i].status);
   nodes[i] = sound ? vectors[i].displacement : Vec2d{};
   known[i] = sound;
-  if (!sound) list[atomicAdd(count, 1)] = {i, Replacement::open, {}};
+  if (!sound) list[atomicAdd(count, 1)] = {i, FailedTest::none, Replacement::open, {}};
 }
 
 /// Fills the listed nodes from the rim inwards; within a round only what was known before counts. One block.
@@ -94,7 +92,7 @@ unsigned blocks(int count) { return static_cast<unsigned>((count + threads - 1) 
 }  // namespace
 
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
-                    double smoothing, Vec2d* smoothed, PredictorView const& predictor, Vec2d* extended) {
+                    double smoothing, PredictorView const& predictor, Vec2d* extended) {
   InterrogationGrid const& grid = predictor.grid;
   int const size = static_cast<int>(grid.size());
   check(cudaMemsetAsync(count, 0, sizeof(int)), "cudaMemsetAsync");
@@ -102,9 +100,7 @@ void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replac
   check_launch("gather_nodes");
   fill_nodes<<<1, threads_of_rounds>>>(nodes, known, grid.columns, grid.rows, list, count);
   check_launch("fill_nodes");
-  smooth_nodes<<<blocks(size), threads>>>(nodes, grid.columns, grid.rows, smoothing, smoothed);
-  check_launch("smooth_nodes");
-  extend_nodes<<<blocks(predictor.columns * predictor.rows), threads>>>(grid, smoothed, predictor, extended);
+  extend_nodes<<<blocks(predictor.columns * predictor.rows), threads>>>(grid, nodes, smoothing, predictor, extended);
   check_launch("extend_nodes");
 }
 

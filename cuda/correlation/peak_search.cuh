@@ -72,6 +72,8 @@ struct LanePeaks {
   RankedPeak first, second;
   int count = 0;  ///< all of them
 
+  /// Whether one that comes later, of at most that height, could be one of the two.
+  __device__ bool could_enter(float height) const { return height > __uint_as_float(second.height); }
   __device__ void add(RankedPeak const& peak) {
     bool const above_first = peak.is_above(first), above_second = peak.is_above(second);
     second = above_first ? first : (above_second ? peak : second);
@@ -142,11 +144,21 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
       patch.value[row][4] = middle.w;
       patch.value[row][5] = line[4];
     }
+    unsigned maxima = 0;
 #pragma unroll
     for (int k = 0; k < 4; ++k) {
       float const height = patch(k, 0);
-      if (x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height))
-        own.add(ranked_peak(refined_peak(patch, k, 0, height).height, x + k, y));
+      bool const found = x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height);
+      maxima |= static_cast<unsigned>(found) << k;
+    }
+    // one of each lane together: of four side by side at most two are maxima, and to refine them takes longest
+    for (; maxima != 0; maxima &= maxima - 1) {
+      int const dx = x + __ffs(static_cast<int>(maxima)) - 1;
+      float const height = plane(dx, y);
+      if (own.could_enter(static_cast<float>(largest_rise) * height))
+        own.add(ranked_peak(refined_peak(plane, dx, y, height).height, dx, y));
+      else
+        ++own.count;
     }
     y += rows_per_step;
     group += groups_per_step;

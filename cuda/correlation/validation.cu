@@ -20,8 +20,9 @@ __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid
 __global__ void find_spurious(GridVector const* vectors, int columns, int rows, ValidationRule rule, Judgement by,
                               Replacement* list, int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (i < columns * rows && is_spurious(vectors, i, columns, rows, rule, by))
-    list[atomicAdd(count, 1)] = {i, Replacement::open, {}};
+  if (i >= columns * rows) return;
+  FailedTest const failed = failed_test(vectors, i, columns, rows, rule, by);
+  if (failed != FailedTest::none) list[atomicAdd(count, 1)] = {i, failed, Replacement::open, {}};
 }
 
 /// Rounds from the rim of a spurious patch inwards; within a round only what was sound before counts, so that the order
@@ -30,8 +31,8 @@ __global__ void __launch_bounds__(threads_of_rounds)
     replace_spurious(GridVector* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
                      int const* count) {
   int const first = static_cast<int>(threadIdx.x), step = static_cast<int>(blockDim.x);
-  for (int n = first; n < *count; n += step) take_out(vectors[list[n].index]);
-  int progress = __syncthreads_or(*count > 0);
+  for (int n = first; n < *count; n += step) take_out(vectors[list[n].index], list[n].failed);
+  int progress = __syncthreads_or(rule.replaces && *count > 0);
   while (progress) {
     progress = 0;
     for (int n = first; n < *count; n += step) {

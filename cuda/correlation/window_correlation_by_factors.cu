@@ -13,7 +13,7 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int most_warps = 32;
-constexpr int most_searching = 8;
+constexpr int most_searching = 10;  // a warp joins what they find, three peaks each
 
 /// What the threads of a block share, before the window.
 template <int size>
@@ -122,15 +122,8 @@ __global__ void __launch_bounds__(Transform::threads)
     return z;
   });
   block_sums(energy, own.energy);
-  if (thread == 0)
-    own.scale = plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
   transform.columns_together(job.side);
   __syncthreads();
-  double const scale = own.scale;
-  if (scale == 0.0) {
-    if (thread == 0) leave_nothing(WindowCorrelation::Outcome::no_signal, result);
-    return;
-  }
   transform.rows_apart(job.side);
   __syncthreads();
   transform.rows_together();
@@ -150,19 +143,25 @@ __global__ void __launch_bounds__(Transform::threads)
 
   // a warp searches 32 blocks of four shifts at a time; few warps, since each ranks what it found
   int const blocks = (2 * radius + 1) * ((2 * radius + 4) / 4), warp = thread / 32;
-  int const searching = min((blocks + 63) / 64, warps < most_searching ? warps : most_searching);
+  int const searching = min((blocks + 63) / 64, warps <= most_searching ? warps - 1 : most_searching);
   int const rows_each = (2 * radius + searching) / searching;
   CentredPlane<Transform::plane_pitch> const plane{transform.centre(radius)};
   if (warp < searching) {
     int const begin = warp * rows_each - radius, end = min(begin + rows_each, radius + 1);
     HighestPeaks const highest = search_rows(plane, radius, begin, end);
     if (thread % 32 == 0) own.highest[warp] = highest;
+  } else if (thread == 32 * searching) {
+    own.scale = plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
   }
   __syncthreads();
-  if (warp == 0)
+  if (warp != 0) return;
+  double const scale = own.scale;
+  if (scale > 0.0)
     leave_peaks(plane, radius, own.highest, searching,
                 reinterpret_cast<PlanePeak<float>*>(transform.behind_plane(radius)), own.found,
                 phase_only ? 1.0 : scale, result);
+  else if (thread == 0)
+    leave_nothing(WindowCorrelation::Outcome::no_signal, result);
 }
 
 template <int outer, int inner, int threads>

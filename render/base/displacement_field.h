@@ -14,15 +14,24 @@ enum class VectorStatus : int { valid = 0, replaced = 1, masked = 2, invalid = 3
 
 /// How a vector came to be what it is; the numbers are those of vectors.h5 and vectors.csv.
 enum class VectorReason : int {
-  measured = 0,       ///< valid: as measured
-  other_peak = 1,     ///< replaced by another peak of its window, since it disagreed with its neighbours
-  neighbours = 2,     ///< replaced by its neighbours' median, since no peak agreed with them
-  masked = 3,         ///< half the window unknown
-  no_signal = 4,      ///< invalid: nothing in the window to correlate
-  no_neighbours = 5,  ///< invalid: disagreed with its neighbours, too few of which are sound to replace it
-  beyond_limit = 6,   ///< invalid: no peak within the search range, or the largest displacement that was allowed
-  uncorrelated = 7,   ///< invalid: no better than what windows give that have nothing in common
-  outside = 8,        ///< invalid: the displacement around takes half the window or more out of a frame
+  measured = 0,      ///< valid: as measured
+  other_peak = 1,    ///< replaced by another peak of its window, since it disagreed with its neighbours
+  neighbours = 2,    ///< replaced by its neighbours' median, since no peak agreed with them
+  masked = 3,        ///< half the window unknown
+  no_signal = 4,     ///< invalid: nothing in the window to correlate
+  not_replaced = 5,  ///< invalid: failed a test, and is not replaced or has too few sound neighbours for it
+  beyond_limit = 6,  ///< invalid: no peak within the search range, or the largest displacement that was allowed
+  uncorrelated = 7,  ///< invalid: no better than what windows give that have nothing in common
+  outside = 8,       ///< invalid: the displacement around takes half the window or more out of a frame
+};
+
+/// The test that a replaced vector, or one not_replaced, has failed; the numbers are those of vectors.h5.
+enum class FailedTest : std::uint8_t {
+  none = 0,
+  median = 1,        ///< what its pass added is unlike its neighbours', or the whole where some are missing
+  displacement = 2,  ///< the whole is, and it correlates worse
+  peak_ratio = 3,    ///< another peak is nearly as high
+  correlation = 4,   ///< its peak is low
 };
 
 /// Whether another displacement fits (nearly) as well as a measured one. Files say 0 or 1.
@@ -43,6 +52,7 @@ struct DisplacementField {
   std::vector<Vec2d> raw_px;         ///< before replacement; NaN where nothing was measured; empty: not known
   std::vector<double> correlation;   ///< coefficient of the peak that raw_px is, NaN as there; empty: not known
   std::vector<VectorReason> reason;  ///< empty: not known
+  std::vector<FailedTest> failed;    ///< empty: not known
   std::vector<Ambiguity> ambiguous;  ///< empty: not known
   int columns = 0;                   ///< vectors in a row of the interrogation grid, row by row; 0: scattered
   int rows = 0;

@@ -49,6 +49,12 @@ class DataError : public Error {
   std::string file_, message_;
 };
 
+/// Vectors none of which is valid. Exit code 1.
+class NoValidVector : public DataError {
+ public:
+  using DataError::DataError;
+};
+
 /// A file that takes more memory than there is: another moment or machine has more. Exit code 2.
 class MemoryError : public DataError {
  public:

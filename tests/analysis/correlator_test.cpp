@@ -484,7 +484,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
       "[correlate]\nwindow_px = [48, 24]\noverlap = 0.75\nmethod = \"scc\"\nsubpixel = \"gauss3\"\n"
       "weighting = \"uniform\"\ndeformation = \"cubic\"\nfinal_passes = 2\nmedian_threshold = 3\n"
       "median_epsilon_px = 0.3\ndisplacement_threshold = 2.5\nmax_displacement_px = 7.5\ntrusted_peak_ratio = 3\n"
-      "least_peak_ratio = 1.2\nleast_correlation = 0.4\nuncertainty = \"image_matching\"\n",
+      "least_peak_ratio = 1.2\nleast_correlation = 0.4\nuncertainty = \"image_matching\"\nreplace = false\n",
       "case.toml");
   CorrelationSettings const read = read_correlation_settings(document.root().table("correlate"));
   document.finish();
@@ -498,6 +498,7 @@ TEST(CorrelationSettings, ReadsEveryKey) {
   EXPECT_EQ(read.displacement_threshold, 2.5);
   EXPECT_EQ(read.least_peak_ratio, 1.2);
   EXPECT_EQ(read.least_correlation, 0.4);
+  EXPECT_FALSE(read.replace);
   EXPECT_EQ(read.uncertainty, "image_matching");
   EXPECT_EQ(read.max_displacement_px, 7.5);
   EXPECT_EQ(read.trusted_peak_ratio, 3.0);

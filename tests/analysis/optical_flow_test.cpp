@@ -97,6 +97,20 @@ TEST(EveryOpticalFlow, SaysWhatItDoesNotKnow) {
   }
 }
 
+TEST(EveryOpticalFlow, NamesSettingsThatItDoesNotHeed) {
+  ParticlePair const pair = render_particle_pair({.columns = 96, .rows = 96}, [](Vec2d) { return Vec2d{0.3, 0.1}; });
+  for (char const* method : flows) {
+    CorrelationSettings settings = by_flow(method);
+    EXPECT_TRUE(make_correlator(settings)->correlate(pair.reference, pair.flow).warnings.empty());
+    settings.subpixel = "gauss2d";
+    settings.least_peak_ratio = 1.2;
+    auto const warnings = make_correlator(settings)->correlate(pair.reference, pair.flow).warnings;
+    ASSERT_EQ(warnings.size(), 1u) << method;
+    EXPECT_NE(warnings[0].find("does not heed correlate.subpixel, correlate.least_peak_ratio ("), std::string::npos)
+        << warnings[0];
+  }
+}
+
 // Both frames by the same grey levels, of which few bright pixels (four in 131,072, one in 10,000 being 13) decide
 // nothing.
 TEST(InverseSearch, ScalesBothFramesTogether) {

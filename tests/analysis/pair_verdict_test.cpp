@@ -106,13 +106,68 @@ TEST(PairVerdict, SaysNothingOfFramesThatCorrelate) {
   }
 }
 
-// Few dots in much noise: one vector in three is replaced, which is looked into; but what is left is more than chance.
+// Few dots in much noise: one vector in eleven is replaced, which is looked into; but what is left is more than chance.
 TEST(PairVerdict, KeepsPoorVectorsThatAreMoreThanChance) {
   DisplacementField const field = judged(render_particle_pair(
       {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2)));
   EXPECT_GT(count(field, VectorReason::neighbours) + count(field, VectorReason::other_peak), field.size() / 20);
   EXPECT_LT(count(field, VectorReason::uncorrelated), field.size() / 10);
   EXPECT_THAT(field.warnings, IsEmpty());
+}
+
+// The same judged more strictly: a fifth is no measurement any more, whether it is replaced or left out.
+TEST(PairVerdict, TellsWhenAFifthFailsATest) {
+  ParticlePair const pair = render_particle_pair(
+      {.columns = 200, .rows = 200, .particles_per_px = 6.0 / 1024.0, .noise = 0.1}, everywhere(2.3, -0.2));
+  CorrelationSettings settings;
+  settings.least_peak_ratio = 2.0;
+  DisplacementField const filled = judged(pair, settings);
+  EXPECT_GT(count(filled, VectorReason::neighbours) + count(filled, VectorReason::other_peak), filled.size() / 5);
+  EXPECT_THAT(filled.warnings, ElementsAre(AllOf(HasSubstr("failed a test ("), HasSubstr("peak ratio "),
+                                                 HasSubstr("are replaced"), HasSubstr("correlate.replace = false"))));
+  settings.replace = false;
+  DisplacementField const field = judged(pair, settings);
+  EXPECT_EQ(std::count(field.status.begin(), field.status.end(), VectorStatus::replaced), 0);
+  EXPECT_GT(count(field, VectorReason::not_replaced), field.size() / 5);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    EXPECT_EQ(std::isnan(field.displacement_px[i].x), !field.counts(i)) << i;
+    EXPECT_EQ(field.failed[i] != FailedTest::none, field.reason[i] == VectorReason::not_replaced) << i;
+  }
+  EXPECT_THAT(field.warnings, ElementsAre(AllOf(HasSubstr("are invalid"), HasSubstr("allow more"))));
+}
+
+PairSequence repeated(std::size_t pairs, ParticleSettings const& settings, double flow_px, std::uint64_t other_seed) {
+  return {pairs, [=](std::size_t k) {
+            ParticleSettings one = settings;
+            one.seed += 2 * k;
+            Image<double> reference = render_particle_pair(one, everywhere(flow_px, 0.0)).reference;
+            one.seed += other_seed;
+            return HostFrames(std::move(reference), render_particle_pair(one, everywhere(flow_px, 0.0)).flow);
+          }};
+}
+
+// Six pairs of few dots in noise together; six whose frames have nothing in common; six that are one picture each.
+TEST(EnsembleVerdict, IsThatOfAllPairs) {
+  ParticleSettings const few{.columns = 200, .rows = 200, .particles_per_px = 4.0 / 1024.0, .noise = 0.1};
+  CorrelationSettings const settings = windows_of(32);
+  auto const verdict = [&](PairSequence const& pairs) {
+    DisplacementField field = correlate_ensemble(pairs, settings);
+    judge_ensemble(field, pairs, settings);
+    return field;
+  };
+  DisplacementField const good = verdict(repeated(6, few, 2.3, 0));
+  EXPECT_EQ(good.verdict, "correlates");
+  EXPECT_THAT(good.warnings, IsEmpty());
+  DisplacementField const strangers = verdict(repeated(6, few, 2.3, 1));
+  EXPECT_EQ(strangers.verdict, "does not correlate");
+  EXPECT_EQ(counting(strangers), 0u);
+  EXPECT_THAT(strangers.warnings, ElementsAre(HasSubstr("do not correlate")));
+  PairSequence const moving = repeated(6, few, 2.3, 0);
+  DisplacementField const still = verdict({6, [&](std::size_t k) {
+                                             Image<double> const frame = moving.frames(k).reference();
+                                             return HostFrames(frame, frame);
+                                           }});
+  EXPECT_THAT(still.verdict, HasSubstr("same picture"));
 }
 
 // Left half 0.4 px, right half 45 px: windows farther than their reach from the middle are either right or left out.

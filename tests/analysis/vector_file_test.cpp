@@ -65,7 +65,8 @@ DisplacementField small_grid() {
       field.status.push_back(static_cast<VectorStatus>((row * 3 + column) % 4));
       field.raw_px.push_back({1.0 / 7.0 + column, row == 0 ? nan : 2.0});
       field.correlation.push_back(0.9 - 0.1 * column);
-      field.reason.push_back(static_cast<VectorReason>(row * 3 + column + 2));
+      field.reason.push_back(static_cast<VectorReason>(row * 3 + column + 3));
+      field.failed.push_back(static_cast<FailedTest>(row * 3 + column == 5 ? 0 : row * 3 + column));
       field.ambiguous.push_back(column == 1 ? Ambiguity::here : Ambiguity::none);
     }
   }
@@ -111,6 +112,7 @@ TEST_F(VectorFiles, CsvComesBackExactly) {
 TEST_F(VectorFiles, Hdf5ComesBackExactly) {
   write_vectors(path("v.h5"), small_grid(), origin());
   VectorFile const back = read_vectors(path("v.h5"));
+  EXPECT_EQ(back.field.failed, small_grid().failed);
   EXPECT_FALSE(back.foreign);
   expect_equal(small_grid(), back.field);
 }
@@ -233,8 +235,8 @@ TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
               AllOf(HasSubstr("bad.csv:2"), HasSubstr("status")));
   EXPECT_THAT(
       problem("x_px,y_px,u_px,v_px,sigma_u_px,sigma_v_px,peak_ratio,status,u_raw_px,v_raw_px,correlation,reason,"
-              "ambiguous\n1,2,3,4,nan,nan,nan,0,3,4,0.5,8,0\n"),
-      AllOf(HasSubstr("bad.csv:2"), HasSubstr("reason = 8")));
+              "ambiguous\n1,2,3,4,nan,nan,nan,0,3,4,0.5,9,0\n"),
+      AllOf(HasSubstr("bad.csv:2"), HasSubstr("reason = 9")));
   EXPECT_THROW(read_vectors(path("absent.csv")), DataError);
   EXPECT_THROW(read_vectors(path("absent.h5")), DataError);
 }

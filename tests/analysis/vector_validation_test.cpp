@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 
 namespace gladstone {
@@ -137,7 +138,51 @@ TEST(NormalisedMedian, SaysWhereAReplacementIsFrom) {
   EXPECT_EQ(grid[33].reason, VectorReason::other_peak);
   EXPECT_EQ(grid[36].reason, VectorReason::neighbours);
   EXPECT_EQ(grid[34].reason, VectorReason::measured);
+  for (std::size_t i = 0; i < grid.size(); ++i)
+    EXPECT_EQ(grid[i].failed, i == 33 || i == 36 ? FailedTest::median : FailedTest::none) << i;
   for (std::size_t const i : {33, 36}) EXPECT_EQ(grid[i].raw, (Vec2d{9.0, 9.0})) << "as measured";
+}
+
+// Each vector fails the test that it is made for.
+TEST(ValidateVectors, SayWhichTestAVectorFailed) {
+  for (bool const replace : {true, false}) {
+    std::vector<GridVector> grid = smooth_grid(10, 8);
+    for (GridVector& vector : grid) {
+      vector.raw = vector.displacement;
+      vector.predictor = vector.displacement;
+      vector.correlation = 0.8;
+      vector.peak_ratio = 4.0;
+    }
+    std::map<std::size_t, FailedTest> const planted{{11, FailedTest::median},
+                                                    {17, FailedTest::displacement},
+                                                    {44, FailedTest::peak_ratio},
+                                                    {62, FailedTest::correlation}};
+    grid[11].displacement += Vec2d{3.0, 0.0};
+    grid[17].displacement += Vec2d{3.0, 0.0};
+    grid[17].predictor = grid[17].displacement;
+    grid[17].correlation = 0.5;
+    grid[44].peak_ratio = 1.1;
+    grid[62].correlation = 0.2;
+    ValidationRule rule;
+    rule.displacement_threshold = 2.0;
+    rule.trusted_ratio = std::numeric_limits<double>::infinity();
+    rule.least_peak_ratio = 1.2;
+    rule.least_correlation = 0.3;
+    rule.replaces = replace;
+    validate_vectors(grid, 10, rule);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      auto const found = planted.find(i);
+      bool const failed = found != planted.end();
+      EXPECT_EQ(grid[i].failed, failed ? found->second : FailedTest::none) << i;
+      EXPECT_EQ(grid[i].status, !failed   ? VectorStatus::valid
+                                : replace ? VectorStatus::replaced
+                                          : VectorStatus::invalid)
+          << i;
+      if (failed) {
+        EXPECT_EQ(grid[i].reason, replace ? VectorReason::neighbours : VectorReason::not_replaced) << i;
+      }
+    }
+  }
 }
 
 // An error of an earlier pass is in the predictor, and nothing was added to it: neighbours that correlate better give

@@ -59,7 +59,8 @@ void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) 
   std::size_t differing = 0;
   for (std::size_t i = 0; i < field.size(); ++i) {
     EXPECT_EQ(field.position_px[i], expected.position_px[i]);
-    if (field.status[i] != expected.status[i] || field.reason[i] != expected.reason[i]) {
+    if (field.status[i] != expected.status[i] || field.reason[i] != expected.reason[i] ||
+        field.failed[i] != expected.failed[i]) {
       ++differing;
       continue;
     }
@@ -77,6 +78,17 @@ void expect_same(CorrelationSettings const& settings, ParticlePair const& pair) 
 TEST_F(CudaCorrelation, OfTheDefaultPassesIsThatOfTheCpu) { expect_same({}, smooth_pair(512, 512)); }
 
 TEST_F(CudaCorrelation, OfNoisyImagesIsThatOfTheCpu) { expect_same({}, smooth_pair(500, 390, 0.1)); }
+
+// Noise that fails vectors in every test, first replaced and then left out.
+TEST_F(CudaCorrelation, OfVectorsThatFailTestsIsThatOfTheCpu) {
+  CorrelationSettings settings;
+  settings.least_peak_ratio = 1.3;
+  settings.least_correlation = 0.3;
+  for (bool const replace : {true, false}) {
+    settings.replace = replace;
+    expect_same(settings, smooth_pair(500, 390, 0.25));
+  }
+}
 
 // 0.7 to 2.7 px along x: vectors beyond the limit, and replacements that are.
 TEST_F(CudaCorrelation, WithinALimitIsThatOfTheCpu) {

@@ -49,6 +49,9 @@ TEST_F(MaskedFrames, WithNothingLeftAreNoMeasurement) {
 TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
   EXPECT_THAT(correlate("[[correlate.mask]]\nkind = \"image\"\nfile = \"missing.tif\"\n").err,
               HasSubstr("missing.tif"));
+  Outcome const far = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [90, 99, 90]\ny_px = [1, 2, 9]\n");
+  EXPECT_EQ(far.exit_code, 2);
+  EXPECT_THAT(far.err, HasSubstr("a polygon covers no pixel of the frames (64 x 64 px)"));
   Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2]\ny_px = [1, 2]\n");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));
@@ -70,6 +73,7 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   auto const u = one.read("/u_raw_px"), mean = three.read("/u_raw_px");
   ASSERT_EQ(u.size(), mean.size());
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // sums and thirds in float
+  EXPECT_EQ(three.attribute("verdict"), one.attribute("verdict"));
 }
 
 TEST_F(Ensembles, AreOfPairs) {

@@ -1,12 +1,41 @@
 #include "analysis/correlation/optical_flow/optical_flow_correlator.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "analysis/correlation/standard_correlator.h"
 
 namespace gladstone {
 namespace {
+
+/// Says which settings are not as by default, though only correlation heeds them; empty: none.
+std::string unheeded(CorrelationSettings const& settings) {
+  CorrelationSettings const usual;
+  std::vector<char const*> keys;
+  auto const note = [&](char const* key, bool as_usual) {
+    if (!as_usual) keys.push_back(key);
+  };
+  note("subpixel", settings.subpixel == usual.subpixel);
+  note("weighting", settings.weighting == usual.weighting);
+  note("deformation", settings.deformation == usual.deformation);
+  note("final_passes", settings.final_passes == usual.final_passes);
+  note("median_threshold", settings.median_threshold == usual.median_threshold);
+  note("median_epsilon_px", settings.median_epsilon_px == usual.median_epsilon_px);
+  note("displacement_threshold", settings.displacement_threshold == usual.displacement_threshold);
+  note("trusted_peak_ratio", settings.trusted_peak_ratio == usual.trusted_peak_ratio);
+  note("least_peak_ratio", settings.least_peak_ratio == usual.least_peak_ratio);
+  note("least_correlation", settings.least_correlation == usual.least_correlation);
+  note("replace", settings.replace == usual.replace);
+  if (keys.empty()) return {};
+  return fmt::format(
+      "correlate.method = \"{}\" does not heed correlate.{} (optical flow has no correlation peaks, and its vectors "
+      "are "
+      "not tested); leave out what is not heeded",
+      settings.method, fmt::join(keys, ", correlate."));
+}
 
 class OpticalFlowCorrelator final : public Correlator {
  public:
@@ -28,7 +57,7 @@ class OpticalFlowCorrelator final : public Correlator {
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       Vec2d const value = dense.at(grid.centre(i));
       MeasuredVector& vector = vectors[i];
-      vector = {value, value, nan, nan, VectorStatus::valid, VectorReason::measured, Ambiguity::none};
+      vector = {value, value, nan, nan, VectorStatus::valid, VectorReason::measured, FailedTest::none, Ambiguity::none};
       auto const take_out = [&](VectorStatus status, VectorReason reason) {
         vector.displacement = vector.raw = {nan, nan};
         vector.status = status;
@@ -41,7 +70,9 @@ class OpticalFlowCorrelator final : public Correlator {
       else if (!is_within(value, limit))
         take_out(VectorStatus::invalid, VectorReason::beyond_limit);
     }
-    return displacement_field(grid, vectors);
+    DisplacementField field = displacement_field(grid, vectors);
+    if (std::string warning = unheeded(settings_); !warning.empty()) field.warnings.push_back(std::move(warning));
+    return field;
   }
 
  private:

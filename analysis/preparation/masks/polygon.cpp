@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "analysis/preparation/frame_changes.h"
+#include "render/base/error.h"
 #include "render/base/vec.h"
 
 namespace gladstone {
@@ -30,10 +33,20 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
   std::vector<Vec2d> corners;
   for (std::size_t k = 0; k < std::min(x.size(), y.size()); ++k) corners.push_back({x[k], y[k]});
   return [corners](PreparedFrames& frames) {
-    for (int j = 0; j < frames.known.rows(); ++j)
-      for (int i = 0; i < frames.known.columns(); ++i)
-        if (!corners.empty() && is_inside(corners, {static_cast<double>(i), static_cast<double>(j)}))
-          frames.known(i, j) = 0.0;
+    int const columns = frames.known.columns(), rows = frames.known.rows();
+    bool any = false;
+    for (int j = 0; j < rows; ++j)
+      for (int i = 0; i < columns; ++i) {
+        if (corners.empty() || !is_inside(corners, {static_cast<double>(i), static_cast<double>(j)})) continue;
+        frames.known(i, j) = 0.0;
+        any = true;
+      }
+    if (!any)
+      throw DataError(
+          "correlate.mask",
+          fmt::format("a polygon covers no pixel of the frames ({} x {} px); give its corners in px, from 0 "
+                      "in the middle of the first pixel, y downwards",
+                      columns, rows));
   };
 }
 

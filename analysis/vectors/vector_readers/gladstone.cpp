@@ -18,6 +18,8 @@ DisplacementField whole_field(std::vector<double> const& x, std::vector<double> 
   return field;
 }
 
+bool is_code(double value, int most) { return value >= 0.0 && value <= most && value == std::floor(value); }
+
 /// What files of older versions do not have: how each vector came about. @param column values by name
 /// @param place of the reason of vector i, and what it is called there
 template <class Column, class Place>
@@ -26,9 +28,10 @@ void add_origin(DisplacementField& field, Column const& column, Place const& pla
                             ambiguous = column("ambiguous");
   field.correlation = column("correlation");
   for (std::size_t i = 0; i < field.size(); ++i) {
-    if (!(reason[i] >= 0.0 && reason[i] <= 7.0 && reason[i] == std::floor(reason[i]))) {
+    constexpr int most = static_cast<int>(VectorReason::outside);
+    if (!is_code(reason[i], most)) {
       auto const [where, name] = place(i);
-      throw DataError(where, fmt::format("{} = {} is not a whole number from 0 to 7", name, reason[i]));
+      throw DataError(where, fmt::format("{} = {} is not a whole number from 0 to {}", name, reason[i], most));
     }
     field.raw_px.push_back({u[i], v[i]});
     field.reason.push_back(static_cast<VectorReason>(static_cast<int>(reason[i])));
@@ -67,6 +70,16 @@ VectorFile read_gladstone_hdf5(std::string const& path) {
     add_origin(
         field, [&](std::string const& name) { return read('/' + name); },
         [&](std::size_t i) { return std::pair(path, fmt::format("/reason[{}]", i)); });
+  }
+  if (file.has("/failed_test")) {
+    std::vector<double> const failed = read("/failed_test");
+    constexpr int most = static_cast<int>(FailedTest::correlation);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!is_code(failed[i], most))
+        throw DataError(path,
+                        fmt::format("/failed_test[{}] = {} is not a whole number from 0 to {}", i, failed[i], most));
+      field.failed.push_back(static_cast<FailedTest>(static_cast<int>(failed[i])));
+    }
   }
   return {std::move(field), "gladstone", {}, false};
 }

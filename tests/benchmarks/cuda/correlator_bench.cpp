@@ -178,5 +178,33 @@ BENCHMARK(multi_pass)
     ->Repetitions(3)
     ->Unit(benchmark::kMillisecond);
 
+/// Images on the device to vectors on the device, a pair of a batch. @param range(0) side of the images [px]
+/// @param range(1) 1: with correlation statistics
+void batch(benchmark::State& state) {
+  if (no_device(state)) return;
+  DevicePairOfImages const images(static_cast<int>(state.range(0)));
+  CorrelationSettings settings;
+  if (state.range(1) != 0) settings.uncertainty = "correlation_statistics";
+  cuda::CudaCorrelator const correlator(settings);
+  std::size_t const vectors = correlator.correlate(images.first(), images.second()).size();
+  constexpr int pairs = 32;
+  cuda::DeviceTimer timer;
+  for (auto _ : state) {
+    timer.start();
+    for (int k = 0; k < pairs; ++k) correlator.enqueue(images.first(), images.second());
+    state.SetIterationTime(timer.stop() / pairs);
+  }
+  set_rate(state, vectors);
+}
+BENCHMARK(batch)
+    ->Name("cuda_correlate_batch")
+    ->ArgNames({"size", "sigma"})
+    ->Args({1024, 0})
+    ->Args({1024, 1})
+    ->UseManualTime()
+    ->Iterations(5)
+    ->Repetitions(3)
+    ->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace gladstone::bench
