@@ -68,6 +68,17 @@ double middle_level(Image<double> const& reference, Image<double> const& flow) {
   return some.low <= some.high ? 0.5 * (some.low + some.high) : 0.0;
 }
 
+/// Puts a level where pixels are not finite, and notes which are.
+void fill_gaps(ImagePair& pair, Image<double> const& reference, Image<double> const& flow, float level) {
+  pair.available.resize(reference.size());
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    bool const in_reference = std::isfinite(reference.data()[i]), in_flow = std::isfinite(flow.data()[i]);
+    if (!in_reference) pair.reference[i] = level;
+    if (!in_flow) pair.flow[i] = level;
+    pair.available[i] = in_reference && in_flow ? 1.0f : 0.0f;
+  }
+}
+
 /// Brings contrasts far from 1 there by a power of two, which changes no digit: products of four levels stay within
 /// float's range, and the terms of energies beside weights in one transform.
 void bring_into_range(ImagePair& pair) {
@@ -105,19 +116,9 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   GreyLevels all;
   for (GreyLevels const& piece : levels) all.include(piece);
   pair.contrast = all.low <= all.high ? static_cast<float>(all.high - all.low) : 0.0f;
-  if (!all.gaps) {
-    bring_into_range(pair);
-    return pair;
-  }
-  // unknown pixels take the middle of all, whichever level was taken off
+  // of all levels, whichever was taken off
   float const middle = all.low <= all.high ? static_cast<float>(0.5 * (all.low + all.high) - level) : 0.0f;
-  pair.available.resize(reference.size());
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    bool const in_reference = std::isfinite(reference.data()[i]), in_flow = std::isfinite(flow.data()[i]);
-    if (!in_reference) pair.reference[i] = middle;
-    if (!in_flow) pair.flow[i] = middle;
-    pair.available[i] = in_reference && in_flow ? 1.0f : 0.0f;
-  }
+  if (all.gaps) fill_gaps(pair, reference, flow, middle);
   bring_into_range(pair);
   return pair;
 }
