@@ -1,6 +1,5 @@
 #include "studies/compare.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -158,12 +157,6 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
   }
   if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
   comparison.mask = common_mask(measured, references);
-  bool any_valid = false;
-  for (std::size_t i = 0; i < measured.size() && !any_valid; ++i) any_valid = measured.counts(i);
-  if (!any_valid)
-    throw NoValidVector(vectors.name, fmt::format("none of its {} vectors is valid; check the frames and how they were "
-                                                  "correlated",
-                                                  measured.size()));
   if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
     throw DataError(
         vectors.name,

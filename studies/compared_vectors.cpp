@@ -1,5 +1,6 @@
 #include "studies/compared_vectors.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -75,6 +76,13 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   if (options.conventions) file.conventions = parse_conventions(*options.conventions, file.conventions);
   CameraSetup const& camera = loaded.setup.camera;
   LeftOutVectors const left_out = screen(file, path, camera);
+  // what is left out was valid as given, but for what has no displacement
+  bool any_valid = left_out.all() > left_out.displacement_not_finite;
+  for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
+  if (!any_valid)
+    throw NoValidVector(path, fmt::format("none of its {} vectors is valid; check the frames and how they were "
+                                          "correlated",
+                                          file.field.size()));
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
   if (options.conventions) {
     vectors.report = file.format + " vectors, as told: " + describe(file.conventions);

@@ -158,9 +158,13 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   GLADSTONE_EXPECTS(!files.empty() && files.size() % 2 == 0);
   auto const start = std::chrono::steady_clock::now();
   int columns = 0, rows = 0;
+  Image<double> reference;
+  std::vector<std::string> twice;  // pairs of one picture
   for (std::size_t k = 0; k < files.size(); ++k) {
-    Image<double> const frame =
-        read_frame(files[k], fmt::format("{}_{}", k % 2 == 0 ? "reference" : "flow", k / 2 + 1), sources);
+    bool const is_flow = k % 2 == 1;
+    Image<double> frame =
+        read_frame(files[k], fmt::format("{}_{}", is_flow ? "flow" : "reference", k / 2 + 1), sources);
+    if (is_flow && same_picture(reference, frame)) twice.push_back(files[k]);
     if (k == 0) {
       columns = frame.columns();
       rows = frame.rows();
@@ -168,6 +172,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
     if (frame.columns() != columns || frame.rows() != rows)
       throw DataError(files[k], fmt::format("is {} x {} px but {} is {} x {} (all frames need one size)",
                                             frame.columns(), frame.rows(), files[0], columns, rows));
+    if (!is_flow) reference = std::move(frame);
   }
   if (std::string const problem = window_problem(settings, columns, rows); !problem.empty())
     throw DataError(files[0], problem);
@@ -177,6 +182,11 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
                            }};
   Measurement measurement{correlate_ensemble(pairs, settings), 0, "cpu"};
   judge_ensemble(measurement.field, pairs, settings);
+  if (!twice.empty() && twice.size() < pairs.size)
+    measurement.field.warnings.push_back(
+        fmt::format("{} of {} pairs are one picture twice, bit for bit (which draws the displacement towards 0), first "
+                    "that with {}; leave them out",
+                    twice.size(), pairs.size, twice.front()));
   measurement.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return measurement;
 }

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "analysis/correlation/correlation_methods.h"
 #include "analysis/correlation/outside_windows.h"
@@ -54,6 +56,7 @@ struct Tally {
       uncorrelated += field.reason[i] == VectorReason::uncorrelated;
       beyond += field.reason[i] == VectorReason::beyond_limit;
       failed += is_of_a_test(field.reason[i]);
+      not_replaced += field.reason[i] == VectorReason::not_replaced;
       ambiguous += field.ambiguous[i] != Ambiguity::none;
       doubtful += field.ambiguous[i] != Ambiguity::none || field.reason[i] != VectorReason::measured;
     }
@@ -64,14 +67,8 @@ struct Tally {
   }
   std::size_t known = 0;     ///< neither masked nor outside the frames
   std::size_t compared = 0;  ///< with a correlation coefficient
-  std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, ambiguous = 0, doubtful = 0;
+  std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
-
-bool same_bits(Image<double> const& a, Image<double> const& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
-  });
-}
 
 /// Whether there are best peaks, and they are at no shift on average: of one picture twice all are, up to what float
 /// leaves of it, but for minimum quadratic differences, whose planes fall off unevenly.
@@ -136,31 +133,39 @@ std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
       100.0 * tally.part(tally.uncorrelated), why);
 }
 
-std::string beyond_text(Tally const& tally, Reach const& reach) {
+std::string beyond_text(Tally const& tally, Reach const& reach, CorrelationSettings const& settings) {
+  if (correlation_method(settings.method).optical_flow)
+    return fmt::format("{:.0f} % of the vectors are beyond {}, and are invalid; raise it, or leave these vectors out",
+                       100.0 * tally.part(tally.beyond), reach.what);
   return fmt::format(
       "{:.0f} % of the windows have no correlation peak within {} (displacements are larger, or these windows hold "
       "noise), so that their vectors are invalid; {}, or leave these vectors out",
       100.0 * tally.part(tally.beyond), reach.what, reach.remedy);
 }
 
-std::string failed_text(DisplacementField const& field, Tally const& tally, CorrelationSettings const& settings) {
+std::string failed_text(DisplacementField const& field, Tally const& tally) {
   struct Test {
     FailedTest test;
     char const* name;
   };
   constexpr std::array tests{Test{FailedTest::median, "median"}, Test{FailedTest::displacement, "whole displacement"},
                              Test{FailedTest::peak_ratio, "peak ratio"}, Test{FailedTest::correlation, "correlation"}};
-  std::string by_test;
+  std::vector<std::string> by_test;
   for (auto const& [test, name] : tests) {
     auto const count = static_cast<std::size_t>(std::count(field.failed.begin(), field.failed.end(), test));
-    if (count > 0)
-      by_test += fmt::format("{}{} {:.0f} %", by_test.empty() ? "" : ", ", name, 100.0 * tally.part(count));
+    if (count > 0) by_test.push_back(fmt::format("{} {:.0f} %", name, 100.0 * tally.part(count)));
   }
-  return fmt::format("{:.0f} % of the vectors failed a test ({}), and {}; look at the frames and use larger windows{}",
-                     100.0 * tally.part(tally.failed), by_test,
-                     settings.replace ? "are replaced: by another peak or by their neighbours" : "are invalid",
-                     settings.replace ? ", or set correlate.replace = false to leave these vectors out"
-                                      : ", or allow more in the test");
+  std::size_t const replaced = tally.failed - tally.not_replaced;
+  std::vector<std::string> became;
+  if (replaced > 0)
+    became.push_back(
+        fmt::format("{:.0f} % are replaced, by another peak or by their neighbours", 100.0 * tally.part(replaced)));
+  if (tally.not_replaced > 0)
+    became.push_back(fmt::format("{:.0f} % are invalid", 100.0 * tally.part(tally.not_replaced)));
+  return fmt::format(
+      "{:.0f} % of the vectors failed a test ({}): {}; look at the frames, use larger windows, or {}",
+      100.0 * tally.part(tally.failed), fmt::join(by_test, ", "), fmt::join(became, ", "),
+      replaced > 0 ? "set correlate.replace = false to leave these vectors out" : "ask less in the test");
 }
 
 }  // namespace
@@ -205,19 +210,24 @@ std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& s
   if (found.signal == 0) return found.known == 0 ? "no window is known" : "no window holds a signal";
   if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
   if (found.part(found.doubtful) >= suspicious) return "";
-  if (found.signal < fewest_windows) return fmt::format("{} windows are too few to agree", found.signal);
+  if (found.signal < fewest_windows) return fmt::format("fewer than {} windows cannot agree", fewest_windows);
   return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" leaves vectors that disagree";
 }
 
 /// What is looked into where vectors alone do not tell.
 struct Evidence {
-  FramePair const& frames;  ///< of an ensemble the first pair
   std::function<bool()> same_pictures;
+  std::function<std::optional<PatternPeriod>()> period;
   std::function<DisplacementField()> chance;
 };
 
+/// The verdict by what is left. @pre there is a reason to judge
+std::string verdict_of(DisplacementField const& field, Tally const& left) {
+  if (std::any_of(field.status.begin(), field.status.end(), is_sound)) return correlates;
+  return left.nothing_left() ? "does not correlate" : "not judged: no vector passed its tests";
+}
+
 void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettings const& settings) {
-  name_windows_outside(field, evidence.frames, settings);
   if (stands_still(field) && evidence.same_pictures()) {
     field.warnings.emplace_back(
         "both frames are the same picture, bit for bit (so that every displacement is 0); give two frames");
@@ -226,11 +236,11 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   }
   Tally const found(field);
   std::string const why_not = reason_not_to_judge(found, settings);
-  bool const any = std::any_of(field.status.begin(), field.status.end(), is_sound);
-  field.verdict = !why_not.empty() ? "not judged: " + why_not : any ? correlates : "does not correlate";
+  field.verdict = why_not.empty() ? verdict_of(field, found) : "not judged: " + why_not;
   if (found.part(found.doubtful) < suspicious) return;
   Reach const reach(settings);
-  if (std::optional<PatternPeriod> const period = pattern_period(evidence.frames.reference(), settings)) {
+  std::optional<PatternPeriod> const period = evidence.period();
+  if (period) {
     if (found.part(found.ambiguous) >= worth_a_warning)
       field.warnings.push_back(fmt::format(
           "the pattern repeats every {:.2f} px (its autocorrelation is {:.2f} there), within {}: only a displacement "
@@ -244,38 +254,70 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
     leave_out_chance(field, evidence.chance(), settings);
   }
   Tally const left(field);
-  if (field.verdict == correlates && left.nothing_left()) field.verdict = "does not correlate";
+  if (!period && why_not.empty()) field.verdict = verdict_of(field, left);
   bool const differ = left.part(left.uncorrelated) >= worth_a_warning;
   if (differ) field.warnings.push_back(uncorrelated_text(left, reach));
   if (left.part(left.beyond) >= worth_a_warning && !(differ && left.nothing_left()))
-    field.warnings.push_back(beyond_text(left, reach));
-  if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left, settings));
+    field.warnings.push_back(beyond_text(left, reach, settings));
+  if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left));
+}
+
+/// Each pixel as the first pair has it that knows it in both frames.
+HostFrames known_in_any(PairSequence const& pairs) {
+  HostFrames const first = pairs.frames(0);
+  Image<double> reference = first.reference(), flow = first.flow();
+  for (std::size_t k = 1; k < pairs.size; ++k) {
+    HostFrames const frames = pairs.frames(k);
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+      if (std::isfinite(reference.data()[i]) && std::isfinite(flow.data()[i])) continue;
+      reference.data()[i] = frames.reference().data()[i];
+      flow.data()[i] = frames.flow().data()[i];
+    }
+  }
+  return {std::move(reference), std::move(flow)};
 }
 
 }  // namespace
 
+bool same_picture(Image<double> const& a, Image<double> const& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings) {
+  name_windows_outside(field, frames, settings);
   judge(field,
-        {frames, [&] { return same_bits(frames.reference(), frames.flow()); },
+        {[&] { return same_picture(frames.reference(), frames.flow()); },
+         [&] { return pattern_period(frames.reference(), settings); },
          [&] { return correlator.correlate(frames.reference(), upside_down(frames.flow())); }},
         settings);
 }
 
 void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings) {
+  auto const is_masked = [](VectorReason reason) { return reason == VectorReason::masked; };
+  if (std::any_of(field.reason.begin(), field.reason.end(), is_masked))
+    name_windows_outside(field, known_in_any(pairs), settings);
   auto const all_same = [&] {
     for (std::size_t k = 0; k < pairs.size; ++k) {
       HostFrames const frames = pairs.frames(k);
-      if (!same_bits(frames.reference(), frames.flow())) return false;
+      if (!same_picture(frames.reference(), frames.flow())) return false;
     }
     return true;
+  };
+  auto const any_period = [&] {
+    std::optional<PatternPeriod> period;
+    for (std::size_t k = 0; k < pairs.size && !period; ++k)
+      period = pattern_period(pairs.frames(k).reference(), settings);
+    return period;
   };
   auto const turned = [&](std::size_t k) {
     HostFrames const frames = pairs.frames(k);
     return HostFrames(frames.reference(), upside_down(frames.flow()));
   };
   auto const chance = [&] { return correlate_ensemble({pairs.size, turned}, settings); };
-  judge(field, {pairs.frames(0), all_same, chance}, settings);
+  judge(field, {all_same, any_period, chance}, settings);
 }
 
 }  // namespace gladstone

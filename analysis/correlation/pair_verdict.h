@@ -24,14 +24,20 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 /// agree (at most one in twenty replaced, invalid or ambiguous) gives no reason to look further, and takes no time.
 /// The field's verdict is "correlates" then, and wherever some vectors are more than chance; "does not correlate" where
 /// none is left; "not judged: " and why where vectors cannot tell: one picture twice, no signal, everything masked, a
-/// pattern that repeats, optical flow, fewer windows than can agree, or a median test that is off. Windows that left
+/// pattern that repeats, optical flow, fewer windows than can agree, a median test that is off, or tests that no vector
+/// passed. Windows that left
 /// the frames are told from masked ones: name_windows_outside().
 /// @param field  what the correlator gave for the frames
 /// @throws as Correlator::correlate
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
                 CorrelationSettings const& settings);
 
-/// The same for the vectors of an ensemble. Chance is what the ensemble gives whose flow frames are turned upside down.
+/// Whether two frames are one picture, bit for bit.
+bool same_picture(Image<double> const& a, Image<double> const& b);
+
+/// The same for the vectors of an ensemble: it is the same picture if that holds of every pair, repeats if one does,
+/// and a window is masked that no pair knows. Chance is what the ensemble gives whose flow frames are turned upside
+/// down.
 /// @param field what correlate_ensemble() gave for the pairs
 void judge_ensemble(DisplacementField& field, PairSequence const& pairs, CorrelationSettings const& settings);
 

@@ -26,8 +26,8 @@ struct GreyLevels {
     high = std::max(high, other.high);
     gaps = gaps || other.gaps;
   }
-  /// Takes `level` off the values and looks at them on the way.
-  void take(double const* values, std::size_t count, double level, float* out) {
+  /// Takes `level` off the values, scales them, and looks at them on the way.
+  void take(double const* values, std::size_t count, double level, double scale, float* out) {
     constexpr std::size_t lanes = 16;
     double least[lanes], most[lanes], zero[lanes] = {};
     std::fill_n(least, lanes, low);
@@ -40,11 +40,11 @@ struct GreyLevels {
     std::size_t i = 0;
     for (; i + lanes <= count; i += lanes)
       for (std::size_t l = 0; l < lanes; ++l) {
-        out[i + l] = static_cast<float>(values[i + l] - level);
+        out[i + l] = static_cast<float>((values[i + l] - level) * scale);
         look(values[i + l], l);
       }
     for (; i < count; ++i) {
-      out[i] = static_cast<float>(values[i] - level);
+      out[i] = static_cast<float>((values[i] - level) * scale);
       look(values[i], 0);
     }
     GreyLevels seen;
@@ -58,14 +58,20 @@ struct GreyLevels {
   }
 };
 
-/// The middle of the extremes of some thousand finite grey levels, evenly taken; 0 where there are none.
-double middle_level(Image<double> const& reference, Image<double> const& flow) {
+/// Some thousand grey levels, evenly taken.
+GreyLevels some_levels(Image<double> const& reference, Image<double> const& flow) {
   std::size_t const step = std::max<std::size_t>(1, reference.size() / 4096) | 1;  // odd: not always the same column
   GreyLevels some;
   for (std::size_t i = 0; i < reference.size(); i += step)
     for (double const value : {reference.data()[i], flow.data()[i]})
       if (std::isfinite(value)) some.include({value, value, false});
-  return some.low <= some.high ? 0.5 * (some.low + some.high) : 0.0;
+  return some;
+}
+
+/// The power of two that brings a range of levels to 1 .. 2; 1 where there is none.
+double scale_of(double range) {
+  bool const any = range > 0.0 && std::isfinite(range);
+  return any ? std::ldexp(1.0, std::clamp(-std::ilogb(range), -1000, 1000)) : 1.0;
 }
 
 /// Puts a level where pixels are not finite, and notes which are.
@@ -79,22 +85,6 @@ void fill_gaps(ImagePair& pair, Image<double> const& reference, Image<double> co
   }
 }
 
-/// Brings contrasts far from 1 there by a power of two, which changes no digit: products of four levels stay within
-/// float's range, and the terms of energies beside weights in one transform.
-void bring_into_range(ImagePair& pair) {
-  constexpr float least = 1e-3f, most = 1e7f;
-  if ((pair.contrast >= least && pair.contrast <= most) || !(pair.contrast > 0.0f) || !std::isfinite(pair.contrast))
-    return;
-  int const power = -std::ilogb(pair.contrast);
-  parallel_chunks(pair.reference.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      pair.reference[i] = std::ldexp(pair.reference[i], power);
-      pair.flow[i] = std::ldexp(pair.flow[i], power);
-    }
-  });
-  pair.contrast = std::ldexp(pair.contrast, power);
-}
-
 }  // namespace
 
 ImagePair make_image_pair(Image<double> const& reference, Image<double> const& flow) {
@@ -102,24 +92,36 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   ImagePair pair;
   pair.columns = reference.columns();
   pair.rows = reference.rows();
-  // a level between the extremes, taken off in double, keeps faint contrast on a bright ground in float
-  double const level = middle_level(reference, flow);
+  // a level between the extremes, taken off in double, keeps faint contrast on a bright ground in float; a power of
+  // two, which changes no digit, brings contrasts near 1, so that products of four levels stay within float's range,
+  // and the terms of energies beside weights in one transform. Some levels tell both: all might differ by more, which
+  // does no harm up to a hundredfold.
+  GreyLevels const some = some_levels(reference, flow);
+  bool const any = some.low <= some.high;
+  double const level = any ? 0.5 * (some.low + some.high) : 0.0;
   pair.reference.resize(reference.size());
   pair.flow.resize(reference.size());
   std::vector<GreyLevels> levels((reference.size() + pixels_per_chunk - 1) / pixels_per_chunk);
-  parallel_chunks(reference.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
-    GreyLevels here;
-    here.take(reference.data() + begin, end - begin, level, pair.reference.data() + begin);
-    here.take(flow.data() + begin, end - begin, level, pair.flow.data() + begin);
-    levels[begin / pixels_per_chunk] = here;
-  });
   GreyLevels all;
-  for (GreyLevels const& piece : levels) all.include(piece);
-  pair.contrast = all.low <= all.high ? static_cast<float>(all.high - all.low) : 0.0f;
+  auto const take_all = [&](double scale) {
+    parallel_chunks(reference.size(), pixels_per_chunk, [&](std::size_t begin, std::size_t end) {
+      GreyLevels here;
+      here.take(reference.data() + begin, end - begin, level, scale, pair.reference.data() + begin);
+      here.take(flow.data() + begin, end - begin, level, scale, pair.flow.data() + begin);
+      levels[begin / pixels_per_chunk] = here;
+    });
+    all = {};
+    for (GreyLevels const& piece : levels) all.include(piece);
+    return scale;
+  };
+  constexpr double most_beyond = 100.0;
+  double scale = take_all(any ? scale_of(some.high - some.low) : 1.0);
+  double const range = all.low <= all.high ? all.high - all.low : 0.0;
+  if (!(range * scale <= 2.0 * most_beyond) || (range > 0.0 && range * scale < 1.0)) scale = take_all(scale_of(range));
+  pair.contrast = static_cast<float>(range * scale);
   // of all levels, whichever was taken off
-  float const middle = all.low <= all.high ? static_cast<float>(0.5 * (all.low + all.high) - level) : 0.0f;
+  float const middle = range > 0.0 ? static_cast<float>((0.5 * (all.low + all.high) - level) * scale) : 0.0f;
   if (all.gaps) fill_gaps(pair, reference, flow, middle);
-  bring_into_range(pair);
   return pair;
 }
 

@@ -76,6 +76,7 @@ template <class Transform, bool phase_only>
 __global__ void __launch_bounds__(Transform::threads)
     correlate_window_by_factors(WindowJob const __grid_constant__ job, WindowPeaks* const all_peaks) {
   constexpr int size = Transform::size, threads = Transform::threads, warps = threads / 32;
+  static_assert(warps > 1);  // one does not search
   extern __shared__ __align__(16) unsigned char memory[];
   auto& own = *reinterpret_cast<BlockMemory<size>*>(memory);
   int const thread = static_cast<int>(threadIdx.x);

@@ -15,8 +15,8 @@ enum class VectorStatus : int { valid = 0, replaced = 1, masked = 2, invalid = 3
 /// How a vector came to be what it is; the numbers are those of vectors.h5 and vectors.csv.
 enum class VectorReason : int {
   measured = 0,      ///< valid: as measured
-  other_peak = 1,    ///< replaced by another peak of its window, since it disagreed with its neighbours
-  neighbours = 2,    ///< replaced by its neighbours' median, since no peak agreed with them
+  other_peak = 1,    ///< replaced by another peak of its window, since it failed a test
+  neighbours = 2,    ///< replaced by its neighbours' median, since it failed a test
   masked = 3,        ///< half the window unknown
   no_signal = 4,     ///< invalid: nothing in the window to correlate
   not_replaced = 5,  ///< invalid: failed a test, and is not replaced or has too few sound neighbours for it

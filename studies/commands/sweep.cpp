@@ -130,6 +130,13 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     if (table.repeats() > 1) files.push_back(run + '/' + run_file::points_text);
     json["files"] = files;
     json["figures"] = figures;
+    std::vector<std::size_t> const warned = table.warned();
+    json["warned"] = warned.size();
+    if (!warned.empty()) {
+      StudyRow const& first = table.rows[warned.front()];
+      spdlog::warn("{}: {} of {} cases gave warnings, which {}/cases/*.json hold; case {}: {}", run, warned.size(),
+                   table.rows.size(), run, first.index, first.warning);
+    }
     std::string packed;
     if (!arguments->dataset.empty()) {
       PackedDataset const set = pack_dataset(run, arguments->dataset);

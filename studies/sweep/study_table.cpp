@@ -62,6 +62,14 @@ std::vector<std::size_t> StudyTable::unfinished() const {
   return places;
 }
 
+std::vector<std::size_t> StudyTable::warned() const {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].warning.empty()) places.push_back(i);
+  }
+  return places;
+}
+
 std::vector<std::string> StudyTable::builds() const {
   std::set<std::string> builds;
   for (StudyRow const& row : rows) {
@@ -110,6 +118,7 @@ void fill_row(CaseResult const& result, std::unordered_map<std::string, std::siz
   row.status = result.status;
   row.error = result.error;
   row.build = result.build;
+  if (!result.warnings.empty()) row.warning = result.warnings.front();
   if (row.status == CaseStatus::ok) {
     row.seconds_render = result.seconds_render;
     row.seconds_correlate = result.seconds_correlate;

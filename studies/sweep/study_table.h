@@ -33,7 +33,8 @@ struct StudyRow {
   double seconds_correlate = std::numeric_limits<double>::quiet_NaN();
   double seconds_compare = std::numeric_limits<double>::quiet_NaN();
   std::string device;
-  std::string build;  ///< of gladstone that computed it; empty: not done, or unknown
+  std::string warning;  ///< the first that it gave; empty: none
+  std::string build;    ///< of gladstone that computed it; empty: not done, or unknown
 };
 
 /// All repeats of one point of a study.
@@ -58,6 +59,8 @@ struct StudyTable {
   std::size_t repeats() const;
   /// The builds of gladstone that computed the rows, each once, sorted.
   std::vector<std::string> builds() const;
+  /// The rows that gave warnings.
+  std::vector<std::size_t> warned() const;
   /// The rows that are not ok.
   std::vector<std::size_t> unfinished() const;
 };

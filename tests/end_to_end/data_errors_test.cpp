@@ -179,6 +179,8 @@ TEST_F(DataErrors, GarbageAmongTheVectorsHasItsLine) {
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv:1: the file is empty"});
   write("v.csv", "x,y,u,v\n10,10,nan,nan\n");
   expect_refused({"compare", "case", "--vectors", "v.csv"}, 1, {"v.csv: none of its 1 vectors is valid"});
+  write("v.csv", "x,y,u,v\n10,10,1000,0\n");
+  expect_refused({"compare", "case", "--vectors", "v.csv"}, 2, {"v.csv: has no vector that can be compared"});
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST_F(MaskedFrames, NeedMasksThatSuitThem) {
               HasSubstr("missing.tif"));
   Outcome const far = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [90, 99, 90]\ny_px = [1, 2, 9]\n");
   EXPECT_EQ(far.exit_code, 2);
-  EXPECT_THAT(far.err, HasSubstr("a polygon covers no pixel of the frames (64 x 64 px)"));
+  EXPECT_THAT(far.err, HasSubstr("the polygon from (90, 1) holds no pixel's middle of the frames (64 x 64 px)"));
   Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"polygon\"\nx_px = [1, 2]\ny_px = [1, 2]\n");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("config.toml:5:"), HasSubstr("config.toml:6:")));
@@ -74,6 +74,15 @@ TEST_F(Ensembles, OfOnePairRepeatedAreThatPair) {
   ASSERT_EQ(u.size(), mean.size());
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], mean[i], 1e-4);  // sums and thirds in float
   EXPECT_EQ(three.attribute("verdict"), one.attribute("verdict"));
+}
+
+// A pair of one picture draws the mean towards 0, and no verdict shows it.
+TEST_F(Ensembles, NamePairsOfOnePicture) {
+  std::string const a = "case/reference.tif", b = "case/flow.tif";
+  Outcome const outcome =
+      gladstone({"correlate", "--ensemble", a, b, a, a, "-o", "v.h5", "--set", "correlate.window_px=[16]"});
+  EXPECT_THAT(outcome.err, HasSubstr("1 of 2 pairs are one picture twice"));
+  EXPECT_THAT(outcome.err, HasSubstr("first that with case/reference.tif"));
 }
 
 TEST_F(Ensembles, AreOfPairs) {

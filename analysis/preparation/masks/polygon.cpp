@@ -44,9 +44,9 @@ FrameChange read_polygon_mask(SetupTable& table, FramePreparation&) {
     if (!any)
       throw DataError(
           "correlate.mask",
-          fmt::format("a polygon covers no pixel of the frames ({} x {} px); give its corners in px, from 0 "
-                      "in the middle of the first pixel, y downwards",
-                      columns, rows));
+          fmt::format("the polygon from ({:g}, {:g}) holds no pixel's middle of the frames ({} x {} px); "
+                      "give its corners in px, from 0 in the middle of the first pixel, y downwards",
+                      corners.empty() ? 0.0 : corners[0].x, corners.empty() ? 0.0 : corners[0].y, columns, rows));
   };
 }
 
