@@ -91,6 +91,15 @@ class Sweeps : public Workplace {
   }
 };
 
+// Half of the cases are lit until pixels saturate.
+TEST_F(Sweeps, CollectTellsThatCasesGaveWarnings) {
+  write("bright.toml", "base = \"setup.toml\"\n[axes]\n\"camera.exposure\" = [2000.0, 60000.0]\n");
+  finish("run", "bright.toml");
+  Outcome const outcome = gladstone({"sweep", "collect", "run", "--no-figures"});
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("run: 1 of 2 cases gave warnings.*case 1: .*saturated"));
+  EXPECT_EQ(json_of({"sweep", "collect", "run", "--no-figures"})["warned"], 1);
+}
+
 TEST_F(Sweeps, FromStudyToTable) {
   auto const planned = json_of({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
   EXPECT_EQ(planned["cases"], 12);
