@@ -135,8 +135,10 @@ std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
 
 std::string beyond_text(Tally const& tally, Reach const& reach, CorrelationSettings const& settings) {
   if (correlation_method(settings.method).optical_flow)
-    return fmt::format("{:.0f} % of the vectors are beyond {}, and are invalid; raise it, or leave these vectors out",
-                       100.0 * tally.part(tally.beyond), reach.what);
+    return fmt::format(
+        "{:.0f} % of the vectors are longer than correlate.max_displacement_px = {:g}, and are invalid; raise it, or "
+        "leave these vectors out",
+        100.0 * tally.part(tally.beyond), settings.max_displacement_px.value_or(0.0));
   return fmt::format(
       "{:.0f} % of the windows have no correlation peak within {} (displacements are larger, or these windows hold "
       "noise), so that their vectors are invalid; {}, or leave these vectors out",

@@ -20,13 +20,13 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 /// Judges a pair by its vectors: calls those uncorrelated that cannot be told from chance, and puts into the field's
 /// warnings, each as "problem (why); suggestion", what the user should know: frames that are the same, that do not
 /// correlate, a pattern whose period makes displacements ambiguous within the search range, a fifth of the vectors or
-/// more that are not as measured because they failed a test. A pair whose vectors
-/// agree (at most one in twenty replaced, invalid or ambiguous) gives no reason to look further, and takes no time.
+/// more that failed a test. A pair whose vectors agree (at most one in twenty replaced, invalid or ambiguous) gives no
+/// reason to look further, and takes no time.
+///
 /// The field's verdict is "correlates" then, and wherever some vectors are more than chance; "does not correlate" where
 /// none is left; "not judged: " and why where vectors cannot tell: one picture twice, no signal, everything masked, a
 /// pattern that repeats, optical flow, fewer windows than can agree, a median test that is off, or tests that no vector
-/// passed. Windows that left
-/// the frames are told from masked ones: name_windows_outside().
+/// passed. Windows that left the frames are told from masked ones: name_windows_outside().
 /// @param field  what the correlator gave for the frames
 /// @throws as Correlator::correlate
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,
