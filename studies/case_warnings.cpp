@@ -155,4 +155,17 @@ void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& c
                              in_flow, saturation_cure(camera, light_e)));
 }
 
+RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCase const& prepared,
+                                  RenderedCase const& rendered, RecordedFrames const& frames) {
+  Setup const& setup = prepared.scene.setup;
+  Rendering const& rendering = *rendered.rendering;
+  warn_of_saturation(warnings, setup.camera, frames.saturated_reference, frames.saturated_flow,
+                     rendered.exposure_e * rendering.in_place->brightest());
+  RenderedOutcome outcome;
+  outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendered.pupil_margin);
+  outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
+  warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, setup.piv ? "particles" : "dots");
+  return outcome;
+}
+
 }  // namespace gladstone

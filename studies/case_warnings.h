@@ -6,6 +6,7 @@
 
 #include "render/scene/ray_plan.h"
 #include "render/scene/renderer.h"
+#include "studies/case.h"
 
 /// What a user is warned of when a case is rendered, and what would cure it.
 namespace gladstone {
@@ -42,5 +43,15 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
 /// @param light_e electrons that light sets free in the brightest pixel
 void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
                         std::size_t in_flow, double light_e);
+
+/// What can be said of a rendered case.
+struct RenderedOutcome {
+  std::size_t unseen = 0;  ///< sources that are not seen, of any kind
+  TruthAccuracy accuracy;
+};
+
+/// Warns of a rendered case's frames and truth: saturation, dots that are not seen, a truth that is not known well.
+RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCase const& prepared,
+                                  RenderedCase const& rendered, RecordedFrames const& frames);
 
 }  // namespace gladstone

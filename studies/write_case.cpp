@@ -120,8 +120,6 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   }
   std::string const resolved = loaded.document.resolved();
 
-  warn_of_saturation(warnings, camera, frames.saturated_reference, frames.saturated_flow,
-                     rendered.exposure_e * rendering.in_place->brightest());
   auto const place = [&](char const* name) { return (fs::path(folder) / name).string(); };
   ImageMetadata const metadata{camera.bit_depth, camera.pixel_pitch, resolved};
   FileOrigin origin{"gladstone truth", 2, resolved, scene.setup.render.seed, outcome.device};
@@ -143,9 +141,9 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   }
   OutputFile::write_text(place(case_file::setup), resolved);
 
-  outcome.unseen = warn_of_unseen(warnings, scene, rendering.truth, rendered.pupil_margin);
-  outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);
-  warn_of_truth(warnings, rendering, outcome.accuracy, prepared.rays, scene.setup.piv ? "particles" : "dots");
+  RenderedOutcome const told = warn_of_rendering(warnings, prepared, rendered, frames);
+  outcome.unseen = told.unseen;
+  outcome.accuracy = told.accuracy;
   outcome.reference_sha256 = origin.sources.sha256("reference");
   outcome.flow_sha256 = origin.sources.sha256("flow");
   nlohmann::json summary = case_summary(loaded, prepared, rendered, frames, outcome);

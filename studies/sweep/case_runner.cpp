@@ -267,12 +267,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   result.measures.emplace_back("caustic_fraction", prepared.strain.caustic_fraction);
   result.measures.emplace_back("saturated", static_cast<double>(frames.saturated_reference + frames.saturated_flow));
   result.warnings = prepared.warnings;
-  Rendering const& rendering = *rendered.rendering;
-  warn_of_saturation(result.warnings, prepared.scene.setup.camera, frames.saturated_reference, frames.saturated_flow,
-                     rendered.exposure_e * rendering.in_place->brightest());
-  warn_of_unseen(result.warnings, prepared.scene, rendering.truth, rendered.pupil_margin);
-  warn_of_truth(result.warnings, rendering, truth_accuracy(rendering.truth, truth_tolerance_px), prepared.rays,
-                prepared.scene.setup.piv ? "particles" : "dots");
+  warn_of_rendering(result.warnings, prepared, rendered, frames);
   result.warnings.insert(result.warnings.end(), measured.field.warnings.begin(), measured.field.warnings.end());
   result.measures.emplace_back("warnings", static_cast<double>(result.warnings.size()));
   result.vectors = vector_errors(comparison);

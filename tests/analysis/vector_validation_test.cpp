@@ -187,7 +187,9 @@ TEST(ValidateVectors, SayWhichTestAVectorFailed) {
 
 // An error of an earlier pass is in the predictor, and nothing was added to it: neighbours that correlate better give
 // it away, as they do not where the test is off, where the window correlates like those beside it, or where the field
-// is steep. In the corner the plane of three neighbours stands in, as far as their unevenness of 0.02 px tells it.
+// is steep. In the corner the plane of three neighbours stands in, as far as their unevenness of 0.02 px tells it:
+// its value there, the two beside it less the third across, is off by three of them along either axis and the vector
+// by one, 4 * 0.02 * sqrt(2) = 0.11 px; below 0.15 is asked.
 TEST(WholeDisplacements, GiveAWrongPredictorAway) {
   for (std::size_t const planted : {std::size_t{34}, std::size_t{0}})
     for (auto const& [correlation, threshold, replaced] :

@@ -31,9 +31,8 @@ std::string unheeded(CorrelationSettings const& settings) {
   note("replace", settings.replace == usual.replace);
   if (keys.empty()) return {};
   return fmt::format(
-      "correlate.method = \"{}\" does not heed correlate.{} (optical flow has no correlation peaks, and its vectors "
-      "are "
-      "not tested); leave out what is not heeded",
+      "correlate.method = \"{}\" does not heed correlate.{} (optical flow has no correlation peaks, and its "
+      "vectors are not tested); leave out what is not heeded",
       settings.method, fmt::join(keys, ", correlate."));
 }
 
