@@ -27,7 +27,9 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
 	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
-LINT_PACKAGES := clang-format clang-tidy
+LINT_PACKAGES := clang-format python3-venv
+# from PyPI: unlike Debian's clang-tidy 14 it skips the system's headers, and so takes a third of the time
+CLANG_TIDY := clang-tidy==23.1.4
 # the compiler of PRESET=dev, with libFuzzer, and what makes its reports readable
 DEV_PACKAGES := clang libclang-rt-dev llvm
 PACKAGES += $(if $(filter dev,$(PRESET)),$(DEV_PACKAGES))
@@ -92,7 +94,8 @@ check-long: build  ## simulate ten recommended designs with eight fresh seeds ea
 lint: PACKAGES += $(LINT_PACKAGES)
 lint: configure  ## check the format (clang-format) and the code (clang-tidy)
 	clang-format --dry-run -Werror $(SOURCES)
-	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 clang-tidy -p $(BUILD) --quiet
+	@[ -x $(BUILD)/lint/bin/clang-tidy ] || { python3 -m venv $(BUILD)/lint && $(BUILD)/lint/bin/pip install -q $(CLANG_TIDY); }
+	@$(TIDY_SOURCES) | xargs -P $(JOBS) -n 4 $(BUILD)/lint/bin/clang-tidy -p $(BUILD) --quiet
 
 format:  ## rewrite the sources in the project's format
 	@cmake/install_packages.sh clang-format

@@ -123,7 +123,7 @@ struct ParticlesLaunch {
 
 /// What a launch gives, on the device.
 struct ParticlesTraced {
-  RaySums* sums;  ///< [particle][pulse], of each [share][scrambling]: seen through the medium, and without it
+  RaySums* sums;   ///< [particle][pulse], of each [share][scrambling]: seen through the medium, and without it
   double* moved2;  ///< [particle][pulse]: square of the furthest that the medium moved a ray [m^2]
   unsigned long long* ends;  ///< [pulse][status], counted on
 };

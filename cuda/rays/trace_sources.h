@@ -52,7 +52,7 @@ struct SourcesLaunch {
 /// What a launch gives, on the device.
 struct SourcesTraced {
   RaySums* sums;             ///< [source][share][scrambling]
-  double* moved2;             ///< [source]: square of the furthest that the medium moved a ray [m^2]
+  double* moved2;            ///< [source]: square of the furthest that the medium moved a ray [m^2]
   unsigned long long* ends;  ///< [frame][status], counted on
 };
 

@@ -8,7 +8,14 @@ namespace gladstone {
 
 /// Independent random streams of a case. Numbers are keyed by (seed, stream, source, ray), never drawn in sequence, so
 /// that runs repeat on any number of threads and on either device.
-enum class RandomStream : std::uint64_t { target = 1, pupil = 2, noise_reference = 3, noise_flow = 4, particles = 5, sensor = 6 };
+enum class RandomStream : std::uint64_t {
+  target = 1,
+  pupil = 2,
+  noise_reference = 3,
+  noise_flow = 4,
+  particles = 5,
+  sensor = 6
+};
 
 /// A bijective 64-bit mixer (Steele, Lea & Flood 2014, SplitMix64; constants of Stafford's variant 13).
 GLADSTONE_HD constexpr std::uint64_t mix64(std::uint64_t x) {

@@ -134,8 +134,8 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     Comparison const comparison = compare_case(folder, device, compare);
     std::string const json = errors_json(comparison);
     bool const draw = !arguments->no_figures;
-    auto const figures = apart ? write_folder(*output, place, comparison, json, draw)
-                               : write_beside(place, comparison, json, draw);
+    auto const figures =
+        apart ? write_folder(*output, place, comparison, json, draw) : write_beside(place, comparison, json, draw);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
     for (auto const& name : figures) spdlog::info("drew {}", (place / name).string());
     print_result(options, json, error_report(comparison));

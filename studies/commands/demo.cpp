@@ -10,7 +10,8 @@ namespace gladstone {
 
 CommandBody attach_demo(CLI::App& app, GlobalOptions const& options) {
   auto folder = std::make_shared<std::string>("out/demo");
-  app.add_option("-o,--output", *folder, "Folder for the cases, figure4.png, agreement.png and summary.md")->capture_default_str();
+  app.add_option("-o,--output", *folder, "Folder for the cases, figure4.png, agreement.png and summary.md")
+      ->capture_default_str();
   return [folder, &options] {
     std::string const summary = run_demo(*folder, options.open_device());
     print_result(options, json_text(nlohmann::json{{"folder", *folder}, {"summary", summary}}), summary);

@@ -40,8 +40,8 @@ class Sources : public Workplace {
     return program->finish(60s);
   }
   void write_large_setup() const {
-    write("large.toml",
-          with(with(small_setup, "[64, 64]", "[512, 512]"), "[32, 16]\noverlap = 0.5", "[64, 32, 32]\noverlap = 0.75\nmethod = \"mqd\""));
+    write("large.toml", with(with(small_setup, "[64, 64]", "[512, 512]"), "[32, 16]\noverlap = 0.5",
+                             "[64, 32, 32]\noverlap = 0.75\nmethod = \"mqd\""));
   }
 };
 

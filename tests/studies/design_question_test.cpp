@@ -82,9 +82,9 @@ TEST(DesignQuestion, MistakesAreToldAtTheirPlaces) {
   expect_refused_question(with("[inventory]", "[inventory]\ncameras = [\"nowhere.toml\"]"), "setup.toml:11:1",
                           "there is no file");
   std::string const named = with("f_numbers = [8, 11]", "f_numbers = [8, 11]\nfocal_lengths_mm = [50, \"tele.zmx\"]");
-  expect_refused_question(std::string(named).replace(named.find("\"lens.f_number\""), 15,
-                                                     "\"lens.f_number\", \"lens.focal_length_mm\""),
-                          "setup.toml:12:1", "write files of prescriptions as inventory.lenses");
+  expect_refused_question(
+      std::string(named).replace(named.find("\"lens.f_number\""), 15, "\"lens.f_number\", \"lens.focal_length_mm\""),
+      "setup.toml:12:1", "write files of prescriptions as inventory.lenses");
 }
 
 }  // namespace
