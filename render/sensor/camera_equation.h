@@ -4,19 +4,21 @@
 
 namespace gladstone {
 
-/// Light that a camera gets from white paper: radiance and time.
+/// Illumination of the target: radiance of white paper and exposure time.
 struct PaperLight {
-  double radiance = 0;       ///< of white paper under the lamp [W / (m^2 sr)]
-  double exposure_time = 0;  ///< [s]
+  double radiance = 0;       ///< radiance of illuminated white paper [W/(m^2 sr)]
+  double exposure_time = 0;  ///< exposure time [s]
 };
 
-/// Electrons in a pixel on the axis that sees nothing but white paper, by the camera equation (F21): exposure
-/// pi L t / (4 N^2 (1 + M)^2) [J/m^2] times the pixel's area, over the energy of a photon, times the quantum
-/// efficiency. A pixel is all sensitive, and the lens passes all light.
-/// @param light         radiance L and time t
-/// @param f_number      N of the lens at infinity [1]
-/// @param magnification M [1]
-/// @param pitch         of the pixels [m]; wavelength [m]; efficiency electrons a photon
+/// Returns the electrons in a pixel on the optical axis whose image is uniform white paper (camera equation):
+/// exposure pi L t / (4 N^2 (1 + M)^2) [J/m^2], times pixel area and quantum efficiency, over the photon energy.
+/// Assumes a fill factor of one and a lens without losses.
+/// @param light          radiance L and exposure time t
+/// @param f_number       N of the lens focused at infinity [1]
+/// @param magnification  M [1]
+/// @param pitch          pixel pitch [m]
+/// @param wavelength     wavelength of the light [m]
+/// @param efficiency     quantum efficiency, electrons per photon [1]
 template <class T>
 T fully_lit_electrons(PaperLight const& light, T f_number, T magnification, double pitch, double wavelength,
                       double efficiency) {

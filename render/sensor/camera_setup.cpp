@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_background = 0.8;  // of the full well
+constexpr double max_background = 0.8;  // fraction of the full well
 constexpr long long largest_seed = std::numeric_limits<long long>::max();
 
 void read_pattern(SetupTable& noise, NoiseSetup& setup) {
@@ -35,12 +35,12 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
     }
     setup.glare_e = table.number("glare_e", 0.1 * full_well_e, Range::positive(1e9));
   } else {
-    table.refuse("glare_e", "is how bright the picture of a glare_file is; add that, or remove this");
+    table.refuse("glare_e", "has no effect without glare_file; add glare_file or remove this key");
   }
-  if (setup.most_e() > most_background * full_well_e) {
-    table.problem("level_e", fmt::format("and what comes on top of it fill a pixel with {:.6g} electrons ({:.6g} at "
-                                         "most, {} of camera.noise.full_well_e: little else would be seen); lower it",
-                                         setup.most_e(), most_background * full_well_e, most_background));
+  if (setup.most_e() > max_background * full_well_e) {
+    table.problem("level_e", fmt::format("gives, with gradient and glare, a background of up to {:.6g} electrons (the "
+                                         "limit is {:.6g}, {} of camera.noise.full_well_e); lower it",
+                                         setup.most_e(), max_background * full_well_e, max_background));
   }
   return setup;
 }
@@ -49,7 +49,7 @@ BackgroundSetup read_background(SetupTable table, double full_well_e) {
 
 CameraSetup read_camera_setup(SetupTable table) {
   CameraSetup setup;
-  if (table.has("name")) table.text("name", "");  // of its folder, where there are several
+  if (table.has("name")) table.text("name", "");  // name of the camera's folder; used if there are several
   auto const pixels = table.integers("pixels", {setup.columns, setup.rows}, 2, 2, 1, 1000000);
   if (pixels.size() == 2) {
     setup.columns = static_cast<int>(pixels[0]);
@@ -68,7 +68,7 @@ CameraSetup read_camera_setup(SetupTable table) {
     setup.tilt = sensor.quantities("tilt_deg", setup.tilt, unit::degree, {-80, 80});
     setup.scheimpflug = sensor.word("scheimpflug", "off", {"off", "auto"}) == "auto";
     if (setup.scheimpflug && sensor.has("tilt_deg") && !(setup.tilt == Vec2d{})) {
-      sensor.problem("scheimpflug", "stands beside tilt_deg (one of them tilts the sensor); remove one");
+      sensor.problem("scheimpflug", "conflicts with tilt_deg (both tilt the sensor); remove one");
     }
     auto const brown = sensor.numbers("distortion", {0, 0, 0, 0}, 4, {-100, 100});
     if (brown.size() == 4) setup.distortion = {brown[0], brown[1], brown[2], brown[3]};
@@ -81,9 +81,8 @@ CameraSetup read_camera_setup(SetupTable table) {
     setup.noise.read_noise_e = noise.number("read_noise_e", setup.noise.read_noise_e, Range::at_least(0.0, 1e6));
     if (setup.noise.read_noise_e > setup.noise.full_well_e) {
       noise.problem("read_noise_e",
-                    fmt::format("is more than the full well of {:.6g} electrons (nothing but noise would "
-                                "be seen); give the standard deviation of a pixel in the dark, a few "
-                                "electrons for most cameras",
+                    fmt::format("exceeds the full well of {:.6g} electrons; give the standard deviation of a dark "
+                                "pixel, a few electrons for most cameras",
                                 setup.noise.full_well_e));
     }
     setup.noise.dark_current_e = noise.number("dark_current_e", setup.noise.dark_current_e, Range::at_least(0.0, 1e9));
@@ -106,7 +105,7 @@ double clipped_at_black(CameraSetup const& camera) {
   double const sigma = gain * std::sqrt(noise.read_noise_e * noise.read_noise_e + dark_variance);
   double const black = camera.offset_dn + gain * noise.dark_current_e;
   auto const below = [&](double level) { return 0.5 * std::erfc((black - level) / (sigma * std::sqrt(2.0))); };
-  // levels are whole numbers: the mean of what is cut off is the sum over them of the chance to fall short of each
+  // Grey levels are integers: sum the probabilities of falling below each of them.
   if (sigma < 100) {
     double sum = 0;
     for (double level = -0.5; level > black - 9 * sigma; --level) sum += below(level);

@@ -10,33 +10,33 @@
 
 namespace gladstone {
 
-/// Table [camera.noise]; where it is absent the sensor is ideal.
+/// Table [camera.noise]. Without it the sensor is ideal.
 struct NoiseSetup {
   bool enabled = false;
-  double full_well_e = 30000;       ///< electrons at full scale; also the scale of an ideal sensor's exposure
-  double read_noise_e = 3.0;        ///< standard deviation [e]
-  double dark_current_e = 0.0;      ///< mean per frame [e]
-  double quantum_efficiency = 0.6;  ///< electrons per photon
+  double full_well_e = 30000;       ///< electrons at full scale, also for an ideal sensor [e]
+  double read_noise_e = 3.0;        ///< standard deviation of the read noise [e]
+  double dark_current_e = 0.0;      ///< mean dark charge per frame [e]
+  double quantum_efficiency = 0.6;  ///< electrons per photon [1]
   bool shot_noise = true;
   std::uint64_t seed = 1;
-  // what differs from pixel to pixel and is the same in all frames (EMVA Standard 1288, 2021, chapter 4)
-  double prnu = 0;             ///< photo response non-uniformity: standard deviation of the gain over its mean [1]
+  // fixed pattern: differs between pixels, equal in all frames (EMVA Standard 1288, 2021, chapter 4)
+  double prnu = 0;             ///< photo response non-uniformity: relative standard deviation of the gain [1]
   double dsnu_e = 0;           ///< dark signal non-uniformity: standard deviation of the black level [e]
-  double hot_pixel_share = 0;  ///< of all pixels [1]
-  double hot_pixel_e = 0;      ///< mean charge of a hot pixel a frame, exponentially distributed [e]
+  double hot_pixel_share = 0;  ///< fraction of hot pixels [1]
+  double hot_pixel_e = 0;      ///< mean charge of a hot pixel per frame, exponentially distributed [e]
   std::uint64_t pattern_seed = 1;
 
   bool patterned() const { return prnu > 0 || dsnu_e > 0 || hot_pixel_share > 0; }
 };
 
-/// Table [camera.background]: light that is none of the sources', the same in all frames.
+/// Table [camera.background]: stray light, equal in all frames.
 struct BackgroundSetup {
-  double level_e = 0;      ///< electrons in the picture's middle
-  Vec2d gradient_e{};      ///< by how much they grow from the first column to the last, and from the first row [e]
-  std::string glare_file;  ///< a picture, stretched over the sensor; empty: none
-  double glare_e = 0;      ///< electrons at its brightest
+  double level_e = 0;      ///< charge at the image centre [e]
+  Vec2d gradient_e{};      ///< increase from the first to the last column, and row [e]
+  std::string glare_file;  ///< image of the glare, scaled to the size of the sensor; empty: none
+  double glare_e = 0;      ///< charge at the brightest point of the glare [e]
 
-  /// Electrons that no pixel has more of.
+  /// Upper bound of the background charge in any pixel [e].
   double most_e() const {
     return level_e + (std::abs(gradient_e.x) + std::abs(gradient_e.y)) / 2 + (glare_file.empty() ? 0 : glare_e);
   }
@@ -48,16 +48,16 @@ struct CameraSetup {
   int rows = 512;
   double pixel_pitch = 10e-6;  ///< [m]
   int bit_depth = 16;
-  /// Electrons in a pixel on the axis that is fully lit: that sees nothing but white paper through the whole stop,
-  /// whatever its f-number. Empty: auto, which makes up for what a small stop costs the images of dots (wider spots,
-  /// dimmer peaks); a number does not.
+  /// Electrons in a fully lit pixel on the axis, that is, one whose image is uniform white paper, at any f-number.
+  /// Empty: "auto", chosen from the brightest pixel of the frames, which compensates the dimmer, wider dot images of a
+  /// small aperture; a number does not.
   std::optional<double> exposure_e;
-  bool absolute_exposure = false;  ///< electrons follow from the light's photons, instead
-  double offset_dn = 0;            ///< black level
+  bool absolute_exposure = false;  ///< "absolute": electrons follow from the photons of [light] or [laser]
+  double offset_dn = 0;            ///< black level [grey levels]
   NoiseSetup noise;
   BackgroundSetup background;
-  Vec2d tilt{};              ///< of the sensor about its x, then its turned y, through the axis point [rad]
-  bool scheimpflug = false;  ///< tilted so that the plane in focus is sharp all over, instead of `tilt`
+  Vec2d tilt{};              ///< rotation about the sensor's x, then its rotated y axis, through the axis point [rad]
+  bool scheimpflug = false;  ///< tilt from the Scheimpflug condition instead of `tilt`
   BrownDistortion<double> distortion;
 
   bool tilted() const { return scheimpflug || tilt.x != 0 || tilt.y != 0; }
@@ -68,8 +68,8 @@ struct CameraSetup {
 
 CameraSetup read_camera_setup(SetupTable table);
 
-/// By how much the mean of a pixel without light lies above its black level, since no level is below zero: the part of
-/// read noise (and of dark electrons' shot noise, as a normal number) that is cut off there [grey levels].
+/// Returns the bias of the mean grey level of an unlit pixel that results from clipping at zero [grey levels].
+/// Read noise and the shot noise of the dark charge are taken as normally distributed.
 double clipped_at_black(CameraSetup const& camera);
 
 }  // namespace gladstone

@@ -13,12 +13,13 @@ namespace {
 
 double full_scale_of(CameraSetup const& camera) { return std::pow(2.0, camera.bit_depth) - 1; }
 
-/// A picture stretched over a sensor, linearly between the centres of its pixels, and scaled to a brightest of `most`.
+/// Reads an image, resamples it bilinearly to `columns` x `rows` pixels, and scales its maximum to `most`.
 Image<double> stretched(std::string const& path, int columns, int rows, double most) {
   Image<double> const picture = read_image(path);
   double const brightest = *std::max_element(picture.begin(), picture.end());
   if (count_not_finite(picture) > 0 || *std::min_element(picture.begin(), picture.end()) < 0 || !(brightest > 0)) {
-    throw DataError(path, "is no picture of light (it is black, or holds pixels below zero or nan); use another");
+    throw DataError(
+        path, "cannot be used as glare (it is black, or has negative or non-finite pixels); choose another image");
   }
   Image<double> image(columns, rows);
   auto const place = [](int at, int count, int of) { return std::clamp((at + 0.5) * of / count - 0.5, 0.0, of - 1.0); };

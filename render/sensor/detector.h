@@ -13,38 +13,38 @@ namespace gladstone {
 /// A recorded frame.
 struct Recording {
   Image<std::uint16_t> image;  ///< grey levels, unshifted
-  std::size_t saturated = 0;   ///< pixels at full well or full scale
+  std::size_t saturated = 0;   ///< number of pixels at full well or full scale
 };
 
-/// Turns light into grey levels. Light is measured in fully lit pixels on the axis (1 = a pixel that sees white paper).
+/// Converts light to grey levels. The unit of light is the fully lit pixel on the axis, whose image is white paper.
 class Detector {
  public:
-  /// @param electrons_fully_lit exposure: electrons that light of 1 sets free
-  /// @throws DataError of a glare's picture
+  /// @param electrons_fully_lit  exposure: electrons per unit of light
+  /// @throws DataError if the glare image cannot be used
   Detector(CameraSetup const& camera, double electrons_fully_lit);
 
-  /// The exposure that puts the brightest noise-free pixel at 90 % of full scale, or below it by what the background
-  /// has less there than at its brightest [e].
+  /// Returns the exposure [e] that puts the brightest noise-free pixel at 90 % of full scale, minus the largest
+  /// background charge of any pixel.
   static double auto_exposure(CameraSetup const& camera, double brightest_light);
 
-  /// Grey level without background, noise, rounding and saturation: offset + electrons * full scale / full well.
+  /// Returns offset + electrons * full scale / full well: no background, noise, rounding or saturation [grey levels].
   double ideal_level(double light) const { return pixel_.ideal(light); }
   Image<double> ideal(Image<double> const& light) const;
 
-  /// Records a frame: background, fixed pattern and hot pixels, shot noise (Poisson in light and dark electrons), read
-  /// noise (normal), full well, rounding to the bit depth. Noise is keyed by (seed, stream, pixel), what is fixed by
-  /// (pattern seed, pixel). Without [camera.noise]: background, rounding and saturation only.
+  /// Records a frame: background, fixed pattern, hot pixels, shot noise (Poisson, of light and dark charge), read noise
+  /// (normal), full well and rounding to the bit depth. Temporal noise is keyed by (seed, stream, pixel), the fixed
+  /// pattern by (pattern seed, pixel). Without [camera.noise]: background, rounding and saturation only.
   Recording record(Image<double> const& light, RandomStream stream) const;
 
-  /// What it does to a pixel, for those who do it elsewhere.
+  /// Model of one pixel, for recording on another device.
   PixelDetector const& pixel() const { return pixel_; }
-  /// Grey levels that one unit of light is worth.
+  /// Grey levels per unit of light.
   double levels_per_light() const { return pixel_.electrons * pixel_.levels_per_electron; }
   double full_scale() const { return pixel_.full_scale; }
 
  private:
   PixelDetector pixel_;
-  std::shared_ptr<Image<double> const> glare_;  ///< [e]
+  std::shared_ptr<Image<double> const> glare_;  ///< charge of the glare [e]
 };
 
 }  // namespace gladstone

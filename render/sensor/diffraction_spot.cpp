@@ -10,8 +10,8 @@
 namespace gladstone {
 namespace {
 
-/// Irradiance of the Airy pattern at radius r, in units of N (1 + M) lambda; 1 on the axis (Born & Wolf,
-/// section 8.5.2).
+/// Returns the irradiance of the Airy pattern relative to its peak (Born & Wolf, section 8.5.2).
+/// @param r  radius in units of N (1 + M) lambda
 double airy(double r) {
   double const v = pi * r;
   if (v < 1e-4) return 1 - v * v / 4;
@@ -19,7 +19,7 @@ double airy(double r) {
   return amplitude * amplitude;
 }
 
-/// Integral images of the pattern on a lattice of `fine` midpoints a pixel, so that a pixel's share is four look-ups.
+/// Summed-area table of the Airy pattern, sampled at `fine` midpoints per pixel and axis.
 class IntegralLattice {
  public:
   IntegralLattice(double scale_px, int fine, int reach) : sums_(2 * reach + 1, 2 * reach + 1, 0.0), reach_(reach) {
@@ -33,7 +33,7 @@ class IntegralLattice {
       }
     }
   }
-  /// Sum over lattice cells [a, a + count) x [b, b + count).
+  /// Returns the sum over cells [a, a + count) x [b, b + count).
   double square(int a, int b, int count) const {
     auto const at = [&](int i, int j) { return sums_(i + reach_, j + reach_); };
     return at(a + count, b + count) - at(a, b + count) - at(a + count, b) + at(a, b);
@@ -57,7 +57,7 @@ AiryTable::AiryTable(double scale_px)
   double* out = shares_.data();
   for (int sub_y = 0; sub_y <= fine; ++sub_y) {
     for (int sub_x = 0; sub_x <= fine; ++sub_x) {
-      // light at (sub / fine - 1/2) from the middle pixel's centre; pixel i spans lattice cells from there
+      // The PSF is centred at (sub / fine - 1/2) from the centre of the middle pixel.
       double total = 0;
       double* const begin = out;
       for (int j = -half_width_; j <= half_width_; ++j) {

@@ -9,29 +9,29 @@
 
 namespace gladstone {
 
-/// Diffraction spot sizes of a circular pupil in incoherent light: N (1 + M) lambda is the scale of all of them
-/// (Adrian & Yao 1985; Raffel et al. 2018, section 2). The seed's Eq. 8 carries a superfluous pi.
+/// Size of the diffraction-limited PSF of a circular pupil in incoherent light, in multiples of N (1 + M) lambda
+/// (Adrian & Yao 1985; Raffel et al. 2018, section 2). Eq. 8 of Rajendran et al. (2019) has a superfluous factor pi.
 struct SpotSize {
   double scale;  ///< N (1 + M) lambda [m]
 
+  /// Diameter of the Airy pattern's first dark ring [m].
   double first_zero_diameter() const { return 2.43934 * scale; }
-  double matched_sigma() const {
-    return 0.4206042622 * scale;
-  }  ///< Gaussian fitted to the Airy pattern within its first zero
+  /// Standard deviation of the Gaussian fitted to the Airy pattern within its first zero [m].
+  double matched_sigma() const { return 0.4206042622 * scale; }
 };
 
-/// Pixels that one ray's spot touches: columns [column, column + width), rows alike.
+/// Square of pixels that the PSF of one ray covers: columns [column, column + width), rows likewise.
 struct Footprint {
   int column;
   int row;
   int width;
 };
 
-/// Light of one ray spread as a Gaussian and integrated over pixels by the error function: the weights of a footprint
-/// factor into columns and rows. Their sum is one up to erfc(reach / (sqrt 2 sigma)).
+/// Gaussian PSF integrated over pixels by the error function. The weights of a footprint are the product of one factor
+/// per column and one per row; they sum to one up to erfc(reach / (sqrt 2 sigma)).
 template <class T>
 struct GaussianSpot {
-  T sigma{};  ///< [px]
+  T sigma{};  ///< standard deviation [px]
 
   static constexpr int most_width = 64;
 
@@ -42,14 +42,14 @@ struct GaussianSpot {
     int const half = half_width();
     return {static_cast<int>(floor(p.x + T(0.5))) - half, static_cast<int>(floor(p.y + T(0.5))) - half, 2 * half + 1};
   }
-  /// Shares of `width` pixels from `first` on, along one axis, of light centred at p [px]; they sum to one exactly
-  /// enough.
+  /// Computes the fractions of light that fall on the `width` pixels from `first` on, along one axis, for a PSF centred
+  /// at p [px].
   GLADSTONE_HD void shares(T p, int first, int width, T* out) const {
     constexpr T offset[8] = {T(-0.5), T(0.5), T(1.5), T(2.5), T(3.5), T(4.5), T(5.5), T(6.5)};
     using Four = Lanes<T, 4>;
     Four const scale = Four::all(T(1) / sigma);
     T before{};
-    // edges from the left, eight at a time; pixel i lies between edges i and i + 1
+    // Evaluate eight pixel edges at a time; pixel i is bounded by edges i and i + 1.
     for (int edge = 0; edge <= width; edge += 8) {
       Four const left = Four::all(T(first + edge) - p);
       Four value[2] = {(left + Four::load(offset)) * scale, (left + Four::load(offset + 4)) * scale};
@@ -61,14 +61,14 @@ struct GaussianSpot {
       }
     }
   }
-  /// Derivative of one pixel's share by p, of the given order, over the order's factorial.
+  /// Taylor coefficient: derivative of one pixel's share with respect to p, of the given order, over order!.
   GLADSTONE_HD T taylor_share(T p, int pixel, int order) const {
     T const per_sigma = T(1) / sigma, left = (T(pixel) - T(0.5) - p) * per_sigma, right = left + per_sigma;
     if (order == 0) return edge_value(right) - edge_value(left);
     return EdgeTerms(right, per_sigma).of[order] - EdgeTerms(left, per_sigma).of[order];
   }
-  /// The shares, and their derivatives by p over k!, up to the given order.
-  /// @param out [order + 1][width]
+  /// Computes the shares and their Taylor coefficients with respect to p, up to the given order.
+  /// @param out  [order + 1][width]
   GLADSTONE_HD void taylor_shares(T p, int first, int width, int order, T* out) const {
     shares(p, first, width, out);
     T const per_sigma = T(1) / sigma;
@@ -82,8 +82,8 @@ struct GaussianSpot {
     }
   }
 
-  /// The normal distribution's integral from its middle to every edge, given by its distance t in standard deviations:
-  /// a pixel's share is the difference between its edges'.
+  /// Replaces the position t of each pixel edge, in standard deviations from the centre of the PSF, by the integral of
+  /// the normal distribution from the centre to it. A pixel's share is the difference between its two edges.
   template <int N, int K>
   [[gnu::always_inline]] GLADSTONE_HD static void edge_values(Lanes<T, N> (&t)[K]) {
     for (auto& row : t) row = row * Lanes<T, N>::all(T(0.70710678118654752440));
@@ -96,9 +96,10 @@ struct GaussianSpot {
     return alone[0].lane(0);
   }
 
-  /// Derivatives of the normal distribution's integral up to an edge, by the place of its middle, over k!: from the
-  /// Hermite polynomials (Abramowitz & Stegun 26.2.31). @param t the edge's distance in standard deviations
-  /// @param per_sigma one over the standard deviation [1/px]
+  /// Taylor coefficients of the normal distribution's integral up to an edge, with respect to the position of its
+  /// centre, from Hermite polynomials (Abramowitz & Stegun 26.2.31).
+  /// @param t          distance of the edge from the centre, in standard deviations [1]
+  /// @param per_sigma  reciprocal of the standard deviation [1/px]
   struct EdgeTerms {
     T of[5];
     GLADSTONE_HD EdgeTerms(T t, T per_sigma) {
@@ -112,23 +113,24 @@ struct GaussianSpot {
   };
 };
 
-/// The Airy pattern integrated over pixels: tabulated over sub-pixel positions, cut at six times N (1 + M) lambda
-/// (which holds 97 % of the light) or three pixels, whichever is more, and renormalised to one. Between table positions
-/// the shares are interpolated linearly, to about 1e-4 of the peak.
+/// Airy pattern integrated over pixels and tabulated over sub-pixel positions. The pattern is cut at the larger of
+/// 6 N (1 + M) lambda, which contains 97 % of the light, and three pixels, and renormalised to one. Linear
+/// interpolation between positions has an error of about 1e-4 of the peak.
 class AiryTable {
  public:
   struct View {
     double const* shares = nullptr;  ///< [sub_y][sub_x][row][column]
-    int subdivisions = 0;            ///< table steps a pixel; subdivisions + 1 positions an axis
-    int half_width = 0;              ///< [px]
+    int subdivisions = 0;            ///< table steps per pixel; subdivisions + 1 positions per axis
+    int half_width = 0;              ///< half width of the footprint, without its middle pixel [px]
 
-    /// Numbers in `shares`.
+    /// Number of elements of `shares`.
     std::size_t count() const {
       auto const positions = static_cast<std::size_t>(subdivisions + 1),
                  width = static_cast<std::size_t>(2 * half_width + 1);
       return positions * positions * width * width;
     }
-    /// Share of the footprint's pixel (column, row) for light centred at (x, y) in [-0.5, 0.5], from its middle pixel.
+    /// Returns the share of pixel (column, row) of the footprint; the PSF is centred at (x, y), each within [-0.5, 0.5]
+    /// px of the middle pixel's centre.
     GLADSTONE_HD double share(double x, double y, int row, int column) const {
       double const u = (x + 0.5) * subdivisions, v = (y + 0.5) * subdivisions;
       int const iu = static_cast<int>(u) < subdivisions ? static_cast<int>(u) : subdivisions - 1;
@@ -144,7 +146,7 @@ class AiryTable {
     }
   };
 
-  /// @param scale_px N (1 + M) lambda in pixels
+  /// @param scale_px  N (1 + M) lambda [px]
   explicit AiryTable(double scale_px);
   View view() const { return {shares_.data(), subdivisions_, half_width_}; }
 

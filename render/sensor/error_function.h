@@ -4,9 +4,9 @@
 
 namespace gladstone {
 
-/// Replaces every x by its error function, K rows of N numbers at once, without branches: x P(x^2), P of degree 26
-/// through the Chebyshev points of |x| <= 5, beyond which erf is one (erfc(5) = 1.5e-12). P is written in y = 2 x^2/25
-/// - 1, where its coefficients are small. Good to 1e-12, odd to the last bit.
+/// Replaces each x by erf(x), for K rows of N numbers, without branches. Uses x P(2 x^2/25 - 1), where P of degree 26
+/// interpolates at the Chebyshev points of |x| <= 5; beyond that range erf is one (erfc(5) = 1.5e-12). The error is
+/// below 1e-12, and erf(-x) = -erf(x) to the last bit.
 template <class T, int N, int K>
 [[gnu::always_inline]] GLADSTONE_HD inline void error_function(Lanes<T, N> (&x)[K]) {
   constexpr double coefficients[27] = {
@@ -19,7 +19,7 @@ template <class T, int N, int K>
       -4.3633355781547676e-05, -9.511395652742862e-05, 3.948577052531454e-05,
   };
   using Row = Lanes<T, N>;
-  // chains of products, side by side: of the even and the odd powers, and of all rows
+  // Evaluate even and odd powers, and all rows, as independent chains of multiplications.
   Row y[K], yy[K], even[K], odd[K];
   for (int i = 0; i < K; ++i) {
     x[i] = x[i].clamped(T(-5), T(5));

@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// Images accumulate in 64-bit fixed point, so that sums depend neither on order nor on the device. The unit is 2^-44
-/// of the light of a fully lit pixel: 5e5 times as much fits, and a ray's share is kept to 1e-10 of itself or better.
+/// Fixed-point value of a fully lit pixel. Images accumulate in 64-bit fixed point, so that sums depend neither on
+/// order nor on the device. The range is 5e5 fully lit pixels, and the resolution 2^-44 of one.
 inline constexpr double fixed_point_one = 0x1p44;
 
 GLADSTONE_HD inline std::int64_t to_fixed_point(double share) {

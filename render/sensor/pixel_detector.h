@@ -7,45 +7,45 @@
 
 namespace gladstone {
 
-/// What one pixel makes of light.
+/// Output of one pixel.
 struct PixelLevel {
-  double level = 0;  ///< whole grey levels
+  double level = 0;  ///< grey level, a whole number
   bool saturated = false;
 };
 
-/// What is a pixel's own, in every frame.
+/// Fixed-pattern properties of one pixel, equal in all frames.
 struct PixelPattern {
-  double gain = 1;    ///< over the mean
-  double offset = 0;  ///< of the black level [e]
-  double hot = 0;     ///< charge that it collects in the dark [e]
+  double gain = 1;    ///< gain relative to the mean [1]
+  double offset = 0;  ///< offset of the black level [e]
+  double hot = 0;     ///< charge of a hot pixel [e]
 };
 
-/// A camera's electronics, pixel by pixel, for every device.
+/// Pixel-wise model of the camera's electronics, for host and device.
 struct PixelDetector {
-  double electrons = 0;  ///< that light of 1 sets free
-  double levels_per_electron = 0;
-  double offset = 0;      ///< black level
-  double full_scale = 0;  ///< highest grey level
-  bool noisy = false;     ///< the rest counts only if so
+  double electrons = 0;            ///< electrons per unit of light [e]
+  double levels_per_electron = 0;  ///< conversion gain [grey levels/e]
+  double offset = 0;               ///< black level [grey levels]
+  double full_scale = 0;           ///< highest grey level
+  bool noisy = false;              ///< false: the noise parameters below are ignored
   bool shot_noise = false;
   double full_well_e = 0;
   double dark_current_e = 0;
   double read_noise_e = 0;
   std::uint64_t seed = 0;
-  // light that is none of the sources', see BackgroundSetup
-  int columns = 0, rows = 0;        ///< of the sensor; 0: no such light
-  double background_e = 0;          ///< in the middle [e]
-  double across_e = 0, down_e = 0;  ///< from the first column, row to the last [e]
-  double const* glare_e = nullptr;  ///< of every pixel [e]; null: none
-  // what differs from pixel to pixel, see NoiseSetup
+  // stray light, see BackgroundSetup
+  int columns = 0, rows = 0;        ///< size of the sensor [px]; 0: no stray light
+  double background_e = 0;          ///< charge at the image centre [e]
+  double across_e = 0, down_e = 0;  ///< increase from the first to the last column, row [e]
+  double const* glare_e = nullptr;  ///< charge of the glare in each pixel [e]; null: none
+  // fixed pattern, see NoiseSetup
   bool patterned = false;
   double prnu = 0, dsnu_e = 0, hot_pixel_share = 0, hot_pixel_e = 0;
   std::uint64_t pattern_seed = 0;
 
-  /// Grey level of the sources' light alone, without noise, rounding and saturation.
+  /// Returns the grey level of the light alone, without background, noise, rounding or saturation.
   GLADSTONE_HD double ideal(double light) const { return offset + light * (electrons * levels_per_electron); }
 
-  /// Electrons of the background; none are fewer than none.
+  /// Returns the charge of the background, at least zero [e].
   GLADSTONE_HD double background(std::uint64_t pixel) const {
     if (columns == 0) return 0;
     auto const width = static_cast<std::uint64_t>(columns);
@@ -55,7 +55,8 @@ struct PixelDetector {
     return (even > 0 ? even : 0) + (glare_e ? glare_e[pixel] : 0);
   }
 
-  /// What is a pixel's own. Its four numbers are drawn always, so that one does not change with another.
+  /// Draws the fixed pattern of a pixel. All random numbers are always drawn, so that each property is independent of
+  /// whether the others are enabled.
   GLADSTONE_HD PixelPattern pattern(std::uint64_t pixel) const {
     using std::log;
     KeyedEngine engine(pattern_seed, RandomStream::sensor, pixel);
@@ -77,7 +78,7 @@ struct PixelDetector {
       KeyedEngine engine(seed, stream, pixel);
       PixelPattern const own = patterned ? pattern(pixel) : PixelPattern{};
       charge = charge * own.gain + dark_current_e + own.hot;
-      // beyond 1e12 electrons any pixel is full
+      // Every pixel saturates above 1e12 electrons.
       if (shot_noise && charge > 0 && charge < 1e12) charge = poisson_variate(engine, charge);
       full = charge >= full_well_e;
       charge = (full ? full_well_e : charge) + own.offset;

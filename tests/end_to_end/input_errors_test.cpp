@@ -376,7 +376,7 @@ TEST_F(Inputs, SaturatedPixelsAreToldWithTheirCure) {
   EXPECT_THAT(warning("dark_current_e = 1e5\n"), HasSubstr("lower camera.noise.dark_current_e"));
 
   std::string const text = with(small_setup, "[lens]", "[camera.noise]\nread_noise_e = 1e6\n[lens]");
-  expect_setup_refused(text, {"setup.toml:" + place_of(text, "read_noise_e"), "more than the full well of 30000"});
+  expect_setup_refused(text, {"setup.toml:" + place_of(text, "read_noise_e"), "exceeds the full well of 30000"});
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(CameraPose, ThatMakesNoSenseIsRefused) {
       [] { setup_of("[camera.pose]\nposition_mm = [0, 0, 700]\nlook_at_mm = [0, 0, 0]\nrotation_deg = [0, 0, 0]\n"); },
       refused("4:1", "stands beside look_at_mm"));
   EXPECT_THAT([] { setup_of("[camera.sensor]\nscheimpflug = \"auto\"\ntilt_deg = [1, 0]\n"); },
-              refused("2:1", "stands beside tilt_deg"));
+              refused("2:1", "conflicts with tilt_deg"));
 }
 
 TEST(Windows, AreReadWithTheirGlass) {
