@@ -1,6 +1,7 @@
 #include "render/optics/glass_catalogue.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -311,22 +312,29 @@ std::vector<Glass const*> GlassCatalogue::candidates(std::string_view name) cons
   return {};
 }
 
+void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& where) const {
+  auto const out = std::find_if(left_out_.begin(), left_out_.end(),
+                                [&](LeftOut const& one) { return compared(one.name) == compared(name); });
+  if (out != left_out_.end()) {
+    throw DataError(where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its index",
+                                       name, out->reason));
+  }
+  std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
+  throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
+                                     "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
+                                     "give a lens its index",
+                                     name, glasses_.size(), glasses_like(own.substr(0, own.rfind('_')))));
+}
+
 GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::string const& where,
                                  std::vector<std::string> const& preferred) const {
+  GlassMatch result{nullptr, {}};
   std::vector<Glass const*> found = candidates(name);
   if (found.empty()) {
-    auto const out = std::find_if(left_out_.begin(), left_out_.end(),
-                                  [&](LeftOut const& one) { return compared(one.name) == compared(name); });
-    if (out != left_out_.end()) {
-      throw DataError(where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its "
-                                         "index",
-                                         name, out->reason));
-    }
-    std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
-    throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
-                                       "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
-                                       "give a lens its index",
-                                       name, glasses_.size(), glasses_like(own.substr(0, own.rfind('_')))));
+    found = candidates("N-" + std::string(name));
+    if (found.empty()) refuse_unknown(name, where);
+    result.notes.push_back(fmt::format("{}: glass \"{}\" is in no catalogue; {}, which followed it, is taken", where, name,
+                                       found.front()->name));
   }
   auto const covers = [wavelength](Glass const* glass) {
     return wavelength >= glass->shortest && wavelength <= glass->longest && is_index(glass->index(wavelength));
@@ -351,17 +359,16 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   };
   std::stable_sort(found.begin(), found.end(), [&](auto const* a, auto const* b) { return rank(a) < rank(b); });
   Glass const& glass = *found.front();
-  GlassMatch result{&glass, {}};
+  result.glass = &glass;
   bool const decided = rank(&glass) < static_cast<std::ptrdiff_t>(preferred.size());
   bool const differ = std::any_of(found.begin(), found.end(), [&](Glass const* other) {
     return std::abs(other->index(wavelength) - glass.index(wavelength)) > same_index;
   });
   if (differ && !decided) {
-    std::string others;
-    for (Glass const* other : found)
-      others += fmt::format("{}{}:{}", others.empty() ? "" : ", ", other->catalogue, other->name);
-    result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {}:{} is taken", where, name,
-                                       others, glass.catalogue, glass.name));
+    std::vector<std::string> names;
+    for (Glass const* other : found) names.push_back(other->catalogue + ':' + other->name);
+    result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {} is taken", where, name,
+                                       fmt::join(names, ", "), names.front()));
   }
   constexpr double d = spectral_line::d;
   bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 1 and 0: none

@@ -38,7 +38,8 @@ class GlassCatalogue {
   /// as does CODE V's "NAME_CATALOGUE" where no glass bears the whole name. Of several catalogues that have the name,
   /// the first of `preferred` counts, then SCHOTT, OHARA, HOYA, HIKARI, NIKON, CDGM, SUMITA, CORNING, then the order in
   /// which they were added; a note says so where their indices differ and no preferred one decided, and where a
-  /// formula does not give the nd that is printed beside it.
+  /// formula does not give the nd that is printed beside it. A glass that no catalogue has is its successor without
+  /// lead, N-NAME, if there is one, with a note.
   /// @param wavelength [m] @param where the name was used, for messages
   /// @param preferred catalogues in the order of preference
   /// @throws DataError with candidates, if no glass has the name; or if the wavelength is outside the glass's range
@@ -56,6 +57,8 @@ class GlassCatalogue {
   std::string glasses_like(std::string_view name) const;
   /// Those of that name, in that catalogue unless it is empty.
   std::vector<Glass const*> named(std::string_view name, std::string_view catalogue) const;
+  /// @throws DataError that names what the glass may have been meant to be
+  [[noreturn]] void refuse_unknown(std::string_view name, std::string const& where) const;
   /// Those that a name as match() takes it may mean.
   std::vector<Glass const*> candidates(std::string_view name) const;
 
