@@ -316,8 +316,9 @@ void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& wh
   auto const out = std::find_if(left_out_.begin(), left_out_.end(),
                                 [&](LeftOut const& one) { return compared(one.name) == compared(name); });
   if (out != left_out_.end()) {
-    throw DataError(where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its index",
-                                       name, out->reason));
+    throw DataError(
+        where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its index", name,
+                           out->reason));
   }
   std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
   throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
@@ -333,8 +334,8 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   if (found.empty()) {
     found = candidates("N-" + std::string(name));
     if (found.empty()) refuse_unknown(name, where);
-    result.notes.push_back(fmt::format("{}: glass \"{}\" is in no catalogue; {}, which followed it, is taken", where, name,
-                                       found.front()->name));
+    result.notes.push_back(fmt::format("{}: glass \"{}\" is in no catalogue; {}, which followed it, is taken", where,
+                                       name, found.front()->name));
   }
   auto const covers = [wavelength](Glass const* glass) {
     return wavelength >= glass->shortest && wavelength <= glass->longest && is_index(glass->index(wavelength));
@@ -366,7 +367,10 @@ GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::
   });
   if (differ && !decided) {
     std::vector<std::string> names;
-    for (Glass const* other : found) names.push_back(other->catalogue + ':' + other->name);
+    for (Glass const* other : found) {
+      std::string const full = other->catalogue + ':' + other->name;
+      if (std::find(names.begin(), names.end(), full) == names.end()) names.push_back(full);
+    }
     result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {} is taken", where, name,
                                        fmt::join(names, ", "), names.front()));
   }

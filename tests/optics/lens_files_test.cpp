@@ -25,7 +25,9 @@ using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::Not;
 
-std::string case_path(std::string const& name) { return std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/" + name; }
+std::string case_path(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/" + name;
+}
 
 Lens lens_at(std::string const& path, GlassCatalogue const& glasses = GlassCatalogue::shipped()) {
   Prescription prescription = read_prescription(path);
@@ -93,7 +95,8 @@ TEST(LensFiles, TheLastLineNeedsNoEnd) {
   EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33: the file ends within its line DISZ")));
 }
 
-// An aperture from 7.5 mm to infinity about a pupil of 6 mm would leave no light at all; one from 2 mm on blocks a disc.
+// An aperture from 7.5 mm to infinity about a pupil of 6 mm would leave no light at all; one from 2 mm on blocks a
+// disc.
 TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
   Lens const lens = lens_of_case("clap_inf.zmx");
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
@@ -195,8 +198,8 @@ TEST(LensFiles, ExtendedEvenAspheresAreNormalisedByARadius) {
   EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
   for (double const r : {1.0, 4.0, 7.5}) {
     double const u = r / 10;
-    EXPECT_NEAR(sag_of_first_surface(lens, r),
-                sphere_sag(0.016, r) + 1.2e-3 * std::pow(u, 4) - 4e-5 * std::pow(u, 6), 1e-15);
+    EXPECT_NEAR(sag_of_first_surface(lens, r), sphere_sag(0.016, r) + 1.2e-3 * std::pow(u, 4) - 4e-5 * std::pow(u, 6),
+                1e-15);
   }
 }
 
@@ -248,8 +251,8 @@ TEST(LensFiles, AnIdealLensFocusesLightThatRunsBack) {
   EXPECT_NEAR(height_behind(lens, ray, -100), 0, 1e-13);
 }
 
-// TILTSURF: a plane z = 0.1 y at the end of glass of 1.5 deviates the axial ray by asin(1.5 sin a) - a, tan a = 0.1; the
-// next surface stands in an untilted frame.
+// TILTSURF: a plane z = 0.1 y at the end of glass of 1.5 deviates the axial ray by asin(1.5 sin a) - a, tan a = 0.1;
+// the next surface stands in an untilted frame.
 TEST(LensFiles, ATiltedSurfaceIsAPrism) {
   Lens const lens = lens_of_case("tilted_surface.zmx");
   Ray<double> ray = parallel_ray(0);
@@ -344,7 +347,8 @@ TEST(LensFiles, CodeVsAsphericTermsGoToJ) {
   EXPECT_NEAR(sag_of_first_surface(lens, 5), sphere_sag(0.016, 5) + 1e-7 * 625, 1e-15);
   Lens const high = lens_of_text("high.seq", changed(seq, "STO;", "STO; J 1e-20; A 1e-7;"));
   EXPECT_NEAR(sag_of_first_surface(high, 5), sphere_sag(0.02, 5) + 1e-7 * 625 + 1e-20 * std::pow(5, 20), 1e-15);
-  EXPECT_THAT(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")), AllOf(HasSubstr("cuf.seq:9"), HasSubstr("CUF")));
+  EXPECT_THAT(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")),
+              AllOf(HasSubstr("cuf.seq:9"), HasSubstr("CUF")));
 }
 
 // DAR: the surface at 12 mm is shifted by 1 mm and tilted by 30 degrees, the next one stands on the axis at 32 mm. BEN:
@@ -378,13 +382,15 @@ TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
 }
 
 // Without RDM numbers are curvatures, CODE V's default; those of this triplet would be spheres of 0.05 mm about a pupil
-// of 10 mm, and are radii. 50.33 mm is what another program computes of it, with 50.334 by the trace of its own indices.
+// of 10 mm, and are radii. 50.33 mm is what another program computes of it, with 50.334 by the trace of its own
+// indices.
 TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
   GlassCatalogue const glasses = with_catalogue("SCHOTT", "NM N-SK16 1 0 1.62041 60.32\nCD 2.6257284681\nLD 0.3 2\n");
   Lens const lens = lens_of_case("without_rdm.seq", glasses);
   EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("without_rdm.seq:7"), HasSubstr("no RDM"))));
   EXPECT_NEAR(focal_length_mm(lens), 50.33, 0.2);
-  std::string const curvatures = changed(changed(changed(seq, "RDM;LEN", "LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
+  std::string const curvatures =
+      changed(changed(changed(seq, "RDM;LEN", "LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
   Lens const plain = lens_of_text("curvatures.seq", curvatures);
   EXPECT_NEAR(focal_length_mm(plain), focal_length_mm(lens_of_text("radii.seq", seq)), 1e-10);
   EXPECT_THAT(plain.warnings, Not(Contains(HasSubstr("RDM"))));
@@ -392,8 +398,9 @@ TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
 
 TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
   for (char const* const command : {"GRT", "DIF DOE", "HOE", "SPS XYP", "YTO", "RET S1", "NSS"}) {
-    EXPECT_THAT(refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
-                AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not read")))
+    EXPECT_THAT(
+        refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
+        AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not read")))
         << command;
   }
   Lens const lens = lens_of_text("noted.seq", changed(seq, "STO;", "STO; QQQ 1; WWW; QQQ 2;"));
@@ -406,7 +413,8 @@ TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
 
 TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
   for (char const* const type : {"DGRATING", "GRINSUR1", "BIREFRIN", "NONSEQCO", "BINARY_2", "TOROIDAL", "FZERNSAG"}) {
-    EXPECT_THAT(refusal("type.zmx", changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
+    EXPECT_THAT(refusal("type.zmx",
+                        changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
                 AllOf(HasSubstr("type.zmx:23"), HasSubstr(type), HasSubstr("is not read")))
         << type;
   }
@@ -437,9 +445,8 @@ TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
   glasses.add_file(case_path("good_and_odd_glass.agf"));
   ASSERT_EQ(glasses.glasses().size(), 1u);
   EXPECT_NEAR(glasses.find("GOODCROWN", spectral_line::d, "").nd(), std::sqrt(2.5571), 1e-15);
-  EXPECT_THAT(glasses.warnings(),
-              ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"), HasSubstr("ODDGLASS (line 5"),
-                                HasSubstr("NORANGE (line 8"))));
+  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"),
+                                                    HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8"))));
   EXPECT_THAT(
       [&] {
         try {
@@ -467,8 +474,8 @@ TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
 // none are passed over.
 TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
   GlassCatalogue glasses;
-  glasses.add(
-      "NM X 1 0 1.6 50\nCD 2.25\nLD 0.3 2\nIT 0.4 0.9 0\nIT 0.5 0.99 10\nNM Y 1 0 1 0\nCD 2.25\nLD 0.3 2\n", "OWN", "own.agf");
+  glasses.add("NM X 1 0 1.6 50\nCD 2.25\nLD 0.3 2\nIT 0.4 0.9 0\nIT 0.5 0.99 10\nNM Y 1 0 1 0\nCD 2.25\nLD 0.3 2\n",
+              "OWN", "own.agf");
   GlassMatch const x = glasses.match("X", spectral_line::d, "lens:1");
   EXPECT_THAT(x.notes, ElementsAre(AllOf(HasSubstr("lens:1"), HasSubstr("1.500000"), HasSubstr("1.600000"))));
   EXPECT_EQ(x.glass->transmission.size(), 1u);
@@ -484,7 +491,8 @@ TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
 }
 
 TEST(LensFiles, ConfigurationsEnvironmentAndCurvedImagesAreNotedOnce) {
-  std::string const text = changed(changed(zmx, "PWAV 2", "PWAV 2\nMNUM 3 1\nENVD 40 1 1"), "SURF 3\n", "SURF 3\n  CURV 0.01\n");
+  std::string const text =
+      changed(changed(zmx, "PWAV 2", "PWAV 2\nMNUM 3 1\nENVD 40 1 1"), "SURF 3\n", "SURF 3\n  CURV 0.01\n");
   EXPECT_THAT(lens_of_text("noted.zmx", text).warnings,
               IsSupersetOf({HasSubstr("3 configurations"), HasSubstr("ENVD"), HasSubstr("image is curved")}));
 }

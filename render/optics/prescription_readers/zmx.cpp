@@ -25,9 +25,13 @@ class ZmxReader {
     if (line.words.empty()) return;
     std::string const& key = line[0];
     if (key == "SURF") {
+      if (surfaces_.empty() && line.integer(1) == 1) assume_object(line.where);
       if (line.integer(1) != static_cast<int>(surfaces_.size())) {
-        throw DataError(line.where, fmt::format("surface {} comes after {}; the file is damaged", line[1],
-                                                static_cast<int>(surfaces_.size()) - 1));
+        throw DataError(
+            line.where,
+            surfaces_.empty()
+                ? fmt::format("the first surface is {}, not the object 0; the file is damaged", line[1])
+                : fmt::format("surface {} comes after {}; the file is damaged", line[1], surfaces_.size() - 1));
       }
       surfaces_.emplace_back();
       surfaces_.back().surface.where = line.where;
@@ -52,7 +56,12 @@ class ZmxReader {
       throw DataError(path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
     }
-    check_image(surfaces_.back());
+    if (object_assumed_ && why_no_image(surfaces_.back())) {
+      surfaces_.emplace_back();
+      surfaces_.back().surface.where = path_;
+    } else {
+      check_image(surfaces_.back());
+    }
     PrescribedSurface const& object = surfaces_.front().surface;
     if (object.after.is_mirror())
       throw DataError(object.where, "the object is a mirror (GLAS); name what is ahead of the lens");
@@ -169,13 +178,29 @@ class ZmxReader {
     }
   }
 
+  /// A file of the lens' surfaces alone has no block of the object, which is taken to be far away.
+  void assume_object(std::string const& where) {
+    object_assumed_ = true;
+    result_.warnings.push_back(where +
+                               ": the file has no surface 0, the object, which is taken at infinity; its last "
+                               "surface is the image only if it has no thickness");
+    surfaces_.emplace_back();
+    surfaces_.back().surface.where = where;
+    surfaces_.back().surface.thickness = HUGE_VAL;
+  }
+
+  /// Why a block is no image surface; null: it may be one.
+  static char const* why_no_image(ZmxSurface const& last) {
+    return !last.has_distance            ? "has no DISZ"
+           : last.surface.thickness != 0 ? "has a thickness (DISZ)"
+           : last.surface.stop           ? "is the stop"
+           : last.type == "COORDBRK"     ? "is a coordinate break"
+                                         : nullptr;
+  }
+
   /// Refuses a last block that is no image surface: what the file goes on with is missing.
   static void check_image(ZmxSurface const& last) {
-    char const* const why = !last.has_distance            ? "has no DISZ"
-                            : last.surface.thickness != 0 ? "has a thickness (DISZ)"
-                            : last.surface.stop           ? "is the stop"
-                            : last.type == "COORDBRK"     ? "is a coordinate break"
-                                                          : nullptr;
+    char const* const why = why_no_image(last);
     if (why == nullptr) return;
     throw DataError(last.surface.where,
                     fmt::format("the last surface {}, so it is no image surface, with which a .zmx file ends: the file "
@@ -190,6 +215,7 @@ class ZmxReader {
   std::vector<double> wavelengths_, fields_;
   double unit_ = 1e-3;
   int primary_ = 1;
+  bool object_assumed_ = false;
   std::string heights_at_, across_at_;  // lines that say that fields are heights, that some lie beside the y-z plane
   std::string aperture_where_;
 };

@@ -61,7 +61,7 @@ bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& 
     } else if (least == 0) {
       apertures.disc = std::max(apertures.disc, largest);
     } else if (largest > 0) {
-      throw DataError(line.where, "an obscuration is a ring (OBSC with a least radius of 0 is traced, a full disc)");
+      apertures.obscured_ring = {least, largest};
     }
   } else {
     return false;
@@ -78,6 +78,13 @@ void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, st
     disc = std::max(disc, apertures.aperture->least);
     largest = apertures.aperture->largest;
     surface.obscured_without_end = disc > 0 && std::isinf(largest);
+  }
+  if (auto const& ring = apertures.obscured_ring) {
+    if (ring->largest >= surface.semi_diameter) {  // it leaves a circle
+      largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
+    } else {
+      warn("OBSC: an obscuration that is a ring within the surface is not traced; light passes there");
+    }
   }
   surface.outline = apertures.outline;
   surface.outline.centre = centre;

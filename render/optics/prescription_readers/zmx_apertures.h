@@ -18,6 +18,7 @@ struct ZmxApertures {
   std::string where;  ///< the last of their lines
   std::optional<Ring> aperture;
   double disc = 0;  ///< radius of an obscuration
+  std::optional<Ring> obscured_ring;
   SurfaceOutline<double> outline;
   Vec2d centre{};  ///< of all of them
 };

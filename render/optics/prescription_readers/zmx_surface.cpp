@@ -18,6 +18,10 @@ bool is_glass(double nd, double vd) { return nd >= 1 && nd < 5 && vd >= 0; }
 /// nd and Vd of a line GLAS, in the fifth and sixth word; Vd of 0 is a glass without dispersion.
 PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
   double const nd = line.number(4), vd = line.size() > 5 ? line.number(5) : 0;
+  if (nd == -1 && vd == 0) {
+    warnings.push_back(line.where + ": GLAS: an index of -1 is taken as a mirror");
+    return {PrescribedMedium::Mirror{}};
+  }
   if (!is_glass(nd, vd)) {
     throw DataError(line.where, fmt::format("GLAS: a model glass of nd = {:.6g}, Vd = {:.6g} is none (nd lies "
                                             "between 1 and 5, Vd above 0); correct it or name a glass",
