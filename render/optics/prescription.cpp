@@ -59,9 +59,11 @@ bool is_turned(PrescribedSurface const& surface) {
 }
 
 /// Finds whether a surface runs through the next real one within their edges, planes of reference between them or not.
-/// Widths for drawings are no edges: a lens ends where its surfaces meet.
+/// Widths for drawings are no edges: a lens ends where its surfaces meet. Surfaces that meet off the axis alone may do
+/// so outside the light.
 /// @param forwards sense of the light between them
 /// @return a warning; empty: the surfaces do not overlap
+/// @throws DataError if they overlap on the axis
 std::string find_overlap(Prescription const& lens, std::size_t i, double forwards) {
   PrescribedSurface const& one = lens.surfaces[i];
   double way = 0;
@@ -79,11 +81,14 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
     double const r = height * k / 32;
     double const gap = forwards * (way + sag(next, r) - sag(one, r));
     if (!(gap < -1e-9 * std::max(height, 1e-3))) continue;
+    std::string const what =
+        fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} mm", one.where,
+                    -gap / unit::millimetre, r / unit::millimetre);
+    if (k == 0) throw DataError(next.where, what + " (check radius, thickness and semi-diameter)");
     return fmt::format(
-        "{}: this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} mm, within their "
-        "semi-diameters; rays are traced from surface to surface all the same (check radius, thickness and "
-        "semi-diameter)",
-        next.where, one.where, -gap / unit::millimetre, r / unit::millimetre);
+        "{}: {}, within their semi-diameters; rays are traced from surface to surface all the same (check "
+        "radius, thickness and semi-diameter)",
+        next.where, what);
   }
   return "";
 }
