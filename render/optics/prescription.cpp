@@ -93,6 +93,21 @@ std::string find_overlap(Prescription const& lens, std::size_t i, double forward
   return "";
 }
 
+/// Refuses what is no index of a glass.
+void check_medium(PrescribedMedium const& medium, std::string const& where) {
+  auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
+  if (index && !(index->n >= 1 && index->n < 5)) {
+    throw DataError(where,
+                    fmt::format("an index of {:.4g} is no glass (it lies between 1 and 5); correct it", index->n));
+  }
+  auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is);
+  if (described && !(described->nd > 1 && described->nd < 5 && described->vd > 0)) {
+    throw DataError(where, fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
+                                       "correct it or name a glass",
+                                       described->nd, described->vd));
+  }
+}
+
 /// A warning of a surface that ends within its semi-diameter; empty: it does not.
 std::string find_short_surface(PrescribedSurface const& surface) {
   bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
@@ -160,6 +175,7 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     throw DataError(lens.file,
                     fmt::format("has {} surfaces (at most {} are read)", lens.surfaces.size(), most_surfaces));
   }
+  check_medium(lens.object_medium, lens.file);
   std::string stop;
   bool any_real = false;
   double forwards = 1;  // sense of the light, which mirrors turn
@@ -204,14 +220,7 @@ std::vector<std::string> check_prescription(Prescription const& lens) {
     if (surface.shape == PrescribedSurface::Shape::ideal_lens && surface.focal_length == 0) {
       throw DataError(surface.where, "an ideal thin lens has a focal length of 0; give it another one");
     }
-    if (auto const* const index = std::get_if<PrescribedMedium::Described>(&surface.after.is)) {
-      if (!(index->nd > 1 && index->nd < 5 && index->vd > 0)) {
-        throw DataError(surface.where,
-                        fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
-                                    "correct it or name a glass",
-                                    index->nd, index->vd));
-      }
-    }
+    check_medium(surface.after, surface.where);
     if (is_real(lens, i)) warn(find_overlap(lens, i, forwards));
   }
   if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");

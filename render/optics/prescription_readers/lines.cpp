@@ -54,21 +54,22 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-std::optional<PrescribedMedium::Described> read_glass_code(std::string_view word) {
-  if (auto const colon = word.find(':'); colon != std::string_view::npos) {
-    auto const nd = finite_number(word.substr(0, colon)), vd = finite_number(word.substr(colon + 1));
+std::optional<PrescribedMedium> read_glass_code(std::string_view word) {
+  auto const described = [](std::optional<double> nd, std::optional<double> vd) -> std::optional<PrescribedMedium> {
     if (!nd || !vd) return std::nullopt;
-    return PrescribedMedium::Described{*nd, *vd};
+    if (*vd == 0) return PrescribedMedium{PrescribedMedium::Index{*nd}};
+    return PrescribedMedium{PrescribedMedium::Described{*nd, *vd}};
+  };
+  if (auto const colon = word.find(':'); colon != std::string_view::npos) {
+    return described(finite_number(word.substr(0, colon)), finite_number(word.substr(colon + 1)));
   }
   auto const point = word.find('.');
   bool const pointed = point != std::string_view::npos;
   std::string_view const index = word.substr(0, pointed ? point : word.size() / 2);
   std::string_view const abbe = word.substr(pointed ? point + 1 : word.size() / 2);
   if (!are_digits(index) || !are_digits(abbe) || index.size() < 3 || abbe.size() < 2) return std::nullopt;
-  auto const nd = finite_number(fmt::format("1.{}", index));
-  auto const vd = finite_number(fmt::format("{}.{}0", abbe.substr(0, 2), abbe.substr(2)));
-  if (!nd || !vd) return std::nullopt;
-  return PrescribedMedium::Described{*nd, *vd};
+  return described(finite_number(fmt::format("1.{}", index)),
+                   finite_number(fmt::format("{}.{}0", abbe.substr(0, 2), abbe.substr(2))));
 }
 
 int PrescriptionLine::integer(std::size_t i) const {

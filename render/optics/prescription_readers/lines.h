@@ -31,8 +31,9 @@ std::string in_capitals(std::string text);
 
 /// The glass that a code describes: MIL-G-174's six digits (517642: nd 1.517, Vd 64.2), as many for either value
 /// (516800641667), digits about a point (517.642, 516800.641667), or both values about a colon (1.5168:64.17).
+/// Vd of 0 is an index without dispersion.
 /// @return nothing for other words
-std::optional<PrescribedMedium::Described> read_glass_code(std::string_view word);
+std::optional<PrescribedMedium> read_glass_code(std::string_view word);
 
 /// Words between blanks; text in quotes, of either kind, is one word and loses them.
 std::vector<std::string> quoted_words(std::string_view line);

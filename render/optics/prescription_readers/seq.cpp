@@ -174,7 +174,7 @@ class SeqReader {
     std::string const name = in_capitals(word);
     if (name.empty() || name == "AIR") return {};
     if (name == "REFL") return {PrescribedMedium::Mirror{}};
-    if (auto const code = read_glass_code(name)) return {*code};
+    if (auto const code = read_glass_code(name)) return *code;
     return {PrescribedMedium::Named{word, std::nullopt}};
   }
 

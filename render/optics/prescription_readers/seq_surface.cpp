@@ -34,6 +34,8 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
                                    line.where, command));
   }
   bool const blocks = kind == "OBS" || kind == "HOL";
+  if (value == 0 && blocks) return;
+  if (!(value > 0)) throw DataError(line.where, command + ": the size of an aperture is positive; correct it");
   if (command == "CIR") {
     (blocks ? seq.surface.obscured : seq.surface.semi_diameter) = value;
     return;
@@ -43,7 +45,6 @@ void read_aperture(std::string const& command, PrescriptionLine const& line, dou
     seq.shape = {Outline::Kind::rectangle, blocks, {endless, endless}, {}};
   }
   if (command.starts_with('E')) seq.shape.kind = Outline::Kind::ellipse;
-  if (!(value > 0)) throw DataError(line.where, command + ": a half width is positive; correct it");
   (command.ends_with('X') ? seq.shape.half.x : seq.shape.half.y) = value;
 }
 

@@ -51,7 +51,7 @@ PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string
   if (line[1] == "MIRROR") return {PrescribedMedium::Mirror{}};
   bool const blank = line[1] == "___BLANK";
   if (blank || (line.size() > 4 && line[2] == "1")) return model_glass(line, warnings);
-  if (auto const code = read_glass_code(line[1])) return {*code};
+  if (auto const code = read_glass_code(line[1])) return *code;
   return named_glass(line);
 }
 
