@@ -491,15 +491,17 @@ TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
   EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:15"), HasSubstr("N-BK7"))));
 }
 
-// A file of the lens' surfaces alone, without object and image: the singlet. An index of -1 is a mirror: R = -50 mm.
+// A file of the lens' surfaces alone, without object and image: the singlet. An index of -1 is a mirror: R = 50 mm,
+// f = R / 2.
 TEST(LensFiles, OtherProgramsLeaveOutTheObjectOrWriteMirrorsAsIndices) {
   Lens const bare = lens_of_text("bare.zmx",
                                  "MODE SEQ\nUNIT MM\nSURF 1\n  CURV 0.02\n  DISZ 6\n  DIAM 8\n  GLAS ___BLANK 1 0 1.5\n"
                                  "SURF 2\n  CURV -0.02\n  DISZ 47\n  DIAM 8\n");
   EXPECT_NEAR(focal_length_mm(bare), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
   EXPECT_THAT(bare.warnings, Contains(AllOf(HasSubstr("bare.zmx:3"), HasSubstr("taken at infinity"))));
-  Lens const mirror = lens_of_text(
-      "mirror.zmx", changed(changed(zmx, "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 -1 0"), "CURV -0.02", "CURV 0"));
+  std::string const reflecting =
+      changed(changed(zmx, "DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 -1 0");
+  Lens const mirror = lens_of_text("mirror.zmx", changed(reflecting, "CURV -0.02", "CURV 0"));
   EXPECT_NEAR(std::abs(focal_length_mm(mirror)), 25, 1e-12);
   EXPECT_THAT(mirror.warnings, Contains(AllOf(HasSubstr("mirror.zmx:20"), HasSubstr("taken as a mirror"))));
 }
