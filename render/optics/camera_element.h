@@ -65,8 +65,9 @@ struct PosedThinLens {
 /// rays of any direction, and has `RayStatus interact(Ray<T>&, RayAccount<T>&) const`. Adding one: its struct, and its
 /// name here.
 template <class T>
-using CameraElement = OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>,
-                            ShapedSurface<T, EvenAsphere<T>>, LensletArray<T>>;
+using CameraElement =
+    OneOf<PosedStop<T>, PosedThinLens<T>, ShapedSurface<T, Quadric<T>>, ShapedSurface<T, EvenAsphere<T>>,
+          LensletArray<T>, ShapedSurface<T, RadialAsphere<T>>, ShapedSurface<T, TiltedPlane<T>>>;
 
 /// The same element in another scalar: in ceres::Jets, rays through it carry their derivatives by its place and form.
 template <class U, class T>

@@ -95,7 +95,8 @@ class FieldTracer {
     double const u = std::tan(point.angle);
     double const y0 = std::isfinite(paraxial_.entrance.position) ? -paraxial_.entrance.position * u : 0;
     double const n_image = lens_.paraxial.back().n_after;
-    double const y = m.a * y0 + m.b * u, slope_out = (m.c * y0 + m.d * u) / n_image;
+    double const nu = lens_.object_index * u;
+    double const y = m.a * y0 + m.b * nu, slope_out = (m.c * y0 + m.d * nu) / n_image;
     double const ideal = y + slope_out * image_plane_;
     if (ideal != 0) point.distortion = point.chief.y / ideal - 1;
     // two neighbours on either side, near enough for the difference to be the derivative
@@ -130,8 +131,9 @@ double paraxial_image(Lens const& lens, ParaxialLens const& paraxial) {
   double const distance = lens.prescription.object_distance;
   if (!std::isfinite(distance)) return paraxial.back_focal_length;
   RayTransfer const m = ray_transfer(lens, 0, static_cast<int>(lens.paraxial.size()));
-  // from the axis point of the object: y = distance, n u = 1; times n, which mirrors turn, since the way is reduced
-  return -lens.paraxial.back().n_after * (m.a * distance + m.b) / (m.c * distance + m.d);
+  // from the axis point of the object: y = distance, n u = n; times n', which mirrors turn, since the way is reduced
+  double const n = lens.object_index;
+  return -lens.paraxial.back().n_after * (m.a * distance + m.b * n) / (m.c * distance + m.d * n);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "render/base/contracts.h"
 
@@ -74,9 +75,34 @@ double index_by(DispersionFormula formula, Coefficients c, double l) {
   return 1;
 }
 
+/// Lagrange's polynomial in 1/lambda^2 through the samples nearest to a wavelength [m].
+double interpolated_index(std::span<Glass::Sample const> samples, double wavelength) {
+  constexpr std::size_t most_samples = 4;
+  auto const x = [](double at) { return 1e-12 / (at * at); };
+  std::size_t const count = std::min(samples.size(), most_samples);
+  auto const after = std::lower_bound(samples.begin(), samples.end(), wavelength,
+                                      [](Glass::Sample const& sample, double at) { return sample.wavelength < at; });
+  std::size_t const next = static_cast<std::size_t>(after - samples.begin());
+  std::size_t const first = std::min(next > count / 2 ? next - count / 2 : 0, samples.size() - count);
+  std::span<Glass::Sample const> const near = samples.subspan(first, count);
+  double sum = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    double weight = 1;
+    for (std::size_t j = 0; j < near.size(); ++j) {
+      if (j == i) continue;
+      weight *= (x(wavelength) - x(near[j].wavelength)) / (x(near[i].wavelength) - x(near[j].wavelength));
+    }
+    sum += weight * near[i].index;
+  }
+  return sum;
+}
+
 }  // namespace
 
-double Glass::index(double wavelength) const { return index_by(formula, {coefficients}, wavelength * 1e6); }
+double Glass::index(double wavelength) const {
+  return samples.empty() ? index_by(formula, {coefficients}, wavelength * 1e6)
+                         : interpolated_index(samples, wavelength);
+}
 
 double Glass::absorption(double wavelength) const {
   auto const loss = [](Transmission const& t) { return -std::log(std::max(t.transmission, 1e-30)) / t.thickness; };
@@ -111,6 +137,18 @@ Glass Glass::constant(double index) {
   glass.coefficients = {index * index};
   glass.shortest = 0;
   glass.longest = 1;
+  return glass;
+}
+
+Glass Glass::from_samples(std::string name, std::vector<Sample> samples) {
+  GLADSTONE_EXPECTS(!samples.empty());
+  std::sort(samples.begin(), samples.end(),
+            [](Sample const& a, Sample const& b) { return a.wavelength < b.wavelength; });
+  Glass glass;
+  glass.name = std::move(name);
+  glass.shortest = samples.size() > 1 ? samples.front().wavelength : 0;  // one index is that of every wavelength
+  glass.longest = samples.size() > 1 ? samples.back().wavelength : 1;
+  glass.samples = std::move(samples);
   return glass;
 }
 

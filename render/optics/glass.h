@@ -45,8 +45,16 @@ struct Glass {
     double thickness;     ///< that it was measured through [m]
   };
   std::vector<Transmission> transmission;  ///< rising wavelengths; may be empty
+  struct Sample {
+    double wavelength;  ///< [m]
+    double index;       ///< [1]
+  };
+  std::vector<Sample> samples;  ///< of a glass that has no formula; rising wavelengths
+  double printed_nd = 0;        ///< that the catalogue prints beside the formula; 0: none [1]
 
-  /// Index at a wavelength [m]. @pre the wavelength is within [shortest, longest]
+  /// Index at a wavelength [m]: by the formula, or a polynomial in 1/lambda^2 (Cauchy) through the four nearest
+  /// samples.
+  /// @pre the wavelength is within [shortest, longest]
   double index(double wavelength) const;
   /// Loss of light per length inside the glass, linear between the catalogue's wavelengths; 0 where it has none [1/m].
   double absorption(double wavelength) const;
@@ -58,6 +66,8 @@ struct Glass {
   static Glass from_nd_vd(double nd, double vd);
   /// One index at every wavelength.
   static Glass constant(double index);
+  /// A glass of indices at wavelengths in any order. @pre there is one or more, of different wavelengths
+  static Glass from_samples(std::string name, std::vector<Sample> samples);
 };
 
 }  // namespace gladstone

@@ -1,12 +1,16 @@
 #include "render/optics/glass_catalogue.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/nearest_name.h"
@@ -21,6 +25,11 @@ namespace {
 constexpr std::size_t most_coefficients = 10;
 constexpr double same_index = 1e-4;  // [1]; glasses of one name that differ by less are the same for a ray
 
+/// Makers whose catalogues come first where several have a name and the lens' file prefers none.
+constexpr std::array makers{"SCHOTT", "OHARA", "HOYA", "HIKARI", "NIKON", "CDGM", "SUMITA", "CORNING"};
+
+bool is_index(double n) { return n > 0.99 && n < 7; }  // of air against air to that of infrared crystals
+
 /// Names are compared in capitals and without hyphens: NBK7 is N-BK7.
 std::string compared(std::string_view name) {
   std::string key;
@@ -28,6 +37,12 @@ std::string compared(std::string_view name) {
     if (c != '-') key.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
   }
   return key;
+}
+
+/// Whether a catalogue is the one that is asked for, or an edition of it: SCHOTT_2017, SCHOTT-NEW.
+bool is_catalogue(std::string_view catalogue, std::string_view asked) {
+  if (!catalogue.starts_with(asked)) return false;
+  return catalogue.size() == asked.size() || std::isalpha(static_cast<unsigned char>(catalogue[asked.size()])) == 0;
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -41,112 +56,203 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// Reads the lines of one catalogue.
+/// A line of a catalogue with those that continue it.
+struct AgfRecord {
+  int line = 0;
+  std::vector<std::string_view> words;
+};
+
+std::optional<double> number_in(std::string_view word) {
+  double value = 0;
+  std::string_view const digits = word.starts_with('+') ? word.substr(1) : word;
+  auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  bool const whole = error == std::errc() && end == digits.data() + digits.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// What is wrong with a line or a glass.
+struct AgfFault {
+  int line;
+  std::string text;
+};
+
+/// Reads the records of one catalogue. A fault ends the glass that it stands in, not the catalogue.
 class AgfReader {
  public:
-  AgfReader(std::string const& catalogue, std::string const& file) : catalogue_(catalogue), file_(file) {}
+  struct LeftOut {
+    std::string name;
+    AgfFault fault;
+  };
+
+  explicit AgfReader(std::string const& catalogue) : catalogue_(catalogue) {}
 
   void read_line(std::string_view line, int number) {
-    number_ = number;
     std::vector<std::string_view> const words = words_of(line);
     if (words.empty()) return;
-    if (words[0] == "NM") {
-      finish();
-      need(words, 3, "a name and the number of a dispersion formula");
-      double const formula = number_in(words[2]);
-      if (!(formula >= 1 && formula <= dispersion_formulas && formula == std::floor(formula))) {
-        fail(fmt::format("dispersion formula {} is not known (1 to {} are)", words[2], dispersion_formulas));
-      }
-      open_ = true;
-      named_at_ = number;
-      glass_ = {};
-      glass_.name = words[1];
-      glass_.catalogue = catalogue_;
-      glass_.formula = static_cast<DispersionFormula>(static_cast<int>(formula));
-      return;
+    bool const goes_on = continues_record() && std::all_of(words.begin(), words.end(), number_in);
+    if (goes_on) {
+      record_.words.insert(record_.words.end(), words.begin(), words.end());
+    } else {
+      finish_record();
+      record_ = {number, words};
     }
-    if (!open_) return;
-    if (words[0] == "CD") {
-      for (std::size_t i = 1; i < std::min(words.size(), most_coefficients + 1); ++i) {
-        glass_.coefficients.push_back(number_in(words[i]));
-      }
-    } else if (words[0] == "LD") {
-      need(words, 3, "the shortest and longest wavelength");
-      glass_.shortest = number_in(words[1]) * unit::micrometre;
-      glass_.longest = number_in(words[2]) * unit::micrometre;
-    } else if (words[0] == "IT" && words.size() >= 4) {  // some catalogues leave the share out where they have none
-      Glass::Transmission const t{number_in(words[1]) * unit::micrometre, number_in(words[2]),
-                                  number_in(words[3]) * unit::millimetre};
-      if (!(t.thickness > 0) || !(t.transmission >= 0 && t.transmission <= 1)) {
-        fail("an internal transmission is not a share of light and a positive thickness");
-      }
-      glass_.transmission.push_back(t);
-    }
+  }
+  void finish() {
+    finish_record();
+    finish_glass();
   }
 
-  std::vector<Glass> finished() {
-    finish();
-    return std::move(glasses_);
-  }
+  std::vector<Glass> glasses;
+  std::vector<LeftOut> left_out;
+  std::vector<AgfFault> passed_over;  ///< lines of glasses that are used without them
 
  private:
-  void finish() {
-    if (!open_) return;
-    open_ = false;
-    number_ = named_at_;
-    if (glass_.coefficients.empty()) fail(fmt::format("glass {} has no coefficients (a line CD)", glass_.name));
-    if (!(glass_.shortest > 0 && glass_.longest > glass_.shortest)) {
-      fail(fmt::format("glass {} has no range of wavelengths (a line LD)", glass_.name));
+  /// Whether the record is one of numbers, which may be wrapped.
+  bool continues_record() const {
+    if (record_.words.empty()) return false;
+    static constexpr std::array numeric{"CD", "TD", "OD", "LD", "ED", "IT"};
+    return std::find(numeric.begin(), numeric.end(), record_.words[0]) != numeric.end();
+  }
+
+  void finish_record() {
+    AgfRecord const record = std::exchange(record_, {});
+    if (record.words.empty()) return;
+    if (record.words[0] == "NM") {
+      finish_glass();
+      begun_ = {record.line, ""};
+      glass_.emplace();
+      glass_->catalogue = catalogue_;
     }
-    for (double const wavelength : {glass_.shortest, 0.5 * (glass_.shortest + glass_.longest), glass_.longest}) {
-      double const index = glass_.index(wavelength);
-      if (index > 1 && index < 5) continue;
-      fail(
-          fmt::format("glass {} has index {:.4g} at {:.4g} nm, which no glass has (are its coefficients those of "
-                      "formula {}?)",
-                      glass_.name, index, wavelength / unit::nanometre, static_cast<int>(glass_.formula)));
+    if (!glass_) return;
+    try {
+      read_record(record);
+    } catch (AgfFault const& fault) {
+      left_out.push_back({glass_->name, fault});
+      glass_.reset();
     }
-    std::sort(glass_.transmission.begin(), glass_.transmission.end(),
+  }
+
+  void read_record(AgfRecord const& record) {
+    std::vector<std::string_view> const& words = record.words;
+    auto const number = [&](std::size_t i) {
+      if (auto const value = number_in(words[i])) return *value;
+      throw AgfFault{record.line, fmt::format("\"{}\" is not a finite number", words[i].substr(0, 40))};
+    };
+    auto const need = [&](std::size_t count, char const* what) {
+      if (words.size() < count) throw AgfFault{record.line, fmt::format("a line {} needs {}", words[0], what)};
+    };
+    if (words[0] == "NM") {
+      if (words.size() > 1) glass_->name = words[1];
+      need(3, "a name and the number of a dispersion formula");
+      double const formula = number(2);
+      if (!(formula >= 1 && formula <= dispersion_formulas && formula == std::floor(formula))) {
+        throw AgfFault{record.line,
+                       fmt::format("dispersion formula {} is not known (1 to {} are)", words[2], dispersion_formulas)};
+      }
+      glass_->formula = static_cast<DispersionFormula>(static_cast<int>(formula));
+      if (words.size() > 4) glass_->printed_nd = number_in(words[4]).value_or(0);
+    } else if (words[0] == "CD") {
+      for (std::size_t i = 1; i < std::min(words.size(), most_coefficients + 1); ++i) {
+        glass_->coefficients.push_back(number(i));
+      }
+    } else if (words[0] == "LD") {
+      need(3, "the shortest and longest wavelength");
+      glass_->shortest = number(1) * unit::micrometre;
+      glass_->longest = number(2) * unit::micrometre;
+    } else if (words[0] == "IT" && words.size() >= 4) {  // some catalogues leave the share out where they have none
+      read_transmission(record);
+    }
+  }
+
+  /// A line that cannot be used changes no ray: it is passed over.
+  void read_transmission(AgfRecord const& record) {
+    auto const at = number_in(record.words[1]), share = number_in(record.words[2]), thick = number_in(record.words[3]);
+    if (at && share && thick && *at > 0 && *share >= 0 && *share <= 1 && *thick > 0) {
+      glass_->transmission.push_back({*at * unit::micrometre, *share, *thick * unit::millimetre});
+    } else {
+      passed_over.push_back({record.line, fmt::format("internal transmission of {}", glass_->name)});
+    }
+  }
+
+  void finish_glass() {
+    if (!glass_) return;
+    Glass glass = std::move(*glass_);
+    glass_.reset();
+    std::string const fault = fault_of(glass);
+    if (!fault.empty()) {
+      left_out.push_back({glass.name, {begun_.line, fault}});
+      return;
+    }
+    std::sort(glass.transmission.begin(), glass.transmission.end(),
               [](auto const& a, auto const& b) { return a.wavelength < b.wavelength; });
-    glasses_.push_back(std::move(glass_));
+    glasses.push_back(std::move(glass));
   }
 
-  void need(std::vector<std::string_view> const& words, std::size_t count, char const* what) const {
-    if (words.size() < count) fail(fmt::format("a line {} needs {}", words[0], what));
-  }
-  double number_in(std::string_view word) const {
-    double value = 0;
-    std::string_view const digits = word.starts_with('+') ? word.substr(1) : word;
-    auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-      fail(fmt::format("\"{}\" is not a finite number", word.substr(0, 40)));
+  /// Why a glass cannot be used; empty: it can. An index may fail at an end of the range, where a formula has a pole.
+  static std::string fault_of(Glass const& glass) {
+    if (glass.coefficients.empty()) return "it has no coefficients (a line CD)";
+    if (!(glass.shortest > 0 && glass.longest > glass.shortest)) return "it has no range of wavelengths (a line LD)";
+    double const middle = 0.5 * (glass.shortest + glass.longest);
+    for (double const wavelength : {glass.shortest, middle, glass.longest}) {
+      if (is_index(glass.index(wavelength))) return "";
     }
-    return value;
-  }
-  [[noreturn]] void fail(std::string const& message) const {
-    throw DataError(fmt::format("{}:{}", file_, number_), message);
+    return fmt::format(
+        "its index is {:.4g} at {:.4g} nm, which no glass has (are its coefficients those of formula {}?)",
+        glass.index(middle), middle / unit::nanometre, static_cast<int>(glass.formula));
   }
 
-  std::string catalogue_, file_;
-  std::vector<Glass> glasses_;
-  Glass glass_;
-  bool open_ = false;
-  int number_ = 0, named_at_ = 0;
+  std::string catalogue_;
+  AgfRecord record_;
+  std::optional<Glass> glass_;
+  AgfFault begun_{};
 };
+
+/// "A (line 3: reason), B (...) and 7 more"
+std::string list_left_out(std::vector<AgfReader::LeftOut> const& left_out) {
+  constexpr std::size_t most = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(left_out.size(), most); ++i) {
+    text += fmt::format("{}{} (line {}: {})", i > 0 ? ", " : "", left_out[i].name, left_out[i].fault.line,
+                        left_out[i].fault.text);
+  }
+  if (left_out.size() > most) text += fmt::format(" and {} more", left_out.size() - most);
+  return text;
+}
 
 }  // namespace
 
 void GlassCatalogue::add(std::string_view text, std::string const& catalogue, std::string const& file) {
-  AgfReader reader(catalogue, file);
+  AgfReader reader(catalogue);
   int number = 0;
   while (!text.empty()) {
     std::size_t const end = std::min(text.find('\n'), text.size());
     reader.read_line(text.substr(0, end), ++number);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
-  std::vector<Glass> added = reader.finished();
-  if (added.empty()) throw DataError(file, "holds no glass (a catalogue in the AGF format has lines NM, CD and LD)");
-  glasses_.insert(glasses_.end(), std::make_move_iterator(added.begin()), std::make_move_iterator(added.end()));
+  reader.finish();
+  std::vector<AgfReader::LeftOut> const& out = reader.left_out;
+  if (reader.glasses.empty() && !out.empty()) {
+    throw DataError(fmt::format("{}:{}", file, out[0].fault.line),
+                    fmt::format("the catalogue has no usable glass: {}", list_left_out(out)));
+  }
+  if (reader.glasses.empty()) {
+    throw DataError(file, "holds no glass (a catalogue in the AGF format has lines NM, CD and LD)");
+  }
+  if (!out.empty()) {
+    warnings_.push_back(fmt::format("{}:{}: {} of {} glasses cannot be used and {} left out: {}", file,
+                                    out[0].fault.line, out.size(), out.size() + reader.glasses.size(),
+                                    out.size() == 1 ? "is" : "are", list_left_out(out)));
+  }
+  if (!reader.passed_over.empty()) {
+    warnings_.push_back(fmt::format(
+        "{}:{}: {} lines IT are no share of light and a positive thickness, and are passed over (the first: {})", file,
+        reader.passed_over[0].line, reader.passed_over.size(), reader.passed_over[0].text));
+  }
+  for (AgfReader::LeftOut const& one : out) {
+    left_out_.push_back({one.name, fmt::format("{}:{}: {}", file, one.fault.line, one.fault.text)});
+  }
+  glasses_.insert(glasses_.end(), std::make_move_iterator(reader.glasses.begin()),
+                  std::make_move_iterator(reader.glasses.end()));
 }
 
 void GlassCatalogue::add_file(std::string const& path) {
@@ -189,44 +295,93 @@ std::vector<Glass const*> GlassCatalogue::named(std::string_view name, std::stri
   std::string const key = compared(name), owner = compared(catalogue);
   std::vector<Glass const*> found;
   for (Glass const& glass : glasses_) {
-    if (compared(glass.name) == key && (owner.empty() || glass.catalogue == owner)) found.push_back(&glass);
+    if (compared(glass.name) == key && (owner.empty() || is_catalogue(glass.catalogue, owner))) found.push_back(&glass);
   }
   return found;
 }
 
-Glass const& GlassCatalogue::find(std::string_view name, double wavelength, std::string const& where) const {
-  std::string_view own = name;
+std::vector<Glass const*> GlassCatalogue::candidates(std::string_view name) const {
   std::vector<Glass const*> found = named(name, "");  // the whole name first: F_SILICA names no catalogue
-  if (auto const colon = name.find(':'); found.empty() && colon != std::string_view::npos) {
-    own = name.substr(colon + 1);
-    found = named(own, name.substr(0, colon));
-  } else if (auto const bar = name.rfind('_'); found.empty() && bar != std::string_view::npos) {
-    own = name.substr(0, bar);
-    found = named(own, name.substr(bar + 1));
+  if (!found.empty()) return found;
+  if (auto const colon = name.find(':'); colon != std::string_view::npos) {
+    return named(name.substr(colon + 1), name.substr(0, colon));
   }
+  if (auto const bar = name.rfind('_'); bar != std::string_view::npos) {
+    return named(name.substr(0, bar), name.substr(bar + 1));
+  }
+  return {};
+}
+
+void GlassCatalogue::refuse_unknown(std::string_view name, std::string const& where) const {
+  auto const out = std::find_if(left_out_.begin(), left_out_.end(),
+                                [&](LeftOut const& one) { return compared(one.name) == compared(name); });
+  if (out != left_out_.end()) {
+    throw DataError(
+        where, fmt::format("glass \"{}\" cannot be used ({}); correct the catalogue, or give a lens its index", name,
+                           out->reason));
+  }
+  std::string_view const own = name.substr(std::min(name.find(':') + 1, name.size()));
+  throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
+                                     "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
+                                     "give a lens its index",
+                                     name, glasses_.size(), glasses_like(own.substr(0, own.rfind('_')))));
+}
+
+GlassMatch GlassCatalogue::match(std::string_view name, double wavelength, std::string const& where,
+                                 std::vector<std::string> const& preferred) const {
+  GlassMatch result{nullptr, {}};
+  std::vector<Glass const*> found = candidates(name);
   if (found.empty()) {
-    throw DataError(where, fmt::format("glass \"{}\" is in no catalogue ({} glasses are known){}; add its catalogue "
-                                       "(AGF) to the setup's lens.glasses = [\"FILE.agf\"] (of info lens: --glass), or "
-                                       "give a lens its index",
-                                       name, glasses_.size(), glasses_like(own)));
+    found = candidates("N-" + std::string(name));
+    if (found.empty()) refuse_unknown(name, where);
+    result.notes.push_back(fmt::format("{}: glass \"{}\" is in no catalogue; {}, which followed it, is taken", where,
+                                       name, found.front()->name));
   }
-  for (Glass const* glass : found) {
-    if (wavelength >= glass->shortest && wavelength <= glass->longest) continue;
+  auto const covers = [wavelength](Glass const* glass) {
+    return wavelength >= glass->shortest && wavelength <= glass->longest && is_index(glass->index(wavelength));
+  };
+  if (std::none_of(found.begin(), found.end(), covers)) {
+    Glass const& glass = *found.front();
     throw DataError(where,
                     fmt::format("glass {} is described from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose another "
                                 "wavelength or glass",
-                                glass->name, glass->shortest / unit::nanometre, glass->longest / unit::nanometre,
+                                glass.name, glass.shortest / unit::nanometre, glass.longest / unit::nanometre,
                                 wavelength / unit::nanometre));
   }
-  std::string candidates;
-  for (Glass const* glass : found)
-    candidates += fmt::format("{}{}:{}", candidates.empty() ? "" : ", ", glass->catalogue, glass->name);
-  for (Glass const* glass : found) {
-    if (std::abs(glass->index(wavelength) - found.front()->index(wavelength)) <= same_index) continue;
-    throw DataError(where, fmt::format("glass \"{}\" is ambiguous (it may be {}, of different index); name one of them",
-                                       name, candidates));
+  std::erase_if(found, [&](Glass const* glass) { return !covers(glass); });
+  // the preferred catalogues, then the makers in their order
+  std::vector<std::string> order;
+  for (std::string const& catalogue : preferred) order.push_back(compared(catalogue));
+  order.insert(order.end(), makers.begin(), makers.end());
+  auto const rank = [&order](Glass const* glass) {
+    return std::find_if(order.begin(), order.end(),
+                        [&](std::string const& one) { return is_catalogue(glass->catalogue, one); }) -
+           order.begin();
+  };
+  std::stable_sort(found.begin(), found.end(), [&](auto const* a, auto const* b) { return rank(a) < rank(b); });
+  Glass const& glass = *found.front();
+  result.glass = &glass;
+  bool const decided = rank(&glass) < static_cast<std::ptrdiff_t>(preferred.size());
+  bool const differ = std::any_of(found.begin(), found.end(), [&](Glass const* other) {
+    return std::abs(other->index(wavelength) - glass.index(wavelength)) > same_index;
+  });
+  if (differ && !decided) {
+    std::vector<std::string> names;
+    for (Glass const* other : found) {
+      std::string const full = other->catalogue + ':' + other->name;
+      if (std::find(names.begin(), names.end(), full) == names.end()) names.push_back(full);
+    }
+    result.notes.push_back(fmt::format("{}: glass \"{}\" may be {}, of different index; {} is taken", where, name,
+                                       fmt::join(names, ", "), names.front()));
   }
-  return *found.front();
+  constexpr double d = spectral_line::d;
+  bool const printed = glass.printed_nd > 1 && d >= glass.shortest && d <= glass.longest;  // 1 and 0: none
+  if (printed && std::abs(glass.nd() - glass.printed_nd) > same_index) {
+    result.notes.push_back(
+        fmt::format("{}: glass {}:{}: its formula gives nd = {:.6f}, its catalogue prints {:.6f}; the formula is taken",
+                    where, glass.catalogue, glass.name, glass.nd(), glass.printed_nd));
+  }
+  return result;
 }
 
 }  // namespace gladstone

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "render/base/error.h"
@@ -29,7 +31,8 @@ class LensBuilder {
 
   void place_surfaces() {
     Pose<double> frame;
-    Substance before;
+    Substance before{substance(lens_.prescription.object_medium, lens_.prescription.file).n, 0};
+    lens_.object_index = before.n;
     double forwards = 1;  // sign of the paraxial index: mirrors turn it
     for (std::size_t i = 0; i < lens_.prescription.surfaces.size(); ++i) {
       PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
@@ -41,26 +44,15 @@ class LensBuilder {
         frame.origin.z = 0;
       }
       bool const mirror = prescribed.after.is_mirror();
-      Substance const after = mirror ? before : substance(prescribed);
-      SurfaceAction const action = mirror                ? SurfaceAction::reflect
-                                   : before.n == after.n ? SurfaceAction::pass
-                                                         : SurfaceAction::refract;
-      Quadric<double> const conic{prescribed.curvature, prescribed.conic,
-                                  prescribed.shape == PrescribedSurface::Shape::cylinder ? 0.0 : 1.0};
-      double vertex_curvature = prescribed.curvature;
-      if (prescribed.asphere.empty()) {
-        add(ShapedSurface<double, Quadric<double>>{{}, conic}, frame, prescribed, before, after, action);
-      } else {
-        EvenAsphere<double> asphere{conic, {}};
-        std::copy(prescribed.asphere.begin(), prescribed.asphere.end(), asphere.a);
-        vertex_curvature += 2 * asphere.a[0];
-        add(ShapedSurface<double, EvenAsphere<double>>{{}, asphere}, frame, prescribed, before, after, action);
-      }
+      Substance const after = mirror ? before : substance(prescribed.after, prescribed.where);
+      add_surface(frame, prescribed, before, after);
       double const n_before = forwards * before.n;
       if (mirror) forwards = -forwards;
       bool const last = i + 1 == lens_.prescription.surfaces.size();
       double const way = last && !std::isfinite(prescribed.thickness) ? 0 : prescribed.thickness;
-      lens_.paraxial.push_back({vertex_curvature, n_before, forwards * after.n, way});
+      bool const ideal = prescribed.shape == PrescribedSurface::Shape::ideal_lens;
+      lens_.paraxial.push_back(
+          {vertex_curvature(prescribed), n_before, forwards * after.n, way, ideal ? 1 / prescribed.focal_length : 0});
       if (prescribed.stop) lens_.stop = static_cast<int>(i);
       frame = frame.moved({0, 0, way});
       before = after;
@@ -114,6 +106,26 @@ class LensBuilder {
     });
   }
 
+  /// Opens apertures that begin outside the axial beam and have no end, so that they would block all of its light.
+  void open_rings() {
+    RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
+    for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
+      PrescribedSurface const& prescribed = lens_.prescription.surfaces[i];
+      if (!prescribed.obscured_without_end) continue;
+      // the height of a ray parallel to the axis, the stop's rim being at its height
+      double const here = std::abs(ray_transfer(lens_, 0, static_cast<int>(i)).a / to_stop.a);
+      if (prescribed.obscured < here * lens_.paraxial_stop_radius) continue;
+      lens_.surfaces[i] = lens_.surfaces[i].visit([](auto opened) -> LensSurface<double> {
+        opened.obscured = 0;
+        return opened;
+      });
+      lens_.warnings.push_back(
+          fmt::format("{}: an aperture from {:.6g} mm to infinity would block all light of the lens; "
+                      "it is passed over",
+                      prescribed.where, prescribed.obscured / unit::millimetre));
+    }
+  }
+
   /// Refuses a lens whose axial ray ends within it: nothing could be said of its picture.
   void follow_axis() const {
     Ray<double> ray{{0, 0, -start_}, {0, 0, 1}};
@@ -147,7 +159,7 @@ class LensBuilder {
   /// Opens it to the rim of a cone from the axis point at a distance, of this slope against the axis.
   void open_by_slope(double slope, double distance) {
     RayTransfer const to_stop = ray_transfer(lens_, 0, lens_.stop);
-    lens_.paraxial_stop_radius = std::abs(to_stop.a * distance + to_stop.b) * slope;
+    lens_.paraxial_stop_radius = std::abs(to_stop.a * distance + to_stop.b * lens_.object_index) * slope;
     lens_.stop_radius =
         height_at_stop({{0, 0, -distance}, normalized(Vec3d{slope, 0, 1})}).value_or(lens_.paraxial_stop_radius);
   }
@@ -155,7 +167,7 @@ class LensBuilder {
   /// Opens it to a cone towards the image of this working f-number.
   void open_by_cone(double f_number, double distance) {
     RayTransfer const all = ray_transfer(lens_, 0, static_cast<int>(lens_.paraxial.size()));
-    double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d));
+    double const slope = 1 / (2 * f_number * std::abs(all.c * distance + all.d * lens_.object_index));
     if (!std::isfinite(distance) || !std::isfinite(slope)) {
       throw DataError(lens_.prescription.file,
                       "an f-number sets no stop of a telecentric lens whose object stands nowhere; give the file's "
@@ -174,27 +186,51 @@ class LensBuilder {
     return frame.moved({0, 0, here.advance});
   }
 
-  Substance substance(PrescribedSurface const& surface) {
-    auto const& is = surface.after.is;
-    if (auto const* const named = std::get_if<PrescribedMedium::Named>(&is)) {
-      try {
-        Glass const& glass = catalogue_.find(named->glass, lens_.wavelength, surface.where);
-        return {glass.index(lens_.wavelength), options_.absorption ? glass.absorption(lens_.wavelength) : 0};
-      } catch (DataError const& error) {
-        not_found_.push_back({error.file(), error.message()});
-        return {};
+  Substance substance(PrescribedMedium const& medium, std::string const& where) {
+    double const wavelength = lens_.wavelength;
+    auto const of_glass = [&](Glass const& glass) {
+      return Substance{glass.index(wavelength), options_.absorption ? glass.absorption(wavelength) : 0};
+    };
+    try {
+      if (auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is)) {
+        if (named->otherwise && !catalogue_.has(named->glass)) {
+          note_once(named->glass, fmt::format("{}: glass \"{}\" is in no catalogue; nd = {:.6g} and Vd = {:.4g} of its "
+                                              "line are taken as n = A + B/lambda^2 (add its catalogue for more)",
+                                              where, named->glass, named->otherwise->nd, named->otherwise->vd));
+          return of_glass(Glass::from_nd_vd(named->otherwise->nd, named->otherwise->vd));
+        }
+        GlassMatch const found = catalogue_.match(named->glass, wavelength, where, lens_.prescription.catalogues);
+        for (std::string const& note : found.notes) note_once(named->glass + note.substr(where.size()), note);
+        return of_glass(*found.glass);
       }
+      if (auto const* const own = std::get_if<PrescribedMedium::Private>(&medium.is)) {
+        if (wavelength < own->glass.shortest || wavelength > own->glass.longest) {
+          throw DataError(where, fmt::format("glass {} is given from {:.4g} to {:.4g} nm, not at {:.4g} nm; choose "
+                                             "another wavelength",
+                                             own->glass.name, own->glass.shortest / unit::nanometre,
+                                             own->glass.longest / unit::nanometre, wavelength / unit::nanometre));
+        }
+        return of_glass(own->glass);
+      }
+    } catch (DataError const& error) {
+      not_found_.push_back({error.file(), error.message()});
+      return {};
     }
-    if (auto const* const index = std::get_if<PrescribedMedium::Index>(&is)) return {index->n, 0};
-    if (auto const* const described = std::get_if<PrescribedMedium::Described>(&is)) {
+    if (auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is)) return {index->n, 0};
+    if (auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is)) {
       Glass const glass = Glass::from_nd_vd(described->nd, described->vd);
-      if (described_where_.empty()) described_where_ = surface.where;
+      if (described_where_.empty()) described_where_ = where;
       if (std::find(described_.begin(), described_.end(), glass.name) == described_.end()) {
         described_.push_back(glass.name);
       }
-      return {glass.index(lens_.wavelength), 0};
+      return {glass.index(wavelength), 0};
     }
     return {};
+  }
+
+  /// Warns of a glass the first time that it occurs.
+  void note_once(std::string const& key, std::string const& text) {
+    if (noted_.insert(key).second) lens_.warnings.push_back(text);
   }
 
   /// Refuses all glasses that are not known, or not at this wavelength, together: each at its own line.
@@ -217,20 +253,59 @@ class LensBuilder {
                     one ? "is" : "are", one ? "a glass" : "glasses"));
   }
 
-  template <class Surface>
-  void add(Surface surface, Pose<double> const& frame, PrescribedSurface const& prescribed, Substance before,
-           Substance after, SurfaceAction action) {
-    surface.pose = frame;
-    surface.semi_diameter = std::numeric_limits<double>::infinity();
-    if (prescribed.semi_diameter_is_an_edge) surface.semi_diameter = prescribed.semi_diameter;
-    surface.n_before = before.n;
-    surface.n_after = after.n;
-    surface.absorption = before.absorption;
-    surface.action = action;
-    surface.fresnel = options_.fresnel;
-    surface.obscured = prescribed.obscured;
-    lens_.surfaces.push_back(surface);
-    lens_.poses.push_back(frame);
+  /// Adds a surface in the shape that is prescribed.
+  void add_surface(Pose<double> const& frame, PrescribedSurface const& prescribed, Substance before, Substance after) {
+    using Shape = PrescribedSurface::Shape;
+    Quadric<double> const conic{prescribed.curvature, prescribed.conic,
+                                prescribed.shape == Shape::cylinder ? 0.0 : 1.0};
+    auto const add = [&](auto const& shape) {
+      ShapedSurface<double, std::decay_t<decltype(shape)>> surface;
+      surface.shape = shape;
+      surface.pose = frame;
+      surface.semi_diameter = std::numeric_limits<double>::infinity();
+      if (prescribed.semi_diameter_is_an_edge) surface.semi_diameter = prescribed.semi_diameter;
+      surface.n_before = before.n;
+      surface.n_after = after.n;
+      surface.absorption = before.absorption;
+      surface.action = prescribed.after.is_mirror()            ? SurfaceAction::reflect
+                       : prescribed.shape == Shape::ideal_lens ? SurfaceAction::focus
+                       : before.n == after.n                   ? SurfaceAction::pass
+                                                               : SurfaceAction::refract;
+      surface.fresnel = options_.fresnel;
+      surface.obscured = prescribed.obscured;
+      if (surface.action == SurfaceAction::focus) surface.power = 1 / prescribed.focal_length;
+      surface.outline = prescribed.outline;
+      lens_.surfaces.push_back(surface);
+      lens_.poses.push_back(frame);
+    };
+    if (prescribed.shape == Shape::ideal_lens) {
+      add(Quadric<double>{});
+    } else if (prescribed.shape == Shape::tilted_plane) {
+      add(TiltedPlane<double>{prescribed.slope});
+    } else if (!prescribed.radial.a.empty()) {
+      add(radial_asphere(prescribed));
+    } else if (!prescribed.asphere.empty()) {
+      EvenAsphere<double> asphere{conic, {}};
+      std::copy(prescribed.asphere.begin(), prescribed.asphere.end(), asphere.a);
+      add(asphere);
+    } else {
+      add(conic);
+    }
+  }
+
+  static RadialAsphere<double> radial_asphere(PrescribedSurface const& prescribed) {
+    RadialAsphere<double> shape{
+        {prescribed.curvature, prescribed.conic}, prescribed.radial.scale, prescribed.radial.even_powers, {}};
+    std::copy(prescribed.radial.a.begin(), prescribed.radial.a.end(), shape.a);
+    return shape;
+  }
+
+  /// Curvature on the axis, that of a polynomial's r^2 included [1/m].
+  static double vertex_curvature(PrescribedSurface const& prescribed) {
+    using Shape = PrescribedSurface::Shape;
+    if (prescribed.shape == Shape::ideal_lens || prescribed.shape == Shape::tilted_plane) return 0;
+    if (!prescribed.radial.a.empty()) return prescribed.curvature + radial_asphere(prescribed).vertex_curvature();
+    return prescribed.curvature + (prescribed.asphere.empty() ? 0 : 2 * prescribed.asphere[0]);
   }
 
   /// How far from the stop's axis a ray meets it; nothing where it is lost on the way.
@@ -256,6 +331,7 @@ class LensBuilder {
   std::vector<SetupProblem> not_found_;  // glasses
   std::vector<std::string> described_;   // glasses by nd and Vd alone
   std::string described_where_;          // the first of them stands
+  std::set<std::string> noted_;          // warnings of glasses
 };
 
 /// Radius that the prescription itself opens the stop of placed surfaces to, paraxially [m]; empty: it cannot say.
@@ -298,6 +374,7 @@ Lens build_lens(Prescription prescription, GlassCatalogue const& catalogue, doub
   builder.place_surfaces();
   auto const own_radius = options.f_number ? prescribed_stop_radius(lens, catalogue, options) : std::nullopt;
   builder.open_stop();
+  builder.open_rings();
   builder.follow_axis();
   double const object_distance = options.object_distance.value_or(lens.prescription.object_distance);
   if (auto const crossed = crossed_faces(lens, object_distance)) lens.warnings.push_back(*crossed);

@@ -44,7 +44,11 @@ struct ParaxialSurface {
   double curvature;  ///< of the vertex [1/m]
   double n_before;   ///< signed: negative for light that runs towards -z [1]
   double n_after;
-  double to_next;  ///< [m]
+  double to_next;    ///< [m]
+  double power = 0;  ///< of an ideal thin lens, in air [1/m]
+
+  /// n u is reduced by this times the height [1/m].
+  double total_power() const { return curvature * (n_after - n_before) + power; }
 };
 
 /// A prescription made ready to trace at one wavelength.
@@ -54,6 +58,7 @@ struct Lens {
   std::vector<LensSurface<double>> surfaces;
   std::vector<Pose<double>> poses;        ///< of the surfaces' vertices
   std::vector<ParaxialSurface> paraxial;  ///< decentres and tilts left out
+  double object_index = 1;                ///< of what lies ahead of the first surface [1]
   int stop = 0;
   double stop_radius = 0;                ///< that rays meet [m]
   double paraxial_stop_radius = 0;       ///< that its pupils are images of [m]

@@ -1,5 +1,7 @@
 #include "render/optics/lens_setup.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "render/base/error.h"
@@ -67,6 +69,13 @@ void build_prescription(LensSetup& setup, SetupTable table, GlassCatalogue const
   try {
     auto const lens =
         std::make_shared<Lens const>(build_lens(read_prescription(setup.file), glasses, wavelength, options));
+    if (lens->object_index != 1 || std::abs(lens->paraxial.back().n_after) != 1) {
+      table.problem("file",
+                    fmt::format("{}: has index {:.6g} ahead of it and {:.6g} behind it (scenes are in gas, and a "
+                                "lens stands in air); end it with a surface towards air on either side",
+                                setup.file, lens->object_index, std::abs(lens->paraxial.back().n_after)));
+      return;
+    }
     ParaxialLens const paraxial = paraxial_lens(*lens);
     setup.focal_length = std::abs(paraxial.effective_focal_length);
     if (std::isnan(setup.f_number) && std::isfinite(paraxial.f_number)) setup.f_number = paraxial.f_number;

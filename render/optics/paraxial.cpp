@@ -9,7 +9,7 @@ RayTransfer ray_transfer(Lens const& lens, int first, int last) {
   RayTransfer m;
   for (int i = first; i < last; ++i) {
     ParaxialSurface const& s = lens.paraxial[static_cast<std::size_t>(i)];
-    double const power = s.curvature * (s.n_after - s.n_before);
+    double const power = s.total_power();
     m.c -= power * m.a;
     m.d -= power * m.b;
     if (i + 1 == static_cast<int>(lens.paraxial.size())) break;  // the image is not part of the lens
@@ -27,14 +27,15 @@ ParaxialLens paraxial_lens(Lens const& lens) {
   ParaxialLens result;
   // rounding of a sum of powers, each of which is at most c (n' - n)
   double largest = 0;
-  for (ParaxialSurface const& s : lens.paraxial) largest += std::abs(s.curvature * (s.n_after - s.n_before));
+  for (ParaxialSurface const& s : lens.paraxial) largest += std::abs(s.total_power());
   bool const afocal = std::abs(all.c) <= 1e-12 * largest;
   double const f = afocal ? infinite : -1 / all.c;
+  double const n_object = lens.object_index, n_image = std::abs(lens.paraxial.back().n_after);
   result.effective_focal_length = f;
-  result.back_focal_length = afocal ? infinite : -all.a / all.c;
-  result.front_focal_length = afocal ? infinite : all.d / all.c;
-  result.front_principal_plane = afocal ? infinite : result.front_focal_length + f;
-  result.rear_principal_plane = afocal ? infinite : result.back_focal_length - f;
+  result.back_focal_length = afocal ? infinite : -n_image * all.a / all.c;
+  result.front_focal_length = afocal ? infinite : n_object * all.d / all.c;
+  result.front_principal_plane = afocal ? infinite : result.front_focal_length + n_object * f;
+  result.rear_principal_plane = afocal ? infinite : result.back_focal_length - n_image * f;
 
   RayTransfer const before = ray_transfer(lens, 0, lens.stop), after = ray_transfer(lens, lens.stop, count);
   double const diameter = 2 * lens.paraxial_stop_radius;
@@ -42,8 +43,8 @@ ParaxialLens paraxial_lens(Lens const& lens) {
     return std::abs(under) <= 1e-12 * scale ? infinite : over / under;
   };
   // through the stop's centre: a y + b n u = 0 before it; y = b, n u = d behind the last surface
-  result.entrance = {finite(before.b, before.a, 1), std::abs(finite(diameter, before.a, 1))};
-  result.exit = {finite(-after.b, after.d, 1), std::abs(finite(diameter, after.d, 1))};
+  result.entrance = {finite(n_object * before.b, before.a, 1), std::abs(finite(diameter, before.a, 1))};
+  result.exit = {finite(-n_image * after.b, after.d, 1), std::abs(finite(diameter, after.d, 1))};
   result.telecentric = is_telecentric(before);
   result.f_number = result.telecentric ? infinite : std::abs(f) / result.entrance.diameter;
   return result;

@@ -10,8 +10,10 @@ struct Pupil {
   double diameter = 0;  ///< [m]
 };
 
-/// Cardinal points and pupils of a lens in air by ray transfer (Welford 1986, chapter 3): y' = y + t u,
+/// Cardinal points and pupils of a lens by ray transfer (Welford 1986, chapter 3): y' = y + t u,
 /// n' u' = n u - y c (n' - n). Positive distances run along +z, those on the image's side along the light that leaves.
+/// Where object or image space is not air, focal and principal distances there are n times as long; the effective focal
+/// length is that in air, one over the power.
 struct ParaxialLens {
   double effective_focal_length = 0;  ///< infinite for afocal lenses [m]
   double back_focal_length = 0;       ///< last vertex to the rear focus [m]

@@ -33,12 +33,20 @@ constexpr double longest = 1e3;  // [m]; of any length of a lens
 
 /// Whether light is changed here; a plane of reference or a bare stop is not there to overlap.
 bool is_real(Prescription const& lens, std::size_t i) {
-  return !lens.surfaces[i].after.is_air() || (i > 0 && !lens.surfaces[i - 1].after.is_air());
+  PrescribedMedium const& before = i > 0 ? lens.surfaces[i - 1].after : lens.object_medium;
+  return lens.surfaces[i].shape == PrescribedSurface::Shape::ideal_lens || !lens.surfaces[i].after.is_air() ||
+         !before.is_air();
 }
 
 /// Sag of a prescribed surface at a height [m].
 double sag(PrescribedSurface const& surface, double height) {
+  if (surface.shape == PrescribedSurface::Shape::tilted_plane) return 0;
   Quadric<double> const conic{surface.curvature, surface.conic};
+  if (!surface.radial.a.empty()) {
+    RadialAsphere<double> radial{conic, surface.radial.scale, surface.radial.even_powers, {}};
+    std::copy(surface.radial.a.begin(), surface.radial.a.end(), radial.a);
+    return radial.sag(height, 0);
+  }
   if (surface.asphere.empty()) return conic.sag(height, 0);
   EvenAsphere<double> asphere{conic, {}};
   std::copy(surface.asphere.begin(), surface.asphere.end(), asphere.a);
@@ -50,31 +58,64 @@ bool is_turned(PrescribedSurface const& surface) {
                      [](CoordinateBreak const& here) { return length(here.decentre) != 0 || length(here.tilt) != 0; });
 }
 
-/// Refuses a surface that runs through the next real one within their edges, planes of reference between them or not.
-/// Widths for drawings are no edges: a lens ends where its surfaces meet.
+/// Finds whether a surface runs through the next real one within their edges, planes of reference between them or not.
+/// Widths for drawings are no edges: a lens ends where its surfaces meet. Surfaces that meet off the axis alone may do
+/// so outside the light.
 /// @param forwards sense of the light between them
-void refuse_overlap(Prescription const& lens, std::size_t i, double forwards) {
+/// @return a warning; empty: the surfaces do not overlap
+/// @throws DataError if they overlap on the axis
+std::string find_overlap(Prescription const& lens, std::size_t i, double forwards) {
   PrescribedSurface const& one = lens.surfaces[i];
   double way = 0;
   std::size_t next_real = i + 1;
   for (; next_real < lens.surfaces.size(); ++next_real) {
-    if (is_turned(lens.surfaces[next_real])) return;
+    if (is_turned(lens.surfaces[next_real])) return "";
     way += lens.surfaces[next_real - 1].thickness + advance(lens.surfaces[next_real]);
     if (is_real(lens, next_real)) break;
   }
-  if (next_real == lens.surfaces.size()) return;
+  if (next_real == lens.surfaces.size()) return "";
   PrescribedSurface const& next = lens.surfaces[next_real];
   double const height = std::min(one.semi_diameter, next.semi_diameter);
-  if (!std::isfinite(height) || !one.semi_diameter_is_an_edge || !next.semi_diameter_is_an_edge) return;
+  if (!std::isfinite(height) || !one.semi_diameter_is_an_edge || !next.semi_diameter_is_an_edge) return "";
   for (int k = 0; k <= 32; ++k) {
     double const r = height * k / 32;
     double const gap = forwards * (way + sag(next, r) - sag(one, r));
-    if (gap >= -1e-9 * std::max(height, 1e-3)) continue;
-    throw DataError(next.where,
-                    fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} "
-                                "mm (check radius, thickness and semi-diameter)",
-                                one.where, -gap / unit::millimetre, r / unit::millimetre));
+    if (!(gap < -1e-9 * std::max(height, 1e-3))) continue;
+    std::string const what =
+        fmt::format("this surface and the one before it ({}) overlap by {:.4g} mm at a height of {:.4g} mm", one.where,
+                    -gap / unit::millimetre, r / unit::millimetre);
+    if (k == 0) throw DataError(next.where, what + " (check radius, thickness and semi-diameter)");
+    return fmt::format(
+        "{}: {}, within their semi-diameters; rays are traced from surface to surface all the same (check "
+        "radius, thickness and semi-diameter)",
+        next.where, what);
   }
+  return "";
+}
+
+/// Refuses what is no index of a glass.
+void check_medium(PrescribedMedium const& medium, std::string const& where) {
+  auto const* const index = std::get_if<PrescribedMedium::Index>(&medium.is);
+  if (index && !(index->n >= 1 && index->n < 5)) {
+    throw DataError(where,
+                    fmt::format("an index of {:.4g} is no glass (it lies between 1 and 5); correct it", index->n));
+  }
+  auto const* const described = std::get_if<PrescribedMedium::Described>(&medium.is);
+  if (described && !(described->nd > 1 && described->nd < 5 && described->vd > 0)) {
+    throw DataError(where, fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
+                                       "correct it or name a glass",
+                                       described->nd, described->vd));
+  }
+}
+
+/// A warning of a surface that ends within its semi-diameter; empty: it does not.
+std::string find_short_surface(PrescribedSurface const& surface) {
+  bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
+  if (!edge || std::isfinite(sag(surface, surface.semi_diameter))) return "";
+  return fmt::format(
+      "{}: a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; rays beyond its rim miss it "
+      "(check radius and semi-diameter)",
+      surface.where, 1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre);
 }
 
 }  // namespace
@@ -106,7 +147,8 @@ Prescription read_prescription(std::string const& path) {
   for (auto const& format : formats) {
     if (extension == format.extension) {
       Prescription prescription = format.read(path);
-      check_prescription(prescription);
+      std::vector<std::string> const warnings = check_prescription(prescription);
+      prescription.warnings.insert(prescription.warnings.end(), warnings.begin(), warnings.end());
       return prescription;
     }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
@@ -114,13 +156,26 @@ Prescription read_prescription(std::string const& path) {
   throw DataError(path, "is of no format of lens prescriptions that is read here; known are " + known);
 }
 
-void check_prescription(Prescription const& lens) {
+void assume_stop(Prescription& lens) {
+  bool const named = std::any_of(lens.surfaces.begin(), lens.surfaces.end(), [](auto const& s) { return s.stop; });
+  if (named || lens.surfaces.empty()) return;
+  lens.surfaces.front().stop = true;
+  lens.warnings.push_back(lens.surfaces.front().where +
+                          ": the file names no stop (STOP, STO); the first surface is taken as the stop");
+}
+
+std::vector<std::string> check_prescription(Prescription const& lens) {
+  std::vector<std::string> warnings;
+  auto const warn = [&warnings](std::string const& text) {
+    if (!text.empty()) warnings.push_back(text);
+  };
   if (lens.surfaces.empty()) throw DataError(lens.file, "has no surface; a lens needs at least one");
   constexpr std::size_t most_surfaces = 1000;
   if (lens.surfaces.size() > most_surfaces) {
     throw DataError(lens.file,
                     fmt::format("has {} surfaces (at most {} are read)", lens.surfaces.size(), most_surfaces));
   }
+  check_medium(lens.object_medium, lens.file);
   std::string stop;
   bool any_real = false;
   double forwards = 1;  // sense of the light, which mirrors turn
@@ -146,7 +201,8 @@ void check_prescription(Prescription const& lens) {
     if (!(surface.semi_diameter > 0)) {
       throw DataError(surface.where, "the semi-diameter is not positive; give the radius that light passes within");
     }
-    if (!(surface.obscured >= 0 && surface.obscured < surface.semi_diameter)) {
+    double const edge = surface.semi_diameter_is_an_edge ? surface.semi_diameter : HUGE_VAL;
+    if (!(surface.obscured >= 0 && surface.obscured < edge)) {
       throw DataError(surface.where,
                       fmt::format("an obscuration of radius {:.4g} mm covers the surface's semi-diameter of {:.4g} mm; "
                                   "make it smaller",
@@ -160,22 +216,12 @@ void check_prescription(Prescription const& lens) {
                       "its sign (behind an odd number of mirrors thicknesses are negative)",
                       surface.thickness / unit::millimetre, forwards > 0 ? "forwards" : "back"));
     }
-    bool const edge = surface.semi_diameter_is_an_edge && std::isfinite(surface.semi_diameter);
-    if (edge && !std::isfinite(sag(surface, surface.semi_diameter))) {
-      throw DataError(surface.where,
-                      fmt::format("a surface of radius {:.4g} mm does not reach its semi-diameter of {:.4g} mm; make "
-                                  "the radius larger or the semi-diameter smaller",
-                                  1 / surface.curvature / unit::millimetre, surface.semi_diameter / unit::millimetre));
+    warn(find_short_surface(surface));
+    if (surface.shape == PrescribedSurface::Shape::ideal_lens && surface.focal_length == 0) {
+      throw DataError(surface.where, "an ideal thin lens has a focal length of 0; give it another one");
     }
-    if (auto const* const index = std::get_if<PrescribedMedium::Described>(&surface.after.is)) {
-      if (!(index->nd > 1 && index->nd < 5 && index->vd > 0)) {
-        throw DataError(surface.where,
-                        fmt::format("nd = {:.4g}, Vd = {:.4g} is no glass (nd lies between 1 and 5, Vd above 0); "
-                                    "correct it or name a glass",
-                                    index->nd, index->vd));
-      }
-    }
-    if (is_real(lens, i)) refuse_overlap(lens, i, forwards);
+    check_medium(surface.after, surface.where);
+    if (is_real(lens, i)) warn(find_overlap(lens, i, forwards));
   }
   if (!any_real) throw DataError(lens.file, "has no surface that refracts or reflects (every medium is air)");
   if (stop.empty())
@@ -188,6 +234,7 @@ void check_prescription(Prescription const& lens) {
   if (aperture.kind == PrescribedAperture::Kind::stop && !std::isfinite(at->semi_diameter)) {
     throw DataError(at->where, "the stop has no semi-diameter, and nothing else sets it (entrance pupil, f-number)");
   }
+  return warnings;
 }
 
 }  // namespace gladstone

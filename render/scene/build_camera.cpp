@@ -51,7 +51,7 @@ void append_prescription(Camera& camera, Setup const& setup) {
       surface.pose = surface.pose.within(camera.aim_plane);
       if (stop && chief) surface.semi_diameter = std::numeric_limits<double>::infinity();
       if constexpr (std::is_same_v<decltype(surface.shape), Quadric<double>>) {
-        bool const plane = surface.action == SurfaceAction::pass && surface.shape.curvature == 0;
+        bool const plane = surface.is_plain_stop() && surface.shape.curvature == 0;
         if (stop && plane) return PosedStop<double>{surface.pose, surface.semi_diameter, sharp};
       }
       return surface;

@@ -131,14 +131,17 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
 }
 
 /// Finds what windows are made of. Problems go to the keys `glass`.
-void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& glasses) {
+void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& glasses,
+                         std::vector<std::string>& warnings) {
   std::vector<SetupTable> tables = root.tables("window");  // those that the windows were read from
   double const wavelength = setup.medium.wavelength;
   for (std::size_t i = 0; i < setup.windows.size(); ++i) {
     WindowSetup& window = setup.windows[i];
     std::string const where = tables[i].where("glass");
     try {
-      Glass const& glass = glasses.find(window.glass, wavelength, where);
+      GlassMatch const found = glasses.match(window.glass, wavelength, where);
+      warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
+      Glass const& glass = *found.glass;
       window.index = glass.index(wavelength);
       if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
@@ -152,6 +155,7 @@ void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& gl
 void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   GlassCatalogue const glasses = read_glasses(setup.lens, lens);
+  warnings.insert(warnings.end(), glasses.warnings().begin(), glasses.warnings().end());
   if (!setup.lens.file.empty()) {
     std::optional<double> object_distance;
     if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is the first vertex' so far
@@ -170,7 +174,7 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
                                    afocal ? "an afocal" : "a telecentric", afocal ? "principal plane" : "perspective"));
     }
   }
-  find_window_glasses(setup, root, glasses);
+  find_window_glasses(setup, root, glasses, warnings);
 }
 
 /// Moves the lens to where it focuses on a sensor that stands where the setup says.

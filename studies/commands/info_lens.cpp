@@ -115,7 +115,8 @@ int describe_lens(LensQuestion const& question, GlobalOptions const& options) {
   double wavelength = question.wavelength_nm * unit::nanometre;
   if (wavelength == 0) wavelength = prescription.primary_wavelength;
   if (wavelength == 0) wavelength = spectral_line::d;
-  Lens const lens = build_lens(std::move(prescription), catalogue, wavelength);
+  Lens lens = build_lens(std::move(prescription), catalogue, wavelength);
+  lens.warnings.insert(lens.warnings.begin(), catalogue.warnings().begin(), catalogue.warnings().end());
   for (std::string const& warning : lens.warnings) spdlog::warn("{}", warning);
   ParaxialLens const paraxial = paraxial_lens(lens);
   FieldAnalysis const field = analyse_field(lens, paraxial, spot_rays);

@@ -55,5 +55,20 @@ TEST(LensSetup, ImpossibleLensesAreRefused) {
               ThrowsMessage<SetupError>(AllOf(HasSubstr("lens.toml:3"), HasSubstr("stands beside focus"))));
 }
 
+// Scenes are in gas: a lens with water ahead of it would be focused wrongly, and is refused.
+TEST(LensSetup, ALensInWaterIsRefused) {
+  std::string const file = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/object_in_water.zmx";
+  auto const build = [&] {
+    SetupDocument document =
+        SetupDocument::from_text("[lens]\nmodel = \"prescription\"\nfile = \"" + file + "\"\n", "water.toml");
+    SetupTable const table = document.root().table("lens");
+    LensSetup setup = read_lens_setup(table);
+    std::vector<std::string> warnings;
+    build_prescription(setup, table, GlassCatalogue::shipped(), spectral_line::d, std::nullopt, warnings);
+    document.finish();
+  };
+  EXPECT_THAT(build, ThrowsMessage<SetupError>(AllOf(HasSubstr("water.toml:3"), HasSubstr("index 1.333 ahead"))));
+}
+
 }  // namespace
 }  // namespace gladstone

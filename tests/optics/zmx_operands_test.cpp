@@ -89,16 +89,25 @@ TEST(ZmxOperands, AnAutomaticSemiDiameterIsNoEdge) {
             RayStatus::vignetted);
 }
 
-TEST(ZmxOperands, WhatBlocksLightOtherwiseIsRefusedByName) {
-  for (char const* const line : {"SQAP 3 4 0", "SQOB 1 1 0", "ELAP 3 4 0", "ELOB 1 2 0", "SPID 0.5 3 0", "UDAP 0 0"}) {
+// Shapes that are not traced are passed over with a warning that names line and operand; what is no shape is refused.
+TEST(ZmxOperands, WhatBlocksLightOtherwiseIsNotedByName) {
+  for (char const* const line : {"SPID 0.5 3 0", "UDAP 0 0", "UDOB 0 0", "OBSC 1 2 0"}) {
     std::string const key = std::string(line).substr(0, 4);
-    EXPECT_THAT(refusal("block.zmx", with_operand(line)), AllOf(HasSubstr("block.zmx:24"), HasSubstr(key)));
+    EXPECT_THAT(notes_of("block.zmx", with_operand(line)),
+                ElementsAre(AllOf(HasSubstr("block.zmx:24"), HasSubstr(key), HasSubstr("not traced"))));
   }
-  EXPECT_THAT(refusal("off.zmx", with_operand("OBDC 0.5 0")), AllOf(HasSubstr("off.zmx:24"), HasSubstr("decentred")));
-  EXPECT_EQ(refusal("on.zmx", with_operand("OBDC 0 0")), "");
-  EXPECT_THAT(refusal("ring.zmx", with_operand("OBSC 1 2 0")), HasSubstr("ring"));
-  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("radii from 5 to 2"));
-  EXPECT_THAT(refusal("large.zmx", with_operand("OBSC 0 9 0")), HasSubstr("obscuration of radius 9 mm"));
+  EXPECT_THAT(notes_of("on.zmx", with_operand("OBDC 0 0")), IsEmpty());
+  EXPECT_THAT(refusal("turned.zmx", with_operand("CLAP 5 2 0")), HasSubstr("least radius 5"));
+  EXPECT_THAT(refusal("flat.zmx", with_operand("SQAP 3 0 0")), AllOf(HasSubstr("flat.zmx:24"), HasSubstr("no area")));
+}
+
+// A ring that reaches the surface's edge leaves the circle within it; a disc as large as the surface leaves what is
+// outside.
+TEST(ZmxOperands, ObscurationsThatReachTheEdgeAreTraced) {
+  Lens const circle = zmx_lens("circle.zmx", with_operand("OBSC 3 9 0"));
+  EXPECT_EQ(fate(circle, 2), RayStatus::alive);
+  EXPECT_EQ(fate(circle, 4), RayStatus::vignetted);
+  EXPECT_THAT(notes_of("large.zmx", with_operand("OBSC 0 9 0")), ElementsAre(HasSubstr("light passes outside")));
 }
 
 // What changes less than where rays go is said, and what nobody knows.
@@ -110,8 +119,10 @@ TEST(ZmxOperands, WhatIsPassedOverIsNoted) {
   EXPECT_THAT(notes_of("coat.zmx", with_operand("COAT AR")), ElementsAre(HasSubstr("coatings")));
   EXPECT_THAT(notes_of("new.zmx", with_operand("QQQQ 1 2")), ElementsAre(HasSubstr("QQQQ is not known")));
   EXPECT_THAT(zmx_lens("kept.zmx", with_operand("QQQQ 1 2")).warnings, Contains(HasSubstr("QQQQ")));
-  EXPECT_THAT(refusal("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), HasSubstr("ENVD"));
-  EXPECT_EQ(refusal("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), "");
+  EXPECT_THAT(notes_of("hot.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 40 1 1")), ElementsAre(HasSubstr("ENVD")));
+  EXPECT_THAT(notes_of("cold.zmx", changed(zmx, "PWAV 2", "PWAV 2\nENVD 20 1 1")), IsEmpty());
+  EXPECT_THAT(notes_of("twice.zmx", changed(with_operand("COAT AR"), "  STOP\n", "  STOP\n  COAT AR\n")),
+              ElementsAre(HasSubstr("coatings")));
 }
 
 // FNUM and OBNA have two meanings each. The working f-number of a lens whose object stands s before it is v / D for its

@@ -44,7 +44,8 @@ Vec2<T> landing(Camera const& camera, int changed, Values<T> const& v) {
       if constexpr (std::is_same_v<decltype(held), ShapedSurface<T, Quadric<T>>>) {
         held.shape.curvature = held.shape.curvature + v[curvature_added];
       }
-      if constexpr (std::is_same_v<decltype(held), ShapedSurface<T, EvenAsphere<T>>>) {
+      if constexpr (std::is_same_v<decltype(held), ShapedSurface<T, EvenAsphere<T>>> ||
+                    std::is_same_v<decltype(held), ShapedSurface<T, RadialAsphere<T>>>) {
         held.shape.conic.curvature = held.shape.conic.curvature + v[curvature_added];
       }
       if constexpr (std::is_same_v<decltype(held), PosedThinLens<T>>) {
@@ -125,23 +126,36 @@ TEST(TrainDerivatives, ThroughAThinLensAreExact) {
   expect_exact_derivatives(camera, static_cast<int>(camera.elements.size()) - 1, at);
 }
 
-// The even asphere is met by iteration: the derivative is that of the place it ends at.
-TEST(TrainDerivatives, ThroughAnAsphereAreExact) {
+/// The double Gauss with its last surface in another shape of the same conic.
+template <class MakeShape>
+Camera camera_with_last(MakeShape const& shape_of) {
   gladstone::Setup setup = double_gauss_setup(512, 4);
   Camera camera = build_camera(setup);
-  std::size_t const last = camera.elements.size() - 1;
-  camera.elements[last] = camera.elements[last].visit([](auto const& held) -> CameraElement<double> {
-    ShapedSurface<double, EvenAsphere<double>> asphere;
+  CameraElement<double>& last = camera.elements.back();
+  last = last.visit([&](auto const& held) -> CameraElement<double> {
+    ShapedSurface<double, decltype(shape_of(Quadric<double>{}))> other;
     if constexpr (std::is_same_v<std::decay_t<decltype(held)>, ShapedSurface<double, Quadric<double>>>) {
-      asphere.pose = held.pose;
-      asphere.shape = {{held.shape.curvature, -0.4}, {0, 30.0, -4e4, 2e7}};
-      asphere.semi_diameter = held.semi_diameter;
-      asphere.n_before = held.n_before;
-      asphere.n_after = held.n_after;
+      other.pose = held.pose;
+      other.shape = shape_of(Quadric<double>{held.shape.curvature, -0.4});
+      other.semi_diameter = held.semi_diameter;
+      other.n_before = held.n_before;
+      other.n_after = held.n_after;
     }
-    return asphere;
+    return other;
   });
-  expect_exact_derivatives(camera, static_cast<int>(last), off_axis);
+  return camera;
+}
+
+// An asphere is met by iteration: the derivative is that of the place it ends at.
+TEST(TrainDerivatives, ThroughAnAsphereAreExact) {
+  Camera const even = camera_with_last([](Quadric<double> const& conic) {
+    return EvenAsphere<double>{conic, {0, 30.0, -4e4, 2e7}};
+  });
+  expect_exact_derivatives(even, static_cast<int>(even.elements.size()) - 1, off_axis);
+  Camera const radial = camera_with_last([](Quadric<double> const& conic) {
+    return RadialAsphere<double>{conic, 0.01, false, {0, 1e-6, 2e-6, 3e-7, -4e-8}};
+  });
+  expect_exact_derivatives(radial, static_cast<int>(radial.elements.size()) - 1, off_axis);
 }
 
 }  // namespace

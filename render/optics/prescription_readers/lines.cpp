@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -9,16 +11,65 @@
 
 namespace gladstone {
 
-double PrescriptionLine::number(std::size_t i) const {
-  if (i >= words.size()) throw DataError(where, fmt::format("{} needs {} values; the line is cut short", words[0], i));
-  std::string_view word = words[i];
+namespace {
+
+std::optional<double> finite_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
   auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-    throw DataError(where, fmt::format("{}: \"{}\" is not a finite number", words[0], words[i].substr(0, 40)));
+  bool const whole = error == std::errc() && end == word.data() + word.size() && !word.empty();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+bool are_digits(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+}  // namespace
+
+double PrescriptionLine::number(std::size_t i) const {
+  if (i >= words.size()) throw DataError(where, fmt::format("{} needs {} values; the line is cut short", words[0], i));
+  if (auto const value = finite_number(words[i])) return *value;
+  throw DataError(where, fmt::format("{}: \"{}\" is not a finite number", words[0], words[i].substr(0, 40)));
+}
+
+double PrescriptionLine::number_or_infinity(std::size_t i) const {
+  if (i < words.size()) {
+    std::string const word = in_capitals(words[i]);
+    bool const sign = word.starts_with('-') || word.starts_with('+');
+    std::string_view const size = std::string_view(word).substr(sign ? 1 : 0);
+    if (size == "INF" || size == "INFINITY") return word.starts_with('-') ? -HUGE_VAL : HUGE_VAL;
   }
-  return value;
+  return number(i);
+}
+
+bool PrescriptionLine::has_nonzero_number() const {
+  return std::any_of(words.begin() + 1, words.end(),
+                     [](std::string const& word) { return finite_number(word).value_or(0) != 0; });
+}
+
+std::string in_capitals(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+std::optional<PrescribedMedium> read_glass_code(std::string_view word) {
+  auto const described = [](std::optional<double> nd, std::optional<double> vd) -> std::optional<PrescribedMedium> {
+    if (!nd || !vd) return std::nullopt;
+    if (*vd == 0) return PrescribedMedium{PrescribedMedium::Index{*nd}};
+    return PrescribedMedium{PrescribedMedium::Described{*nd, *vd}};
+  };
+  if (auto const colon = word.find(':'); colon != std::string_view::npos) {
+    return described(finite_number(word.substr(0, colon)), finite_number(word.substr(colon + 1)));
+  }
+  auto const point = word.find('.');
+  bool const pointed = point != std::string_view::npos;
+  std::string_view const index = word.substr(0, pointed ? point : word.size() / 2);
+  std::string_view const abbe = word.substr(pointed ? point + 1 : word.size() / 2);
+  if (!are_digits(index) || !are_digits(abbe) || index.size() < 3 || abbe.size() < 2) return std::nullopt;
+  return described(finite_number(fmt::format("1.{}", index)),
+                   finite_number(fmt::format("{}.{}0", abbe.substr(0, 2), abbe.substr(2))));
 }
 
 int PrescriptionLine::integer(std::size_t i) const {

@@ -1,76 +1,47 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/text_encoding.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
-#include "render/optics/even_asphere.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
+#include "render/optics/prescription_readers/seq_commands.h"
+#include "render/optics/prescription_readers/seq_surface.h"
 
 namespace gladstone {
 namespace {
-
-/// Commands that say nothing about where rays go: weights, variables, solves whose values are written out, names.
-bool is_harmless(std::string const& command) {
-  static std::set<std::string> const harmless{"LEN", "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "PIM", "DER",
-                                              "GO",  "SLB", "KC",  "AC",  "BC",  "CC",  "DC",  "HC",  "POL", "WID",
-                                              "RES", "WAV", "REM", "TEM", "PRE", "CA",  "CLS", "PIK", "THM", "CUM",
-                                              "DDM", "FFO", "ADC", "BDC", "CDC", "XDC", "YDC", "ZDC", "CUC"};
-  return harmless.contains(command);
-}
-
-std::string in_capitals(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
 
 class SeqReader {
  public:
   explicit SeqReader(std::string const& path) { result_.file = path; }
 
   void read_command(PrescriptionLine const& line) {
+    if (line.words.empty()) return;
     std::string const command = in_capitals(line[0]);
-    if (command == "SO" || command == "S" || command == "SI" || is_numbered_surface(command))
-      return begin_surface(command, line);
-    if (command == "RDM") {
-      radii_ = line.size() < 2 || in_capitals(line[1]) != "N";
-    } else if (command == "TITLE" || command == "TIT") {
-      if (line.size() > 1) result_.title = line[1];
-    } else if (command == "DIM") {
-      static std::map<std::string, double> const units{{"M", 1e-3}, {"C", 1e-2}, {"I", 25.4e-3}};
-      auto const found = line.size() > 1 ? units.find(in_capitals(line[1]).substr(0, 1)) : units.end();
-      if (found == units.end()) throw DataError(line.where, "DIM names no known unit (M: mm, C: cm, I: inches)");
-      unit_ = found->second;
-    } else if (command == "EPD") {
-      pupil_ = line.number(1);
-      result_.aperture.kind = PrescribedAperture::Kind::entrance_pupil;
-    } else if (command == "FNO") {
-      result_.aperture = {PrescribedAperture::Kind::f_number, line.number(1)};
-    } else if (command == "NAO") {
-      result_.aperture = {PrescribedAperture::Kind::object_na, line.number(1)};
-    } else if (command == "WL") {
-      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back(line.number(i) * unit::nanometre);
-    } else if (command == "REF") {
-      reference_ = line.integer(1);
-    } else if (command == "YAN") {
-      for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
-    } else if (is_other_field(command)) {
-      note_unless_zero(line, "fields are angles in the y-z plane (YAN) here; these are not judged");
-    } else if (command == "VUX" || command == "VLX" || command == "VUY" || command == "VLY") {
-      note_unless_zero(line, "vignetting factors are not used; the edges of the surfaces vignette");
-    } else if (!read_surface_command(command, line) && !is_harmless(command)) {
+    if (in_private_glasses_) {
+      in_private_glasses_ = command != "END";
+      if (in_private_glasses_) private_glasses_.read(line);
+    } else if (command == "SO" || command == "S" || command == "SI" || is_numbered_surface(command)) {
+      begin_surface(command, line);
+    } else if (read_system(command, line) || read_fields(command, line)) {
+      return;
+    } else if (is_refused_command(command)) {
       throw DataError(line.where,
                       fmt::format("command {} is not read; leave it out if it does not change the lens", line[0]));
+    } else if (!read_of_surface(command, line) && !is_harmless_command(command)) {
+      if (unknown_.empty()) unknown_where_ = line.where;
+      if (std::find(unknown_.begin(), unknown_.end(), command) == unknown_.end()) {
+        unknown_.push_back(command.substr(0, 40));
+      }
     }
   }
 
@@ -80,15 +51,30 @@ class SeqReader {
                       "describes no lens (a .seq file has lines SO, S ..., SI: the object, the lens' "
                       "surfaces, the image)");
     }
-    if (!image_) throw DataError(result_.file, "has no image surface SI; the file is cut short");
-    result_.object_distance = surfaces_.front().thickness;
+    if (!image_) {
+      warn(surfaces_.back().surface.where +
+           ": the file has no image surface SI behind this one, whose thickness is taken to lead to the image; if the "
+           "file was cut short, get it whole");
+    }
+    if (!radii_said_) judge_curvatures();
     if (result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil) result_.aperture.value = pupil_ * unit_;
-    result_.surfaces.assign(surfaces_.begin() + 1, surfaces_.end());
-    break_before_image(result_, std::move(image_surface_.before), image_surface_.where);
+    PrescribedSurface const& object = surfaces_.front().surface;
+    if (object.after.is_mirror())
+      throw DataError(object.where, "the object is a mirror (REFL); name what is ahead of the lens");
+    result_.object_distance = object.thickness;
+    result_.object_medium = resolved(object.after);
+    take_surfaces();
     if (reference_ >= 1 && reference_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(reference_ - 1)];
     } else if (!wavelengths_.empty()) {
       result_.primary_wavelength = wavelengths_[wavelengths_.size() / 2];
+    }
+    assume_stop(result_);
+    if (!unknown_.empty()) {
+      bool const one = unknown_.size() == 1;
+      warn(fmt::format("{}: {} {} {} not known here and {} passed over; check that {} not change the lens",
+                       unknown_where_, one ? "command" : "commands", fmt::join(unknown_, ", "), one ? "is" : "are",
+                       one ? "was" : "were", one ? "it does" : "they do"));
     }
     return std::move(result_);
   }
@@ -99,18 +85,60 @@ class SeqReader {
            std::all_of(command.begin() + 1, command.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
   }
 
-  /// Field points that are no angles in the y-z plane.
-  static bool is_other_field(std::string const& command) {
-    static std::set<std::string> const other{"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
-    return other.contains(command);
-  }
+  void warn(std::string const& text) { result_.warnings.push_back(text); }
 
   void note_unless_zero(PrescriptionLine const& line, char const* what) {
-    for (std::size_t i = 1; i < line.size(); ++i) {
-      if (line.number(i) == 0) continue;
-      result_.warnings.push_back(fmt::format("{}: {}: {}", line.where, in_capitals(line[0]), what));
-      return;
+    if (line.has_nonzero_number()) warn(fmt::format("{}: {}: {}", line.where, in_capitals(line[0]), what));
+  }
+
+  /// Commands of the whole lens. @return whether it is one
+  bool read_system(std::string const& command, PrescriptionLine const& line) {
+    using Kind = PrescribedAperture::Kind;
+    if (command == "RDM") {
+      radii_ = line.size() < 2 || in_capitals(line[1]) != "N";
+      radii_said_ = true;
+    } else if (command == "TITLE" || command == "TIT") {
+      if (line.size() > 1) result_.title = line[1];
+    } else if (command == "DIM") {
+      static std::map<std::string, double> const units{{"M", 1e-3}, {"C", 1e-2}, {"I", 25.4e-3}};
+      auto const found = line.size() > 1 ? units.find(in_capitals(line[1]).substr(0, 1)) : units.end();
+      if (found == units.end()) throw DataError(line.where, "DIM names no known unit (M: mm, C: cm, I: inches)");
+      unit_ = found->second;
+    } else if (command == "EPD") {
+      pupil_ = line.number(1);
+      result_.aperture.kind = Kind::entrance_pupil;
+    } else if (command == "FNO") {
+      result_.aperture = {Kind::f_number, line.number(1)};
+    } else if (command == "NAO") {
+      result_.aperture = {Kind::object_na, line.number(1)};
+    } else if (command == "WL") {
+      for (std::size_t i = 1; i < line.size(); ++i) wavelengths_.push_back(line.number(i) * unit::nanometre);
+    } else if (command == "REF") {
+      reference_ = line.integer(1);
+    } else if (command == "PRV") {
+      in_private_glasses_ = true;
+    } else if (command == "ZOO") {
+      warn(line.where + ": ZOO: of a zoom lens the position that its surfaces hold is read");
+    } else {
+      return false;
     }
+    return true;
+  }
+
+  /// Field points: angles in the y-z plane are read, others noted. @return whether it is such a command
+  bool read_fields(std::string const& command, PrescriptionLine const& line) {
+    static std::set<std::string> const others{"XAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
+    static std::set<std::string> const vignetting{"VUX", "VLX", "VUY", "VLY"};
+    if (command == "YAN") {
+      for (std::size_t i = 1; i < line.size(); ++i) result_.field_angles.push_back(line.number(i) * unit::degree);
+    } else if (others.contains(command)) {
+      note_unless_zero(line, "fields are angles in the y-z plane (YAN) here; these are not judged");
+    } else if (vignetting.contains(command)) {
+      note_unless_zero(line, "vignetting factors are not used; the edges of the surfaces vignette");
+    } else {
+      return false;
+    }
+    return true;
   }
 
   /// "S radius thickness [glass]"
@@ -120,44 +148,45 @@ class SeqReader {
       throw DataError(line.where, command == "SO" ? "a second object surface SO; the file is damaged"
                                                   : "the lens begins without its object surface SO");
     }
-    double const first = line.number(1);
-    double const thickness = line.size() > 2 ? line.number(2) * unit_ : 0.0;
+    double const first = line.number_or_infinity(1);
+    double const thickness = line.size() > 2 ? line.number_or_infinity(2) * unit_ : 0.0;
     if (command == "SI") {
       image_ = true;
-      image_surface_.where = line.where;
-      surfaces_.back().thickness += thickness;  // the defocus of the image
+      image_surface_.surface.where = line.where;
+      surfaces_.back().surface.thickness += thickness;  // the defocus of the image
       return;
     }
-    PrescribedSurface surface;
-    surface.where = line.where;
-    surface.curvature = (radii_ ? (first == 0 ? 0.0 : 1 / first) : first) / unit_;
-    surface.thickness = std::abs(thickness) > 1e10 * unit_ ? std::numeric_limits<double>::infinity() : thickness;
-    if (line.size() > 3) surface.after = medium(line, line[3]);
-    surfaces_.push_back(surface);
+    SeqSurface seq;
+    seq.surface.where = line.where;
+    seq.surface.curvature = curvature_of(first, radii_);
+    bool const endless = std::abs(thickness) > 1e10 * unit_;
+    seq.surface.thickness = endless ? std::copysign(HUGE_VAL, thickness) : thickness;
+    if (line.size() > 3) seq.surface.after = medium(line[3]);
+    surfaces_.push_back(std::move(seq));
   }
 
-  static PrescribedMedium medium(PrescriptionLine const& line, std::string const& word) {
+  double curvature_of(double value, bool is_radius) const {
+    if (std::isinf(value) || value == 0) return 0;
+    return (is_radius ? 1 / value : value) / unit_;
+  }
+
+  static PrescribedMedium medium(std::string const& word) {
     std::string const name = in_capitals(word);
-    if (name == "AIR") return {};
+    if (name.empty() || name == "AIR") return {};
     if (name == "REFL") return {PrescribedMedium::Mirror{}};
-    // a fictitious glass, "517.642" or "517642": nd - 1 in thousandths and ten times Vd, or "1.5168:64.2"
-    if (std::isdigit(static_cast<unsigned char>(name[0])) == 0) return {PrescribedMedium::Named{word}};
-    auto const number = [&line](std::string const& text) {
-      return PrescriptionLine{line.where, {"glass", text}}.number(1);
-    };
-    if (auto const colon = name.find(':'); colon != std::string::npos) {
-      return {PrescribedMedium::Described{number(name.substr(0, colon)), number(name.substr(colon + 1))}};
-    }
-    auto const point = name.find('.');
-    std::string const index = point == std::string::npos ? name.substr(0, name.size() / 2) : name.substr(0, point);
-    std::string const abbe = point == std::string::npos ? name.substr(name.size() / 2) : name.substr(point + 1);
-    if (index.empty() || abbe.size() < 2) throw DataError(line.where, fmt::format("\"{}\" is no glass", word));
-    return {
-        PrescribedMedium::Described{1 + number("0." + index), number(abbe.substr(0, 2) + '.' + abbe.substr(2) + '0')}};
+    if (auto const code = read_glass_code(name)) return *code;
+    return {PrescribedMedium::Named{word, std::nullopt}};
+  }
+
+  /// The medium, or the private glass that it names.
+  PrescribedMedium resolved(PrescribedMedium const& medium) const {
+    auto const* const named = std::get_if<PrescribedMedium::Named>(&medium.is);
+    Glass const* const own = named ? private_glasses_.find(in_capitals(named->glass)) : nullptr;
+    return own ? PrescribedMedium{PrescribedMedium::Private{*own}} : medium;
   }
 
   /// The surface that a command names ("STO S6", counted from the object's S0), and the command without its name.
-  PrescribedSurface& named_surface(PrescriptionLine& line) {
+  SeqSurface& named_surface(PrescriptionLine& line) {
     if (line.size() > 1 && is_numbered_surface(in_capitals(line[1]))) {
       PrescriptionLine const digits{line.where, {line[0], line[1].substr(1)}};
       auto const number = static_cast<std::size_t>(digits.integer(1));
@@ -170,105 +199,113 @@ class SeqReader {
       line.words.erase(line.words.begin() + 1);
       return surfaces_[number];
     }
-    if (in_capitals(line[0]) == "STO" && line.size() > 1) {
+    if (in_capitals(line[0]).starts_with("STO") && line.size() > 1) {
+      PrescriptionLine const number{line.where, {line[0], "S" + line[1]}};
+      if (is_numbered_surface(number[1])) {  // "stop 2"
+        line.words[1] = number[1];
+        return named_surface(line);
+      }
       throw DataError(line.where, fmt::format("STO {}: names no surface; give its number (STO S6)", line[1]));
     }
     return image_ ? image_surface_ : surfaces_.back();
   }
 
-  /// Commands that belong to the surface before them, or to the one that they name.
-  bool read_surface_command(std::string const& command, PrescriptionLine line) {
-    static std::set<std::string> const known{"STO", "K",   "CIR", "CON", "ASP", "SPH", "CYL", "XDE", "YDE", "ZDE",
-                                             "ADE", "BDE", "CDE", "A",   "B",   "C",   "D",   "E",   "F",   "G"};
-    if (!known.contains(command)) return false;
+  /// Commands that belong to the surface before them, or to the one that they name. @return whether it is one
+  bool read_of_surface(std::string const& command, PrescriptionLine line) {
+    if (!is_surface_command(command)) return false;
     if (surfaces_.empty()) throw DataError(line.where, fmt::format("{} comes before any surface", command));
-    PrescribedSurface& surface = named_surface(line);
-    if (command == "STO") {
-      if (&surface == &image_surface_) throw DataError(line.where, "the image SI cannot be the stop; mark another one");
-      surface.stop = true;
+    SeqSurface& seq = named_surface(line);
+    if (command == "THI" || command == "RDY" || command == "CUY" || command == "GLA") {
+      change_surface(command, line, seq.surface);
+      return true;
     }
-    if (command == "K") surface.conic = line.number(1);
-    if (command == "CYL") {
-      throw DataError(line.where, "cylinders (CYL) are not read from CODE V files; write the lens as TOML");
+    return read_seq_surface(command, line, unit_, &seq == &image_surface_, seq, result_.warnings);
+  }
+
+  static bool is_surface_command(std::string const& command) {
+    static std::set<std::string> const known{"STO", "STOP", "K",   "CIR", "REX", "REY", "ELX", "ELY", "ADX",
+                                             "ADY", "ARO",  "XDE", "YDE", "ZDE", "ADE", "BDE", "CDE", "DAR",
+                                             "BEN", "REV",  "CUF", "THI", "RDY", "CUY", "GLA", "A",   "B",
+                                             "C",   "D",    "E",   "F",   "G",   "H",   "J"};
+    return known.contains(command);
+  }
+
+  /// "THI S3 2.5"; a word in place of the number is a solve, whose value the line of the surface holds.
+  void change_surface(std::string const& command, PrescriptionLine const& line, PrescribedSurface& surface) const {
+    if (line.size() < 2) return;
+    if (command == "GLA") {
+      surface.after = medium(line[1]);
+    } else if (std::isalpha(static_cast<unsigned char>(line[1][0])) != 0 && in_capitals(line[1]) != "INF") {
+      return;
+    } else if (command == "THI") {
+      surface.thickness = line.number_or_infinity(1) * unit_;
+    } else {
+      surface.curvature = curvature_of(line.number_or_infinity(1), command == "RDY");
     }
-    if (command == "CIR") {
-      std::string const kind = line.size() > 1 ? in_capitals(line[1]) : "";
-      if (kind == "EDG") return true;  // for drawings
-      if (kind == "HOL") {
-        throw DataError(line.where, "holes (CIR HOL) are not read; remove the line to trace without it");
-      }
-      if (kind == "OBS") {
-        surface.obscured = line.number(2) * unit_;
-      } else {
-        surface.semi_diameter = line.number(1) * unit_;
-      }
+  }
+
+  /// Without RDM numbers are curvatures, CODE V's default. Where most of them would make surfaces that bend away within
+  /// the pupil, or within a quarter of the glass behind or ahead of them (a ball's radius is half its thickness), the
+  /// file means radii.
+  void judge_curvatures() {
+    double const pupil = result_.aperture.kind == PrescribedAperture::Kind::entrance_pupil ? pupil_ * unit_ / 2 : 0;
+    int curved = 0, impossible = 0;
+    for (std::size_t i = 1; i < surfaces_.size(); ++i) {
+      PrescribedSurface const& surface = surfaces_[i].surface;
+      if (surface.curvature == 0) continue;
+      PrescribedSurface const& before = surfaces_[i - 1].surface;
+      auto const glass = [](PrescribedSurface const& s) {
+        return s.after.is_air() || s.after.is_mirror() || !std::isfinite(s.thickness) ? 0 : std::abs(s.thickness);
+      };
+      double const least = std::max(pupil, std::max(glass(surface), glass(before)) / 4);
+      ++curved;
+      impossible += 1 / std::abs(surface.curvature) < least ? 1 : 0;
     }
-    if (command.size() == 1 && command[0] >= 'A' && command[0] <= 'G') {  // of r^4, r^6, ...
-      int const term = command[0] - 'A' + 1;
-      surface.asphere.resize(EvenAsphere<double>::terms, 0.0);
-      surface.asphere[static_cast<std::size_t>(term)] = line.number(1) / std::pow(unit_, 2 * term + 1);
+    if (2 * impossible <= curved) return;
+    for (std::size_t i = 1; i < surfaces_.size(); ++i) {
+      PrescribedSurface& surface = surfaces_[i].surface;
+      surface.curvature = curvature_of(surface.curvature * unit_, true);
     }
-    if (command.size() == 3 && command.ends_with("DE")) {
-      if (surface.before.empty()) surface.before.emplace_back();
-      CoordinateBreak& here = surface.before.back();
-      double const value = line.number(1);
-      if (command == "XDE") here.decentre.x = value * unit_;
-      if (command == "YDE") here.decentre.y = value * unit_;
-      if (command == "ZDE") throw DataError(line.where, "ZDE is not read; add the shift to the thickness before it");
-      // CODE V turns left-handed about x and y, right-handed about z
-      if (command == "ADE") here.tilt.x = -value * unit::degree;
-      if (command == "BDE") here.tilt.y = -value * unit::degree;
-      if (command == "CDE") here.tilt.z = value * unit::degree;
+    warn(
+        fmt::format("{}: the file has no RDM, so that its numbers would be curvatures, CODE V's default; surfaces as "
+                    "strongly curved would not reach across the light, so they are taken as radii (say RDM, or RDM N "
+                    "for curvatures)",
+                    surfaces_[1].surface.where));
+  }
+
+  /// Brings surfaces, decentres and the image into the order of the lens.
+  void take_surfaces() {
+    std::vector<CoordinateBreak> behind;
+    auto const breaks_ahead = [&behind](SeqSurface const& seq) {
+      std::vector<CoordinateBreak> breaks = std::exchange(behind, {});
+      std::vector<CoordinateBreak> const own = seq.breaks_before();
+      breaks.insert(breaks.end(), own.begin(), own.end());
+      return breaks;
+    };
+    for (std::size_t i = 1; i < surfaces_.size(); ++i) {
+      SeqSurface& seq = surfaces_[i];
+      finish_seq_surface(seq, unit_, result_.warnings);
+      PrescribedSurface surface = seq.surface;
+      surface.after = resolved(surface.after);
+      surface.before = breaks_ahead(seq);
+      behind = seq.breaks_behind();
+      if (!behind.empty()) behind.back().advance += std::exchange(surface.thickness, 0);
+      result_.surfaces.push_back(std::move(surface));
     }
-    return true;
+    break_before_image(result_, breaks_ahead(image_surface_), image_surface_.surface.where);
   }
 
   Prescription result_;
-  std::vector<PrescribedSurface> surfaces_;  // the object first
-  PrescribedSurface image_surface_;          // of which the frame counts
+  std::vector<SeqSurface> surfaces_;  // the object first
+  SeqSurface image_surface_;          // of which the frame counts
+  PrivateGlasses private_glasses_;
   std::vector<double> wavelengths_;
+  std::vector<std::string> unknown_;  // commands
+  std::string unknown_where_;
   double unit_ = 1e-3, pupil_ = 0;
   int reference_ = 0;
-  bool radii_ = false, image_ = false;
+  bool radii_ = false, radii_said_ = false, image_ = false, in_private_glasses_ = false;
 };
-
-/// Cuts a file into commands: lines end them, ";" too, "&" joins lines, "!" begins a comment, not within quotes.
-void for_each_command(std::string_view text, std::function<void(std::string const&, int)> const& take) {
-  std::string command;
-  char quote = 0;
-  int line = 1, begun_at = 1;
-  auto const end_command = [&] {
-    if (command.find_first_not_of(" \t") != std::string::npos) take(command, begun_at);
-    command.clear();
-    begun_at = line;
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char const c = text[i];
-    if (c == '\n') {
-      ++line;
-      quote = 0;
-      std::size_t const last = command.find_last_not_of(" \t");
-      if (last != std::string::npos && command[last] == '&') {
-        command.resize(last);
-        command.push_back(' ');
-        continue;
-      }
-      end_command();
-    } else if (quote == 0 && c == ';') {
-      end_command();
-    } else if (quote == 0 && c == '!') {
-      while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
-    } else {
-      if (quote == 0 && (c == '"' || c == '\'')) {
-        quote = c;
-      } else if (c == quote) {
-        quote = 0;
-      }
-      command.push_back(c);
-    }
-  }
-  end_command();
-}
 
 }  // namespace
 

@@ -3,26 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "render/base/error.h"
 #include "render/base/text_encoding.h"
 #include "render/base/text_file.h"
 #include "render/base/units.h"
-#include "render/optics/even_asphere.h"
 #include "render/optics/prescription_readers/lines.h"
 #include "render/optics/prescription_readers/readers.h"
 #include "render/optics/prescription_readers/zmx_apertures.h"
+#include "render/optics/prescription_readers/zmx_surface.h"
 
 namespace gladstone {
 namespace {
-
-/// Block SURF of a file: the surface, and what COORDBRK makes of its parameters.
-struct ZmxSurface {
-  PrescribedSurface surface;
-  std::string type = "STANDARD";
-  bool has_glass = false, has_distance = false;
-  std::map<int, double> parameters;  // lengths in the file's unit
-};
 
 class ZmxReader {
  public:
@@ -32,19 +25,30 @@ class ZmxReader {
     if (line.words.empty()) return;
     std::string const& key = line[0];
     if (key == "SURF") {
+      if (surfaces_.empty() && line.integer(1) == 1) assume_object(line.where);
       if (line.integer(1) != static_cast<int>(surfaces_.size())) {
-        throw DataError(line.where, fmt::format("surface {} comes after {}; the file is damaged", line[1],
-                                                static_cast<int>(surfaces_.size()) - 1));
+        throw DataError(
+            line.where,
+            surfaces_.empty()
+                ? fmt::format("the first surface is {}, not the object 0; the file is damaged", line[1])
+                : fmt::format("surface {} comes after {}; the file is damaged", line[1], surfaces_.size() - 1));
       }
       surfaces_.emplace_back();
       surfaces_.back().surface.where = line.where;
     } else if (surfaces_.empty()) {
       read_system(line);
-      note_zmx_operand(line, result_.warnings);
-    } else if (!read_zmx_aperture(line, unit_, surfaces_.back().surface)) {
-      read_surface(line, surfaces_.back());
-      note_zmx_operand(line, result_.warnings);
+      notes_.read(line);
+    } else if (!read_zmx_aperture(line, unit_, surfaces_.back().apertures, result_.warnings)) {
+      read_zmx_surface(line, unit_, surfaces_.back(), result_.warnings);
+      notes_.read(line);
     }
+  }
+
+  /// Notes that the file ends within the line DISZ, which may have been cut short.
+  void note_end(PrescriptionLine const& line) {
+    result_.warnings.push_back(line.where +
+                               ": the file ends within its line DISZ, which lacks its end; if it was cut short there, "
+                               "get it whole");
   }
 
   Prescription finish() {
@@ -52,36 +56,26 @@ class ZmxReader {
       throw DataError(path_,
                       "describes no lens (a .zmx file has blocks SURF: the object, the lens' surfaces, the image)");
     }
-    check_image(surfaces_.back());
-    result_.object_distance = surfaces_.front().surface.thickness;
+    if (object_assumed_ && why_no_image(surfaces_.back())) {
+      surfaces_.emplace_back();
+      surfaces_.back().surface.where = path_;
+    } else {
+      check_image(surfaces_.back());
+    }
+    PrescribedSurface const& object = surfaces_.front().surface;
+    if (object.after.is_mirror())
+      throw DataError(object.where, "the object is a mirror (GLAS); name what is ahead of the lens");
+    result_.object_distance = object.thickness;
+    result_.object_medium = object.after;
     if (primary_ >= 1 && primary_ <= static_cast<int>(wavelengths_.size())) {
       result_.primary_wavelength = wavelengths_[static_cast<std::size_t>(primary_ - 1)];
     }
     take_fields();
-    std::vector<CoordinateBreak> breaks;
-    for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
-      ZmxSurface& zmx = surfaces_[i];
-      PrescribedSurface& surface = zmx.surface;
-      if (zmx.type == "COORDBRK") {
-        breaks.push_back(break_of(zmx));
-        continue;
-      }
-      if (zmx.type == "EVENASPH") {
-        surface.asphere.assign(EvenAsphere<double>::terms, 0.0);
-        for (auto const& [i_parameter, value] : zmx.parameters) {
-          if (value == 0) continue;
-          if (i_parameter < 1 || i_parameter > EvenAsphere<double>::terms) {
-            throw DataError(surface.where, fmt::format("EVENASPH has no parameter {}", i_parameter));
-          }
-          surface.asphere[static_cast<std::size_t>(i_parameter - 1)] = value / std::pow(unit_, 2 * i_parameter - 1);
-        }
-      }
-      if (!zmx.has_glass) surface.after = {};
-      surface.before = std::move(breaks);
-      breaks.clear();
-      result_.surfaces.push_back(surface);
-    }
-    break_before_image(result_, std::move(breaks), surfaces_.back().surface.where);
+    check_aperture();
+    take_surfaces();
+    assume_stop(result_);
+    std::vector<std::string> const notes = notes_.warnings();
+    result_.warnings.insert(result_.warnings.end(), notes.begin(), notes.end());
     return std::move(result_);
   }
 
@@ -113,9 +107,7 @@ class ZmxReader {
     if (key == "FLOA") result_.aperture = {};
     if (key == "FTYP" && line.integer(1) != 0) heights_at_ = line.where;
     if (key == "XFLN" || key == "XFLD") {
-      for (std::size_t i = 1; i < line.size(); ++i) {
-        if (line.number(i) != 0) across_at_ = line.where;
-      }
+      if (line.has_nonzero_number()) across_at_ = line.where;
     }
     if (key == "YFLN" || key == "YFLD") {
       for (std::size_t i = 1; i < line.size(); ++i) {
@@ -131,6 +123,45 @@ class ZmxReader {
       wavelengths_.push_back(line.number(2) * unit::micrometre);
     }
     if (key == "PWAV") primary_ = line.integer(1);
+    if (key == "GCAT") result_.catalogues.assign(line.words.begin() + 1, line.words.end());
+    if (key == "ENPD" || key == "FNUM" || key == "OBNA" || key == "FLOA") aperture_where_ = line.where;
+  }
+
+  /// An aperture that is missing or 0 leaves the width of the stop to the stop's own semi-diameter.
+  void check_aperture() {
+    bool const by_stop = result_.aperture.kind == PrescribedAperture::Kind::stop;
+    if (by_stop ? !aperture_where_.empty() : result_.aperture.value > 0) return;
+    result_.warnings.push_back(
+        fmt::format("{}: the file sets no aperture (ENPD, FNUM, OBNA); the stop's semi-diameter "
+                    "is taken",
+                    aperture_where_.empty() ? path_ : aperture_where_));
+    result_.aperture = {};
+  }
+
+  /// Brings the blocks between object and image into the order of the lens' surfaces.
+  void take_surfaces() {
+    std::vector<CoordinateBreak> breaks;
+    for (std::size_t i = 1; i + 1 < surfaces_.size(); ++i) {
+      ZmxSurface const& zmx = surfaces_[i];
+      PrescribedSurface surface;
+      if (zmx.type == "COORDBRK") {
+        breaks.push_back(break_of(zmx, unit_));
+        if (!zmx.surface.stop) continue;
+        surface.where = zmx.surface.where;  // a stop in the broken frame
+        surface.stop = true;
+        surface.semi_diameter = zmx.surface.semi_diameter;
+        surface.thickness = std::exchange(breaks.back().advance, 0);
+      } else {
+        surface = shaped_surface(zmx, static_cast<int>(i), unit_, result_.warnings);
+      }
+      surface.before = std::exchange(breaks, {});
+      result_.surfaces.push_back(std::move(surface));
+    }
+    PrescribedSurface const& image = surfaces_.back().surface;
+    if (image.curvature != 0) {
+      result_.warnings.push_back(image.where + ": the image is curved; it is judged on a plane");
+    }
+    break_before_image(result_, std::move(breaks), image.where);
   }
 
   /// Fields are angles in the y-z plane; others are told of, and left out.
@@ -147,69 +178,29 @@ class ZmxReader {
     }
   }
 
-  void read_surface(PrescriptionLine const& line, ZmxSurface& zmx) {
-    PrescribedSurface& surface = zmx.surface;
-    std::string const& key = line[0];
-    if (key == "TYPE") {
-      static std::vector<std::string> const known{"STANDARD", "EVENASPH", "COORDBRK"};
-      zmx.type = line.size() > 1 ? line[1] : "";
-      if (std::find(known.begin(), known.end(), zmx.type) == known.end()) {
-        throw DataError(line.where, fmt::format("surface {}: type {} is not read (STANDARD, EVENASPH and COORDBRK are)",
-                                                surfaces_.size() - 1, zmx.type));
-      }
-    }
-    if (key == "STOP") surface.stop = true;
-    if (key == "CURV") surface.curvature = line.number(1) / unit_;
-    if (key == "CONI") surface.conic = line.number(1);
-    if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
-    if (key == "DISZ") {
-      zmx.has_distance = true;
-      bool const infinite = line.size() > 1 && line[1] == "INFINITY";
-      surface.thickness = infinite ? std::numeric_limits<double>::infinity() : line.number(1) * unit_;
-    }
-    if (key == "DIAM" && line.number(1) > 0 && !surface.has_aperture) {
-      surface.semi_diameter = line.number(1) * unit_;
-      surface.semi_diameter_is_an_edge = line.size() > 2 && line.integer(2) != 0;
-    }
-    if (key == "GLAS") {
-      if (line.size() < 2) throw DataError(line.where, "GLAS names no glass; the line is cut short");
-      zmx.has_glass = true;
-      bool const described = line[1] == "___BLANK" || (line.size() > 2 && line[2] == "1");
-      if (line[1] == "MIRROR") {
-        surface.after.is = PrescribedMedium::Mirror{};
-      } else if (described && line.size() > 5) {
-        double const nd = line.number(4), vd = line.number(5);
-        if (!(nd >= 1 && nd < 5 && vd >= 0)) {
-          throw DataError(line.where, fmt::format("GLAS: a model glass of nd = {:.6g}, Vd = {:.6g} is none (nd lies "
-                                                  "between 1 and 5, Vd above 0); correct it or name a glass",
-                                                  nd, vd));
-        }
-        if (line.size() > 6 && line.number(6) != 0) {
-          result_.warnings.push_back(line.where +
-                                     ": GLAS: the deviation of a model glass' partial dispersion is not used");
-        }
-        if (vd == 0) {  // as Zemax has it: without dispersion
-          surface.after.is = PrescribedMedium::Index{nd};
-        } else {
-          surface.after.is = PrescribedMedium::Described{nd, vd};
-        }
-      } else {
-        surface.after.is = PrescribedMedium::Named{line[1]};
-      }
-    }
-    if (key == "XDAT" && line.size() > 2 && line.number(2) != 0) {
-      throw DataError(line.where, "extra data (XDAT) change the surface and are not read");
-    }
+  /// A file of the lens' surfaces alone has no block of the object, which is taken to be far away.
+  void assume_object(std::string const& where) {
+    object_assumed_ = true;
+    result_.warnings.push_back(where +
+                               ": the file has no surface 0, the object, which is taken at infinity; its last "
+                               "surface is the image only if it has no thickness");
+    surfaces_.emplace_back();
+    surfaces_.back().surface.where = where;
+    surfaces_.back().surface.thickness = HUGE_VAL;
+  }
+
+  /// Why a block is no image surface; null: it may be one.
+  static char const* why_no_image(ZmxSurface const& last) {
+    return !last.has_distance            ? "has no DISZ"
+           : last.surface.thickness != 0 ? "has a thickness (DISZ)"
+           : last.surface.stop           ? "is the stop"
+           : last.type == "COORDBRK"     ? "is a coordinate break"
+                                         : nullptr;
   }
 
   /// Refuses a last block that is no image surface: what the file goes on with is missing.
   static void check_image(ZmxSurface const& last) {
-    char const* const why = !last.has_distance            ? "has no DISZ"
-                            : last.surface.thickness != 0 ? "has a thickness (DISZ)"
-                            : last.has_glass              ? "has glass behind it (GLAS)"
-                            : last.surface.stop           ? "is the stop"
-                            : last.type == "COORDBRK"     ? "is a coordinate break"
-                                                          : nullptr;
+    char const* const why = why_no_image(last);
     if (why == nullptr) return;
     throw DataError(last.surface.where,
                     fmt::format("the last surface {}, so it is no image surface, with which a .zmx file ends: the file "
@@ -217,28 +208,16 @@ class ZmxReader {
                                 why));
   }
 
-  CoordinateBreak break_of(ZmxSurface const& zmx) const {
-    if (!std::isfinite(zmx.surface.thickness)) {
-      throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
-    }
-    auto const parameter = [&](int i) {
-      auto const found = zmx.parameters.find(i);
-      return found == zmx.parameters.end() ? 0.0 : found->second;
-    };
-    return {{parameter(1) * unit_, parameter(2) * unit_},
-            Vec3d{parameter(3), parameter(4), parameter(5)} * unit::degree,
-            parameter(6) != 0,
-            zmx.surface.thickness};
-  }
-
   std::string path_;
   Prescription result_;
   std::vector<ZmxSurface> surfaces_;
+  ZmxNotes notes_;
   std::vector<double> wavelengths_, fields_;
   double unit_ = 1e-3;
   int primary_ = 1;
-  std::string heights_at_,
-      across_at_;  // lines that say that fields are heights, and that some lie beside the y-z plane
+  bool object_assumed_ = false;
+  std::string heights_at_, across_at_;  // lines that say that fields are heights, that some lie beside the y-z plane
+  std::string aperture_where_;
 };
 
 }  // namespace
@@ -250,11 +229,8 @@ Prescription read_zmx_prescription(std::string const& path) {
   for (int number = 1; !rest.empty(); ++number) {
     std::size_t const end = std::min(rest.find('\n'), rest.size());
     PrescriptionLine const line{fmt::format("{}:{}", path, number), quoted_words(rest.substr(0, end))};
-    if (end == rest.size() && !line.words.empty() && line[0] == "DISZ") {
-      throw DataError(line.where,
-                      "the file ends within the line DISZ: it is cut short, or its last line lacks its end");
-    }
     reader.read_line(line);
+    if (end == rest.size() && !line.words.empty() && line[0] == "DISZ") reader.note_end(line);
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return reader.finish();

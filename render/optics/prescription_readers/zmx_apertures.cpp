@@ -1,15 +1,18 @@
 #include "render/optics/prescription_readers/zmx_apertures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
-#include <set>
+#include <cmath>
 
 #include "render/base/error.h"
+#include "render/base/units.h"
 
 namespace gladstone {
 namespace {
+
+using Outline = SurfaceOutline<double>;
 
 /// Operands that say nothing about where rays go, or how many.
 bool is_harmless(std::string const& key) {
@@ -17,92 +20,152 @@ bool is_harmless(std::string const& key) {
       "VERS", "MODE", "NAME", "NOTE", "UNIT", "ENPD", "FNUM", "OBNA", "FLOA", "FTYP", "ROPD", "PICB", "XFLN", "YFLN",
       "XFLD", "YFLD", "FWGN", "FWGT", "WAVL", "WAVM", "WAVN", "WWGT", "WWGN", "PWAV", "GCAT", "GFAC", "GLRS", "PFIL",
       "LANG", "EFFL", "SDMA", "OMMA", "RAIM", "PUSH", "HYPR", "GSTD", "NSCD", "COFN", "CFLT", "POLS", "BLNK", "PTYP",
-      "RDTY", "TOL",  "MNUM", "MOFF", "MCOF", "SURF", "TYPE", "STOP", "CURV", "CONI", "PARM", "DISZ", "DIAM", "GLAS",
-      "XDAT", "COMM", "HIDE", "MIRR", "SLAB", "POPS", "MEMA", "OEMA", "MAZH", "FIMP", "TCEX", "TCE",  "PPAR", "PCUR",
-      "CNFG", "EDGE", "DBDT", "DRAW", "ISNA", "SCOL", "COLR", "SHOW", "OPDX", "ELOT", "VPAR", "VCUR", "VDIS", "VGLA",
-      "VCON", "FCOM", "USAP", "FLDT", "CONF", "THIC", "UDAD", "MCOM", "ZVAR"};
+      "RDTY", "TOL",  "MOFF", "MCOF", "SURF", "TYPE", "STOP", "CURV", "CONI", "PARM", "DISZ", "DIAM", "GLAS", "XDAT",
+      "COMM", "HIDE", "MIRR", "SLAB", "POPS", "MEMA", "OEMA", "MAZH", "FIMP", "TCEX", "TCE",  "PPAR", "PCUR", "CNFG",
+      "EDGE", "DBDT", "DRAW", "ISNA", "SCOL", "COLR", "SHOW", "OPDX", "ELOT", "VPAR", "VCUR", "VDIS", "VGLA", "VCON",
+      "FCOM", "USAP", "FLDT", "CONF", "THIC", "UDAD", "MCOM", "ZVAR", "AUTH", "SDIA", "IWDP", "EERA", "LUID", "SSID"};
   return harmless.contains(key);
 }
 
-/// Operands that block light in shapes that are not traced.
-char const* shape_of(std::string const& key) {
-  static std::map<std::string, char const*> const shapes{{"SQAP", "a rectangular aperture"},
-                                                         {"SQOB", "a rectangular obscuration"},
-                                                         {"ELAP", "an elliptical aperture"},
-                                                         {"ELOB", "an elliptical obscuration"},
-                                                         {"SPID", "a spider"},
-                                                         {"UDAP", "an aperture of the user's own"},
-                                                         {"UDOB", "an obscuration of the user's own"}};
-  auto const found = shapes.find(key);
-  return found == shapes.end() ? nullptr : found->second;
-}
-
-bool any_but_zero(PrescriptionLine const& line) {
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    if (line.number(i) != 0) return true;
-  }
-  return false;
+Outline outline_of(PrescriptionLine const& line, double unit, Outline::Kind kind, bool blocks) {
+  Vec2d const half{line.number_or_infinity(1) * unit, line.number_or_infinity(2) * unit};
+  if (half.x > 0 && half.y > 0) return {kind, blocks, half, {}};
+  throw DataError(line.where, fmt::format("{}: half widths of {} and {} are no area; give positive ones", line[0],
+                                          line[1], line[2]));
 }
 
 }  // namespace
 
-bool read_zmx_aperture(PrescriptionLine const& line, double unit, PrescribedSurface& surface) {
+bool read_zmx_aperture(PrescriptionLine const& line, double unit, ZmxApertures& apertures,
+                       std::vector<std::string>& warnings) {
   std::string const& key = line[0];
-  if (char const* const shape = shape_of(key)) {
-    throw DataError(line.where, fmt::format("{} stands on this surface ({} is not traced: circular ones about the axis "
-                                            "are); remove the line to trace without it",
-                                            shape, key));
+  if (key == "SPID" || key == "UDAP" || key == "UDOB") {
+    warnings.push_back(fmt::format("{}: {}: {} not traced; light passes there", line.where, key,
+                                   key == "SPID" ? "spiders are" : "shapes of the user's own are"));
+    return true;
   }
   if (key == "OBDC") {
-    if (any_but_zero(line)) {
-      throw DataError(line.where,
-                      "the aperture is decentred (OBDC is not traced: circular ones about the axis are); remove the "
-                      "line to trace it about the axis");
+    apertures.centre = {line.number(1) * unit, line.number(2) * unit};
+  } else if (key == "SQAP" || key == "SQOB") {
+    apertures.outline = outline_of(line, unit, Outline::Kind::rectangle, key == "SQOB");
+  } else if (key == "ELAP" || key == "ELOB") {
+    apertures.outline = outline_of(line, unit, Outline::Kind::ellipse, key == "ELOB");
+  } else if (key == "CLAP" || key == "FLAP" || key == "OBSC") {
+    double const least = line.number(1) * unit, largest = line.number_or_infinity(2) * unit;
+    if (!(least >= 0 && largest >= least)) {
+      throw DataError(line.where, fmt::format("{}: the least radius {} is negative or exceeds the largest, {}", key,
+                                              line[1], line[2]));
     }
-    return true;
-  }
-  if (key != "CLAP" && key != "FLAP" && key != "OBSC") return false;
-  double const least = line.number(1) * unit, largest = line.number(2) * unit;
-  if (!(least >= 0 && largest >= least)) {
-    throw DataError(line.where, fmt::format("{}: radii from {} to {} are none of a ring; give the least, then the "
-                                            "largest",
-                                            key, line[1], line[2]));
-  }
-  if (key == "OBSC") {  // blocks between its radii
-    if (largest == 0) return true;
-    if (least > 0) {
-      throw DataError(line.where, "an obscuration is a ring (OBSC with a least radius of 0 is traced, a full disc)");
+    if (key != "OBSC") {
+      apertures.aperture = {least, largest};
+    } else if (least == 0) {
+      apertures.disc = std::max(apertures.disc, largest);
+    } else if (largest > 0) {
+      apertures.obscured_ring = {least, largest};
     }
-    surface.obscured = std::max(surface.obscured, largest);
-    return true;
+  } else {
+    return false;
   }
-  surface.obscured = std::max(surface.obscured, least);
-  if (largest > 0) {
-    surface.semi_diameter = largest;
-    surface.semi_diameter_is_an_edge = surface.has_aperture = true;
-  }
+  apertures.where = line.where;
   return true;
 }
 
-void note_zmx_operand(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+void put_apertures(ZmxApertures const& apertures, PrescribedSurface& surface, std::vector<std::string>& warnings) {
+  auto const warn = [&](std::string const& text) { warnings.push_back(apertures.where + ": " + text); };
+  Vec2d const centre = apertures.centre;
+  double disc = apertures.disc, largest = 0;
+  if (apertures.aperture) {
+    disc = std::max(disc, apertures.aperture->least);
+    largest = apertures.aperture->largest;
+    surface.obscured_without_end = disc > 0 && std::isinf(largest);
+  }
+  if (auto const& ring = apertures.obscured_ring) {
+    if (ring->largest >= surface.semi_diameter) {  // it leaves a circle
+      largest = largest > 0 ? std::min(largest, ring->least) : ring->least;
+    } else {
+      warn("OBSC: an obscuration that is a ring within the surface is not traced; light passes there");
+    }
+  }
+  surface.outline = apertures.outline;
+  surface.outline.centre = centre;
+  bool const off_axis = length(centre) > 0;
+  // a circle off the axis is an ellipse with a centre of its own
+  auto const as_outline = [&](double radius, bool blocks) {
+    if (surface.outline.kind != Outline::Kind::none) {
+      warn("of several decentred apertures on a surface one alone is traced; light passes the other");
+    } else {
+      surface.outline = {Outline::Kind::ellipse, blocks, {radius, radius}, centre};
+    }
+  };
+  if (std::isfinite(largest) && largest > 0) {
+    if (off_axis) {
+      as_outline(largest, false);
+    } else {
+      surface.semi_diameter = largest;
+      surface.semi_diameter_is_an_edge = surface.has_aperture = true;
+    }
+  }
+  if (disc > 0) {
+    if (off_axis) {
+      as_outline(disc, true);
+    } else {
+      surface.obscured = disc;
+    }
+  }
+  bool const edge = surface.semi_diameter_is_an_edge && !surface.has_aperture;
+  if (edge && surface.outline.kind != Outline::Kind::none && !surface.outline.blocks) {
+    surface.semi_diameter_is_an_edge = false;  // the aperture takes its place
+  }
+  double const blocked = off_axis ? 0 : disc;
+  if (edge && blocked > 0 && blocked >= surface.semi_diameter) {
+    surface.semi_diameter_is_an_edge = false;
+    warn(
+        fmt::format("the obscuration is as large as the surface's semi-diameter, {:.6g} mm, which is taken as the "
+                    "disc's own: light passes outside",
+                    surface.semi_diameter / unit::millimetre));
+  }
+}
+
+void ZmxNotes::note(std::string const& key, std::string const& text) {
+  if (keys_.insert(key).second) notes_.push_back(text);
+}
+
+void ZmxNotes::read(PrescriptionLine const& line) {
   std::string const& key = line[0];
-  auto const note = [&](std::string const& what) { warnings.push_back(fmt::format("{}: {}", line.where, what)); };
   static std::set<std::string> const vignetting{"VDXN", "VDYN", "VCXN", "VCYN", "VANN", "VDXD", "VDYD", "VCXD", "VCYD"};
   if (vignetting.contains(key)) {
-    if (any_but_zero(line)) note(key + ": vignetting factors are not used; the edges of the surfaces vignette");
+    if (!line.has_nonzero_number()) return;
+    note("vignetting",
+         fmt::format("{}: {}: vignetting factors are not used; the edges of the surfaces vignette", line.where, key));
   } else if (key == "COAT") {
-    note("COAT: coatings take and give no light here; surfaces pass all of it");
+    note(key, line.where + ": COAT: coatings take and give no light here; surfaces pass all of it");
+  } else if (key == "MNUM") {
+    if (line.size() > 1 && line[1] != "1") {
+      note(key, fmt::format("{}: MNUM: of {} configurations, the one that the surfaces hold is read", line.where,
+                            line[1].substr(0, 40)));
+    }
   } else if (key == "ENVD") {
     // temperature, pressure, whether indices follow them
     if (line.size() > 3 && line[3] != "0" && (line.number(1) != 20 || line.number(2) != 1)) {
-      throw DataError(line.where,
-                      "indices are adjusted to an environment (ENVD; those of the catalogue are traced, at "
-                      "20 degrees and 1 atmosphere); turn the adjustment off");
+      note(key, line.where +
+                    ": ENVD: indices are not adjusted to an environment; those of the catalogue are traced, at 20 "
+                    "degrees and 1 atmosphere");
     }
-  } else if (!is_harmless(key)) {
-    note(fmt::format("operand {} is not known here and was passed over; check that it does not change the lens",
-                     key.substr(0, 40)));
+  } else if (!is_harmless(key) && keys_.insert(key).second) {
+    if (unknown_.empty()) unknown_where_ = line.where;
+    unknown_.push_back(key.substr(0, 40));
   }
+}
+
+std::vector<std::string> ZmxNotes::warnings() const {
+  std::vector<std::string> all = notes_;
+  if (!unknown_.empty()) {
+    bool const one = unknown_.size() == 1;
+    all.push_back(fmt::format("{}: {} {} {} not known here and {} passed over; check that {} not change the lens",
+                              unknown_where_, one ? "operand" : "operands", fmt::join(unknown_, ", "),
+                              one ? "is" : "are", one ? "was" : "were", one ? "it does" : "they do"));
+  }
+  return all;
 }
 
 }  // namespace gladstone

@@ -1,0 +1,177 @@
+#include "render/optics/prescription_readers/zmx_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/even_asphere.h"
+#include "render/optics/radial_asphere.h"
+
+namespace gladstone {
+namespace {
+
+bool is_glass(double nd, double vd) { return nd >= 1 && nd < 5 && vd >= 0; }
+
+/// nd and Vd of a line GLAS, in the fifth and sixth word; Vd of 0 is a glass without dispersion.
+PrescribedMedium model_glass(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+  double const nd = line.number(4), vd = line.size() > 5 ? line.number(5) : 0;
+  if (nd == -1 && vd == 0) {
+    warnings.push_back(line.where + ": GLAS: an index of -1 is taken as a mirror");
+    return {PrescribedMedium::Mirror{}};
+  }
+  if (!is_glass(nd, vd)) {
+    throw DataError(line.where, fmt::format("GLAS: a model glass of nd = {:.6g}, Vd = {:.6g} is none (nd lies "
+                                            "between 1 and 5, Vd above 0); correct it or name a glass",
+                                            nd, vd));
+  }
+  if (line.size() > 6 && line.number(6) != 0) {
+    warnings.push_back(line.where + ": GLAS: the deviation of a model glass' partial dispersion is not used");
+  }
+  if (vd == 0) return {PrescribedMedium::Index{nd}};
+  return {PrescribedMedium::Described{nd, vd}};
+}
+
+/// A glass of a catalogue, with nd and Vd of its line in case that no catalogue has it. 1.5 and 40 stand there where
+/// Zemax has filled in nothing better.
+PrescribedMedium named_glass(PrescriptionLine const& line) {
+  PrescribedMedium::Named named{line[1], std::nullopt};
+  if (line.size() > 5) {
+    PrescriptionLine const values{line.where, {line[0], line[4], line[5]}};
+    double const nd = values.number(1), vd = values.number(2);
+    if (is_glass(nd, vd) && nd > 1 && vd > 0 && !(nd == 1.5 && vd == 40)) named.otherwise = {nd, vd};
+  }
+  return {named};
+}
+
+PrescribedMedium medium_of(PrescriptionLine const& line, std::vector<std::string>& warnings) {
+  if (line.size() < 2) throw DataError(line.where, "GLAS names no glass; the line is cut short");
+  if (line[1] == "MIRROR") return {PrescribedMedium::Mirror{}};
+  bool const blank = line[1] == "___BLANK";
+  if (blank || (line.size() > 4 && line[2] == "1")) return model_glass(line, warnings);
+  if (auto const code = read_glass_code(line[1])) return *code;
+  return named_glass(line);
+}
+
+/// The polynomial of types that count its terms in XDAT 1, normalise r by XDAT 2, and have the first term in XDAT 3.
+PrescribedSurface::RadialTerms extended_terms(ZmxSurface const& zmx, double unit, bool even_powers) {
+  auto const datum = [&](int i) {
+    auto const found = zmx.extra_data.find(i);
+    return found == zmx.extra_data.end() ? 0.0 : found->second;
+  };
+  constexpr int first = 3;
+  PrescribedSurface::RadialTerms radial{1, even_powers, {}};
+  for (auto const& [i, value] : zmx.extra_data) {
+    int const term = i - first;
+    if (term < 0 || term >= datum(1) || value == 0) continue;
+    if (term >= RadialAsphere<double>::terms) {
+      throw DataError(zmx.extra_where, fmt::format("{} has a term {} (XDAT {}; {} terms are traced)", zmx.type,
+                                                   term + 1, i, RadialAsphere<double>::terms));
+    }
+    radial.a.resize(static_cast<std::size_t>(term) + 1);
+    radial.a.back() = value * unit;
+  }
+  if (radial.a.empty()) return radial;
+  radial.scale = datum(2) * unit;
+  if (!(radial.scale > 0)) {
+    throw DataError(zmx.extra_where, fmt::format("{} has a normalising radius of {:.6g} (XDAT 2); give a positive one",
+                                                 zmx.type, datum(2)));
+  }
+  return radial;
+}
+
+}  // namespace
+
+double ZmxSurface::parameter(int i) const {
+  auto const found = parameters.find(i);
+  return found == parameters.end() ? 0.0 : found->second;
+}
+
+void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, std::vector<std::string>& warnings) {
+  PrescribedSurface& surface = zmx.surface;
+  std::string const& key = line[0];
+  if (key == "TYPE") {
+    zmx.type = line.size() > 1 ? line[1] : "";
+    zmx.type_where = line.where;
+  }
+  if (key == "STOP") surface.stop = true;
+  if (key == "CURV") surface.curvature = line.number(1) / unit;
+  if (key == "CONI") surface.conic = line.number(1);
+  if (key == "PARM") zmx.parameters[line.integer(1)] = line.number(2);
+  if (key == "XDAT" && line.size() > 2) {
+    zmx.extra_data[line.integer(1)] = line.number(2);
+    if (line.number(2) != 0 && zmx.extra_where.empty()) zmx.extra_where = line.where;
+  }
+  if (key == "DISZ") {
+    zmx.has_distance = true;
+    surface.thickness = line.number_or_infinity(1) * unit;
+  }
+  if (key == "DIAM" && line.number_or_infinity(1) > 0) {
+    surface.semi_diameter = line.number_or_infinity(1) * unit;
+    surface.semi_diameter_is_an_edge = line.size() > 2 && line.integer(2) != 0;
+  }
+  if (key == "GLAS") {
+    zmx.has_glass = true;
+    surface.after = medium_of(line, warnings);
+  }
+}
+
+PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit, std::vector<std::string>& warnings) {
+  PrescribedSurface surface = zmx.surface;
+  using Shape = PrescribedSurface::Shape;
+  auto const no_extra_data = [&] {
+    if (zmx.extra_where.empty()) return;
+    warnings.push_back(fmt::format("{}: XDAT: extra data of a surface {} are passed over", zmx.extra_where, zmx.type));
+  };
+  if (zmx.type == "STANDARD") {
+    no_extra_data();
+  } else if (zmx.type == "EVENASPH" || zmx.type == "ODDASPHE") {
+    no_extra_data();
+    bool const even = zmx.type == "EVENASPH";
+    constexpr int terms = EvenAsphere<double>::terms;
+    if (even) surface.asphere.assign(terms, 0.0);
+    for (auto const& [i, value] : zmx.parameters) {
+      if (value == 0) continue;
+      if (i < 1 || i > terms) throw DataError(surface.where, fmt::format("{} has no parameter {}", zmx.type, i));
+      if (even) {
+        surface.asphere[static_cast<std::size_t>(i - 1)] = value / std::pow(unit, 2 * i - 1);
+      } else {  // of r^i, r in the file's unit
+        surface.radial.a.resize(static_cast<std::size_t>(i));
+        surface.radial.a.back() = value * unit;
+      }
+    }
+    surface.radial.scale = unit;
+    surface.radial.even_powers = false;
+  } else if (zmx.type == "XASPHERE" || zmx.type == "XOSPHERE") {
+    surface.radial = extended_terms(zmx, unit, zmx.type == "XASPHERE");
+  } else if (zmx.type == "PARAXIAL") {
+    surface.shape = Shape::ideal_lens;
+    surface.focal_length = zmx.parameter(1) * unit;
+    surface.curvature = surface.conic = 0;
+  } else if (zmx.type == "TILTSURF") {
+    surface.shape = Shape::tilted_plane;
+    surface.slope = {zmx.parameter(1), zmx.parameter(2)};
+    surface.curvature = surface.conic = 0;
+  } else {
+    throw DataError(zmx.type_where,
+                    fmt::format("surface {}: type {} is not read (STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, "
+                                "PARAXIAL, TILTSURF and COORDBRK are)",
+                                number, zmx.type));
+  }
+  put_apertures(zmx.apertures, surface, warnings);
+  return surface;
+}
+
+CoordinateBreak break_of(ZmxSurface const& zmx, double unit) {
+  if (!std::isfinite(zmx.surface.thickness)) {
+    throw DataError(zmx.surface.where, "the thickness of a coordinate break (DISZ) is infinite; give it a length");
+  }
+  return {{zmx.parameter(1) * unit, zmx.parameter(2) * unit},
+          Vec3d{zmx.parameter(3), zmx.parameter(4), zmx.parameter(5)} * unit::degree,
+          zmx.parameter(6) != 0,
+          zmx.surface.thickness};
+}
+
+}  // namespace gladstone

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "render/optics/prescription.h"
+#include "render/optics/prescription_readers/lines.h"
+#include "render/optics/prescription_readers/zmx_apertures.h"
+
+namespace gladstone {
+
+/// Block SURF of a .zmx file.
+struct ZmxSurface {
+  PrescribedSurface surface;
+  ZmxApertures apertures;
+  std::string type = "STANDARD", type_where;
+  bool has_glass = false, has_distance = false;
+  std::map<int, double> parameters, extra_data;  ///< PARM and XDAT, in the file's unit
+  std::string extra_where;                       ///< the first XDAT that is not 0
+
+  double parameter(int i) const;
+};
+
+/// Reads a line of the block. @param unit of length [m] @throws DataError
+void read_zmx_surface(PrescriptionLine const& line, double unit, ZmxSurface& zmx, std::vector<std::string>& warnings);
+
+/// The surface in the form of its type: STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, PARAXIAL, TILTSURF.
+/// @param number of the surface in the file, for messages
+/// @throws DataError for another type, by name
+PrescribedSurface shaped_surface(ZmxSurface const& zmx, int number, double unit, std::vector<std::string>& warnings);
+
+/// A block COORDBRK. @throws DataError
+CoordinateBreak break_of(ZmxSurface const& zmx, double unit);
+
+}  // namespace gladstone

@@ -1,0 +1,517 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "render/base/error.h"
+#include "render/base/units.h"
+#include "render/optics/field_analysis.h"
+#include "render/optics/paraxial.h"
+#include "tests/optics/lens_fixtures.h"
+#include "tests/optics/prescription_texts.h"
+
+// One test for every row of the table of .zmx, .seq and .agf files in docs/file-formats.md. The files in
+// tests/cases/lenses have one property each that files of other programs have.
+namespace gladstone {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
+
+std::string case_path(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/lenses/" + name;
+}
+
+Lens lens_at(std::string const& path, GlassCatalogue const& glasses = GlassCatalogue::shipped()) {
+  Prescription prescription = read_prescription(path);
+  double const given = prescription.primary_wavelength;
+  return build_lens(std::move(prescription), glasses, given > 0 ? given : spectral_line::d);
+}
+Lens lens_of_case(std::string const& name, GlassCatalogue const& glasses = GlassCatalogue::shipped()) {
+  return lens_at(case_path(name), glasses);
+}
+Lens lens_of_text(std::string const& name, std::string const& text) { return lens_at(file_of(name, text)); }
+
+double focal_length_mm(Lens const& lens) { return paraxial_lens(lens).effective_focal_length / unit::millimetre; }
+
+/// Focal length by the y-nu trace of Welford (1986), chapter 3: curvatures [1/mm], indices ahead of, between and behind
+/// the surfaces, thicknesses [mm].
+double traced_focal_length(std::vector<double> const& curvatures, std::vector<double> const& indices,
+                           std::vector<double> const& thicknesses) {
+  double y = 1, nu = 0;
+  for (std::size_t i = 0; i < curvatures.size(); ++i) {
+    nu -= y * curvatures[i] * (indices[i + 1] - indices[i]);
+    if (i < thicknesses.size()) y += thicknesses[i] * nu / indices[i + 1];
+  }
+  return -1 / nu;
+}
+
+/// Index of N-BK7 at the d line.
+double bk7() { return GlassCatalogue::shipped().find("N-BK7", spectral_line::d, "").nd(); }
+
+/// The doublet of most files: 75.945005 mm.
+double doublet_focal_length(double crown = 1.62041, double flint = 1.71736) {
+  return traced_focal_length({1 / 62.5, -1 / 44.0, -1 / 128.0}, {1, crown, flint, 1}, {5, 2.2});
+}
+
+/// Sag of the first surface at a height [mm].
+double sag_of_first_surface(Lens const& lens, double height_mm) {
+  return lens.surfaces[0].visit([&](auto const& s) { return s.shape.sag(0.0, height_mm * unit::millimetre); }) /
+         unit::millimetre;
+}
+
+double sphere_sag(double curvature, double r) {
+  return curvature * r * r / (1 + std::sqrt(1 - curvature * curvature * r * r));
+}
+
+/// What becomes of a ray that is parallel to the axis at a place [mm], past a stop that is wide open.
+RayStatus fate(Lens lens, Vec2d place_mm) {
+  auto& stop = lens.surfaces[static_cast<std::size_t>(lens.stop)];
+  stop = stop.visit([](auto opened) -> LensSurface<double> {
+    opened.semi_diameter = HUGE_VAL;
+    return opened;
+  });
+  Ray<double> ray{{place_mm.x * unit::millimetre, place_mm.y * unit::millimetre, -0.1}, {0, 0, 1}};
+  return carry(lens, ray);
+}
+
+TEST(LensFiles, TheDoubletIsThatOfThePublishedFocalLength) { EXPECT_NEAR(doublet_focal_length(), 75.945005, 5e-7); }
+
+TEST(LensFiles, TheLastLineNeedsNoEnd) {
+  Lens const lens = lens_of_case("no_final_newline.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("no_final_newline.zmx:33: the file ends within its line DISZ")));
+}
+
+// An aperture from 7.5 mm to infinity about a pupil of 6 mm would leave no light at all; one from 2 mm on blocks a
+// disc.
+TEST(LensFiles, AnApertureMayHaveNoUpperLimit) {
+  Lens const lens = lens_of_case("clap_inf.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("clap_inf.zmx:12"), HasSubstr("would block all light"))));
+  EXPECT_EQ(fate(lens, {0, 3}), RayStatus::alive);
+  Lens const ring = lens_of_text("ring.zmx", changed(zmx, "  STOP\n", "  STOP\n  CLAP 2 INF 0\n"));
+  EXPECT_EQ(fate(ring, {0, 1}), RayStatus::vignetted);
+  EXPECT_EQ(fate(ring, {0, 2.5}), RayStatus::alive);
+}
+
+TEST(LensFiles, AnUnknownGlassHasNdAndVdInItsLine) {
+  Lens const lens = lens_of_case("glass_by_nd_vd.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("zmx:12"), HasSubstr("MYCROWN"), HasSubstr("1.62041")),
+                                         AllOf(HasSubstr("zmx:19"), HasSubstr("MYFLINT"), HasSubstr("29.5"))));
+}
+
+// 1.5 and 40 are what Zemax writes where it knows nothing: no glass.
+TEST(LensFiles, FilledInIndicesDescribeNoGlass) {
+  EXPECT_THAT(refusal("filled.zmx", changed(zmx, "N-BK7 0 0 1.5 40", "NOGLASS 0 0 1.5 40")),
+              HasSubstr("\"NOGLASS\" is in no catalogue"));
+}
+
+// Six digits: nd - 1 in thousandths, ten times Vd.
+TEST(LensFiles, MilCodesAreGlasses) {
+  double const f = traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {5});
+  EXPECT_NEAR(focal_length_mm(lens_of_case("mil_glass.zmx")), f, 1e-10);
+  EXPECT_NEAR(focal_length_mm(lens_of_text("mil.seq", changed(seq, "NBK7_SCHOTT", "517642"))),
+              traced_focal_length({0.02, -0.02}, {1, 1.517, 1}, {6}), 1e-10);
+}
+
+// GLAS of surface 0 is what the object lies in: power -c2 (1 - n) - ..., 72.011 mm in air behind the lens. The front
+// focal length is measured in water, n times as long.
+TEST(LensFiles, TheObjectMayLieInWater) {
+  double const glass = bk7(), water = 1.333;
+  Lens const lens = lens_of_case("object_in_water.zmx");
+  EXPECT_NEAR(lens.object_index, water, 1e-12);
+  double const f = traced_focal_length({0.02, -0.02}, {water, glass, 1}, {5});
+  EXPECT_NEAR(f, 72.0111, 5e-5);
+  EXPECT_NEAR(focal_length_mm(lens), f, 1e-7);
+  // backwards, from air into water: the other focus is n f from its principal plane
+  double const back = traced_focal_length({0.02, -0.02}, {1, glass, water}, {5});
+  EXPECT_NEAR(back, f, 1e-7);
+  ParaxialLens const paraxial = paraxial_lens(lens);
+  EXPECT_NEAR((paraxial.front_principal_plane - paraxial.front_focal_length) / unit::millimetre, water * f, 1e-7);
+  EXPECT_NEAR((paraxial.back_focal_length - paraxial.rear_principal_plane) / unit::millimetre, f, 1e-7);
+  // a real ray near the axis meets the focus where the paraxial one does: spherical aberration goes with its square
+  Ray<double> ray{{0, 1e-5, -0.01}, {0, 0, 1}};
+  ASSERT_EQ(carry(lens, ray), RayStatus::alive);
+  double const meets = ray.position.z - ray.position.y * ray.direction.z / ray.direction.y;
+  EXPECT_NEAR(meets - lens.poses.back().origin.z, paraxial.back_focal_length, 1e-8);
+}
+
+// A point in water is imaged where n / s + 1 / s' = 1 / f says, from the principal planes.
+TEST(LensFiles, APointInWaterIsImagedByItsReducedDistance) {
+  std::string const near = changed(zmx, "DISZ INFINITY", "DISZ 400.0\n  GLAS ___BLANK 1 0 1.333 0");
+  Lens const lens = lens_of_text("near_in_water.zmx", near);
+  ParaxialLens const paraxial = paraxial_lens(lens);
+  Lens focused = lens;
+  focused.image_distance.reset();
+  double const f = paraxial.effective_focal_length, s = 0.4 + paraxial.front_principal_plane;
+  EXPECT_NEAR(analyse_field(focused, paraxial, 16).image_plane, paraxial.rear_principal_plane + 1 / (1 / f - 1.333 / s),
+              1e-13);
+}
+
+// What lies behind the image bends no ray.
+TEST(LensFiles, TheImageMayHaveGlassBehindIt) {
+  double const glass = bk7();
+  EXPECT_NEAR(focal_length_mm(lens_of_case("glass_behind_the_image.zmx")),
+              traced_focal_length({0.02, -0.02}, {1, glass, 1}, {5}), 1e-7);
+}
+
+// A disc as large as the surface's drawn semi-diameter: light passes outside.
+TEST(LensFiles, AnObscurationMayFillItsSurface) {
+  Lens const lens = lens_of_case("obscuration_fills_its_surface.zmx");
+  EXPECT_EQ(fate(lens, {0, 1.9}), RayStatus::vignetted);
+  EXPECT_EQ(fate(lens, {0, 2.1}), RayStatus::alive);
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:20"), HasSubstr("light passes outside"))));
+  EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({0.02, -0.02}, {1, bk7(), 1}, {5}), 1e-7);
+}
+
+// R = 30 mm, 1.5 mm thick: the faces meet at a height of 6.65 mm, outside the light of 6 mm; their edges are at 12 mm.
+TEST(LensFiles, DrawnEdgesMayOverlapOutsideTheLight) {
+  Lens const lens = lens_of_case("drawn_edges_overlap.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), traced_focal_length({1 / 30.0, -1 / 30.0}, {1, 1.62041, 1}, {1.5}), 1e-10);
+  EXPECT_NEAR(focal_length_mm(lens), 24.411219, 5e-7);
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:19"), HasSubstr("overlap"))));
+}
+
+TEST(LensFiles, ASurfaceMayEndWithinItsSemiDiameter) {
+  Lens const lens = lens_of_text("short.zmx", changed(zmx, "CURV 0.02", "CURV 0.2"));
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("does not reach its semi-diameter")));
+  EXPECT_EQ(fate(lens, {0, 5.5}), RayStatus::missed_lens);
+}
+
+// XASPHERE: the conic and 1.2e-3 (r/10)^4 - 4e-5 (r/10)^6; no term of r^2, so the focal length is the doublet's.
+TEST(LensFiles, ExtendedEvenAspheresAreNormalisedByARadius) {
+  Lens const lens = lens_of_case("extended_even_asphere.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  for (double const r : {1.0, 4.0, 7.5}) {
+    double const u = r / 10;
+    EXPECT_NEAR(sag_of_first_surface(lens, r), sphere_sag(0.016, r) + 1.2e-3 * std::pow(u, 4) - 4e-5 * std::pow(u, 6),
+                1e-15);
+  }
+}
+
+// XOSPHERE: the conic and 1e-3 (r/10)^3 + 2e-3 (r/10)^4.
+TEST(LensFiles, ExtendedOddAspheresAreNormalisedByARadius) {
+  Lens const lens = lens_of_case("extended_odd_asphere.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  for (double const r : {1.0, 4.0, 7.5}) {
+    double const u = r / 10;
+    EXPECT_NEAR(sag_of_first_surface(lens, r), sphere_sag(0.016, r) + 1e-3 * u * u * u + 2e-3 * u * u * u * u, 1e-15);
+  }
+}
+
+// ODDASPHE: the conic and 1e-6 r^3 + 2e-7 r^4. A term of r^2 adds twice itself to the vertex' curvature.
+TEST(LensFiles, OddAspheresAddPowersOfR) {
+  Lens const lens = lens_of_case("odd_asphere.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  for (double const r : {1.0, 4.0, 7.5}) {
+    EXPECT_NEAR(sag_of_first_surface(lens, r), sphere_sag(0.016, r) + 1e-6 * r * r * r + 2e-7 * r * r * r * r, 1e-15);
+  }
+  std::string const model = changed(zmx, "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 1.5 0");
+  std::string const odd = changed(model, "TYPE STANDARD\n  CURV 0.02", "TYPE ODDASPHE\n  PARM 2 0.001\n  CURV 0.02");
+  EXPECT_NEAR(focal_length_mm(lens_of_text("square.zmx", odd)), traced_focal_length({0.022, -0.02}, {1, 1.5, 1}, {6}),
+              1e-10);
+}
+
+// PARAXIAL: every ray of a parallel bundle crosses the axis in the focus, on either side of it.
+TEST(LensFiles, AnIdealLensHasNoAberration) {
+  Lens const lens = lens_of_case("ideal_lens.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), 100, 1e-12);
+  for (double const height : {-5.0, 1.0, 5.9}) {
+    Ray<double> ray = parallel_ray(height);
+    ASSERT_EQ(carry(lens, ray), RayStatus::alive);
+    EXPECT_NEAR(height_behind(lens, ray, 100), 0, 1e-13);
+  }
+  EXPECT_THAT(refusal("flat.zmx", changed(zmx, "TYPE STANDARD\n  CURV 0.02", "TYPE PARAXIAL\n  PARM 1 0\n  CURV 0.02")),
+              HasSubstr("focal length of 0"));
+}
+
+// Behind a mirror, light that runs back is focused as well: a lens of 100 mm, 30 mm behind a flat mirror.
+TEST(LensFiles, AnIdealLensFocusesLightThatRunsBack) {
+  Lens const lens = lens_of_text(
+      "back.zmx",
+      "MODE SEQ\nUNIT MM\nENPD 10\nSURF 0\n  DISZ INFINITY\nSURF 1\n  STOP\n  CURV 0\n  DISZ -30\n  GLAS MIRROR 0 0\n"
+      "SURF 2\n  TYPE PARAXIAL\n  PARM 1 100\n  DISZ -100\nSURF 3\n  DISZ 0\n");
+  EXPECT_NEAR(focal_length_mm(lens), 100, 1e-12);
+  Ray<double> ray = parallel_ray(4);
+  ASSERT_EQ(carry(lens, ray), RayStatus::alive);
+  EXPECT_NEAR(height_behind(lens, ray, -100), 0, 1e-13);
+}
+
+// TILTSURF: a plane z = 0.1 y at the end of glass of 1.5 deviates the axial ray by asin(1.5 sin a) - a, tan a = 0.1;
+// the next surface stands in an untilted frame.
+TEST(LensFiles, ATiltedSurfaceIsAPrism) {
+  Lens const lens = lens_of_case("tilted_surface.zmx");
+  Ray<double> ray = parallel_ray(0);
+  ASSERT_EQ(carry(lens, ray), RayStatus::alive);
+  double const a = std::atan(0.1);
+  EXPECT_NEAR(ray.direction.y, std::sin(std::asin(1.5 * std::sin(a)) - a), 1e-15);
+  EXPECT_EQ(lens.poses.back().z.z, 1);
+  EXPECT_NEAR(focal_length_mm(lens), 200, 1e-11);
+}
+
+// SQAP 6 6: a square of 12 mm; light passes in its corners, and none beside it.
+TEST(LensFiles, RectangularAperturesAreTraced) {
+  Lens const lens = lens_of_case("square_aperture.zmx");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_EQ(fate(lens, {5.5, 5.5}), RayStatus::alive);
+  EXPECT_EQ(fate(lens, {6.1, 0}), RayStatus::vignetted);
+  EXPECT_EQ(fate(lens, {0, -6.1}), RayStatus::vignetted);
+  EXPECT_THAT(lens.prescription.warnings, IsEmpty());
+  auto const by = [](std::string const& operand) {
+    return lens_of_text("outline.zmx", changed(zmx, "  STOP\n", "  STOP\n  " + operand + "\n"));
+  };
+  Lens const blocked = by("SQOB 1 2 0"), ellipse = by("ELAP 2 1 0"), oval = by("ELOB 2 1 0");
+  EXPECT_EQ(fate(blocked, {0.9, 1.9}), RayStatus::vignetted);
+  EXPECT_EQ(fate(blocked, {1.1, 0}), RayStatus::alive);
+  EXPECT_EQ(fate(ellipse, {1.9, 0}), RayStatus::alive);
+  EXPECT_EQ(fate(ellipse, {1.5, 0.8}), RayStatus::vignetted);
+  EXPECT_EQ(fate(oval, {1.9, 0}), RayStatus::vignetted);
+  EXPECT_EQ(fate(oval, {1.5, 0.8}), RayStatus::alive);
+  Lens const codev = lens_of_text("outline.seq", changed(seq, "CIR 8.0", "REX 2; REY 1; ADY 0.5"));
+  EXPECT_EQ(fate(codev, {1.9, 1.4}), RayStatus::alive);
+  EXPECT_EQ(fate(codev, {0, -0.6}), RayStatus::vignetted);
+}
+
+// A circle of 3 mm about (2, 0); the spider across it is passed over.
+TEST(LensFiles, DecentredAperturesAreTracedAndSpidersPassedOver) {
+  Lens const lens = lens_of_case("decentred_apertures.zmx");
+  EXPECT_EQ(fate(lens, {4.9, 0}), RayStatus::alive);
+  EXPECT_EQ(fate(lens, {-1.1, 0}), RayStatus::vignetted);
+  EXPECT_EQ(fate(lens, {2, 2.9}), RayStatus::alive);
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("zmx:18"), HasSubstr("SPID"))));
+}
+
+TEST(LensFiles, WithoutAStopTheFirstSurfaceIsIt) {
+  Lens const codev = lens_of_case("no_stop_named.seq");
+  EXPECT_NEAR(focal_length_mm(codev), doublet_focal_length(), 1e-10);
+  EXPECT_EQ(codev.stop, 0);
+  EXPECT_THAT(codev.warnings, Contains(AllOf(HasSubstr("no_stop_named.seq:8"), HasSubstr("names no stop"))));
+  Lens const zemax = lens_of_text("no_stop.zmx", changed(zmx, "  STOP\n", ""));
+  EXPECT_EQ(zemax.stop, 0);
+  EXPECT_THAT(zemax.warnings, Contains(AllOf(HasSubstr("no_stop.zmx:15"), HasSubstr("names no stop"))));
+}
+
+TEST(LensFiles, WithoutAnApertureTheStopsSemiDiameterIsIt) {
+  Lens const lens = lens_of_text("open.zmx", changed(zmx, "ENPD 6.0\n", ""));
+  EXPECT_NEAR(paraxial_lens(lens).entrance.diameter, 16e-3, 1e-15);
+  EXPECT_THAT(lens.warnings, Contains(HasSubstr("sets no aperture")));
+}
+
+TEST(LensFiles, CodeVMayBeWrittenInLowerCase) {
+  Lens const lens = lens_of_case("lower_case.seq");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_TRUE(std::isinf(lens.prescription.object_distance));
+}
+
+// PRV: at a wavelength of the table its index, between them Cauchy's polynomial in 1/lambda^2 through the three.
+TEST(LensFiles, PrivateGlassesAreInterpolated) {
+  Lens const lens = lens_of_case("private_glass.seq");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_NEAR(focal_length_mm(lens), 75.945, 5e-4);
+  Prescription const read = read_prescription(case_path("private_glass.seq"));
+  Glass const& glass = std::get<PrescribedMedium::Private>(read.surfaces[0].after.is).glass;
+  EXPECT_NEAR(glass.index(486.1327e-9), 1.62757, 1e-15);
+  auto const x = [](double micrometres) { return 1 / (micrometres * micrometres); };
+  double const at = x(0.55), a = x(0.6563), b = x(0.5875618), c = x(0.4861327);
+  double const expected = 1.61727 * (at - b) * (at - c) / ((a - b) * (a - c)) +
+                          1.62041 * (at - a) * (at - c) / ((b - a) * (b - c)) +
+                          1.62757 * (at - a) * (at - b) / ((c - a) * (c - b));
+  EXPECT_NEAR(glass.index(550e-9), expected, 1e-14);
+  EXPECT_THAT(refusal("far.seq", changed(changed(seq, "SO 0.0", "PRV\nPWL 700 600\n'own' 1.5 1.51\nEND\nSO 0.0"),
+                                         "NBK7_SCHOTT", "'own'")),
+              AllOf(HasSubstr("given from 600 to 700 nm, not at 587.6 nm")));
+  // Laurent's series is Schott's formula: n^2 = 2.25 everywhere
+  Lens const laurent = lens_of_text(
+      "laurent.seq", changed(changed(seq, "SO 0.0", "prv\n'own' LAU 2.25 0 0\nend\nSO 0.0"), "NBK7_SCHOTT", "'own'"));
+  EXPECT_NEAR(focal_length_mm(laurent), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
+}
+
+// CUF 0, terms up to J that are 0, and one of r^4: 1e-7 r^4 [mm].
+TEST(LensFiles, CodeVsAsphericTermsGoToJ) {
+  Lens const lens = lens_of_case("aspheric_terms.seq");
+  EXPECT_NEAR(focal_length_mm(lens), doublet_focal_length(), 1e-10);
+  EXPECT_NEAR(sag_of_first_surface(lens, 5), sphere_sag(0.016, 5) + 1e-7 * 625, 1e-15);
+  Lens const high = lens_of_text("high.seq", changed(seq, "STO;", "STO; J 1e-20; A 1e-7;"));
+  EXPECT_NEAR(sag_of_first_surface(high, 5), sphere_sag(0.02, 5) + 1e-7 * 625 + 1e-20 * std::pow(5, 20), 1e-15);
+  EXPECT_THAT(refusal("cuf.seq", changed(seq, "STO;", "STO; CUF 0.1;")),
+              AllOf(HasSubstr("cuf.seq:9"), HasSubstr("CUF")));
+}
+
+// DAR: the surface at 12 mm is shifted by 1 mm and tilted by 30 degrees, the next one stands on the axis at 32 mm. BEN:
+// a mirror at 45 degrees turns light and axis by 90. REV: what follows is turned back by 90 degrees.
+TEST(LensFiles, CodeVsDecentresReturnBendAndReverse) {
+  Lens const lens = lens_of_case("decentres.seq");
+  auto const expect_place = [&](std::size_t i, Vec3d place_mm, Vec3d axis) {
+    EXPECT_LT(length(lens.poses[i].origin - unit::millimetre * place_mm), 1e-15) << i;
+    EXPECT_LT(length(lens.poses[i].z - axis), 1e-15) << i;
+  };
+  double const half = std::sqrt(0.5);
+  expect_place(2, {0, 1, 12}, {0, 0.5, std::sqrt(0.75)});
+  expect_place(3, {0, 0, 32}, {0, half, half});
+  expect_place(4, {0, -20, 32}, {0, 1, 0});
+  expect_place(5, {0, -20, 32}, {0, 0, 1});
+  ASSERT_TRUE(lens.image_distance);
+  EXPECT_NEAR(*lens.image_distance, -30e-3, 1e-16);
+  EXPECT_NEAR(focal_length_mm(lens), 200, 1e-10);
+  Ray<double> ray = parallel_ray(0);
+  ASSERT_EQ(carry(lens, ray), RayStatus::alive);
+  EXPECT_LT(length(ray.direction - Vec3d{0, -1, 0}), 1e-15);
+}
+
+// ZDE shifts along the axis, and DAR takes that back as well.
+TEST(LensFiles, CodeVsShiftAlongTheAxisIsADistance) {
+  std::string const text = changed(seq, "SI 0.0", "S 0 10\n ZDE 2\nS 0 10\n ZDE 2; DAR\nS 0 5\nSI 0.0");
+  Lens const lens = lens_of_text("zde.seq", text);
+  EXPECT_NEAR(lens.poses[2].origin.z, 55e-3, 1e-15);
+  EXPECT_NEAR(lens.poses[3].origin.z, 67e-3, 1e-15);
+  EXPECT_NEAR(lens.poses[4].origin.z, 75e-3, 1e-15);
+}
+
+// Without RDM numbers are curvatures, CODE V's default; those of this triplet would be spheres of 0.05 mm about a pupil
+// of 10 mm, and are radii. 50.33 mm is what a program computes that reads radii.
+TEST(LensFiles, WithoutRdmNumbersAreCurvaturesUnlessTheyCannotBe) {
+  Lens const lens = lens_of_case("without_rdm.seq");
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("without_rdm.seq:7"), HasSubstr("no RDM"))));
+  auto const index = [](char const* name) {
+    return GlassCatalogue::shipped().find(name, 587.6e-9, "").index(587.6e-9);
+  };
+  double const crown = index("N-SK16"), flint = index("F2");
+  double const f =
+      traced_focal_length({1 / 22.01359, -1 / 435.7602, -1 / 22.21328, 1 / 20.29192, 1 / 79.68360, -1 / 18.39533},
+                          {1, crown, 1, flint, 1, crown, 1}, {3.795568, 6, 2, 4.750246, 2.720573});
+  EXPECT_NEAR(f, 50.33, 5e-3);
+  EXPECT_NEAR(focal_length_mm(lens), f, 1e-10);
+  std::string const curvatures =
+      changed(changed(changed(seq, "RDM;LEN", "LEN"), "S 50.0", "S 0.02"), "S -50.0", "S -0.02");
+  Lens const plain = lens_of_text("curvatures.seq", curvatures);
+  EXPECT_NEAR(focal_length_mm(plain), focal_length_mm(lens_of_text("radii.seq", seq)), 1e-10);
+  EXPECT_THAT(plain.warnings, Not(Contains(HasSubstr("RDM"))));
+}
+
+TEST(LensFiles, CodeVCommandsThatChangeTheSurfaceAreRefusedAndOthersNoted) {
+  for (char const* const command : {"GRT", "DIF DOE", "HOE", "SPS XYP", "YTO", "RET S1", "NSS"}) {
+    EXPECT_THAT(
+        refusal("refused.seq", changed(seq, "STO;", std::string("STO; ") + command + ";")),
+        AllOf(HasSubstr("refused.seq:9"), HasSubstr(std::string(command).substr(0, 3)), HasSubstr("is not read")))
+        << command;
+  }
+  Lens const lens = lens_of_text("noted.seq", changed(seq, "STO;", "STO; QQQ 1; WWW; QQQ 2;"));
+  EXPECT_THAT(lens.warnings, Contains(AllOf(HasSubstr("noted.seq:9"), HasSubstr("QQQ, WWW"))));
+  Lens const hole = lens_of_text("hole.seq", changed(seq, "CIR 8.0", "CIR 8.0; CIR HOL L'A' 2.0"));
+  EXPECT_EQ(fate(hole, {0, 1.9}), RayStatus::vignetted);
+  EXPECT_EQ(fate(hole, {0, 2.1}), RayStatus::alive);
+  EXPECT_THAT(hole.warnings, Contains(HasSubstr("HOL")));
+}
+
+TEST(LensFiles, GratingsAndOtherSurfacesAreRefusedByName) {
+  for (char const* const type : {"DGRATING", "GRINSUR1", "BIREFRIN", "NONSEQCO", "BINARY_2", "TOROIDAL", "FZERNSAG"}) {
+    EXPECT_THAT(refusal("type.zmx",
+                        changed(zmx, "TYPE STANDARD\n  CURV -0.02", std::string("TYPE ") + type + "\n  CURV -0.02")),
+                AllOf(HasSubstr("type.zmx:23"), HasSubstr(type), HasSubstr("is not read")))
+        << type;
+  }
+}
+
+// Two makers have a glass of one name: the one that the file names, else the first of the documented order.
+TEST(LensFiles, TheFilesCatalogueIsThatOfAGlassOfSeveral) {
+  GlassCatalogue glasses;
+  glasses.add("NM SF1 1 0 1.5 60\nCD 2.25\nLD 0.3 2\n", "OHARA", "ohara.agf");
+  glasses.add("NM SF1 1 0 1.71736 29.5\nCD 2.9493254\nLD 0.3 2\n", "SCHOTT_2020", "schott_2020.agf");
+  double const schott = traced_focal_length({0.02, -0.02}, {1, std::sqrt(2.9493254), 1}, {5});
+  Lens const named = lens_of_case("glass_in_two_catalogues.zmx", glasses);
+  EXPECT_NEAR(focal_length_mm(named), schott, 1e-10);
+  EXPECT_THAT(named.warnings, IsEmpty());
+  Prescription other = read_prescription(case_path("glass_in_two_catalogues.zmx"));
+  other.catalogues = {"OHARA"};
+  EXPECT_NEAR(focal_length_mm(build_lens(other, glasses, spectral_line::d)),
+              traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {5}), 1e-10);
+  other.catalogues.clear();
+  Lens const assumed = build_lens(other, glasses, spectral_line::d);
+  EXPECT_NEAR(focal_length_mm(assumed), schott, 1e-10);
+  EXPECT_THAT(assumed.warnings, ElementsAre(AllOf(HasSubstr("zmx:13"), HasSubstr("OHARA:SF1"), HasSubstr("is taken"))));
+}
+
+// One usable glass, one of an index below 1, one without a range of wavelengths.
+TEST(LensFiles, AnOddGlassLeavesItsCatalogueUsable) {
+  GlassCatalogue glasses;
+  glasses.add_file(case_path("good_and_odd_glass.agf"));
+  ASSERT_EQ(glasses.glasses().size(), 1u);
+  EXPECT_NEAR(glasses.find("GOODCROWN", spectral_line::d, "").nd(), std::sqrt(2.5571), 1e-15);
+  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("good_and_odd_glass.agf:5: 2 of 3 glasses"),
+                                                    HasSubstr("ODDGLASS (line 5"), HasSubstr("NORANGE (line 8"))));
+  EXPECT_THAT(
+      [&] {
+        try {
+          glasses.find("NORANGE", spectral_line::d, "lens:1");
+        } catch (DataError const& error) {
+          return std::string(error.what());
+        }
+        return std::string();
+      }(),
+      AllOf(HasSubstr("cannot be used"), HasSubstr("good_and_odd_glass.agf:8")));
+}
+
+// Coefficients that go on in the next line are the same glass, nd 2.00069, and so the same lens.
+TEST(LensFiles, WrappedLinesOfACatalogueAreJoined) {
+  GlassCatalogue wrapped, whole;
+  wrapped.add_file(case_path("wrapped_lines.agf"));
+  whole.add_file(case_path("whole_lines.agf"));
+  EXPECT_NEAR(wrapped.find("J-LASFH17", spectral_line::d, "").nd(), 2.00069, 5e-6);
+  Lens const lens = lens_of_case("glass_of_wrapped_lines.zmx", wrapped);
+  EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_case("glass_of_wrapped_lines.zmx", whole)));
+  EXPECT_THAT(lens.warnings, IsEmpty());
+}
+
+// Of n^2 = 2.25 the catalogue prints nd = 1.6: warned of where it is used; 1 and 0 are no values, and lines IT that are
+// none are passed over.
+TEST(LensFiles, ACatalogueThatContradictsItselfIsWarnedOf) {
+  GlassCatalogue glasses;
+  glasses.add("NM X 1 0 1.6 50\nCD 2.25\nLD 0.3 2\nIT 0.4 0.9 0\nIT 0.5 0.99 10\nNM Y 1 0 1 0\nCD 2.25\nLD 0.3 2\n",
+              "OWN", "own.agf");
+  GlassMatch const x = glasses.match("X", spectral_line::d, "lens:1");
+  EXPECT_THAT(x.notes, ElementsAre(AllOf(HasSubstr("lens:1"), HasSubstr("1.500000"), HasSubstr("1.600000"))));
+  EXPECT_EQ(x.glass->transmission.size(), 1u);
+  EXPECT_THAT(glasses.match("Y", spectral_line::d, "lens:1").notes, IsEmpty());
+  EXPECT_THAT(glasses.warnings(), ElementsAre(AllOf(HasSubstr("own.agf:4"), HasSubstr("IT"))));
+}
+
+// SCHOTT's glass without lead has the index of the one that it followed: 1.5168 both.
+TEST(LensFiles, AnOlderGlassIsItsSuccessor) {
+  Lens const lens = lens_of_text("bk7.zmx", changed(zmx, "GLAS N-BK7", "GLAS BK7"));
+  EXPECT_EQ(focal_length_mm(lens), focal_length_mm(lens_of_text("nbk7.zmx", zmx)));
+  EXPECT_THAT(lens.warnings, ElementsAre(AllOf(HasSubstr("bk7.zmx:15"), HasSubstr("N-BK7"))));
+}
+
+// A file of the lens' surfaces alone, without object and image: the singlet. An index of -1 is a mirror: R = 50 mm,
+// f = R / 2.
+TEST(LensFiles, OtherProgramsLeaveOutTheObjectOrWriteMirrorsAsIndices) {
+  Lens const bare = lens_of_text("bare.zmx",
+                                 "MODE SEQ\nUNIT MM\nSURF 1\n  CURV 0.02\n  DISZ 6\n  DIAM 8\n  GLAS ___BLANK 1 0 1.5\n"
+                                 "SURF 2\n  CURV -0.02\n  DISZ 47\n  DIAM 8\n");
+  EXPECT_NEAR(focal_length_mm(bare), traced_focal_length({0.02, -0.02}, {1, 1.5, 1}, {6}), 1e-10);
+  EXPECT_THAT(bare.warnings, Contains(AllOf(HasSubstr("bare.zmx:3"), HasSubstr("taken at infinity"))));
+  std::string const reflecting =
+      changed(changed(zmx, "DISZ 6.0", "DISZ -6.0"), "GLAS N-BK7 0 0 1.5 40", "GLAS ___BLANK 1 0 -1 0");
+  Lens const mirror = lens_of_text("mirror.zmx", changed(reflecting, "CURV -0.02", "CURV 0"));
+  EXPECT_NEAR(std::abs(focal_length_mm(mirror)), 25, 1e-12);
+  EXPECT_THAT(mirror.warnings, Contains(AllOf(HasSubstr("mirror.zmx:20"), HasSubstr("taken as a mirror"))));
+}
+
+TEST(LensFiles, ConfigurationsEnvironmentAndCurvedImagesAreNotedOnce) {
+  std::string const text =
+      changed(changed(zmx, "PWAV 2", "PWAV 2\nMNUM 3 1\nENVD 40 1 1"), "SURF 3\n", "SURF 3\n  CURV 0.01\n");
+  EXPECT_THAT(lens_of_text("noted.zmx", text).warnings,
+              IsSupersetOf({HasSubstr("3 configurations"), HasSubstr("ENVD"), HasSubstr("image is curved")}));
+}
+
+}  // namespace
+}  // namespace gladstone
