@@ -119,6 +119,8 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
              "detected minus fitted, pinhole", "dot, (column, row)");
   file.write("/dots/soloff_residual_px", flat(calibration.soloff.residual_px), {count, 2}, "px",
              "detected minus fitted, polynomial", "dot, (column, row)");
+  file.attribute("/dots", "drift_x", calibration.drift.x);
+  file.attribute("/dots", "drift_y", calibration.drift.y);
   file.close();
 }
 
