@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "analysis/calibration/dot_regions.h"
 #include "analysis/calibration/illumination.h"
@@ -11,35 +12,47 @@
 namespace gladstone {
 namespace {
 
-constexpr double smoothing_px = 0.8;  // of what is searched for bright or dark dots
-constexpr double rounding = 0.5;      // noise that whole grey levels may hide
-constexpr int ring_px = 5;            // width of the background's ring
-constexpr int least_ring = 24;        // pixels of it, for a plane
-constexpr int reach_px = 4;           // that what is no dot reaches beyond its region
+constexpr double rounding = 0.5;  // noise that whole grey levels may hide
+constexpr int ring_px = 5;        // width of the background's ring
+constexpr int least_ring = 24;    // pixels of it, for a plane
+constexpr int reach_px = 4;       // that what is no dot reaches beyond its region
 
 enum class Dots { bright, dark };
 
 /// A picture with what its dots stand out from.
 struct LitPicture {
-  cv::Mat raw, background;
+  Image<double> const& raw;
+  Image<double> background;
+  Image<double> over_background;  ///< dots bright
   Dots dots = Dots::bright;
   double noise = 0;
-
-  cv::Mat over_background() const {
-    return dots == Dots::bright ? cv::Mat(raw - background) : cv::Mat(background - raw);
-  }
 };
 
+cv::Mat matrix_of(Image<double> const& image) {
+  return {image.rows(), image.columns(), CV_64F, const_cast<double*>(image.data())};
+}
+
+double median_size(Image<double> const& levels) {
+  std::vector<double> sizes;
+  for (double const level : levels) sizes.push_back(std::abs(level));
+  auto const middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
+}
+
 LitPicture lit_picture(Image<double> const& picture) {
-  LitPicture lit;
-  lit.raw = cv::Mat(picture.rows(), picture.columns(), CV_64F, const_cast<double*>(picture.data()));
-  lit.background = estimate_background(lit.raw);
+  LitPicture lit{picture, estimate_background(picture), picture};
+  Image<double>& over = lit.over_background;
+  for (std::size_t i = 0; i < over.size(); ++i) over.data()[i] -= lit.background.data()[i];
   cv::Mat smooth;
-  cv::GaussianBlur(lit.raw - lit.background, smooth, {}, smoothing_px);
+  cv::GaussianBlur(matrix_of(over), smooth, {}, dot_smoothing_px);
   double low = 0, high = 0;
   cv::minMaxLoc(smooth, &low, &high);
   lit.dots = high >= -low ? Dots::bright : Dots::dark;
-  lit.noise = 1.4826 * median_level(cv::abs(lit.raw - lit.background));  // of normal noise
+  if (lit.dots == Dots::dark) {
+    for (double& level : over) level = -level;
+  }
+  lit.noise = 1.4826 * median_size(over);  // of normal noise
   // of which rounding to whole levels may leave nothing to see
   if (std::all_of(picture.begin(), picture.end(), [](double level) { return level == std::floor(level); })) {
     lit.noise = std::max(lit.noise, rounding);
@@ -48,9 +61,10 @@ LitPicture lit_picture(Image<double> const& picture) {
 }
 
 /// Pixels that no window and nothing else reaches.
-cv::Mat background_pixels(DotRegions const& regions) {
+cv::Mat background_pixels(DotRegions& regions) {
+  Image<unsigned char>& others = regions.not_dots;
   cv::Mat reached;
-  cv::dilate(regions.not_dots, reached,
+  cv::dilate(cv::Mat(others.rows(), others.columns(), CV_8U, others.data()), reached,
              cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * reach_px + 1, 2 * reach_px + 1}));
   cv::Mat free = reached == 0;
   for (DotRegion const& dot : regions.dots) {
@@ -62,19 +76,19 @@ cv::Mat background_pixels(DotRegions const& regions) {
 
 /// A grey level that changes linearly about a place.
 struct LevelPlane {
-  cv::Point2d about;
+  Vec2d about{};
   double level = 0;
-  cv::Point2d slope{0, 0};
+  Vec2d slope{};
 
-  double at(double column, double row) const { return level + slope.dot({column - about.x, row - about.y}); }
+  double at(double column, double row) const { return level + dot(slope, Vec2d{column - about.x, row - about.y}); }
 };
 
 /// The estimated background about a dot, moved to the mean of the free pixels.
-LevelPlane estimated_plane(LitPicture const& lit, double mean_error, cv::Point2d about) {
-  cv::Mat const& ground = lit.background;
-  int const column = std::clamp(cvRound(about.x), 1, ground.cols - 2);
-  int const row = std::clamp(cvRound(about.y), 1, ground.rows - 2);
-  auto const level = [&](int x, int y) { return ground.at<double>(y, x); };
+LevelPlane estimated_plane(LitPicture const& lit, double mean_error, Vec2d about) {
+  Image<double> const& ground = lit.background;
+  int const column = std::clamp(cvRound(about.x), 1, ground.columns() - 2);
+  int const row = std::clamp(cvRound(about.y), 1, ground.rows() - 2);
+  auto const level = [&](int x, int y) { return ground(x, y); };
   LevelPlane plane{{static_cast<double>(column), static_cast<double>(row)}, level(column, row) + mean_error};
   plane.slope = {0.5 * (level(column + 1, row) - level(column - 1, row)),
                  0.5 * (level(column, row + 1) - level(column, row - 1))};
@@ -95,7 +109,7 @@ LevelPlane background_plane(LitPicture const& lit, cv::Mat const& free, double m
       if (free.at<unsigned char>(row, column) == 0) continue;
       Eigen::Vector3d const term(1, column - dot.centre.x, row - dot.centre.y);
       normal += term * term.transpose();
-      sum += lit.raw.at<double>(row, column) * term;
+      sum += lit.raw(column, row) * term;
     }
   }
   double const count = normal(0, 0);
@@ -108,19 +122,19 @@ LevelPlane background_plane(LitPicture const& lit, cv::Mat const& free, double m
 
 /// The centroid over the background in the dot's window, moved to where it is. @return false where the window does not
 /// lie in the picture
-bool measure(LitPicture const& lit, LevelPlane const& background, DotRegion const& region, DetectedDot& dot) {
-  cv::Point2d centre = region.centre;
+bool measure(LitPicture const& lit, LevelPlane const& background, DotRegion const& region, DetectedDot& measured) {
+  Vec2d centre = region.centre;
   for (int round = 0; round < 10; ++round) {
     int const left = cvCeil(centre.x - region.window), right = cvFloor(centre.x + region.window);
     int const top = cvCeil(centre.y - region.window), low = cvFloor(centre.y + region.window);
-    if (left < 0 || top < 0 || right >= lit.raw.cols || low >= lit.raw.rows) return false;
+    if (left < 0 || top < 0 || right >= lit.raw.columns() || low >= lit.raw.rows()) return false;
     double weight = 0;
-    cv::Point2d moment(0, 0);
+    Vec2d moment{};
     for (int row = top; row <= low; ++row) {
       for (int column = left; column <= right; ++column) {
-        cv::Point2d const at(column - centre.x, row - centre.y);
-        if (at.dot(at) > region.window * region.window) continue;
-        double const ground = background.at(column, row), raw = lit.raw.at<double>(row, column);
+        Vec2d const at{column - centre.x, row - centre.y};
+        if (dot(at, at) > region.window * region.window) continue;
+        double const ground = background.at(column, row), raw = lit.raw(column, row);
         double level = raw - ground;
         if (lit.dots == Dots::dark)
           level = ground > 0 && background.level > 0 ? -level * background.level / ground : -level;
@@ -129,11 +143,11 @@ bool measure(LitPicture const& lit, LevelPlane const& background, DotRegion cons
       }
     }
     if (!(weight > 0)) return false;
-    cv::Point2d const step = moment / weight;
-    if (!(step.dot(step) < region.window * region.window)) return false;
+    Vec2d const step = moment / weight;
+    if (!(dot(step, step) < region.window * region.window)) return false;
     centre += step;
-    dot = {{centre.x, centre.y}, weight, 2 * region.radius};
-    if (step.dot(step) < 1e-12) break;
+    measured = {centre, weight, 2 * region.radius};
+    if (dot(step, step) < 1e-12) break;
   }
   return true;
 }
@@ -144,11 +158,11 @@ DetectedDots detect_dots(Image<double> const& picture) {
   DetectedDots found;
   if (picture.columns() < 3 || picture.rows() < 3) return found;
   LitPicture const lit = lit_picture(picture);
-  cv::Mat const levels = lit.over_background();
-  DotRegions const regions = find_dot_regions(levels, lit.noise);
-  for (cv::Point2d const& other : regions.others) found.not_dots.push_back({other.x, other.y});
+  DotRegions regions = find_dot_regions(lit.over_background, lit.noise);
+  found.not_dots = regions.others;
   cv::Mat const free = background_pixels(regions);
-  double const mean_error = cv::mean(lit.raw - lit.background, free)[0];
+  double const mean_over = cv::mean(matrix_of(lit.over_background), free)[0];
+  double const mean_error = lit.dots == Dots::bright ? mean_over : -mean_over;
   for (DotRegion const& region : regions.dots) {
     DetectedDot dot;
     if (measure(lit, background_plane(lit, free, mean_error, region), region, dot)) found.dots.push_back(dot);

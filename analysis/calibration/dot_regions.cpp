@@ -4,14 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
-#include <optional>
+#include <utility>
 
 namespace gladstone {
 namespace {
 
 constexpr double least_contrast = 8;      // of the dots' height over the noise
 constexpr double threshold_share = 0.25;  // of the dots' height
-constexpr double smoothing_px = 0.8;      // of what the threshold is laid on, not of what is measured
 constexpr double least_area = 5;          // [px]
 constexpr double blur_px = 4;             // that a dot's light reaches beyond the threshold
 constexpr double area_factor = 3;         // by which perspective and blur may change areas
@@ -20,7 +19,7 @@ constexpr double least_fill = 0.9;        // of a region's area in the ellipse o
 
 /// Size and shape of a region at half its height.
 struct Shape {
-  cv::Point2d centre;
+  Vec2d centre;
   double area, fill, axes;
 };
 
@@ -117,8 +116,8 @@ void choose_windows(std::vector<DotRegion>& dots) {
     double nearest2 = std::numeric_limits<double>::infinity();
     for (DotRegion const& other : dots) {
       if (&other == &dot) continue;
-      cv::Point2d const apart = other.centre - dot.centre;
-      nearest2 = std::min(nearest2, apart.dot(apart));
+      Vec2d const apart = other.centre - dot.centre;
+      nearest2 = std::min(nearest2, gladstone::dot(apart, apart));
     }
     dot.window = std::min(1.5 * dot.radius + blur_px, 0.5 * std::sqrt(nearest2));
   }
@@ -126,11 +125,12 @@ void choose_windows(std::vector<DotRegion>& dots) {
 
 }  // namespace
 
-DotRegions find_dot_regions(cv::Mat const& levels, double noise) {
+DotRegions find_dot_regions(Image<double> const& levels, double noise) {
   DotRegions found;
-  found.not_dots = cv::Mat::zeros(levels.size(), CV_8U);
+  found.not_dots = Image<unsigned char>(levels.columns(), levels.rows());
   cv::Mat smooth;
-  cv::GaussianBlur(levels, smooth, {}, smoothing_px);
+  cv::GaussianBlur(cv::Mat(levels.rows(), levels.columns(), CV_64F, const_cast<double*>(levels.data())), smooth, {},
+                   dot_smoothing_px);
   double const threshold = threshold_share * usual_height(smooth, noise);
   if (!(threshold > 0)) return found;
   Labels const regions = label_regions(smooth > threshold);
@@ -139,7 +139,7 @@ DotRegions find_dot_regions(cv::Mat const& levels, double noise) {
   std::vector<bool> is_dot(static_cast<std::size_t>(regions.count));
   for (int label = 1; label < regions.count; ++label) {
     cv::Rect const box = regions.box(label);
-    bool const inside = box.x > 0 && box.y > 0 && box.br().x < levels.cols && box.br().y < levels.rows;
+    bool const inside = box.x > 0 && box.y > 0 && box.br().x < levels.columns() && box.br().y < levels.rows();
     if (regions.area(label) < least_area || !inside) continue;
     shapes.push_back(shape_of(smooth, regions, label, threshold));
     label_of.push_back(label);
@@ -155,10 +155,10 @@ DotRegions find_dot_regions(cv::Mat const& levels, double noise) {
     }
   }
   choose_windows(found.dots);
-  for (int row = 0; row < levels.rows; ++row) {
-    for (int column = 0; column < levels.cols; ++column) {
+  for (int row = 0; row < levels.rows(); ++row) {
+    for (int column = 0; column < levels.columns(); ++column) {
       int const label = regions.labels.at<int>(row, column);
-      if (label > 0 && !is_dot[static_cast<std::size_t>(label)]) found.not_dots.at<unsigned char>(row, column) = 255;
+      if (label > 0 && !is_dot[static_cast<std::size_t>(label)]) found.not_dots(column, row) = 255;
     }
   }
   return found;

@@ -9,12 +9,13 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_gain = 5;        // by which another placement has to fit better
-constexpr std::size_t most_planes = 6;  // whose orders are tried
-constexpr int most_moved = 2;           // columns and rows
-constexpr double whole_spacing = 0.15;  // by which a drift may miss whole spacings
-constexpr double largest_drift = 0.8;   // sine of the angle
-constexpr double precision_px = 1;      // of the principal point
+constexpr double least_gain = 5;         // by which another placement has to fit better
+constexpr std::size_t most_planes = 6;   // whose orders are tried
+constexpr int most_moved = 2;            // columns and rows
+constexpr double rounding_share = 1e-3;  // of the given residual, below which residuals are as good as none
+constexpr double whole_spacing = 0.15;   // by which a drift may miss whole spacings
+constexpr double largest_drift = 0.8;    // sine of the angle
+constexpr double precision_px = 1;       // of the principal point
 
 bool in_front(PinholeCamera const& camera) { return camera.value.back() > 0; }
 
@@ -98,7 +99,8 @@ std::optional<PlatePlacement> find_moved_middle(PlateDots const& dots, Vec2d pri
   if (candidates.empty()) return std::nullopt;
   auto const by_residual = [](Candidate const& a, Candidate const& b) { return a.residual_px < b.residual_px; };
   double const least = std::min_element(candidates.begin(), candidates.end(), by_residual)->residual_px;
-  std::erase_if(candidates, [least](Candidate const& candidate) { return candidate.residual_px > 2 * least; });
+  double const as_good = std::max(2 * least, rounding_share * given);
+  std::erase_if(candidates, [as_good](Candidate const& candidate) { return candidate.residual_px > as_good; });
   auto const off = [&](Candidate const& candidate) {
     return length(principal_point(dots, candidate.placement) - principal_point_px);
   };

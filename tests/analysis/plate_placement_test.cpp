@@ -12,12 +12,13 @@
 namespace gladstone {
 namespace {
 
-constexpr double focal_length = 7059, distance = 0.6;
-constexpr Vec2d middle{319.5, 239.5};
+constexpr double long_focal_length = 7059, plate_distance = 0.6;
+constexpr Vec2d picture_middle{319.5, 239.5};
 
 /// A long lens that looks along the direction of motion.
 PinholeCamera long_camera() {
-  return {{focal_length, focal_length, middle.x, middle.y, 0, 0, 0, 0, pi, 0, 0, 0, 0, distance}};
+  return {{long_focal_length, long_focal_length, picture_middle.x, picture_middle.y, 0, 0, 0, 0, pi, 0, 0, 0, 0,
+           plate_distance}};
 }
 
 /// 13 x 9 dots 4 mm apart on three planes, of a plate that is turned about Y and X against the direction of motion.
@@ -47,22 +48,22 @@ PlateDots dots_of_plate(double about_y, double about_x, std::array<int, 3> moved
 TEST(PlatePlacement, TheDriftOfATiltedPlateIsFound) {
   double const a = 5 * pi / 180, b = -3 * pi / 180;
   PlateDots const dots = dots_of_plate(a, b);
-  PinholeFit const without = fit_pinhole(dots.points(), middle);
-  EXPECT_GT(std::abs(without.camera.cx() - middle.x), 300) << "there is something to find";
-  auto const placement = find_drift(dots, middle);
+  PinholeFit const without = fit_pinhole(dots.points(), picture_middle);
+  EXPECT_GT(std::abs(without.camera.cx() - picture_middle.x), 300) << "there is something to find";
+  auto const placement = find_drift(dots, picture_middle);
   ASSERT_TRUE(placement);
   EXPECT_TRUE(placement->moved.empty());
-  EXPECT_NEAR(placement->drift.x, -std::sin(a) * std::cos(b), 1.5 / focal_length);
-  EXPECT_NEAR(placement->drift.y, std::sin(b), 1.5 / focal_length);
-  PinholeFit const fit = fit_pinhole(dots.points(*placement), middle);
+  EXPECT_NEAR(placement->drift.x, -std::sin(a) * std::cos(b), 1.5 / long_focal_length);
+  EXPECT_NEAR(placement->drift.y, std::sin(b), 1.5 / long_focal_length);
+  PinholeFit const fit = fit_pinhole(dots.points(*placement), picture_middle);
   // a drift that is wrong by e = 1 / f changes fx by its product with the turn, e sin a f < 0.1 px
-  EXPECT_NEAR(fit.camera.fx(), focal_length, 0.2);
-  EXPECT_NEAR(fit.camera.fy(), focal_length, 0.2);
-  EXPECT_NEAR(fit.camera.cx(), middle.x, 2);
+  EXPECT_NEAR(fit.camera.fx(), long_focal_length, 0.2);
+  EXPECT_NEAR(fit.camera.fy(), long_focal_length, 0.2);
+  EXPECT_NEAR(fit.camera.cx(), picture_middle.x, 2);
 }
 
 TEST(PlatePlacement, APlateThatMovesAlongItsNormalHasNoDrift) {
-  auto const placement = find_drift(dots_of_plate(0, 0), middle);
+  auto const placement = find_drift(dots_of_plate(0, 0), picture_middle);
   ASSERT_TRUE(placement);
   EXPECT_EQ(placement->drift, Vec2d{});
   EXPECT_TRUE(placement->moved.empty());
@@ -73,21 +74,21 @@ TEST(PlatePlacement, AMiddleDotThatIsOffByOneIsFound) {
     std::array<int, 3> moved{};
     moved[plane] = 1;
     PlateDots const dots = dots_of_plate(0, 0, moved);
-    auto const placement = find_moved_middle(dots, middle);
+    auto const placement = find_moved_middle(dots, picture_middle);
     ASSERT_TRUE(placement) << plane;
     for (std::size_t other = 0; other < 3; ++other) {
       EXPECT_EQ(placement->moved[other], (std::array<int, 2>{-moved[other], 0})) << plane;
     }
-    EXPECT_NEAR(fit_pinhole(dots.points(*placement), middle).camera.fx(), focal_length, 1e-3);
+    EXPECT_NEAR(fit_pinhole(dots.points(*placement), picture_middle).camera.fx(), long_focal_length, 1e-3);
   }
-  EXPECT_FALSE(find_moved_middle(dots_of_plate(0.01, 0), middle));
+  EXPECT_FALSE(find_moved_middle(dots_of_plate(0.01, 0), picture_middle));
 }
 
 // One column more from plane to plane is a drift by whole spacings, which no residual shows.
 TEST(PlatePlacement, MiddleDotsThatDriftByWholeSpacingsAreFound) {
   PlateDots const dots = dots_of_plate(0, 0, {-1, 0, 1});
-  EXPECT_LT(fit_pinhole(dots.points(), middle).rms_px, 1e-6);
-  auto const placement = find_drift(dots, middle);
+  EXPECT_LT(fit_pinhole(dots.points(), picture_middle).rms_px, 1e-6);
+  auto const placement = find_drift(dots, picture_middle);
   ASSERT_TRUE(placement);
   ASSERT_EQ(placement->moved.size(), 3u);
   EXPECT_EQ(placement->moved[0], (std::array<int, 2>{1, 0}));
