@@ -374,8 +374,9 @@ TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAn
   for (double const z : {-20.0, 0.0, 20.0}) {
     double const across = drift * z, along = std::sqrt(1 - drift * drift) * z;
     std::string one = with(wide, "[-20.0, 0.0, 20.0]", "[" + std::to_string(along) + "]");
-    one = with(one, "[geometry]\nz_a_mm = 300.0\n",
-               "[camera.pose]\nposition_mm = [" + std::to_string(-across) + ", 0.0, 300.0]\n");
+    one =
+        with(one, "[geometry]\nz_a_mm = 300.0\n",
+             "[camera.pose]\nposition_mm = [" + std::to_string(-across) + ", 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n");
     write("one.toml", one);
     std::string const folder = "z" + std::to_string(pictures.size());
     succeed({"render", "one.toml", "-o", folder, "--quiet"});
@@ -393,7 +394,7 @@ TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAn
 // The plate of the first plane hung one dot aside: its whole grid is seen, but not where it was said to be.
 TEST_F(CalibrationPictures, WithAMiddleDotThatIsOffByOneAreCorrected) {
   write("one.toml", with(with(wide, "[-20.0, 0.0, 20.0]", "[-20.0]"), "[geometry]\nz_a_mm = 300.0\n",
-                         "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\n"));
+                         "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n"));
   succeed({"render", "one.toml", "-o", "aside", "--quiet"});
   auto const json = calibrated({"aside/plane_000.tif", p1, p2});
   EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("the middle dot was taken 1 columns and 0 rows off"));
