@@ -12,6 +12,7 @@
 #include "render/light/calibration_target.h"
 #include "render/scene/build_camera.h"
 #include "render/scene/calibration_planes.h"
+#include "studies/calibration_fit.h"
 #include "studies/cameras.h"
 #include "studies/case.h"
 
@@ -54,50 +55,102 @@ CalibratedLens lens_of(Setup const& setup) {
   return lens;
 }
 
-/// Detects the dots of a plane's picture and adds them to the points.
-void add_plane(Calibration& calibration, Setup const& setup, std::string const& file, std::size_t plane) {
-  CalibratedPlane added;
-  added.z = setup.planes[plane];
-  added.file = file;
+/// What the setup says of its camera, for comparison with the fitted one.
+ExpectedCamera expected_camera(Setup const& setup) {
+  ExpectedCamera expected;
+  expected.is_pinhole = setup.windows.empty();
+  if (!expected.is_pinhole) return expected;
+  if (auto const pinhole = pinhole_of(setup, build_camera(plane_setup(setup, 0)))) {
+    expected.principal_point_px = Vec2d{pinhole->cx, pinhole->cy};
+    expected.focal_length_px = pinhole->fx;
+  } else if (sensor_tilt(setup) == Vec2d{}) {
+    expected.principal_point_px = Vec2d{0.5 * (setup.camera.columns - 1), 0.5 * (setup.camera.rows - 1)};
+  }
+  return expected;
+}
+
+/// Reads a plane's picture and refuses one of another size, and one that was given before.
+Image<double> read_plane(Calibration& calibration, Setup const& setup, std::string const& file, std::size_t plane) {
   ImageMetadata metadata;
-  Image<double> const picture = read_image(added.file, &metadata);
+  Image<double> picture = read_image(file, &metadata);
   std::string const name = std::filesystem::path(case_file::plane(plane)).stem().string();
-  calibration.sources.add(name, added.file, SourceFiles::Holds::pixels, pixel_sha256(picture, metadata.sample_bits));
+  std::string const hash = pixel_sha256(picture, metadata.sample_bits);
+  for (std::size_t before = 0; before < calibration.planes.size(); ++before) {
+    CalibratedPlane const& other = calibration.planes[before];
+    if (hash != other.sha256) continue;
+    throw DataError(file, fmt::format("is the same picture as {}, pixel by pixel, though it is of Z = {:.6g} mm and "
+                                      "that of {:.6g} mm; give the picture of that plane",
+                                      other.file, setup.planes[plane] / unit::millimetre, other.z / unit::millimetre));
+  }
+  calibration.sources.add(name, file, SourceFiles::Holds::pixels, hash);
   bool const first = calibration.planes.empty();
   if (!first && (picture.columns() != calibration.columns || picture.rows() != calibration.rows)) {
-    throw DataError(added.file,
-                    fmt::format("is {} x {} px where the planes before it are {} x {}; take all pictures by "
-                                "one camera",
-                                picture.columns(), picture.rows(), calibration.columns, calibration.rows));
+    throw DataError(file, fmt::format("is {} x {} px where the planes before it are {} x {}; take all pictures by "
+                                      "one camera",
+                                      picture.columns(), picture.rows(), calibration.columns, calibration.rows));
   }
   if (picture.columns() != setup.camera.columns || picture.rows() != setup.camera.rows) {
-    throw DataError(added.file,
-                    fmt::format("is {} x {} px where camera.pixels of the setup is [{}, {}]; give the "
-                                "camera's own pixels there",
-                                picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
+    throw DataError(file, fmt::format("is {} x {} px where camera.pixels of the setup is [{}, {}]; give the "
+                                      "camera's own pixels there",
+                                      picture.columns(), picture.rows(), setup.camera.columns, setup.camera.rows));
+  }
+  if (count_not_finite(picture) > 0) throw DataError(file, "has pixels that are nan or infinite; export it anew");
+  if (metadata.orientation != 1) {
+    calibration.warnings.push_back(
+        fmt::format("{} is stored turned or mirrored (Orientation {}), and was turned upright; where that entry is "
+                    "wrong, write the picture without it",
+                    file, metadata.orientation));
   }
   calibration.columns = picture.columns();
   calibration.rows = picture.rows();
-  if (count_not_finite(picture) > 0) throw DataError(added.file, "has pixels that are nan or infinite; export it anew");
-  std::vector<DetectedDot> const dots = detect_dots(picture);
+  calibration.planes.push_back({file, setup.planes[plane], hash});
+  return picture;
+}
+
+/// Warns where the middle of the grid is a guess that may be off by one, and where the grid is larger than told.
+void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, CalibrationGrid const& grid,
+                        std::string const& file) {
+  constexpr double doubtful = 0.3;  // of a spacing
+  int const columns = 2 * grid.half_columns + 1, rows = 2 * grid.half_rows + 1;
+  if (assigned.columns > columns || assigned.rows > rows) {
+    calibration.warnings.push_back(
+        fmt::format("{}: {} x {} dots are seen where calibration.extent_mm and spacing_mm make {} x {}; correct these, "
+                    "for the grid's middle is told by its edges",
+                    file, assigned.columns, assigned.rows, columns, rows));
+  }
+  if (assigned.middle_by == MiddleBy::expected_view && assigned.middle_offset > doubtful) {
+    calibration.warnings.push_back(
+        fmt::format("{}: the middle dot is a guess: the setup's camera sees the middle {:.2f} spacings from it; give "
+                    "the camera's place better, or show the whole grid",
+                    file, assigned.middle_offset));
+  }
+}
+
+/// Detects the dots of a plane's picture and adds them.
+void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std::string const& file,
+               std::size_t plane) {
+  DetectedDots const detected = detect_dots(read_plane(calibration, setup, file, plane));
   CalibrationGrid const grid = grid_of(setup);
-  AssignedDots const assigned = assign_to_grid(dots, grid, expected_view(setup, added.z, added.file));
-  added.found = dots.size();
+  AssignedDots const assigned = assign_to_grid(detected.dots, grid, expected_view(setup, setup.planes[plane], file));
+  CalibratedPlane& added = calibration.planes.back();
+  added.found = detected.dots.size();
   added.used = assigned.dots.size();
+  added.not_dots = detected.not_dots.size();
+  added.strangers = assigned.strangers;
   added.middle_by = assigned.middle_by;
+  added.smoothness_px = assigned.smoothness_px;
   if (added.used < least_dots) {
-    throw DataError(added.file,
-                    fmt::format("shows {} dots of the grid, where {} are needed ({} spots look like dots); look at "
-                                "focus, light and contrast, and at [calibration] in setup.toml",
-                                added.used, least_dots, added.found));
+    throw DataError(file, fmt::format("shows {} dots of the grid, where {} are needed ({} spots look like dots, {} do "
+                                      "not by size or shape); look at focus, light and contrast, and at [calibration] "
+                                      "in setup.toml",
+                                      added.used, least_dots, added.found, added.not_dots));
   }
+  warn_of_assignment(calibration, assigned, grid, file);
   for (GridDot const& dot : assigned.dots) {
-    calibration.points.world.push_back({grid.spacing * dot.i, grid.spacing * dot.j, added.z});
-    calibration.points.pixel.push_back(dot.pixel);
-    calibration.plane_of.push_back(plane);
-    calibration.index.push_back({dot.i, dot.j});
+    all.pixel.push_back(dot.pixel);
+    all.plane_of.push_back(plane);
+    all.index.push_back({dot.i, dot.j});
   }
-  calibration.planes.push_back(std::move(added));
 }
 
 /// The pinhole camera that a truth.h5 knows; nothing where it knows none, or there is none.
@@ -143,25 +196,15 @@ Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, st
   }
   calibration.setup = loaded.document.resolved();
   calibration.seed = setup.render.seed;
-  calibration.points.dot_radius = setup.dot_diameter() / 2;
-  calibration.points.lens = lens_of(setup);
+  PlateDots dots;
+  dots.z = setup.planes;
+  dots.spacing = grid_of(setup).spacing;
+  dots.dot_radius = setup.dot_diameter() / 2;
+  dots.lens = lens_of(setup);
   for (std::size_t plane = 0; plane < setup.planes.size(); ++plane) {
-    add_plane(calibration, setup, pictures[plane], plane);
+    add_plane(calibration, dots, setup, pictures[plane], plane);
   }
-  try {
-    calibration.pinhole =
-        fit_pinhole(calibration.points, {0.5 * (calibration.columns - 1), 0.5 * (calibration.rows - 1)});
-    calibration.soloff = fit_soloff(calibration.points);
-  } catch (std::invalid_argument const& reason) {
-    throw DataError(name,
-                    fmt::format("cannot be fitted ({}); show more rows, columns and planes of dots", reason.what()));
-  }
-  // planes in the wrong order fit a camera that looks at them from behind just as well
-  if (calibration.pinhole.camera.value.back() <= 0) {
-    throw DataError(name,
-                    "fits a camera with the dots behind it only; give the pictures in the order of "
-                    "calibration.planes_mm, which Z, towards the camera, counts");
-  }
+  fit_calibration(calibration, std::move(dots), expected_camera(setup), name);
   return calibration;
 }
 

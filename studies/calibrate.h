@@ -16,10 +16,14 @@ namespace gladstone {
 /// What one plane of a calibration showed.
 struct CalibratedPlane {
   std::string file;
-  double z = 0;           ///< [m]
-  std::size_t found = 0;  ///< what looks like a dot
-  std::size_t used = 0;   ///< of these, those with a place on the grid
+  double z = 0;                  ///< [m]
+  std::string sha256;            ///< of its pixels
+  std::size_t found = 0;         ///< what looks like a dot
+  std::size_t used = 0;          ///< of these, those with a place on the grid
+  std::size_t not_dots = 0;      ///< what stands out and has neither the size nor the shape of the dots
+  std::vector<Vec2d> strangers;  ///< spots with a place on the grid that do not fit the other dots [px]
   MiddleBy middle_by = MiddleBy::whole_grid;
+  double smoothness_px = 0;  ///< scatter of the dots about a smooth grid, per component
 };
 
 /// A camera calibrated by pictures of dots.
@@ -31,6 +35,8 @@ struct Calibration {
   std::vector<std::array<int, 2>> index;  ///< its place on the grid
   PinholeFit pinhole;
   SoloffFit soloff;
+  Vec2d drift{};  ///< components along X and Y of the unit direction in which the plate was moved [1]
+  std::vector<std::string> warnings;
   std::optional<PinholeCamera> rendered;  ///< that the truth of the case knows, for comparison alone
   SourceFiles sources;
   std::string setup;  ///< resolved

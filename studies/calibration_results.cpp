@@ -79,6 +79,19 @@ void draw_panel(GnuplotFigure& plot, Calibration const& calibration, std::vector
   plot.command(commands);
 }
 
+nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (Vec2d const place : plane.strangers) places.push_back({place.x, place.y});
+  return places;
+}
+
+/// "; 3 spots are no dots by size or shape, 1 by its place"; empty where there are none.
+std::string spots_in_words(CalibratedPlane const& plane) {
+  if (plane.not_dots == 0 && plane.strangers.empty()) return "";
+  return fmt::format("; left out as no dots: {} by size or shape, {} by their place on the grid", plane.not_dots,
+                     plane.strangers.size());
+}
+
 }  // namespace
 
 void write_calibration_file(std::string const& path, Calibration const& calibration) {
@@ -106,6 +119,8 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
              "detected minus fitted, pinhole", "dot, (column, row)");
   file.write("/dots/soloff_residual_px", flat(calibration.soloff.residual_px), {count, 2}, "px",
              "detected minus fitted, polynomial", "dot, (column, row)");
+  file.attribute("/dots", "drift_x", calibration.drift.x);
+  file.attribute("/dots", "drift_y", calibration.drift.y);
   file.close();
 }
 
@@ -137,6 +152,9 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
                       {"z_mm", plane.z / unit::millimetre},
                       {"found", plane.found},
                       {"used", plane.used},
+                      {"not_dots", plane.not_dots},
+                      {"strangers", strangers_json(plane)},
+                      {"scatter_px", plane.smoothness_px},
                       {"middle_by", plane.middle_by == MiddleBy::whole_grid ? "whole_grid" : "setup"}});
   }
   PinholeFit const& fit = calibration.pinhole;
@@ -154,7 +172,9 @@ nlohmann::ordered_json calibration_json(Calibration const& calibration) {
           {"soloff",
            {{"terms", calibration.soloff.polynomial.exponents.size()},
             {"rms_px", calibration.soloff.rms_px},
-            {"largest_px", largest(calibration.soloff.residual_px)}}}};
+            {"largest_px", largest(calibration.soloff.residual_px)}}},
+          {"drift", {calibration.drift.x, calibration.drift.y}},
+          {"warnings", calibration.warnings}};
 }
 
 std::string calibration_table(Calibration const& calibration) {
@@ -179,8 +199,9 @@ std::string calibration_table(Calibration const& calibration) {
                 "tilted sensor)\n";
   for (CalibratedPlane const& plane : calibration.planes) {
     text += fmt::format(
-        "Z = {:.6g} mm: {} of {} dots found are on the grid{}\n", plane.z / unit::millimetre, plane.used, plane.found,
-        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle is where the setup's camera sees it");
+        "Z = {:.6g} mm: {} of {} dots found are on the grid{}{}\n", plane.z / unit::millimetre, plane.used, plane.found,
+        plane.middle_by == MiddleBy::whole_grid ? "" : ", whose middle is where the setup's camera sees it",
+        spots_in_words(plane));
   }
   return text + fmt::format(
                     "residuals, rms per component and largest: pinhole {:.3g} and {:.3g} px, polynomial {:.3g} "

@@ -77,7 +77,7 @@ struct FinishedCase {
   RecordedFrames frames;
 };
 
-/// Hashes the files that a setup names, before anything is made of them.
+/// Hashes the files that a setup names, before anything is made of them; those of [correlate] belong to the vectors.
 void hash_inputs(CaseSetup& loaded);
 
 /// Renders a case as far as memory.

@@ -9,6 +9,7 @@
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
+#include "render/base/source_files.h"
 
 namespace gladstone {
 namespace {
@@ -68,6 +69,19 @@ LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup con
   return left_out;
 }
 
+/// Refuses masks and backgrounds that are not those which the vectors were measured with: they are read again.
+void check_preparation(Hdf5Reader const& measured, std::string const& path, CorrelationSettings const& settings) {
+  std::size_t number = 0;
+  for (std::string const& file : settings.preparation.files) {
+    std::string const hash = measured.attribute(fmt::format("preparation_{}_sha256", ++number));
+    if (hash.empty() || hash == pixel_sha256(file)) continue;
+    throw DataError(file,
+                    fmt::format("has changed since {} was measured with it (another SHA-256 of its pixels); bring "
+                                "the old file back, or run gladstone correlate again",
+                                path));
+  }
+}
+
 }  // namespace
 
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
@@ -102,10 +116,12 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   }
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
   if (!file.foreign && path.ends_with(".h5")) {
-    std::string const text = Hdf5Reader(path).attribute("setup");
+    Hdf5Reader const measured(path);
+    std::string const text = measured.attribute("setup");
     if (!text.empty()) {
       SetupDocument document = SetupDocument::from_text(text, path);
       vectors.settings = read_correlation_settings(document.root().table("correlate"));
+      check_preparation(measured, path, vectors.settings);
     }
   } else if (!file.foreign) {
     vectors.foreign = true;  // a CSV does not say how it was measured, so it cannot be measured again

@@ -51,10 +51,18 @@ class FramesView final : public FramePair {
   Image<double> const& flow_;
 };
 
-void warn_of_colour(std::string const& path, ImageMetadata const& metadata) {
-  if (metadata.channels < 3) return;
-  spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
-               path);
+/// Warns of what was done to a picture when it was read.
+void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
+  if (metadata.channels >= 3) {
+    spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
+                 path);
+  }
+  if (metadata.orientation != 1) {
+    spdlog::warn(
+        "{} is stored turned or mirrored (Orientation {}), and was turned upright; where that entry is wrong, "
+        "write the picture without it",
+        path, metadata.orientation);
+  }
 }
 
 /// Correlates what the masks and steps of the settings leave of the frames.
@@ -132,7 +140,7 @@ CorrelationFile default_correlation(std::vector<std::string> const& overrides) {
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources) {
   ImageMetadata metadata;
   Image<double> frame = read_image(path, &metadata);
-  warn_of_colour(path, metadata);
+  warn_of_reading(path, metadata);
   sources.add(name, path, SourceFiles::Holds::pixels, pixel_sha256(frame, metadata.sample_bits));
   return frame;
 }
@@ -147,7 +155,7 @@ std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& s
   ImageMetadata metadata;
   sources.add("", pair, SourceFiles::Holds::bytes);
   std::array<Image<double>, 2> frames = read_frame_pair(pair, &metadata);
-  warn_of_colour(pair, metadata);
+  warn_of_reading(pair, metadata);
   sources.add_known("reference", pixel_sha256(frames[0], metadata.sample_bits));
   sources.add_known("flow", pixel_sha256(frames[1], metadata.sample_bits));
   return frames;

@@ -41,7 +41,11 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
 }  // namespace
 
 void hash_inputs(CaseSetup& loaded) {
-  for (std::string const& file : loaded.document.file_names()) loaded.input_hashes[file] = byte_sha256(file);
+  std::vector<std::string> const files = loaded.document.file_names();
+  std::vector<std::vector<std::string>> const keys = loaded.document.file_keys();
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (keys[i].front() != "correlate") loaded.input_hashes[files[i]] = byte_sha256(files[i]);
+  }
 }
 
 double exposure_of(Scene const& scene, RenderedLight const& light) {

@@ -9,6 +9,8 @@
 #include <queue>
 #include <utility>
 
+#include "analysis/calibration/grid_smoothness.h"
+
 namespace gladstone {
 namespace {
 
@@ -133,9 +135,13 @@ Span span_of(Places const& places) {
   return span;
 }
 
-/// The place that lies nearest to a pixel, with the steps at the nearest dot.
-std::pair<int, int> place_at(std::vector<DetectedDot> const& dots, Places const& places, Vec2d pixel,
-                             Steps const& first) {
+/// A place between dots, in spacings.
+struct GridPoint {
+  double i, j;
+};
+
+/// The point of the grid at a pixel, with the steps at the nearest dot.
+GridPoint point_at(std::vector<DetectedDot> const& dots, Places const& places, Vec2d pixel, Steps const& first) {
   auto nearest = places.begin();
   for (auto place = places.begin(); place != places.end(); ++place) {
     if (length2(dots[place->second].centre_px - pixel) < length2(dots[nearest->second].centre_px - pixel))
@@ -150,8 +156,21 @@ std::pair<int, int> place_at(std::vector<DetectedDot> const& dots, Places const&
   };
   Vec2d const x = step(1, 0, first.x), y = step(0, 1, first.y), way = pixel - at;
   double const area = x.x * y.y - x.y * y.x;
-  return {i + static_cast<int>(std::lround((way.x * y.y - way.y * y.x) / area)),
-          j + static_cast<int>(std::lround((x.x * way.y - x.y * way.x) / area))};
+  return {i + (way.x * y.y - way.y * y.x) / area, j + (x.x * way.y - x.y * way.x) / area};
+}
+
+/// Removes the places of spots that do not belong to the grid.
+/// @return them, and how smooth the rest is
+SmoothGrid clean(std::vector<DetectedDot> const& dots, Places& places) {
+  std::vector<GridDot> all;
+  for (auto const& [place, dot] : places) {
+    all.push_back({place.first, place.second, dots[dot].centre_px, dots[dot].diameter_px});
+  }
+  SmoothGrid grid = remove_strangers(std::move(all));
+  Places kept;
+  for (GridDot const& dot : grid.dots) kept[{dot.i, dot.j}] = places.at({dot.i, dot.j});
+  places = std::move(kept);
+  return grid;
 }
 
 }  // namespace
@@ -162,18 +181,31 @@ AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGri
   if (dots.size() < 3) return assigned;
   std::optional<Beginning> const beginning = begin(dots, expected);
   if (!beginning) return assigned;
-  Places const places = spread(dots, *beginning);
+  Places places = spread(dots, *beginning);
+  SmoothGrid smooth = clean(dots, places);
+  if (places.empty()) return assigned;
   Span const span = span_of(places);
-  bool const whole = span.right - span.left == 2 * grid.half_columns && span.high - span.low == 2 * grid.half_rows;
+  assigned.columns = span.right - span.left + 1;
+  assigned.rows = span.high - span.low + 1;
+  assigned.strangers = std::move(smooth.strangers);
+  assigned.smoothness_px = smooth.rms_px;
+  bool const all_columns = assigned.columns == 2 * grid.half_columns + 1;
+  bool const all_rows = assigned.rows == 2 * grid.half_rows + 1;
   std::pair<int, int> origin{span.left + grid.half_columns, span.low + grid.half_rows};
-  if (!whole) {
+  if (!all_columns || !all_rows) {
     assigned.middle_by = MiddleBy::expected_view;
-    origin = place_at(dots, places, expected.middle_px, beginning->steps);
+    GridPoint const middle = point_at(dots, places, expected.middle_px, beginning->steps);
+    auto const choose = [&assigned](double point, int& place) {
+      place = static_cast<int>(std::lround(point));
+      assigned.middle_offset = std::max(assigned.middle_offset, std::abs(point - place));
+    };
+    if (!all_columns) choose(middle.i, origin.first);
+    if (!all_rows) choose(middle.j, origin.second);
   }
-  for (auto const& [place, dot] : places) {
-    int const i = place.first - origin.first, j = place.second - origin.second;
-    if (std::abs(i) > grid.half_columns || std::abs(j) > grid.half_rows) continue;
-    assigned.dots.push_back({i, j, dots[dot].centre_px});
+  for (GridDot dot : smooth.dots) {
+    dot.i -= origin.first;
+    dot.j -= origin.second;
+    if (std::abs(dot.i) <= grid.half_columns && std::abs(dot.j) <= grid.half_rows) assigned.dots.push_back(dot);
   }
   return assigned;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <cmath>
 
 namespace gladstone {
 namespace {
@@ -83,6 +84,12 @@ PinholeCamera linear_pinhole(CalibrationPoints const& points) {
   double const scale = K(2, 2);
   return {{K(0, 0) / scale, K(1, 1) / scale, K(0, 2) / scale, K(1, 2) / scale, 0, 0, 0, 0, r(0), r(1), r(2), t(0), t(1),
            t(2)}};
+}
+
+double linear_residual_px(CalibrationPoints const& points) {
+  Eigen::MatrixXd const seen = projection(points) * world_of(points).colwise().homogeneous();
+  Eigen::MatrixXd const fitted = seen.colwise().hnormalized();
+  return (pixels_of(points) - fitted).norm() / std::sqrt(static_cast<double>(fitted.size()));
 }
 
 bool on_one_plane(CalibrationPoints const& points) {

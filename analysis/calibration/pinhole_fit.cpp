@@ -136,10 +136,14 @@ struct Residual {
   }
 };
 
+struct Refinement {
+  double cost = 0;  ///< half the sum of squares
+  bool converged = false;
+};
+
 /// Fits from a start; first without distortion, and with the principal point where it is.
-/// @return half the sum of squares
-double refine(CalibrationPoints const& points, Parameters& parameters) {
-  double cost = 0;
+Refinement refine(CalibrationPoints const& points, Parameters& parameters) {
+  Refinement refinement;
   Vec3d const middle = mean_of(points.world);
   for (std::vector<int> const& held : {std::vector<int>{2, 3, 4, 5, 6, 7}, std::vector<int>{4, 5, 6, 7}, {}}) {
     ceres::Problem problem;
@@ -159,9 +163,9 @@ double refine(CalibrationPoints const& points, Parameters& parameters) {
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
-    cost = summary.final_cost;
+    refinement = {summary.final_cost, summary.termination_type == ceres::CONVERGENCE};
   }
-  return cost;
+  return refinement;
 }
 
 /// Derivatives of all residuals by the parameters.
@@ -224,10 +228,11 @@ PinholeFit fit_pinhole(CalibrationPoints const& points, Vec2d middle_px) {
   PinholeFit fit;
   double least = std::numeric_limits<double>::infinity();
   for (Parameters start : {linear, central}) {
-    double const cost = refine(points, start);
-    if (!(cost < least)) continue;
-    least = cost;
+    Refinement const end = refine(points, start);
+    if (!(end.cost < least)) continue;
+    least = end.cost;
     fit.camera.value = start;
+    fit.converged = end.converged;
   }
   if (!std::isfinite(least)) throw std::invalid_argument("no pinhole camera fits the points");
   double squares = 0;

@@ -39,6 +39,7 @@ struct PinholeFit {
   std::vector<double> covariance;                             ///< count x count
   std::vector<Vec2d> residual_px;                             ///< seen minus fitted
   double rms_px = 0;                                          ///< of the residuals, per component
+  bool converged = false;                                     ///< within the iterations that are done at most
 };
 
 /// Fits all fourteen parameters by least squares (Ceres). Begins from the linear solution (Hartley & Zisserman 2004,

@@ -13,6 +13,10 @@ Image<double> read_sized_picture(std::string const& file, Image<double> const& f
     throw DataError(file, fmt::format("is {} x {} px, but the frames are {} x {} px (pixel by pixel they belong "
                                       "together); give a picture of that size",
                                       picture.columns(), picture.rows(), frame.columns(), frame.rows()));
+  if (std::size_t const bad = count_not_finite(picture); bad > 0)
+    throw DataError(file, fmt::format("{} of {} pixels are nan or infinite (which neither masks a pixel nor is a grey "
+                                      "level); write numbers there, 0 in a mask where the frames are to be left out",
+                                      bad, picture.size()));
   return picture;
 }
 

@@ -13,6 +13,14 @@ namespace gladstone {
 /// How a sample is stored.
 enum class SampleType { other, uint8, uint16, int16, uint32, int32, float32, float64 };
 
+/// What the channels of a page are.
+enum class Colours {
+  by_count,  ///< grey where they are one or two, else red, green and blue
+  grey,      ///< a TIFF's BlackIsZero
+  inverted,  ///< a TIFF's WhiteIsZero; samples of one byte are inverted by the library
+  inks       ///< cyan, magenta, yellow and black as stored
+};
+
 /// What the header of a page says.
 struct PageHeader {
   int width = 0, height = 0, depth = 1, channels = 0;
@@ -25,6 +33,8 @@ struct PageHeader {
   std::string description;              ///< ImageDescription
   float resolution = 0.0f;              ///< XResolution
   std::string resolution_unit;          ///< "cm", "in", ""
+  int orientation = 1;                  ///< how the stored rows are turned, by TIFF's and EXIF's numbers 1 to 8
+  Colours colours = Colours::by_count;
 };
 
 /// A picture file, open at one of its pages.
@@ -33,8 +43,9 @@ class PageReader {
   virtual ~PageReader() = default;
   virtual bool seek(int page) = 0;
   virtual PageHeader header() const = 0;
-  /// All samples of the page, width x height x channels of its type. @return whether they could be read to the end
-  virtual bool read(void* samples) = 0;
+  /// Reads all samples of the page, width x height x channels of its type.
+  /// @return the library's reason why they cannot be read to the end; empty: they were
+  virtual std::string read(void* samples) = 0;
   /// Forgets what went wrong.
   virtual void clear_errors() = 0;
 };

@@ -20,6 +20,7 @@
 #include "render/base/input_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
+#include "render/base/tiff_directory.h"
 #include "render/base/version.h"
 
 namespace gladstone {
@@ -80,13 +81,9 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
-    // where no entry tells the bits of a sample, TIFF means one, and OpenImageIO reads bytes
-    bool const perhaps_bits = spec.bits == 8 && !packed && stored <= 8.0 * static_cast<double>(file_bytes);
-    throw DataError(path, fmt::format("is damaged or cut short{}: its header tells of {}, {:.3g} MB, and the file has "
-                                      "{:.3g} MB; {}",
-                                      perhaps_bits ? ", or has one bit a pixel" : "", sizes, stored / 1e6,
-                                      static_cast<double>(file_bytes) / 1e6,
-                                      perhaps_bits ? "write it with 8 or 16 bits a pixel" : "copy it again"));
+    throw DataError(path, fmt::format("is damaged or cut short: its header tells of {}, {:.3g} MB, and the file has "
+                                      "{:.3g} MB; copy it again",
+                                      sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
   // the library's tile or strip, the samples as stored and as numbers, and the picture
@@ -102,8 +99,11 @@ std::vector<double> read_samples(PageReader& input, std::string const& path, int
   PageHeader const spec = input.header();
   std::vector<Stored> samples(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                               static_cast<std::size_t>(spec.channels));
-  if (!input.read(samples.data()))
-    throw DataError(path, "cannot be read to its end (it is damaged or cut short); copy it again");
+  if (std::string const why = input.read(samples.data()); !why.empty()) {
+    throw DataError(path, fmt::format("cannot be read to its end (it is damaged, cut short or compressed by an unknown "
+                                      "method: {}); copy it again, or write it anew without compression",
+                                      why));
+  }
   throw_if_interrupted();
   std::vector<double> values(samples.size());
   double const scale = shift > 0 ? 1.0 / static_cast<double>(1 << shift) : 1.0;
@@ -135,18 +135,96 @@ std::vector<double> read_samples(PageReader& input, std::string const& path) {
     case SampleType::other:
       break;
   }
-  throw DataError(path, "has samples of type " + spec.type_name + ", which is not read");
+  throw DataError(path, "has samples of type " + spec.type_name +
+                            ", which is not read; write it with unsigned integers of 8 or 16 bits, or floats");
+}
+
+constexpr std::size_t ink_count = 4;
+
+/// Weights of red, green and blue in the luminance (Rec. ITU-R BT.709, section 3.2).
+constexpr std::array<double, 3> luminance_weights{0.2126, 0.7152, 0.0722};
+
+/// Refuses channels that have no meaning as grey levels or colours.
+void check_channels(PageHeader const& spec, std::string const& path) {
+  bool const grey = spec.colours == Colours::grey || spec.colours == Colours::inverted;
+  if (grey && spec.channels > 2) {
+    throw DataError(path, fmt::format("has {} values a pixel that are no colours (its header calls them grey); write "
+                                      "the channel that is meant to a file of its own",
+                                      spec.channels));
+  }
+  if (spec.colours == Colours::inks && static_cast<std::size_t>(spec.channels) != ink_count) {
+    throw DataError(path, fmt::format("is of {} printing inks, where cyan, magenta, yellow and black are read; write "
+                                      "it as grey levels or RGB",
+                                      spec.channels));
+  }
+}
+
+/// The largest value of a sample as stored.
+double full_scale(PageHeader const& spec) {
+  bool const floating = spec.type == SampleType::float32 || spec.type == SampleType::float64;
+  return floating ? 1.0 : std::pow(2.0, spec.bits) - 1;
+}
+
+/// The grey level of a pixel.
+double grey_level(PageHeader const& spec, double const* sample) {
+  double level = 0;
+  if (spec.colours == Colours::inks) {  // what an ink leaves of the light, and black of that
+    double const full = full_scale(spec), black = sample[ink_count - 1];
+    for (std::size_t i = 0; i < luminance_weights.size(); ++i) {
+      level += luminance_weights[i] * (full - sample[i]) * (full - black) / full;
+    }
+    return level;
+  }
+  if (spec.channels < 3) return sample[0];
+  for (std::size_t i = 0; i < luminance_weights.size(); ++i) level += luminance_weights[i] * sample[i];
+  return level;
+}
+
+/// White is zero, and the library has not inverted the samples: it does so where it reads them as single bytes.
+bool is_inverted(PageHeader const& spec) {
+  return spec.colours == Colours::inverted && (spec.type == SampleType::uint16 || spec.type == SampleType::uint32);
+}
+
+Image<double> grey_image(PageHeader const& spec, std::vector<double> const& samples) {
+  auto const channels = static_cast<std::size_t>(spec.channels);
+  Image<double> image(spec.width, spec.height);
+  bool const inverted = is_inverted(spec);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    double const level = grey_level(spec, samples.data() + i * channels);
+    image.data()[i] = inverted ? full_scale(spec) - level : level;
+  }
+  return image;
+}
+
+/// Turns a picture upright. By TIFF 6.0, section 8, the stored row 0 is the visual top (1, 2), bottom (3, 4), left
+/// (5, 8) or right side (6, 7), the stored column 0 the left (1, 4), right (2, 3), top (5, 6) or bottom side (7, 8).
+Image<double> turn_upright(Image<double> stored, int orientation) {
+  if (orientation <= 1 || orientation > 8) return stored;
+  bool const transposed = orientation >= 5;
+  bool const from_right = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
+  bool const from_bottom = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
+  int const columns = transposed ? stored.rows() : stored.columns();
+  int const rows = transposed ? stored.columns() : stored.rows();
+  Image<double> upright(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      int const x = from_right ? columns - 1 - column : column, y = from_bottom ? rows - 1 - row : row;
+      upright(column, row) = transposed ? stored(y, x) : stored(x, y);
+    }
+  }
+  return upright;
 }
 
 /// A picture file, open at its first page.
 class Picture {
  public:
-  explicit Picture(std::string const& path) : path_(path), file_(path, "a picture") {
+  explicit Picture(std::string const& path)
+      : path_(path), file_(path, "a picture"), directories_(read_tiff_directories(file_, most_pages_counted)) {
     input_ = image_codecs().open(path);
     if (!input_) {
-      throw DataError(path,
-                      "cannot be read as a picture (it is of another format, damaged or cut short); give TIFF, "
-                      "PNG or EXR, if need be written anew without compression");
+      throw DataError(path, "cannot be read as a picture (it is of another format, " + unreadable_samples() +
+                                "damaged or cut short); give TIFF, PNG, JPEG or EXR, if need be written anew without "
+                                "compression");
     }
     count_pages();
   }
@@ -159,23 +237,48 @@ class Picture {
       throw DataError(path_, fmt::format("page {} cannot be read (the file is damaged); copy it again", page + 1));
     }
     PageHeader const spec = input_->header();
-    check_size(spec, path_, file_.size());
-    auto const samples = read_samples(*input_, path_);
-    std::size_t const channels = static_cast<std::size_t>(spec.channels);
-    Image<double> image(spec.width, spec.height);
-    for (std::size_t i = 0; i < image.size(); ++i) {
-      double const* const sample = samples.data() + i * channels;
-      image.data()[i] = channels < 3 ? sample[0] : 0.2126 * sample[0] + 0.7152 * sample[1] + 0.0722 * sample[2];
-    }
+    auto const directory = static_cast<std::size_t>(pages_[page]);
+    bool const bilevel = directory < directories_.size() && is_bilevel_by_default(directories_[directory]);
+    Image<double> image = bilevel ? read_bilevel_page(file_, directories_[directory]) : read_levels(spec);
+    image = turn_upright(std::move(image), spec.orientation);
     if (metadata) {
       *metadata = metadata_of(spec);
-      metadata->channels = spec.channels;
-      metadata->sample_bits = spec.bits;
+      metadata->channels = spec.colours == Colours::inks ? spec.channels - 1 : spec.channels;
+      metadata->sample_bits = bilevel ? 1 : spec.bits;
+      metadata->orientation = spec.orientation;
+      if (bilevel) metadata->bit_depth = 1;
     }
     return image;
   }
 
  private:
+  /// What the header of a TIFF that cannot be opened says of its samples.
+  std::string unreadable_samples() const {
+    if (directories_.empty()) return "";
+    constexpr std::array<char const*, 7> formats{"unknown numbers",
+                                                 "unsigned integers",
+                                                 "signed integers",
+                                                 "floating-point numbers",
+                                                 "undefined values",
+                                                 "complex integers",
+                                                 "complex floating-point numbers"};
+    std::uint64_t const format = directories_[0].value(TiffTag::sample_format, 1);
+    return fmt::format("a TIFF with {} of {} bits and compression {}, ", formats[format < formats.size() ? format : 0],
+                       directories_[0].value(TiffTag::bits_per_sample, 1),
+                       directories_[0].value(TiffTag::compression, 1));
+  }
+
+  /// TIFF's default is one bit a sample, where OpenImageIO 2.4 takes eight.
+  static bool is_bilevel_by_default(TiffDirectory const& page) {
+    return page.has(TiffTag::width) && !page.has(TiffTag::bits_per_sample);
+  }
+
+  Image<double> read_levels(PageHeader const& spec) {
+    check_size(spec, path_, file_.size());
+    check_channels(spec, path_);
+    return grey_image(spec, read_samples(*input_, path_));
+  }
+
   void count_pages() {
     PageHeader const first = input_->header();
     for (int page = 1; page < most_pages_counted && input_->seek(page); ++page) {
@@ -190,6 +293,7 @@ class Picture {
 
   std::string path_;
   InputFile file_;
+  std::vector<TiffDirectory> directories_;  ///< of a TIFF, one a page
   std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
 };

@@ -16,11 +16,15 @@ struct ImageMetadata {
   std::string description;     ///< e.g. the resolved setup, as ImageDescription
   int channels = 1;            ///< as read: of three or more read_image made grey values
   int sample_bits = 16;        ///< as read: of a sample in the file, significant or not
+  int orientation = 1;         ///< as read: TIFF's and EXIF's number, 1 to 8; read_image turned the picture upright
 };
 
-/// Reads any picture that OpenImageIO knows (TIFF, PNG, EXR; 8, 16 bit, float) as raw values in double:
-/// 0..255, 0..65535 or as stored. Colour becomes luminance (Rec. 709).
-/// @throws DataError, also for a file of several pages
+/// Reads any picture that OpenImageIO knows (TIFF, PNG, JPEG, EXR; 1 to 16 bits, float) as raw values in double:
+/// 0..255, 0..65535 or as stored.
+/// - Colours, printing inks and palettes become luminance (Rec. 709); an alpha channel is ignored.
+/// - The entry Orientation (TIFF 6.0, section 8; EXIF) is applied: pixel (0, 0) is the upper left one as seen.
+/// - White is the larger value where a TIFF has it as zero (WhiteIsZero).
+/// @throws DataError, also for a file of several pages, and for channels that are neither grey nor colours
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
 
 /// The pages of a file that holds two frames of one size, as cameras for PIV write them: reference and flow.

@@ -47,11 +47,38 @@ OIIO::TypeDesc stored_as(SampleType type) {
   }
 }
 
+constexpr int photometric_inverted = 0, photometric_grey = 1, photometric_inks = 5;  // of TIFF 6.0, section 8
+
+int photometric(OIIO::ImageSpec const& spec) { return spec.get_int_attribute("tiff:PhotometricInterpretation", -1); }
+
+Colours colours_of(OIIO::ImageSpec const& spec) {
+  switch (photometric(spec)) {
+    case photometric_inverted:
+      return Colours::inverted;
+    case photometric_grey:
+      return Colours::grey;
+    case photometric_inks:
+      return Colours::inks;
+    default:
+      return Colours::by_count;
+  }
+}
+
+enum class InkColours { converted, stored };
+
+std::unique_ptr<OIIO::ImageInput> open_input(std::string const& path, InkColours inks) {
+  OIIO::ImageSpec configuration;
+  configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
+  if (inks == InkColours::stored) configuration["oiio:RawColor"] = 1;
+  return OIIO::ImageInput::open(path, &configuration);
+}
+
 class OiioReader final : public PageReader {
  public:
-  explicit OiioReader(std::unique_ptr<OIIO::ImageInput> input) : input_(std::move(input)) {}
+  OiioReader(std::string path, std::unique_ptr<OIIO::ImageInput> input)
+      : path_(std::move(path)), input_(std::move(input)) {}
 
-  bool seek(int page) override { return input_->seek_subimage(page, 0); }
+  bool seek(int page) override { return input_->seek_subimage(page, 0) && read_inks_as_stored(); }
 
   PageHeader header() const override {
     OIIO::ImageSpec const spec = input_->spec();
@@ -70,36 +97,51 @@ class OiioReader final : public PageReader {
     header.description = std::string(spec.get_string_attribute("ImageDescription"));
     header.resolution = spec.get_float_attribute("XResolution");
     header.resolution_unit = std::string(spec.get_string_attribute("ResolutionUnit"));
+    header.orientation = spec.get_int_attribute("Orientation", 1);
+    header.colours = colours_of(spec);
     return header;
   }
 
-  bool read(void* samples) override {
+  std::string read(void* samples) override {
     OIIO::ImageSpec const spec = input_->spec();
     bool const whole = input_->read_image(input_->current_subimage(), 0, 0, spec.nchannels,
                                           stored_as(sample_type(spec.format)), samples);
     // of a TIFF cut short it says true, and leaves an error for every missing strip
-    bool const good = whole && !input_->has_error();
-    if (!good) input_->geterror();
-    return good;
+    if (whole && !input_->has_error()) return "";
+    std::string const why = input_->geterror();
+    return why.empty() ? "no reason given" : why.substr(0, why.find('\n'));
   }
 
   void clear_errors() override { input_->geterror(); }
 
  private:
+  /// Opens the file anew where its page is of printing inks: the library's conversion to red, green and blue writes
+  /// beyond its buffers where the page is stored in tiles (OpenImageIO 2.4, issue 5315).
+  bool read_inks_as_stored() {
+    if (inks_ == InkColours::stored || photometric(input_->spec()) != photometric_inks) return true;
+    int const page = input_->current_subimage();
+    inks_ = InkColours::stored;
+    auto again = open_input(path_, inks_);
+    if (!again || !again->seek_subimage(page, 0)) return false;
+    input_ = std::move(again);
+    return true;
+  }
+
+  std::string path_;
   std::unique_ptr<OIIO::ImageInput> input_;
+  InkColours inks_ = InkColours::converted;
 };
 
 class OiioCodecs final : public ImageCodecs {
  public:
   std::unique_ptr<PageReader> open(std::string const& path) const override {
-    OIIO::ImageSpec configuration;
-    configuration["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by their opacity
-    auto input = OIIO::ImageInput::open(path, &configuration);
+    auto input = open_input(path, InkColours::converted);
     if (!input) {
       OIIO::geterror();
       return nullptr;
     }
-    return std::make_unique<OiioReader>(std::move(input));
+    auto reader = std::make_unique<OiioReader>(path, std::move(input));
+    return reader->seek(0) ? std::move(reader) : nullptr;
   }
 
   std::string encode_tiff(std::string const& path, GreyPage const& page,

@@ -42,6 +42,10 @@ void write_results(std::string const& folder, Calibration const& calibration, bo
   }
 }
 
+void log_warnings(Calibration const& calibration) {
+  for (std::string const& warning : calibration.warnings) spdlog::warn("{}", warning);
+}
+
 }  // namespace
 
 CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
@@ -71,6 +75,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
                                inputs);
       OutputFolder folder(place, {case_file::calibration, {case_file::calibration_figure}});
       Calibration const calibration = calibrate_pictures(arguments->folder, arguments->pictures);
+      log_warnings(calibration);
       folder.fill(
           [&](std::string const& staged) { write_results(staged, calibration, !arguments->no_figures, place); });
       folder.commit();
@@ -80,6 +85,7 @@ CommandBody attach_calibrate(CLI::App& app, GlobalOptions const& options) {
     auto const folders = camera_folders(arguments->folder);
     std::vector<Calibration> calibrations;
     for (auto const& [name, folder] : folders) calibrations.push_back(calibrate_case(folder));
+    for (Calibration const& calibration : calibrations) log_warnings(calibration);
     nlohmann::ordered_json cameras;
     std::string text;
     for (std::size_t i = 0; i < folders.size(); ++i) {

@@ -77,16 +77,18 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
                             {"not_finite", not_finite},
                             {"dot_diameter_px", known(seen.dot_diameter_px)},
                             {"channels", metadata.channels},
+                            {"orientation", metadata.orientation},
                             {"background", known(seen.background)},
                             {"dot_height", known(seen.dot_height)},
                             {"noise", known(seen.noise)},
                             {"snr", known(seen.snr())}};
   print_result(
       options, json_text(json),
-      fmt::format("{}: {} x {} px, {} bits{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
+      fmt::format("{}: {} x {} px, {} bits{}{}, grey levels {:.6g} to {:.6g}, mean {:.6g}, dots {:.2f} px (e^-2), {}",
                   path, image.columns(), image.rows(), metadata.bit_depth,
-                  metadata.channels >= 3 ? ", colour turned to luminance" : "", least, most, seen.mean,
-                  seen.dot_diameter_px,
+                  metadata.channels >= 3 ? ", colour turned to luminance" : "",
+                  metadata.orientation == 1 ? "" : fmt::format(", Orientation {} turned upright", metadata.orientation),
+                  least, most, seen.mean, seen.dot_diameter_px,
                   std::isfinite(seen.snr()) ? fmt::format("SNR {:.3g} (dots {:.4g} levels high, noise {:.3g})",
                                                           seen.snr(), seen.dot_height, seen.noise)
                                             : "SNR unknown (no noise or no dots to be seen)"));

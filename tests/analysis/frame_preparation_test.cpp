@@ -83,6 +83,19 @@ TEST(ImageMask, LeavesOutWhereThePictureIsBlack) {
   std::filesystem::remove(file);
 }
 
+// A mask's pixel that is no number says neither "masked" nor "not masked", a background's is no level.
+TEST(ImageMask, ThatHasPixelsWhichAreNoNumbersIsRefused) {
+  std::string const file = GLADSTONE_DATA_DIR "/../tests/cases/pictures/mask_nan.tif";
+  Image<double> const frame(7, 5, 5.0);
+  for (std::string const& table : {"[[correlate.mask]]\nkind = \"image\"\nfile = \"" + file + "\"\n",
+                                   "[[correlate.preprocess]]\nkind = \"background\"\nframe = [{ reference = \"" + file +
+                                       "\", flow = \"" + file + "\" }]\n"}) {
+    EXPECT_THAT([&] { prepared(frame, frame, table); },
+                ::testing::ThrowsMessage<DataError>(HasSubstr("mask_nan.tif: 14 of 35 pixels are nan or infinite")))
+        << table;
+  }
+}
+
 // What is bright in one frame is left out of both; what was unknown stays so.
 TEST(IntensityMask, LeavesOutWhatIsBrightInEitherFrame) {
   Image<double> reference(32, 32, 10.0), flow = reference;

@@ -67,6 +67,42 @@ TEST(GridAssignment, OfAPartTakesTheExpectedMiddle) {
   expect_right(assigned);
 }
 
+// All columns, and a part of the rows: the columns tell the middle along X, however wrong the expected view.
+TEST(GridAssignment, NeedsTheExpectedMiddleOnlyAlongTheAxisThatIsCut) {
+  ExpectedView rough = expected();
+  rough.middle_px = seen(1.6, 0.2);
+  AssignedDots const assigned = assign_to_grid(dots_of(-6, 6, -4, 2), grid, rough);
+  EXPECT_EQ(assigned.dots.size(), 13u * 7u);
+  EXPECT_EQ(assigned.middle_by, MiddleBy::expected_view);
+  EXPECT_NEAR(assigned.middle_offset, 0.2, 0.02);
+  expect_right(assigned);
+}
+
+// A spot in a dot's place a fifth of a spacing off, and one of half as large again: neither is a dot of the grid.
+TEST(GridAssignment, SpotsThatFitNeitherPlacesNorSizesAreRemoved) {
+  std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
+  for (DetectedDot& dot : dots) {
+    if (length(dot.centre_px - seen(-3, 2)) < 1) dot.centre_px = seen(-2.85, 2.13);
+    if (length(dot.centre_px - seen(2, -1)) < 1) dot.diameter_px = 9;
+  }
+  AssignedDots const assigned = assign_to_grid(dots, grid, expected());
+  EXPECT_EQ(assigned.dots.size(), 13u * 9u - 2);
+  EXPECT_EQ(assigned.strangers.size(), 2u);
+  EXPECT_EQ(assigned.middle_by, MiddleBy::whole_grid);
+  expect_right(assigned);
+}
+
+// A grid with noise scatters by it about a smooth one, but for what a cubic polynomial leaves of the perspective: the
+// fourth term of x / (1 + u), 240 u^3 with u = 0.17 at the edge, over 8 for the best cubic, 0.15 px at most.
+TEST(GridAssignment, TellsTheScatterOfItsDots) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.5);
+  std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
+  for (DetectedDot& dot : dots) dot.centre_px += Vec2d{noise(random), noise(random)};
+  // 234 numbers less 20 terms tell a scatter to 1 / sqrt(2 * 214) = 5 %
+  EXPECT_NEAR(assign_to_grid(dots, grid, expected()).smoothness_px, 0.5, 0.5 * 0.15 + 0.02);
+}
+
 TEST(GridAssignment, GoesAroundMissingDotsAndLeavesOutStrangers) {
   std::vector<DetectedDot> dots = dots_of(-6, 6, -4, 4);
   std::erase_if(dots, [](DetectedDot const& dot) {

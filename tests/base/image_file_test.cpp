@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <utility>
 
 #include "render/base/error.h"
 #include "tests/base/support/output.h"
@@ -197,12 +199,131 @@ std::string with_tag(std::string bytes, std::uint16_t tag, std::uint32_t value) 
   return bytes;
 }
 
-// TIFF's default is one bit a sample, so that pictures of black and white may leave the entry BitsPerSample (258) out.
-TEST(ImageFile, OneBitAPixelIsNotReadWrong) {
-  std::string const path = temporary("bits.tif");
+std::string case_path(std::string const& name) {
+  return std::string(GLADSTONE_DATA_DIR "/../tests/cases/pictures/") + name;
+}
+
+/// The level of a pixel, by column and row, of a picture in tests/cases/pictures (make.py there).
+using Levels = double (*)(int, int);
+double byte_level(int i, int j) { return 10 + 30 * i + 5 * j; }
+double word_level(int i, int j) { return 1000 + 7000 * i + 1500 * j; }
+
+/// Every picture reads as the levels that were written, upright, whatever its file says of turns, byte order, samples,
+/// compression and colours. Tolerances: 0 but for
+/// - luminance of three equal colours, whose weights sum to 1 but for rounding,
+/// - float_16, whose 11 bits round 0.75 by 2^-12,
+/// - ink levels, which are as exact as their 8 bits,
+/// - JPEG, whose discrete cosine transform rounds each of 64 coefficients by half a level, seldom all to one side,
+/// - a TIFF's palette of 16 bits, of which the library keeps 8: one level.
+TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
+  constexpr double rounding = 1e-9, jpeg = 2, palette = 1;
+  Levels const first_bits[] = {[](int i, int j) { return std::floor(byte_level(i, j) / 64); },
+                               [](int i, int j) { return std::floor(byte_level(i, j) / 16); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 64); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 16); },
+                               [](int i, int j) { return std::floor(word_level(i, j) / 4); }};
+  Levels const white = [](int i, int j) { return byte_level(i, j) > 128 ? 1.0 : 0.0; };
+  Levels const white_byte = [](int i, int j) { return byte_level(i, j) > 128 ? 255.0 : 0.0; };
+  Levels const share = [](int i, int j) { return word_level(i, j) / 65535; };
+  struct Kind {
+    char const* name;
+    Levels level;
+    double tolerance;
+  };
+  for (Kind const &kind : std::initializer_list<Kind>{
+           {"orientation_1.tif", byte_level, 0},
+           {"orientation_2.tif", byte_level, 0},
+           {"orientation_3.tif", byte_level, 0},
+           {"orientation_4.tif", byte_level, 0},
+           {"orientation_5.tif", byte_level, 0},
+           {"orientation_6.tif", byte_level, 0},
+           {"orientation_7.tif", byte_level, 0},
+           {"orientation_8.tif", byte_level, 0},
+           {"orientation_6.png", byte_level, 0},
+           {"orientation_6.jpg", byte_level, jpeg},
+           {"big_endian.tif", word_level, 0},
+           {"bigtiff.tif", word_level, 0},
+           {"tiled.tif", word_level, 0},
+           {"predictor.tif", word_level, 0},
+           {"compression_zstd.tif", byte_level, 0},
+           {"compression_lzma.tif", byte_level, 0},
+           {"compression_packbits.tif", byte_level, 0},
+           {"bits_2.tif", first_bits[0], 0},
+           {"bits_4.tif", first_bits[1], 0},
+           {"bits_10.tif", first_bits[2], 0},
+           {"bits_12.tif", first_bits[3], 0},
+           {"bits_14.tif", first_bits[4], 0},
+           {"bits_1.tif", white, 0},
+           {"bits_1_group4.tif", white, 0},
+           {"bits_1_white_is_zero.tif", white, 0},
+           {"bits_1.png", white_byte, 0},
+           {"white_is_zero_8.tif", byte_level, 0},
+           {"white_is_zero_12.tif", first_bits[3], 0},
+           {"white_is_zero_16.tif", word_level, 0},
+           {"float_16.tif", share, 2.5e-4},
+           {"float_32.tif", share, 6e-8},
+           {"int_16.tif", [](int i, int j) { return word_level(i, j) - 30000; }, 0},
+           {"uint_32.tif", [](int i, int j) { return 60000 * word_level(i, j); }, 0},
+           {"palette.tif", byte_level, palette},
+           {"palette.png", byte_level, rounding},
+           {"palette.gif", byte_level, rounding},
+           {"rgb.tif", byte_level, rounding},
+           {"rgb_planar.tif", byte_level, rounding},
+           {"rgba.tif", byte_level, rounding},
+           {"grey_alpha.tif", byte_level, 0},
+           {"grey_alpha.png", byte_level, 0},
+           {"grey_16.png", word_level, 0},
+           {"grey.jpg", byte_level, jpeg},
+           {"ycbcr.tif", byte_level, jpeg},
+           {"inks.tif", byte_level, rounding},
+           {"inks_tiled.tif", byte_level, rounding},
+           {"inks_planar.tif", byte_level, rounding},
+           {"inks_16_tiled.tif", [](int i, int j) { return 257 * byte_level(i, j); }, 1e-6},
+       }) {
+    Image<double> const image = read_image(case_path(kind.name));
+    ASSERT_EQ(image.columns(), 7) << kind.name;
+    ASSERT_EQ(image.rows(), 5) << kind.name;
+    for (int j = 0; j < 5; ++j) {
+      for (int i = 0; i < 7; ++i)
+        EXPECT_NEAR(image(i, j), kind.level(i, j), kind.tolerance) << kind.name << ' ' << i << ' ' << j;
+    }
+  }
+}
+
+TEST(ImageFile, WhatWasDoneToAPictureIsReported) {
+  ImageMetadata metadata;
+  read_image(case_path("orientation_6.tif"), &metadata);
+  EXPECT_EQ(metadata.orientation, 6);
+  read_image(case_path("bits_1.tif"), &metadata);
+  EXPECT_EQ(metadata.orientation, 1);
+  EXPECT_EQ(metadata.bit_depth, 1);
+  EXPECT_EQ(metadata.sample_bits, 1);
+  read_image(case_path("inks_tiled.tif"), &metadata);
+  EXPECT_EQ(metadata.channels, 3);
+}
+
+TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
+  for (auto const& [name, reason] : std::initializer_list<std::pair<char const*, char const*>>{
+           {"int_8.tif", "has samples of type int8"},
+           {"uint_64.tif", "unsigned integers of 64 bits"},
+           {"complex.tif", "complex floating-point numbers of 64 bits"},
+           {"compression_jpeg2000.tif", "compressed by an unknown method"},
+           {"compression_webp.tif", "compression 50001"},
+           {"inks_five_tiled.tif", "is of 5 printing inks"},
+           {"channels_seven.tif", "has 7 values a pixel that are no colours"},
+           {"pages_3.tif", "has 3 pages"},
+       }) {
+    EXPECT_THAT([&, file = name] { read_image(case_path(file)); },
+                ThrowsMessage<DataError>(AllOf(HasSubstr(name), HasSubstr(reason))))
+        << name;
+  }
+}
+
+/// A TIFF of black and white without the entry BitsPerSample, whose default is one bit. @param packing its compression
+std::string bilevel_tiff(std::uint32_t packing, std::size_t bytes_of_pixels) {
   constexpr std::uint32_t columns = 256, rows = 200, entries = 8, pixels_at = 10 + 12 * entries + 4;
-  constexpr std::uint32_t entry[entries][2] = {{256, columns},   {257, rows}, {259, 1},    {262, 1},
-                                               {273, pixels_at}, {277, 1},    {278, rows}, {279, columns / 8 * rows}};
+  std::uint32_t const entry[entries][2] = {{256, columns},   {257, rows}, {259, packing}, {262, 1},
+                                           {273, pixels_at}, {277, 1},    {278, rows},    {279, columns / 8 * rows}};
   std::string bytes;
   auto const put = [&bytes](std::uint32_t value, int size) {
     for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xffu);
@@ -218,10 +339,24 @@ TEST(ImageFile, OneBitAPixelIsNotReadWrong) {
     put(value, 4);
   }
   put(0, 4);
-  bytes.append(columns / 8 * rows, '\x55');
-  std::ofstream(path, std::ios::binary) << bytes;
-  EXPECT_THAT([&] { read_image(path); },
-              ThrowsMessage<DataError>(AllOf(HasSubstr("or has one bit a pixel"), HasSubstr("8 or 16 bits"))));
+  bytes.append(bytes_of_pixels, '\x55');
+  return bytes;
+}
+
+// 0x55 is 01010101: every second pixel of a row is white, beginning with the second.
+TEST(ImageFile, OneBitAPixelIsReadWithoutTheEntryThatSaysSo) {
+  std::string const path = temporary("bits.tif");
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 200);
+  Image<double> const image = read_image(path);
+  ASSERT_EQ(image.columns(), 256);
+  ASSERT_EQ(image.rows(), 200);
+  for (int j = 0; j < 200; ++j) {
+    for (int i = 0; i < 256; ++i) ASSERT_EQ(image(i, j), i % 2) << i << ' ' << j;
+  }
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(1, 256 / 8 * 100);
+  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("damaged or cut short")));
+  std::ofstream(path, std::ios::binary) << bilevel_tiff(32773, 256 / 8 * 200);
+  EXPECT_THAT([&] { read_image(path); }, ThrowsMessage<DataError>(HasSubstr("BitsPerSample is missing")));
 }
 
 // 50,000 x 50,000 px of 16 bits are 5 GB; the file has 128 kB, and packed as densely as can be 0.3 GB.

@@ -300,5 +300,108 @@ TEST_F(Calibrations, TakePicturesFromElsewhere) {
                  {"roughly.toml: fits a camera with the dots behind it only", "in the order of calibration.planes_mm"});
 }
 
+/// Pictures of a rendered case, calibrated as somebody's own.
+class CalibrationPictures : public Calibrations {
+ protected:
+  void SetUp() override {
+    Calibrations::SetUp();
+    write("setup.toml", wide);
+    render("case");
+  }
+  static std::vector<std::string> arguments(std::vector<std::string> const& pictures, bool json = true) {
+    std::vector<std::string> all{"calibrate", "setup.toml", "-o", "camera", "--quiet", "--no-figures", "--images"};
+    for (std::string const& picture : pictures) all.push_back(picture);
+    if (json) all.emplace_back("--json");
+    return all;
+  }
+  nlohmann::json calibrated(std::vector<std::string> const& pictures) const {
+    std::vector<std::string> all = arguments(pictures, false);
+    return json_of(all);
+  }
+  /// fx of the thin lens in focus on Z = 0: its image distance over the pixel pitch.
+  static constexpr double fx = 24e-3 * 0.3 / (0.3 - 24e-3) / 10e-6;
+  std::string const p0 = "case/plane_000.tif", p1 = "case/plane_001.tif", p2 = "case/plane_002.tif";
+};
+
+TEST_F(CalibrationPictures, ThatAreGivenTwiceOrInAnotherOrderAreRefusedByName) {
+  expect_refused(arguments({p1, p1, p1}), 2, {"case/plane_001.tif", "is the same picture as case/plane_001.tif"});
+  expect_refused(arguments({p0, p0, p2}), 2, {"is the same picture as case/plane_000.tif", "Z = 0 mm", "-20 mm"});
+  expect_refused(arguments({p0, p2, p1}), 2,
+                 {"fits in another order of the pictures: case/plane_000.tif, case/plane_001.tif, case/plane_002.tif"});
+  EXPECT_FALSE(fs::exists(in("camera/calibration.h5")));
+}
+
+// A second exposure of the same plane, with noise of its own, is no other plane.
+TEST_F(CalibrationPictures, OfOnePlaneTakenTwiceAreRefused) {
+  Image<double> const picture = read_image(in(p0).string());
+  Image<std::uint16_t> other(picture.columns(), picture.rows());
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    other.data()[i] = static_cast<std::uint16_t>(picture.data()[i] + static_cast<double>(i % 3));
+  }
+  write_tiff(in("again.tif").string(), other, {12, 10e-6, ""});
+  expect_refused(arguments({p0, "again.tif", p2}), 2,
+                 {"again.tif: shows the dots where case/plane_000.tif shows them"});
+}
+
+// Dirt that touches a dot draws its centroid by pixels: such dots are counted and left out, and the camera stays.
+TEST_F(CalibrationPictures, WithDirtLeaveItOut) {
+  auto const places = dataset("case/truth.h5", "/dots/image_px");
+  Image<double> const picture = read_image(in(p1).string());
+  Image<std::uint16_t> dirty(picture.columns(), picture.rows());
+  std::copy(picture.begin(), picture.end(), dirty.begin());
+  std::size_t const dots = 117, spots = 3;
+  for (std::size_t k = 0; k < spots; ++k) {
+    std::size_t const dot = dots + 30 + 20 * k;  // on the second plane
+    int const left = static_cast<int>(places[2 * dot]) + 5, top = static_cast<int>(places[2 * dot + 1]) - 2;
+    for (int row = top; row < top + 5; ++row) {
+      for (int column = left; column < left + 4; ++column) dirty(column, row) = 3000;
+    }
+  }
+  write_tiff(in("dirty.tif").string(), dirty, {12, 10e-6, ""});
+  auto const json = calibrated({p0, "dirty.tif", p2});
+  auto const& plane = json["planes"][1];
+  EXPECT_EQ(plane["not_dots"].get<std::size_t>() + plane["strangers"].size(), spots) << plane;
+  EXPECT_EQ(json["dots"], 3 * dots - spots);
+  auto const& parameter = json["pinhole"]["parameters"]["fx"];
+  EXPECT_NEAR(parameter["value"].get<double>(), fx, 4 * parameter["standard_error"].get<double>());
+  EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);
+}
+
+// A plate that moves by `share` of Z along X is seen as by a camera that moves the other way, plane by plane.
+TEST_F(CalibrationPictures, OfAPlateThatDoesNotMoveAlongItsNormalGiveTheCameraAndTheDrift) {
+  double const drift = 0.04;  // 2.3 degrees
+  std::vector<std::string> pictures;
+  for (double const z : {-20.0, 0.0, 20.0}) {
+    double const across = drift * z, along = std::sqrt(1 - drift * drift) * z;
+    std::string one = with(wide, "[-20.0, 0.0, 20.0]", "[" + std::to_string(along) + "]");
+    one =
+        with(one, "[geometry]\nz_a_mm = 300.0\n",
+             "[camera.pose]\nposition_mm = [" + std::to_string(-across) + ", 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n");
+    write("one.toml", one);
+    std::string const folder = "z" + std::to_string(pictures.size());
+    succeed({"render", "one.toml", "-o", folder, "--quiet"});
+    pictures.push_back(folder + "/plane_000.tif");
+  }
+  auto const json = calibrated(pictures);
+  // what the principal point, which is known to 1 px here, leaves of the drift is 1 / fx
+  EXPECT_NEAR(json["drift"][0].get<double>(), drift, 5 / fx);
+  EXPECT_NEAR(json["drift"][1].get<double>(), 0, 5 / fx);
+  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("degrees to its normal"));
+  auto const& parameter = json["pinhole"]["parameters"]["fx"];
+  EXPECT_NEAR(parameter["value"].get<double>(), fx, 1e-3 * fx);
+}
+
+// The plate of the first plane hung one dot aside: its whole grid is seen, but not where it was said to be.
+TEST_F(CalibrationPictures, WithAMiddleDotThatIsOffByOneAreCorrected) {
+  write("one.toml", with(with(wide, "[-20.0, 0.0, 20.0]", "[-20.0]"), "[geometry]\nz_a_mm = 300.0\n",
+                         "[camera.pose]\nposition_mm = [-5.0, 0.0, 300.0]\nrotation_deg = [0, 0, 0]\n"));
+  succeed({"render", "one.toml", "-o", "aside", "--quiet"});
+  auto const json = calibrated({"aside/plane_000.tif", p1, p2});
+  EXPECT_THAT(json["warnings"].dump(), testing::HasSubstr("the middle dot was taken 1 columns and 0 rows off"));
+  auto const& parameter = json["pinhole"]["parameters"]["fx"];
+  EXPECT_NEAR(parameter["value"].get<double>(), fx, 4 * parameter["standard_error"].get<double>());
+  EXPECT_LT(json["pinhole"]["rms_px"].get<double>(), 0.01);
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end

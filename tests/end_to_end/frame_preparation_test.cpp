@@ -38,6 +38,27 @@ TEST_F(MaskedFrames, AreRecordedWithTheVectors) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(status[i] == 2.0, x[i] + 0.5 < 32.0) << x[i];
 }
 
+// A case does not depend on the masks of its setup, its vectors do: a mask may change between render and correlate, but
+// not between correlate and compare, which measures again.
+TEST_F(MaskedFrames, MayHaveAnotherMaskThanWhenTheyWereRendered) {
+  auto const write_mask = [&](int columns) {
+    Image<std::uint16_t> mask(64, 64, 1);
+    for (int j = 0; j < 64; ++j) std::fill_n(mask.data() + std::ptrdiff_t{64} * j, columns, std::uint16_t{0});
+    write_tiff(in("mask.tif").string(), mask, {});
+  };
+  write("masked.toml", small_setup + std::string("[[correlate.mask]]\nkind = \"image\"\nfile = \"mask.tif\"\n"));
+  write_mask(20);
+  ASSERT_EQ(gladstone({"render", "masked.toml", "-o", "masked"}).exit_code, 0);
+  write_mask(32);
+  ASSERT_EQ(gladstone({"correlate", "masked"}).exit_code, 0);
+  Outcome const compared = gladstone({"compare", "masked", "--no-figures"});
+  EXPECT_EQ(compared.exit_code, 0) << compared.err;
+  write_mask(10);
+  Outcome const changed = gladstone({"compare", "masked", "--no-figures"});
+  EXPECT_EQ(changed.exit_code, 2);
+  EXPECT_THAT(changed.err, AllOf(HasSubstr("mask.tif: has changed since"), HasSubstr("gladstone correlate")));
+}
+
 TEST_F(MaskedFrames, WithNothingLeftAreNoMeasurement) {
   Outcome const outcome = correlate("[[correlate.mask]]\nkind = \"intensity\"\nbelow_dn = 1e9\n");
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;

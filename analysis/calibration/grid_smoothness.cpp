@@ -1,0 +1,113 @@
+#include "analysis/calibration/grid_smoothness.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace gladstone {
+namespace {
+
+constexpr std::size_t least_for_cubic = 30, least_dots = 15;
+constexpr double deviations = 6;            // of a robust standard deviation
+constexpr double least_of_spacing = 0.02;   // residual of a place that is never removed
+constexpr double least_of_diameter = 0.25;  // residual of a diameter that is never removed
+constexpr double least_diameter_px = 1;
+constexpr int most_rounds = 20;
+
+/// Products of i and j up to an order, over the largest of either.
+Eigen::MatrixXd terms_of(std::vector<GridDot> const& dots, int order) {
+  int most = 1;
+  for (GridDot const& dot : dots) most = std::max({most, std::abs(dot.i), std::abs(dot.j)});
+  Eigen::MatrixXd terms(static_cast<Eigen::Index>(dots.size()), (order + 1) * (order + 2) / 2);
+  for (Eigen::Index row = 0; row < terms.rows(); ++row) {
+    GridDot const& dot = dots[static_cast<std::size_t>(row)];
+    double const u = static_cast<double>(dot.i) / most, v = static_cast<double>(dot.j) / most;
+    Eigen::Index column = 0;
+    for (int of_u = 0; of_u <= order; ++of_u) {
+      for (int of_v = 0; of_u + of_v <= order; ++of_v) terms(row, column++) = std::pow(u, of_u) * std::pow(v, of_v);
+    }
+  }
+  return terms;
+}
+
+/// Residuals of values, a column each, from a polynomial in (i, j).
+Eigen::MatrixXd residuals_of(std::vector<GridDot> const& dots, Eigen::MatrixXd const& values, int order) {
+  Eigen::MatrixXd const terms = terms_of(dots, order);
+  return values - terms * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(values);
+}
+
+double median_of(Eigen::VectorXd values) {
+  double* const middle = values.data() + values.size() / 2;
+  std::nth_element(values.data(), middle, values.data() + values.size());
+  return *middle;
+}
+
+int order_of(std::size_t dots) { return dots >= least_for_cubic ? 3 : 2; }
+
+Eigen::MatrixXd places_of(std::vector<GridDot> const& dots) {
+  Eigen::MatrixXd places(static_cast<Eigen::Index>(dots.size()), 2);
+  for (std::size_t k = 0; k < dots.size(); ++k)
+    places.row(static_cast<Eigen::Index>(k)) << dots[k].pixel.x, dots[k].pixel.y;
+  return places;
+}
+
+Eigen::MatrixXd diameters_of(std::vector<GridDot> const& dots) {
+  Eigen::MatrixXd diameters(static_cast<Eigen::Index>(dots.size()), 1);
+  for (std::size_t k = 0; k < dots.size(); ++k) diameters(static_cast<Eigen::Index>(k), 0) = dots[k].diameter_px;
+  return diameters;
+}
+
+/// Pixels from a dot to the next, the shorter of the two ways: from the linear part of a plane's map.
+double spacing_of(std::vector<GridDot> const& dots) {
+  Eigen::MatrixXd const terms = terms_of(dots, 1), places = places_of(dots);
+  Eigen::MatrixXd const map = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(places);
+  int most = 1;
+  for (GridDot const& dot : dots) most = std::max({most, std::abs(dot.i), std::abs(dot.j)});
+  return std::min(map.row(1).norm(), map.row(2).norm()) / most;
+}
+
+/// Removes the dots whose residual exceeds the limit; of several the larger ones, which may have drawn the others.
+/// @return whether there were any
+bool remove_larger(SmoothGrid& grid, Eigen::VectorXd const& size, double limit) {
+  double const largest = size.maxCoeff();
+  if (!(largest > limit)) return false;
+  std::vector<GridDot> kept;
+  for (std::size_t k = 0; k < grid.dots.size(); ++k) {
+    bool const stranger = size(static_cast<Eigen::Index>(k)) > std::max(limit, 0.5 * largest);
+    if (stranger) grid.strangers.push_back(grid.dots[k].pixel);
+    if (!stranger) kept.push_back(grid.dots[k]);
+  }
+  grid.dots = std::move(kept);
+  return true;
+}
+
+bool remove_misplaced(SmoothGrid& grid) {
+  Eigen::VectorXd const size =
+      residuals_of(grid.dots, places_of(grid.dots), order_of(grid.dots.size())).rowwise().norm();
+  double const deviation = median_of(size) / 1.1774;  // median of a Rayleigh distribution
+  return remove_larger(grid, size, std::max(deviations * deviation, least_of_spacing * spacing_of(grid.dots)));
+}
+
+bool remove_missized(SmoothGrid& grid) {
+  Eigen::MatrixXd const diameters = diameters_of(grid.dots);
+  Eigen::VectorXd const size = residuals_of(grid.dots, diameters, 1).cwiseAbs().rowwise().norm();
+  double const least = std::max(least_of_diameter * median_of(diameters.col(0)), least_diameter_px);
+  return remove_larger(grid, size, std::max(deviations * 1.4826 * median_of(size), least));
+}
+
+}  // namespace
+
+SmoothGrid remove_strangers(std::vector<GridDot> dots) {
+  SmoothGrid grid{std::move(dots), {}, 0};
+  for (int round = 0; round < most_rounds && grid.dots.size() >= least_dots; ++round) {
+    if (!remove_missized(grid) && !remove_misplaced(grid)) break;
+  }
+  if (grid.dots.size() < least_dots) return grid;
+  int const order = order_of(grid.dots.size());
+  Eigen::MatrixXd const residuals = residuals_of(grid.dots, places_of(grid.dots), order);
+  auto const freedom = static_cast<double>(2 * (residuals.rows() - (order + 1) * (order + 2) / 2));
+  grid.rms_px = std::sqrt(residuals.squaredNorm() / freedom);
+  return grid;
+}
+
+}  // namespace gladstone
