@@ -34,10 +34,10 @@ struct AxisWeightsView {
 /// The weights of the windows along one axis, cut off at the image's border, and their autocorrelation.
 class AxisWeights {
  public:
-  /// @param windows      of the grid along this axis
   /// @param image_length along this axis [px]
-  AxisWeights(InterrogationGrid const& grid, int windows, int image_length, WindowWeighting weighting)
-      : size_(2 * grid.window_px), first_px_(-grid.window_px / 2), spacing_px_(grid.spacing_px) {
+  AxisWeights(InterrogationGrid const& grid, GridAxis axis, int image_length, WindowWeighting weighting)
+      : size_(2 * grid.window_px), first_px_(grid.first_px(axis) - grid.window_px / 2), spacing_px_(grid.spacing_px) {
+    int const windows = grid.windows(axis);
     int const lags = AxisWeightsView::lags(size_);
     weights_.reserve(static_cast<std::size_t>(windows) * size_);
     autocorrelations_.reserve(static_cast<std::size_t>(windows) * lags);

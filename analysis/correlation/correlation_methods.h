@@ -18,9 +18,11 @@ std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job);
 /// Zero-padded normalised correlation: at each shift over the energies of what both windows then have in common.
 /// Raffel et al., Particle Image Velocimetry (2018), eq. 5.6; with the product of both weights as weight.
 std::vector<WindowCorrelation> correlate_zncc(InterrogationJob const& job);
-/// Minimum quadratic difference: the reference's window against the whole flow frame around it; the plane is
-/// 1 - sum w (A - B)^2 / sum w (A^2 + B^2), whose maximum is that of the tracking function of Gui & Merzkirch, Exp.
-/// Fluids 21 (1996) 465, over the energies. It belongs to where the reference's dots are.
+/// Minimum quadratic difference: either frame's window against the whole other frame around it; the plane is
+/// 1 - sum w (A - B)^2 / sum w (A^2 + B^2), with both sums over the two comparisons. The maximum of one comparison is
+/// that of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465, over the energies, and belongs to where
+/// the dots of the frame are whose window it is; both together belong to the mid-position, and exchanged frames give
+/// the negative displacement.
 std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
 /// The planes of scc by OpenCV's transforms in double precision: the reference that others are compared with.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);

@@ -147,8 +147,8 @@ void visit_planes(InterrogationJob const& job, PlaneMethod const& method,
                   std::function<VisitPlanes()> const& make_visitor) {
   int const radius = job.search_radius_px, window = job.grid.window_px;
   GLADSTONE_EXPECTS(radius > 0 && 2 * radius <= window && window % 2 == 0);
-  AxisWeights const x(job.grid, job.grid.columns, job.pair.columns, job.weighting);
-  AxisWeights const y(job.grid, job.grid.rows, job.pair.rows, job.weighting);
+  AxisWeights const x(job.grid, GridAxis::x, job.pair.columns, job.weighting);
+  AxisWeights const y(job.grid, GridAxis::y, job.pair.rows, job.weighting);
   KnownTiles const tiles(job.pair);
   WindowMeans const means(job, x.view(), y.view());
   LaneFourier const fourier(LaneCorrelation::transform_size(job, method.with_margin));

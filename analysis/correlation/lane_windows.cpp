@@ -126,7 +126,9 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
   if constexpr (term == WindowTerm::reference_energy) return {w * a * a, w};
   if constexpr (term == WindowTerm::flow_energy) return {w, w * b * b};
   if constexpr (term == WindowTerm::search) return {w * w * a, b};
-  return {w * w, b * b};
+  if constexpr (term == WindowTerm::search_energy) return {w * w, b * b};
+  if constexpr (term == WindowTerm::search_back) return {a, w * w * b};
+  return {a * a, w * w};
 }
 
 }  // namespace
@@ -185,6 +187,12 @@ void LaneWindows::row(int j, WindowTerm term, ComplexLanes* out) {
       return;
     case WindowTerm::search_energy:
       row_of_term<WindowTerm::search_energy>(j, out);
+      return;
+    case WindowTerm::search_back:
+      row_of_term<WindowTerm::search_back>(j, out);
+      return;
+    case WindowTerm::search_back_energy:
+      row_of_term<WindowTerm::search_back_energy>(j, out);
       return;
   }
 }

@@ -12,11 +12,13 @@ namespace gladstone {
 
 /// The two real pictures of a window whose correlation is wanted; A and B are the mean-free frames, w the weights.
 enum class WindowTerm {
-  frames,            ///< w A and w B
-  reference_energy,  ///< w A^2 and w
-  flow_energy,       ///< w and w B^2
-  search,            ///< w^2 A and B as it is, over the search range beyond the window, too
-  search_energy      ///< w^2 and B^2 over that range
+  frames,             ///< w A and w B
+  reference_energy,   ///< w A^2 and w
+  flow_energy,        ///< w and w B^2
+  search,             ///< w^2 A and B as it is, over the search range beyond the window, too
+  search_energy,      ///< w^2 and B^2 over that range
+  search_back,        ///< A as it is over that range, and w^2 B
+  search_back_energy  ///< A^2 over that range, and w^2
 };
 
 /// Eight windows of a grid side by side: their pixels, weighted and with the weighted mean taken off, row by row.

@@ -88,8 +88,8 @@ std::optional<PatternPeriod> pattern_period(Image<double> const& image, Correlat
   int const window = std::min(std::max(2 * settings.window_px.front(), fewest_px), room);
   int const range = CorrelationSchedule(settings).search_radius_px(0), radius = std::min(2 * range, window / 2);
   InterrogationGrid const grid = sampling_grid(image.columns(), image.rows(), window);
-  AxisWeights const weights_x(grid, grid.columns, image.columns(), WindowWeighting::gaussian);
-  AxisWeights const weights_y(grid, grid.rows, image.rows(), WindowWeighting::gaussian);
+  AxisWeights const weights_x(grid, GridAxis::x, image.columns(), WindowWeighting::gaussian);
+  AxisWeights const weights_y(grid, GridAxis::y, image.rows(), WindowWeighting::gaussian);
   AxisWeightsView const x = weights_x.view(), y = weights_y.view();
   ImagePair const pair = make_image_pair(image, image);
   Autocorrelation autocorrelation(x.size);

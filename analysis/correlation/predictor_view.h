@@ -21,8 +21,9 @@ GLADSTONE_HD inline void cubic_convolution(double t, double* w) {
 
 /// Rows and columns of ghost nodes on every side of a grid, so that they reach past the image.
 inline int ghost_nodes(InterrogationGrid const& grid, int image_columns, int image_rows) {
-  double const beyond = std::max(
-      {grid.centre(0), image_columns - grid.centre(grid.columns - 1), image_rows - grid.centre(grid.rows - 1)});
+  double const beyond =
+      std::max({grid.centre(GridAxis::x, 0), image_columns - grid.centre(GridAxis::x, grid.columns - 1),
+                grid.centre(GridAxis::y, 0), image_rows - grid.centre(GridAxis::y, grid.rows - 1)});
   return static_cast<int>(std::ceil(beyond / grid.spacing_px)) + 2;
 }
 
@@ -63,10 +64,10 @@ struct PredictorView {
   int rows;
   Vec2d const* nodes;
 
-  /// @param count columns or rows
-  GLADSTONE_HD Taps taps(double position_px, int count) const {
-    double const node = (position_px - grid.centre(0)) / grid.spacing_px + ghosts;
-    double const last = static_cast<double>(count - 3);
+  GLADSTONE_HD Taps taps(GridAxis axis, double position_px) const {
+    int const count = axis == GridAxis::x ? columns : rows;
+    double const node = (position_px - grid.centre(axis, 0)) / grid.spacing_px + ghosts;
+    double const last = static_cast<double>(count - 2);
     double const clamped = node < 1.0 ? 1.0 : (node > last ? last : node);
     int const whole = static_cast<int>(clamped);
     int const base = whole < count - 3 ? whole : count - 3;
@@ -76,7 +77,7 @@ struct PredictorView {
   }
 
   GLADSTONE_HD Vec2d at(Vec2d position_px) const {
-    Taps const x = taps(position_px.x, columns), y = taps(position_px.y, rows);
+    Taps const x = taps(GridAxis::x, position_px.x), y = taps(GridAxis::y, position_px.y);
     Vec2d sum;
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 4; ++i)

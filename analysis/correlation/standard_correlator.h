@@ -26,8 +26,11 @@ class CorrelationSchedule {
 
   int passes() const { return static_cast<int>(windows_.size()); }
   bool is_last(int pass) const { return pass + 1 == passes(); }
+  /// Windows of a pass: the last one's where the vectors stand, the others' centred on the image, so that predictors of
+  /// mirrored frames are mirrored.
   InterrogationGrid grid(int pass, int columns, int rows) const {
-    return make_interrogation_grid(columns, rows, windows_[pass], overlap_);
+    return is_last(pass) ? make_interrogation_grid(columns, rows, windows_[pass], overlap_)
+                         : make_centred_grid(columns, rows, windows_[pass], overlap_);
   }
   /// Largest shift looked for along either axis.
   int search_radius_px(int pass) const;
@@ -63,7 +66,18 @@ struct AmbiguousPlaces {
   InterrogationGrid grid;
   char const* flag;  ///< null in the first pass
 
-  GLADSTONE_HD bool at(Vec2d position_px) const { return flag != nullptr && flag[grid.nearest(position_px)] != 0; }
+  /// Whether one of the nearest windows was: between windows that are equally near all of them count.
+  GLADSTONE_HD bool at(Vec2d position_px) const {
+    if (flag == nullptr) return false;
+    InterrogationGrid::Range const x = grid.nearest(GridAxis::x, position_px.x),
+                                   y = grid.nearest(GridAxis::y, position_px.y);
+    for (int row = y.first; row <= y.last; ++row)
+      for (int column = x.first; column <= x.last; ++column)
+        if (flag[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
+                 static_cast<std::size_t>(column)] != 0)
+          return true;
+    return false;
+  }
 };
 
 /// A window's result as a vector to be validated: the first of its peaks that the limit allows, the next ones as

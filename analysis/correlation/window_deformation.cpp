@@ -138,14 +138,14 @@ DensePredictor::DensePredictor(InterrogationGrid const& grid, std::span<Vec2d co
       nodes_[static_cast<std::size_t>(j) * columns_ + i] = extended_node(
           grid, [&](int k) { return nodes[k]; }, i - ghosts_, j - ghosts_);
   for (int i = 0; i < image_columns; ++i) {
-    PredictorView::Taps const x = view().taps(i, columns_);
+    PredictorView::Taps const x = view().taps(GridAxis::x, i);
     column_first_.push_back(x.first);
     for (int k = 0; k < 4; ++k) column_weights_[k].push_back(static_cast<float>(x.weight[k]));
   }
 }
 
 void DensePredictor::row(int image_row, std::span<float> u, std::span<float> v) const {
-  PredictorView::Taps const y = view().taps(image_row, rows_);
+  PredictorView::Taps const y = view().taps(GridAxis::y, image_row);
   std::vector<float> line_u(static_cast<std::size_t>(columns_)), line_v(line_u);
   for (int i = 0; i < columns_; ++i) {
     Vec2d sum;

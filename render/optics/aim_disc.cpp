@@ -6,6 +6,7 @@
 
 #include "render/base/units.h"
 #include "render/optics/paraxial.h"
+#include "render/optics/trace_back.h"
 
 namespace gladstone {
 namespace {
@@ -36,6 +37,40 @@ Vec2d paraxial_guess(Lens const& lens, RayOrigin const& origin) {
   double const distance = -origin.place.z, under = m.a * distance + m.b;
   if (under == 0) return {};
   return (m.b / under) * Vec2d{origin.place.x, origin.place.y};
+}
+
+/// A direction by its angle against the axis: (x, y) in radians, of the sense that runs towards +z.
+Vec2d angles_of(Vec3d direction) {
+  Vec2d const across = direction.z < 0 ? Vec2d{-direction.x, -direction.y} : Vec2d{direction.x, direction.y};
+  double const sine = length(across);
+  return sine > 0 ? std::atan2(sine, std::abs(direction.z)) / sine * across : Vec2d{};
+}
+
+/// Where a line passes the aim plane; nothing where it runs along the plane.
+std::optional<Vec2d> aim_of_line(Ray<double> const& line) {
+  constexpr double grazing = 1e-6;
+  if (std::abs(line.direction.z) < grazing) return std::nullopt;
+  double const way = -line.position.z / line.direction.z;
+  return Vec2d{line.position.x + way * line.direction.x, line.position.y + way * line.direction.y};
+}
+
+/// Aim of the chief ray by tracing back: Newton's method for the slope in the stop whose line in front of the lens
+/// comes from the source. What is made zero is an angle, which stays nearly linear in the slope where fields are wide.
+std::optional<Vec2d> aim_from_stop(StopSight const& sight) {
+  if (!sight.trace_back) return std::nullopt;
+  StopSight back;
+  back.radius = 1;   // [rad]
+  back.step = 1e-6;  // of the slope
+  back.place = [&](Vec2d slope) -> std::optional<Vec2d> {
+    auto const line = sight.trace_back(slope);
+    auto const aim = line ? aim_of_line(*line) : std::nullopt;
+    if (!aim) return std::nullopt;
+    return angles_of(line->direction) - angles_of(sight.origin.ray_through(*aim).direction);
+  };
+  Vec2d slope{};
+  if (!aim_at(back, {}, slope)) return std::nullopt;
+  auto const line = sight.trace_back(slope);
+  return line ? aim_of_line(*line) : std::nullopt;
 }
 
 }  // namespace
@@ -84,6 +119,15 @@ bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance) 
   return false;
 }
 
+std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess) {
+  for (Vec2d aim : {guess, Vec2d{}}) {
+    if (aim_at(sight, {}, aim)) return aim;
+  }
+  auto aim = aim_from_stop(sight);
+  if (!aim || !aim_at(sight, {}, *aim)) return std::nullopt;
+  return aim;
+}
+
 double aim_margin(int rim_points) {
   // between its points the rim may reach out by 1 - cos(pi / points) of what it departs from the ellipse, a tenth at
   // most; to that comes how near the points are
@@ -92,11 +136,9 @@ double aim_margin(int rim_points) {
 
 std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int rim_points) {
   AimDisc disc;
-  disc.centre = guess;
-  if (!aim_at(sight, {}, disc.centre)) {
-    disc.centre = {};
-    if (!aim_at(sight, {}, disc.centre)) return std::nullopt;
-  }
+  auto const chief = find_chief_aim(sight, guess);
+  if (!chief) return std::nullopt;
+  disc.centre = *chief;
   // where rim points would be if the stop were imaged without aberration
   std::optional<Vec2d> const along_x = newton_step(sight, disc.centre, {sight.radius, 0});
   std::optional<Vec2d> const along_y = newton_step(sight, disc.centre, {0, sight.radius});
@@ -140,7 +182,8 @@ std::optional<AimDisc> find_aim_disc(StopSight const& sight, Vec2d guess, int ri
 std::optional<AimDisc> find_aim_disc(Lens const& lens, RayOrigin const& origin) {
   double const scale = std::abs(ray_transfer(lens, 0, lens.stop).a);
   StopSight const sight{[&](Vec2d p) { return place_in_stop(lens, origin.ray_through(p)); }, lens.stop_radius,
-                        1e-4 * lens.stop_radius / std::max(scale, 0.05)};
+                        1e-4 * lens.stop_radius / std::max(scale, 0.05), origin,
+                        [&](Vec2d slope) { return trace_back_from_stop(lens.surfaces, lens.stop, slope); }};
   constexpr int rim_points = 32;
   return find_aim_disc(sight, paraxial_guess(lens, origin), rim_points);
 }

@@ -34,14 +34,24 @@ struct StopSight {
   /// Where the ray through a point of the aim plane meets the stop, in the stop's frame [m]; nothing where it is lost
   /// on the way (vignetted rays are not).
   std::function<std::optional<Vec2d>(Vec2d)> place;
-  double radius = 0;  ///< of the stop [m]
-  double step = 0;    ///< on the aim plane, that differences are taken over [m]
+  double radius = 0;   ///< of the stop [m]
+  double step = 0;     ///< on the aim plane, that differences are taken over [m]
+  RayOrigin origin{};  ///< in the aim plane's frame
+  /// Line in front of the lens, in the aim plane's frame, of the ray that meets the stop's centre at a slope (dx/dz,
+  /// dy/dz) in the stop's frame; empty: rays are not traced back.
+  std::function<std::optional<Ray<double>>(Vec2d)> trace_back{};
 };
 
 /// Solves place(aim) = target by Newton's method with differences.
 /// @param aim the first guess; becomes the solution @param tolerance in radii of the stop @return false: no ray goes
 /// there
 bool aim_at(StopSight const& sight, Vec2d target, Vec2d& aim, double tolerance = 1e-10);
+
+/// Point of the aim plane that the chief ray passes, which meets the stop's centre. Where Newton's method reaches it
+/// neither from the guess nor from the plane's centre, because a wide-angle lens has its entrance pupil elsewhere at
+/// that field angle, it starts from the ray that is traced back from the stop to the source.
+/// @param guess of the paraxial chief ray @return nothing where no ray meets the stop's centre
+std::optional<Vec2d> find_chief_aim(StopSight const& sight, Vec2d guess);
 
 /// By how much a disc is wider than the rim that it is found by.
 double aim_margin(int rim_points);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "render/optics/trace_back.h"
+
 namespace gladstone {
 namespace {
 
@@ -79,7 +81,12 @@ std::optional<Camera::Sight> Camera::sight(Vec3d point, Vec2d aim) const {
 double Camera::in_stop_unit() const { return stop_radius > 0 ? stop_radius : 1e4 * aim_step; }
 
 StopSight Camera::stop_sight(Vec3d point) const {
-  return {[this, point](Vec2d aim) { return in_stop(point, aim); }, in_stop_unit(), aim_step};
+  auto const back = [this](Vec2d slope) -> std::optional<Ray<double>> {
+    auto const line = trace_back_from_stop(elements, stop, slope);
+    return line ? std::optional(aim_plane.inwards(*line)) : std::nullopt;
+  };
+  return {[this, point](Vec2d aim) { return in_stop(point, aim); }, in_stop_unit(), aim_step,
+          RayOrigin::point(aim_plane.point_inwards(point)), back};
 }
 
 Vec2d Camera::paraxial_aim(Vec3d point) const {
@@ -90,11 +97,7 @@ Vec2d Camera::paraxial_aim(Vec3d point) const {
 }
 
 std::optional<Vec2d> Camera::chief_aim(Vec3d point) const {
-  StopSight const to_stop = stop_sight(point);
-  for (Vec2d aim : {paraxial_aim(point), Vec2d{}}) {
-    if (aim_at(to_stop, {}, aim)) return aim;
-  }
-  return std::nullopt;
+  return find_chief_aim(stop_sight(point), paraxial_aim(point));
 }
 
 std::optional<Vec2d> Camera::project(Vec3d point) const {
@@ -151,7 +154,38 @@ std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plan
   Ray<double> const axis = plane.inwards(Ray<double>{pose.origin, -1.0 * pose.z});
   if (!(std::abs(axis.direction.z) > 0)) return std::nullopt;
   double const way = -axis.position.z / axis.direction.z;
-  Vec2d place{axis.position.x + way * axis.direction.x, axis.position.y + way * axis.direction.y};
+  Vec2d const start{axis.position.x + way * axis.direction.x, axis.position.y + way * axis.direction.y};
+  auto const seen = find_place_and_aim(pixel, plane, start);
+  return seen ? seen : find_place(pixel, plane, start);
+}
+
+std::optional<SeenPoint> Camera::find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
+  constexpr int most_iterations = 60;
+  auto const pixel_of = [&](Vec2d p) { return project(plane.point_outwards({p.x, p.y, 0})); };
+  auto here = pixel_of(place);
+  for (int iteration = 0; here && length(*here - pixel) > 1e-9 && iteration < most_iterations; ++iteration) {
+    auto const seen = see(place, plane);
+    if (!seen) return std::nullopt;
+    Vec2d const miss = pixel - *here;
+    double const determinant = seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x;
+    if (determinant == 0) return std::nullopt;
+    Vec2d const change{(miss.x * seen->by_y.y - miss.y * seen->by_y.x) / determinant,
+                       (seen->by_x.x * miss.y - seen->by_x.y * miss.x) / determinant};
+    // half a step, and half of that, where the whole one leaves the field or gains nothing
+    bool better = false;
+    for (double share = 1; share > 1e-3 && !better; share /= 2) {
+      auto const there = pixel_of(place + share * change);
+      if (!there || !(length(*there - pixel) < length(miss))) continue;
+      place += share * change;
+      here = there;
+      better = true;
+    }
+    if (!better) break;
+  }
+  return here && length(*here - pixel) < 1e-6 ? see(place, plane) : std::nullopt;
+}
+
+std::optional<SeenPoint> Camera::find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const {
   auto const point = [&](Vec2d p) { return plane.point_outwards({p.x, p.y, 0}); };
   auto const found = chief_aim(point(place));
   if (!found) return std::nullopt;

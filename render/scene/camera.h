@@ -91,6 +91,12 @@ class Camera {
   Vec2d paraxial_aim(Vec3d point) const;
   Ray<double> towards(Vec3d point, Vec2d aim) const;
   std::optional<Vec2d> chief_aim(Vec3d point) const;
+  /// The point of a plane whose chief ray ends at a pixel, by Newton's method for place and aim together, which follows
+  /// no chief ray on the way. @param place to start from
+  std::optional<SeenPoint> find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
+  /// The same by Newton's method for the place alone, with the chief ray of every place on the way: slower, and sure
+  /// where a small change of the aim loses the ray, as in wide-angle lenses.
+  std::optional<SeenPoint> find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
   /// Derivatives of the pixel that the chief ray of a point of a plane ends at.
   bool differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen) const;
   double place_step(Pose<double> const& plane) const;

@@ -21,7 +21,7 @@ TEST(WindowMeans, AreTheWeightedMeansOfWindowsInsideTheFrames) {
     }
   for (WindowWeighting const weighting : {WindowWeighting::gaussian, WindowWeighting::uniform}) {
     InterrogationGrid const grid = make_interrogation_grid(columns, rows, 24, 0.7);
-    AxisWeights const x(grid, grid.columns, columns, weighting), y(grid, grid.rows, rows, weighting);
+    AxisWeights const x(grid, GridAxis::x, columns, weighting), y(grid, GridAxis::y, rows, weighting);
     InterrogationJob const job{.pair = pair, .grid = grid, .weighting = weighting};
     WindowMeans const means(job, x.view(), y.view());
     int compared = 0;

@@ -165,8 +165,8 @@ std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) 
   InterrogationGrid const& grid = job.grid;
   int const radius = job.search_radius_px;
   GLADSTONE_EXPECTS(radius > 0 && 2 * radius <= grid.window_px && grid.window_px % 2 == 0);
-  AxisWeights const x(grid, grid.columns, job.pair.columns, job.weighting);
-  AxisWeights const y(grid, grid.rows, job.pair.rows, job.weighting);
+  AxisWeights const x(grid, GridAxis::x, job.pair.columns, job.weighting);
+  AxisWeights const y(grid, GridAxis::y, job.pair.rows, job.weighting);
   KnownTiles const tiles(job.pair);
   std::vector<WindowCorrelation> results(grid.size());
   Progress progress(job.label, grid.size());

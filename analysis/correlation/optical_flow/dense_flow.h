@@ -64,7 +64,8 @@ GreyRange joint_range(GreyImage const& reference, GreyImage const& flow);
 /// Dense inverse search of Kroeger, Timofte, Dai & Van Gool, ECCV 2016, as OpenCV has it (cv::DISOpticalFlow): its
 /// "medium" preset, the finest of three (patches of 8 px, 3 px apart, 25 steps, down to half of the resolution, five
 /// rounds of variational refinement; patches less their mean). It takes frames of 8 bits: both are scaled by the same
-/// joint_range(). The result does not depend on the number of threads: it works with one.
+/// joint_range(). The result is half the difference of the flows from one frame to the other and back, so that
+/// exchanged frames give the negative one. It does not depend on the number of threads: it works with one.
 /// @throws DataError where the frames are too small for it
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow);
 

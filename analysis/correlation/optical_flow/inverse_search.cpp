@@ -38,6 +38,36 @@ cv::Mat eight_bits(GreyImage const& frame, GreyRange const& range) {
   return grey;
 }
 
+/// Displacement from one frame to the other, at the mid-position.
+DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
+  cv::Mat found;
+  try {
+    OneThread const one_thread;
+    cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)->calc(from, to, found);
+  } catch (cv::Exception const& error) {
+    throw DataError("image pair", fmt::format("OpenCV's optical flow cannot be had of frames of {} x {} px ({})",
+                                              from.cols, from.rows, error.err));
+  }
+  DenseFlow d(from.cols, from.rows);
+  for (int j = 0; j < d.rows; ++j)
+    for (int i = 0; i < d.columns; ++i) {
+      auto const& value = found.at<cv::Vec2f>(j, i);
+      d.u[d.index(i, j)] = value[0];
+      d.v[d.index(i, j)] = value[1];
+    }
+  // it belongs to where the first frame's dots are: the same at mid-position, by fixed-point iteration
+  DenseFlow middle(d.columns, d.rows);
+  for (int j = 0; j < d.rows; ++j)
+    for (int i = 0; i < d.columns; ++i) {
+      Vec2d const centre{static_cast<double>(i), static_cast<double>(j)};
+      Vec2d value = d.at(centre);
+      for (int k = 0; k < 3; ++k) value = d.at(centre - 0.5 * value);
+      middle.u[middle.index(i, j)] = static_cast<float>(value.x);
+      middle.v[middle.index(i, j)] = static_cast<float>(value.y);
+    }
+  return middle;
+}
+
 }  // namespace
 
 GreyRange joint_range(GreyImage const& reference, GreyImage const& flow) {
@@ -56,33 +86,14 @@ GreyRange joint_range(GreyImage const& reference, GreyImage const& flow) {
 
 DenseFlow dense_inverse_search(GreyImage const& reference, GreyImage const& flow) {
   GreyRange const range = joint_range(reference, flow);
-  cv::Mat found;
-  try {
-    OneThread const one_thread;
-    cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM)
-        ->calc(eight_bits(reference, range), eight_bits(flow, range), found);
-  } catch (cv::Exception const& error) {
-    throw DataError("image pair", fmt::format("OpenCV's optical flow cannot be had of frames of {} x {} px ({})",
-                                              reference.columns, reference.rows, error.err));
+  cv::Mat const first = eight_bits(reference, range), second = eight_bits(flow, range);
+  DenseFlow d = one_way(first, second);
+  DenseFlow const back = one_way(second, first);
+  for (std::size_t k = 0; k < d.u.size(); ++k) {
+    d.u[k] = 0.5f * (d.u[k] - back.u[k]);
+    d.v[k] = 0.5f * (d.v[k] - back.v[k]);
   }
-  DenseFlow d(reference.columns, reference.rows);
-  for (int j = 0; j < d.rows; ++j)
-    for (int i = 0; i < d.columns; ++i) {
-      auto const& value = found.at<cv::Vec2f>(j, i);
-      d.u[d.index(i, j)] = value[0];
-      d.v[d.index(i, j)] = value[1];
-    }
-  // it belongs to where the reference's dots are: the same at mid-position, by fixed-point iteration
-  DenseFlow middle(d.columns, d.rows);
-  for (int j = 0; j < d.rows; ++j)
-    for (int i = 0; i < d.columns; ++i) {
-      Vec2d const centre{static_cast<double>(i), static_cast<double>(j)};
-      Vec2d value = d.at(centre);
-      for (int k = 0; k < 3; ++k) value = d.at(centre - 0.5 * value);
-      middle.u[middle.index(i, j)] = static_cast<float>(value.x);
-      middle.v[middle.index(i, j)] = static_cast<float>(value.y);
-    }
-  return middle;
+  return d;
 }
 
 }  // namespace gladstone

@@ -62,7 +62,7 @@ void correlate_windows(benchmark::State& state, WindowWeighting weighting) {
   int const size = images.size;
   std::size_t const pixels = static_cast<std::size_t>(size) * size;
   InterrogationGrid const grid = make_interrogation_grid(size, size, static_cast<int>(state.range(0)), 0.75);
-  AxisWeights const weights(grid, grid.columns, size, weighting);
+  AxisWeights const weights(grid, GridAxis::x, size, weighting);
   char const* const purpose = "benchmark";
   DeviceArray<float> const axis(weights.weights().data(), weights.weights().size(), purpose);
   DeviceArray<double> const lags(weights.autocorrelations().data(), weights.autocorrelations().size(), purpose);

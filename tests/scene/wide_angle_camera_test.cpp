@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "render/base/units.h"
+#include "render/optics/paraxial.h"
+#include "render/scene/build_camera.h"
+#include "tests/scene/small_scenes.h"
+
+namespace gladstone {
+namespace {
+
+/// The fisheye of 170 degrees (focal length 0.205 mm, image circle 0.5 mm wide) at f/4 before dots that stand 100 mm in
+/// front of its first vertex, which is where it is focused.
+Setup wide_setup(int pixels, double pitch) {
+  Setup setup = table1_setup(pixels);
+  setup.camera.pixel_pitch = pitch;
+  LensOptions options;
+  options.f_number = 4;
+  auto const lens = std::make_shared<Lens const>(
+      build_lens(read_prescription(GLADSTONE_DATA_DIR "/../tests/cases/lenses/wide_170.toml"),
+                 GlassCatalogue::shipped(), setup.medium.wavelength, options));
+  ParaxialLens const paraxial = paraxial_lens(*lens);
+  setup.lens.prescription = lens;
+  setup.lens.focal_length = paraxial.effective_focal_length;
+  setup.lens.f_number = 4;
+  setup.z_d = 0.05;
+  // z_a reaches to the front principal plane
+  setup.z_a = 0.05 + paraxial.front_principal_plane;
+  return setup;
+}
+
+struct ChiefRay {
+  double degrees;  ///< under which the first vertex sees the point
+  double y_mm;     ///< where the chief ray passes the plane of the last vertex
+  double slope;    ///< and its slope there
+};
+
+// From an independent tracer in Python: rays started at the stop's centre, traced back through the lens until they pass
+// the point (0, 100 mm tan(angle)), then through the whole lens.
+constexpr ChiefRay listing[] = {{0, 0, 0},
+                                {20, -0.029306102972631542, -0.048733846496671292},
+                                {40, -0.056872352603961993, -0.094554229130358103},
+                                {55, -0.075422034305192717, -0.12536459320985688},
+                                {60, -0.081059251468444435, -0.13472257642472854},
+                                {65, -0.086369444764250028, -0.14353498916102869},
+                                {70, -0.09131218861807873, -0.15173501086545763},
+                                {75, -0.095840942771175802, -0.15924581652301281},
+                                {80, -0.09990497473382505, -0.16598377083714222}};
+
+Vec3d point_at(double degrees, double turn = 0) {
+  double const r = 0.1 * std::tan(degrees * unit::degree);
+  return {-r * std::sin(turn), r * std::cos(turn), -0.05};
+}
+
+// Heights on the sensor, which stands in best focus a known way behind the last vertex: chief rays meet the stop's
+// centre to 1e-10 of its radius (0.16 mm), 1e-7 px of 1 um.
+TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
+  Setup const setup = wide_setup(513, 1e-6);
+  Camera const camera = build_camera(setup);
+  Vec3d const last = camera.elements.back().visit([](auto const& held) { return held.pose.origin; });
+  double const behind = dot(camera.sensor.pose.origin - last, camera.pose.z);
+  for (auto const& [degrees, y_mm, slope] : listing) {
+    double const height_px = std::abs(y_mm * 1e-3 + slope * behind) / 1e-6;
+    for (double const turn : {0.0, 2.2}) {
+      auto const pixel = camera.project(point_at(degrees, turn));
+      ASSERT_TRUE(pixel) << degrees;
+      EXPECT_NEAR(pixel->x, 256 - height_px * std::sin(turn), 1e-6) << degrees;
+      EXPECT_NEAR(pixel->y, 256 - height_px * std::cos(turn), 1e-6) << degrees;
+    }
+  }
+}
+
+// unproject() undoes project(), and its derivatives are those of project().
+TEST(WideAngleCamera, UnprojectsWhatItProjects) {
+  Setup const setup = wide_setup(513, 1e-6);
+  Camera const camera = build_camera(setup);
+  Pose<double> const plane{{0, 0, -0.05}};
+  for (ChiefRay const& row : listing) {
+    Vec3d const point = point_at(row.degrees, 0.7);
+    auto const pixel = camera.project(point);
+    ASSERT_TRUE(pixel) << row.degrees;
+    auto const seen = camera.unproject(*pixel, plane);
+    ASSERT_TRUE(seen) << row.degrees;
+    // solved to 1e-6 px; a pixel there sees 100 mm / (205 px cos^2): 16 mm at 80 degrees
+    EXPECT_NEAR(length(seen->place - Vec2d{point.x, point.y}), 0, 2e-8) << row.degrees;
+    double const h = 1e-5;
+    auto const right = camera.project(point + Vec3d{h, 0, 0}), left = camera.project(point - Vec3d{h, 0, 0});
+    ASSERT_TRUE(right && left) << row.degrees;
+    Vec2d const slope = (*right - *left) / (2 * h);
+    EXPECT_NEAR(length(seen->by_x - slope), 0, 1e-3 * length(slope)) << row.degrees;
+  }
+}
+
+// No ray that passes the stop goes to the aim plane beside what a source sees of the stop.
+TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
+  Camera const camera = build_camera(wide_setup(65, 8e-6));
+  for (double const degrees : {0.0, 45.0, 60.0, 70.0, 80.0}) {
+    Vec3d const point = point_at(degrees, 1.1);
+    auto const disc = camera.aim_disc(point);
+    ASSERT_TRUE(disc) << degrees;
+    int passed = 0, outside = 0, within = 0;
+    constexpr int half = 60;
+    for (int i = -half; i <= half; ++i)
+      for (int j = -half; j <= half; ++j) {
+        Vec2d const at{2.0 * i / half, 2.0 * j / half};
+        Vec3d const aim = disc->centre + at.x * disc->a + at.y * disc->b;
+        RayHit<double> const hit = trace_ray(camera.view(), NoMedium<double>{}, TracingOptions<double>{},
+                                             Ray<double>{point, normalized(aim - point)}, 1.0);
+        bool const inside = length(at) <= 1, passes = reaches_sensor_plane(hit.status);
+        within += inside ? 1 : 0;
+        passed += passes ? 1 : 0;
+        outside += passes && !inside ? 1 : 0;
+      }
+    EXPECT_EQ(outside, 0) << degrees;
+    EXPECT_GT(passed, 0.8 * within) << degrees;
+  }
+}
+
+// The renderer lights dots at 0, 40 and 60 degrees where project() has them: the centroid departs from the chief ray by
+// the lens' coma alone, below a tenth of its spot, which is some pixels of 8 um at most.
+TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
+  Setup setup = wide_setup(36, 8e-6);  // corners at 0.204 mm, 63 degrees
+  setup.target.dots_per_32px_window = 1;
+  Scene scene = build_scene(setup);
+  scene.dots.centre.clear();
+  for (double const degrees : {0.0, 40.0, 60.0}) {
+    Vec3d const point = point_at(degrees, 0.25 * pi);
+    scene.dots.centre.push_back({point.x, point.y});
+  }
+  scene.dots.half_size = 1e-6;  // small beside the pupil, 0.05 mm, that rays are sent to that much wider
+  plan_step_by_rays(scene);
+  scene.rays_per_dot = 1024;
+  Rendering const result = RaysRenderer().render(scene, scene.dots, RenderImages::yes, RenderTheory::no);
+  for (std::size_t dot = 0; dot < 3; ++dot) {
+    auto const pixel = scene.camera.project({scene.dots.centre[dot].x, scene.dots.centre[dot].y, -setup.z_d});
+    ASSERT_TRUE(pixel);
+    EXPECT_GT(result.truth.rays[dot][0], 500) << dot;
+    EXPECT_NEAR(length(result.truth.reference_px[dot] - *pixel), 0, 0.3) << dot;
+    EXPECT_EQ(result.truth.displacement_px[dot], Vec2d{}) << "without a medium nothing moves";
+  }
+}
+
+}  // namespace
+}  // namespace gladstone
