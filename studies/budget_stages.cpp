@@ -5,8 +5,8 @@
 
 namespace gladstone {
 
-std::vector<BudgetStage> budget_stages(Comparison const& comparison) {
-  std::vector<BudgetStage> stages{{"window", comparison.window.displacement_px},
+std::vector<BudgetStage> budget_stages(Comparison const& comparison, WindowTruth const& window) {
+  std::vector<BudgetStage> stages{{"window", window.displacement_px},
                                   {"noise_free", comparison.noise_free},
                                   {"measured", comparison.measured.displacement_px}};
   if (comparison.chain == BudgetChain::piv) {
@@ -24,7 +24,7 @@ std::vector<BudgetStage> budget_stages(Comparison const& comparison) {
 }
 
 std::vector<BudgetStage> budget_differences(Comparison const& comparison) {
-  std::vector<BudgetStage> const stages = budget_stages(comparison);
+  std::vector<BudgetStage> const stages = budget_stages(comparison, comparison.recorded());
   std::vector<std::string_view> const chain = budget_stage_names(comparison.chain),
                                       terms = budget_term_names(comparison.chain);
   std::vector<BudgetStage> differences;

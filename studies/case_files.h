@@ -18,6 +18,7 @@ inline constexpr char const* summary = "summary.json";
 inline constexpr char const* vectors = "vectors.h5";
 inline constexpr char const* vectors_text = "vectors.csv";
 inline constexpr char const* errors = "errors.json";
+inline constexpr char const* comparison = "comparison.h5";
 /// Of one plane of a calibration.
 std::string plane(std::size_t index);
 inline constexpr char const* any_plane = "plane_*.tif";
@@ -27,6 +28,7 @@ inline constexpr char const* calibration_figure = "calibration_residuals.png";
 inline constexpr std::array derived{vectors,
                                     vectors_text,
                                     errors,
+                                    comparison,
                                     "displacement_maps.png",
                                     "error_histograms.png",
                                     "error_against_gradient.png",

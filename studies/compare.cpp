@@ -15,9 +15,11 @@
 #include "render/sensor/detector.h"
 #include "studies/budget_stages.h"
 #include "studies/compared_vectors.h"
+#include "studies/comparison_warnings.h"
 #include "studies/correlate.h"
 #include "studies/particle_points.h"
 #include "studies/scene_renderer.h"
+#include "studies/stored_comparison.h"
 #include "studies/thinned_vectors.h"
 #include "studies/truth_file.h"
 
@@ -31,6 +33,43 @@ std::vector<double> correlation_flux(GroundTruth const& truth) {
   flux.reserve(truth.size());
   for (Vec2d const& both : truth.flux) flux.push_back(std::sqrt(std::max(0.0, both.x * both.y)));
   return flux;
+}
+
+/// What is known of vectors before they are compared.
+Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
+  Comparison comparison;
+  comparison.measured = std::move(vectors.field);
+  comparison.report = vectors.report;
+  comparison.foreign = vectors.foreign;
+  comparison.left_out = vectors.left_out;
+  comparison.detected = vectors.detected;
+  if (piv) comparison.chain = BudgetChain::piv;
+  return comparison;
+}
+
+/// Mask and budgets of a comparison whose chain is known.
+/// @param name of the vectors @throws DataError where none can be compared
+void judge_chain(Comparison& comparison, std::string const& name) {
+  DisplacementField const& measured = comparison.measured;
+  std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.window.displacement_px};
+  if (comparison.chain == BudgetChain::piv) {
+    references.insert(references.end(), {comparison.flow_px, comparison.ambient_px});
+  } else {
+    references.insert(references.end(), {comparison.point.eq9_px, comparison.point.eq9_cone_px, comparison.thin_lens});
+  }
+  if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
+  comparison.mask = common_mask(measured, references);
+  if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
+    throw DataError(
+        name,
+        "has no vector that can be compared: none is valid, in view and with truth on its window (three dots); check "
+        "the vectors and --conventions");
+  }
+  comparison.budget = error_budget(budget_stages(comparison, comparison.window), comparison.mask, comparison.chain);
+  if (comparison.frames_deformed) {
+    comparison.budget_after_passes =
+        error_budget(budget_stages(comparison, comparison.deformed_window), comparison.mask, comparison.chain);
+  }
 }
 
 }  // namespace
@@ -108,29 +147,35 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
-  PreparedCase const prepared = prepare_case(loaded);
-  std::optional<RenderedCase> rendered;
-  if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
-  PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
-  Comparison comparison = compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors),
-                                          std::move(point), device, options.truth_at);
+  std::string fingerprint = comparison_fingerprint(files.sources, options);
+  Comparison comparison = comparison_of(vectors, loaded.setup.piv.has_value());
+  if (options.reuse && read_chain(folder, fingerprint, comparison)) {
+    spdlog::info("took the comparison that {} tells of, which was made from the same files",
+                 in_case(folder, case_file::errors));
+    judge_chain(comparison, vectors.name);
+  } else {
+    vectors.field = std::move(comparison.measured);
+    PreparedCase const prepared = prepare_case(loaded);
+    std::optional<RenderedCase> rendered;
+    if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
+    PointTruth point = truth_of_vectors(prepared, *device.renderer, vectors.field.position_px, options.truth_at);
+    comparison = compare_vectors(prepared, dots, rendered ? &*rendered : nullptr, std::move(vectors), std::move(point),
+                                 device, options.truth_at);
+  }
   name_sources(comparison, std::move(files));
+  comparison.fingerprint = std::move(fingerprint);
+  comparison.warnings = comparison_warnings(comparison, loaded.setup);
+  for (std::string const& warning : comparison.warnings) spdlog::warn("{}", warning);
   return comparison;
 }
 
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
                            MeasuredVectors vectors, PointTruth truth, Device const& device, TruthAt at) {
-  Comparison comparison;
-  comparison.measured = std::move(vectors.field);
-  comparison.report = vectors.report;
-  comparison.foreign = vectors.foreign;
-  comparison.left_out = vectors.left_out;
-  comparison.detected = vectors.detected;
+  Comparison comparison = comparison_of(vectors, prepared.scene.setup.piv.has_value());
   comparison.point = std::move(truth.point);
   comparison.thin_lens = std::move(truth.thin_lens);
   comparison.flow_px = std::move(truth.flow_px);
   comparison.ambient_px = std::move(truth.ambient_px);
-  if (prepared.scene.setup.piv) comparison.chain = BudgetChain::piv;
   DisplacementField const& measured = comparison.measured;
 
   CorrelationSettings const& settings = vectors.settings;
@@ -148,22 +193,7 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
     if (again.size() == measured.size()) comparison.noise_free = std::move(again.displacement_px);
   }
 
-  bool const piv = comparison.chain == BudgetChain::piv;
-  std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.window.displacement_px};
-  if (piv) {
-    references.insert(references.end(), {comparison.flow_px, comparison.ambient_px});
-  } else {
-    references.insert(references.end(), {comparison.point.eq9_px, comparison.point.eq9_cone_px, comparison.thin_lens});
-  }
-  if (!comparison.noise_free.empty()) references.emplace_back(comparison.noise_free);
-  comparison.mask = common_mask(measured, references);
-  if (std::none_of(comparison.mask.begin(), comparison.mask.end(), [](auto counts) { return counts != 0; })) {
-    throw DataError(
-        vectors.name,
-        "has no vector that can be compared: none is valid, in view and with truth on its window (three dots); check "
-        "the vectors and --conventions");
-  }
-  comparison.budget = error_budget(budget_stages(comparison), comparison.mask, comparison.chain);
+  judge_chain(comparison, vectors.name);
   return comparison;
 }
 

@@ -23,6 +23,7 @@ struct CompareOptions {
   TruthAt truth_at = TruthAt::mid_position;
   std::optional<std::string> conventions;  ///< as the user tells them; empty: detected for foreign files
   bool figures = true;
+  bool reuse = false;  ///< takes what the last comparison stored in the CASE, where it was made from the same
 };
 
 /// Everything that is known at every vector: the chain from Eq. 9 to the measurement.
@@ -36,13 +37,16 @@ struct Comparison {
   bool frames_deformed = false;   ///< several passes: deformed_window is what they measure, of one pass window is
   std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
   VectorMask mask;
-  ErrorBudget budget;
-  std::string report;                           ///< what was detected about a foreign file; empty for ours
-  LeftOutVectors left_out;                      ///< of the file; `measured` holds the others
+  ErrorBudget budget;               ///< its stage `window` is `window`, of one pass
+  ErrorBudget budget_after_passes;  ///< its stage `window` is `deformed_window`; empty unless frames_deformed
+  std::string report;               ///< what was detected about a foreign file; empty for ours
+  LeftOutVectors left_out;          ///< of the file; `measured` holds the others
   std::optional<DetectedConventions> detected;  ///< of a foreign file
   bool foreign = false;
-  SourceFiles sources;    ///< what the files held that were compared; nothing for vectors that never were in files
-  bool verified = false;  ///< the vectors were measured on the very frames that the truth belongs to
+  std::vector<std::string> warnings;  ///< comparison_warnings() of a case
+  SourceFiles sources;      ///< what the files held that were compared; nothing for vectors that never were in files
+  std::string fingerprint;  ///< comparison_fingerprint() of a CASE
+  bool verified = false;    ///< the vectors were measured on the very frames that the truth belongs to
 
   /// Truth that the correlated frames hold of each window: what errors are measured against where they are the
   /// estimator's and the noise's alone.
@@ -50,6 +54,10 @@ struct Comparison {
   char const* recorded_name() const {
     return frames_deformed ? "truth on the window of deformed frames" : "truth on the window";
   }
+
+  /// The budget whose terms are causes: deforming passes win back what a window loses, so that the terms `window` and
+  /// `estimator` of an undeformed window largely cancel.
+  ErrorBudget const& shown_budget() const { return frames_deformed ? budget_after_passes : budget; }
 
   std::size_t vectors_in_file() const { return measured.size() + left_out.without_place(); }
 };
@@ -97,7 +105,8 @@ Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots
 /// Lets a comparison's errors.json name those files by what they hold.
 void name_sources(Comparison& comparison, ComparedFiles files);
 
-/// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs.
+/// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs, unless that is
+/// stored in the CASE and to be reused.
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
 
 /// For each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.

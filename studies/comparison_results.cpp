@@ -111,6 +111,12 @@ nlohmann::ordered_json errors_of(Comparison const& comparison) {
     budget["terms"][term.name] = term_json(term);
     names.push_back(term.name);
   }
+  if (comparison.frames_deformed) {
+    for (BudgetTerm const& term : comparison.budget_after_passes.terms) {
+      if (term.name == "window" || term.name == "estimator")
+        budget["after_passes"]["terms"][term.name] = term_json(term);
+    }
+  }
   budget["total"] = term_json(comparison.budget.total);
   budget["covariance"] = {{"terms", names},
                           {"both_px2", matrix_json(comparison.budget.covariance)},
@@ -200,7 +206,7 @@ std::vector<std::string> draw_comparison(std::string const& folder, Comparison c
   write_budget_bars(
       next("error_budget"),
       piv ? "Error budget, from the flow to the measurement" : "Error budget, from Eq. 9 to the measurement",
-      comparison.budget);
+      comparison.shown_budget());
   return drawn;
 }
 

@@ -15,6 +15,7 @@
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
 #include "studies/case.h"
+#include "studies/peak_locking.h"
 
 namespace gladstone {
 namespace {
@@ -216,6 +217,8 @@ Measurement correlate_case(std::string const& folder, std::string const& output,
       "gladstone vectors", 1,      other ? other->resolved : loaded.document.resolved(), loaded.setup.render.seed,
       measurement.device,  sources};
   write_vectors(output.empty() ? in_case(folder, case_file::vectors) : output, measurement.field, origin);
+  if (std::string advice = locking_advice(loaded.setup); !advice.empty())
+    measurement.field.warnings.push_back(std::move(advice));
   return measurement;
 }
 

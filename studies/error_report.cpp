@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "analysis/errors/uncertainty_quality.h"
@@ -20,6 +21,21 @@ std::string uncertainty_line(Comparison const& comparison) {
       "  standard uncertainties: {:.1f} % of the errors against {} lie within one, {:.1f} % within two (of a normal "
       "distribution 68.3 and 95.4 %); rms(sigma)/rms(error) {:.2f}\n",
       100 * quality.coverage_1, comparison.recorded_name(), 100 * quality.coverage_2, quality.rms_ratio);
+}
+
+/// The terms of an undeformed window, which errors.json has as well; nothing where no pass deforms the frames.
+std::string undeformed_line(Comparison const& comparison) {
+  if (!comparison.frames_deformed) return "";
+  auto const rms = [&comparison](char const* name) {
+    for (BudgetTerm const& term : comparison.budget.terms) {
+      if (term.name == name) return term.rms_px;
+    }
+    return std::nan("");
+  };
+  return fmt::format(
+      "  window and estimator: of the frames as the passes deform them (of an undeformed window {:.5f} and {:.5f} px, "
+      "which largely cancel)\n",
+      rms("window"), rms("estimator"));
 }
 
 }  // namespace
@@ -54,15 +70,18 @@ std::string error_report(Comparison const& comparison) {
   if (comparison.detected) text += "  " + comparison.report + '\n';
   text += uncertainty_line(comparison);
   text += '\n';
-  text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "random u",
-                      "random v", "rms");
+  text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "scatter u",
+                      "scatter v", "rms");
   auto const line = [&](BudgetTerm const& term) {
     if (!term.known()) return fmt::format("  {:<25} {:>9}\n", term.name, "unknown");
     return fmt::format("  {:<25} {:9.5f} {:9.5f} {:9.5f} {:9.5f} {:9.5f}\n", term.name, term.bias_u_px, term.bias_v_px,
                        term.random_u_px, term.random_v_px, term.rms_px);
   };
-  for (BudgetTerm const& term : comparison.budget.terms) text += line(term);
+  for (BudgetTerm const& term : comparison.shown_budget().terms) text += line(term);
   text += line(comparison.budget.total);
+  text +=
+      "  scatter: standard deviation over the vectors of the field; another repeat changes only estimator and noise\n";
+  text += undeformed_line(comparison);
   text += fmt::format("  peak locking {:.5f} px (beside, not added); the terms close to {:.1e} px\n",
                       comparison.budget.peak_locking_px, comparison.budget.closure_px);
   return text;

@@ -103,7 +103,37 @@ double smallest_visible(Scene& scene, Vec3d place, double electrons_per_photon) 
   return first < diameters.size() ? diameters[first] : unknown;
 }
 
+/// Image of a particle of that diameter, `beyond` the sheet where the camera's axis meets it, at a distance.
+ParticleImage image_of(Setup const& setup, double diameter, double distance, double beyond) {
+  ImagingGeometry const imaging = setup.imaging();
+  double const pitch = setup.camera.pixel_pitch, focus = setup.focus_distance();
+  ParticleImage image;
+  image.distance = distance;
+  image.magnification = imaging.magnification * setup.z_b() / distance;
+  image.geometric_px = image.magnification * diameter / pitch;
+  image.diffraction_px = setup.spot_e2_diameter_px();
+  // the disc of confusion of a point `beyond` the sheet, by the magnification where the lens is focused
+  double const z = distance + beyond - focus, focused = imaging.magnification * setup.z_b() / focus;
+  image.blur_px = focused * imaging.entrance_pupil * std::abs(z) / (focus + z) / pitch;
+  return image;
+}
+
+/// From the camera's front principal plane to where its axis meets the sheet [m].
+double distance_of_sheet(Setup const& setup) {
+  Pose<double> const camera = setup.camera_pose();
+  Vec3d const place = place_in_sheet(camera, laser_sheet<double>(setup.piv->laser).pose[0]);
+  return std::abs(dot(place - camera.origin, camera.z));
+}
+
 }  // namespace
+
+double ParticleImage::diameter_px() const { return std::hypot(geometric_px, diffraction_px, blur_px); }
+
+ParticleImage particle_image(Setup const& setup) {
+  ParticleSetup const& particles = setup.piv->particles;
+  double const median = spread_of(draw_diameters(particles.diameter, particles.seed, drawn)).median;
+  return image_of(setup, median, distance_of_sheet(setup), 0);
+}
 
 ExpectedParticles expected_particles(Setup const& setup) {
   PivSetup const& piv = *setup.piv;
@@ -113,25 +143,17 @@ ExpectedParticles expected_particles(Setup const& setup) {
   scene.camera = build_camera(setup);
   Pose<double> const camera = setup.camera_pose(), sheet = laser_sheet<double>(piv.laser).pose[0];
   Vec3d const place = place_in_sheet(camera, sheet);
-  double const distance = std::abs(dot(place - camera.origin, camera.z));
+  double const distance = distance_of_sheet(setup);
   double const pitch = setup.camera.pixel_pitch, facing = std::max(1e-3, std::abs(dot(camera.z, sheet.z)));
   double const working_f_number =
       scene.imaging.entrance_pupil > 0 ? scene.imaging.image_distance / scene.imaging.entrance_pupil : 0;
 
   ExpectedParticles expected;
-  double const magnification = scene.imaging.magnification * setup.z_b() / distance;
-  expected.magnification = magnification;
   expected.diameter = spread_of(draw_diameters(piv.particles.diameter, piv.particles.seed, drawn));
-  double const geometric = magnification * expected.diameter.median / pitch;
-  expected.diffraction_px = setup.lens.spot == SpotModel::airy ? 4 * SpotSize{setup.spot_scale_px()}.matched_sigma()
-                                                               : 4 * scene.spot_sigma_px();
-  double const focus = setup.focus_distance();
-  auto const blurred = [&](double beyond) {
-    // the disc of confusion of a point `beyond` the sheet, by the magnification where the lens is focused
-    double const z = distance + beyond - focus, focused = scene.imaging.magnification * setup.z_b() / focus;
-    double const blur = focused * scene.imaging.entrance_pupil * std::abs(z) / (focus + z) / pitch;
-    return std::sqrt(geometric * geometric + expected.diffraction_px * expected.diffraction_px + blur * blur);
-  };
+  auto const image = [&](double beyond) { return image_of(setup, expected.diameter.median, distance, beyond); };
+  double const magnification = image(0).magnification;
+  expected.magnification = magnification;
+  expected.diffraction_px = image(0).diffraction_px;
   auto const sheet_area_of_a_pixel = [&] {
     Pose<double> const there{place, sheet.x, sheet.y, sheet.z};
     auto const seen = setup.on_bench() ? std::nullopt : scene.camera.see({}, there);
@@ -139,8 +161,8 @@ ExpectedParticles expected_particles(Setup const& setup) {
     return area > 0 ? 1 / area : std::pow(pitch / magnification, 2) / facing;
   };
   double const half_sheet = piv.laser.thickness / 2 / facing;
-  expected.image_diameter_px = blurred(0);
-  expected.sheet_edge_diameter_px = std::max(blurred(half_sheet), blurred(-half_sheet));
+  expected.image_diameter_px = image(0).diameter_px();
+  expected.sheet_edge_diameter_px = std::max(image(half_sheet).diameter_px(), image(-half_sheet).diameter_px());
   expected.depth_of_field = 4.88 * setup.medium.wavelength * std::pow(working_f_number / magnification, 2);
 
   if (piv.particles.count == ParticleCount::file) {

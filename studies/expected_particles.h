@@ -28,6 +28,19 @@ struct ExpectedParticles {
   double smallest_visible = 0;        ///< diameter from which on all larger ones are seen [m]; NaN: none up to 100 um
 };
 
+/// Image of the median particle in the middle of the sheet, where the camera's axis meets it.
+struct ParticleImage {
+  double distance = 0;        ///< from the front principal plane, along the camera's axis [m]
+  double magnification = 0;   ///< there [1]
+  double geometric_px = 0;    ///< diameter of the geometric image [px]
+  double diffraction_px = 0;  ///< e^-2 diameter of the spot [px]
+  double blur_px = 0;         ///< diameter of the disc of confusion [px]
+
+  double diameter_px() const;  ///< e^-2 diameter of the whole image [px]
+};
+/// @pre setup.piv @throws DataError of a file of diameters
+ParticleImage particle_image(Setup const& setup);
+
 /// Image diameter d^2 = (M d_p)^2 + d_diff^2 + d_blur^2 of e^-2 diameters, d_diff = 1.682 N (1 + M) lambda for the
 /// Gaussian matched to the Airy pattern, d_blur that of the disc of confusion M D_a |z| / (Z + z) (Adrian & Yao 1985;
 /// Olsen & Adrian 2000). Depth of field 4.88 ((M + 1)/M)^2 N^2 lambda (Adrian 1991; Raffel et al. 2018). Particles a

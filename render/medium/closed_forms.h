@@ -19,7 +19,9 @@ namespace gladstone {
 ///   densities(half_extent)      what it takes within half a width and height [m]
 ///   density_key, length_key     the keys that densities and finest() follow from, for messages
 /// and, where it has them,
-///   steepest_mean_density()     the largest gradient across the view of the density averaged over the slab [kg/m^4]
+///   steepest_mean_density(half_extent)  largest gradient across the axis, within half a width and height, of the
+///   density
+///                               averaged over the slab [kg/m^4]
 ///   radius_along_z()            of a Gaussian along Z, which a slab can be too thin for [m]
 ///   endless_range               its density is negative somewhere, however small: a warning, not a mistake
 template <class T>

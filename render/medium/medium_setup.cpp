@@ -113,6 +113,8 @@ ClosedForm<double> closed_form_of(MediumSetup const& setup) {
   return whole;
 }
 
+bool has_own_depth(FieldSetup const& field) { return field.kind == FieldKind::file && !field.extrude; }
+
 double radius_along_z(FieldSetup const& field) {
   if (field.kind != FieldKind::closed_form) return 0;
   return std::visit(

@@ -51,7 +51,7 @@ struct MediumSetup {
   double wavelength = 532e-9;       ///< [m]
   double gladstone_dale = 2.26e-4;  ///< K [m^3/kg]
   double ambient_density = 1.225;   ///< [kg/m^3]
-  double thickness = 0.01;          ///< of slabs, see automatic_thickness_mm; volumes have their own depth [m]
+  double thickness = 0.01;          ///< depth along Z: of slabs as given or automatic, of a volume its own [m]
   bool automatic_thickness = true;  ///< nobody has given it
   FieldInterpolation interpolation = FieldInterpolation::cubic_bspline;
   Integrator integrator = Integrator::rk4;
@@ -70,6 +70,9 @@ ClosedForm<double> closed_form_of(MediumSetup const& setup);
 
 /// The medium that the second pulse sees. @pre setup.second_field
 MediumSetup at_second_pulse(MediumSetup const& setup);
+
+/// Whether a field is a volume from a file, whose depth does not depend on thickness_mm.
+bool has_own_depth(FieldSetup const& field);
 
 /// The radius of a field that fades on its own along Z, so that a slab can be too thin for it [m]; 0 for others.
 double radius_along_z(FieldSetup const& field);

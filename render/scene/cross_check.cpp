@@ -19,9 +19,6 @@ constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
 constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
 constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air takes a half space
 
-/// Spots whose diameter is told as four standard deviations, see Setup::spot_diameter_px.
-bool four_sigma(SpotModel spot) { return spot == SpotModel::gaussian_first_zero || spot == SpotModel::seed_eq8; }
-
 /// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
 bool cross_check_camera(Setup const& setup, SetupTable root) {
   try {
@@ -146,16 +143,16 @@ void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::st
   }
   cross_check_extents(setup, view, target, root);
   if (setup.target.kind != TargetKind::image) {
-    double const diameter_px = setup.dot_diameter() / px;
-    double const diffraction_px = setup.spot_diameter_px();
-    cross_check_spot(setup, diffraction_px, lens, root);
-    double const image_px = std::hypot(diameter_px, diffraction_px);
-    if (image_px < 2) {
+    double const diameter_px = setup.geometric_dot_px();
+    cross_check_spot(setup, setup.spot_diameter_px(), lens, root);
+    double const image_px = setup.image_diameter_px(diameter_px);
+    if (image_px < least_image_px) {
       warnings.push_back(fmt::format(
-          "dot images are {:.2f} px wide (geometric image {:.2f} px, diffraction spot {:.2f} px {}): below 2 "
-          "px correlation locks to whole pixels; enlarge target.dot_diameter_px",
-          image_px, diameter_px, diffraction_px,
-          four_sigma(setup.lens.spot) ? "over four standard deviations" : "between its first zeros"));
+          "dot images are {:.2f} px wide (e^-2 diameter; geometric image {:.2f} px, diffraction spot {:.2f} px, disc "
+          "of "
+          "confusion {:.2f} px): below {:g} px correlation locks to whole pixels; enlarge target.dot_diameter_px or "
+          "lens.f_number",
+          image_px, diameter_px, setup.spot_e2_diameter_px(), setup.defocus_diameter_px(), least_image_px));
     }
     if (setup.target.polarity == Polarity::dark && diameter_px == 0) {
       target.problem("polarity", "dark dots of no size cannot be seen; give dot_diameter_px");
@@ -213,7 +210,7 @@ std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   SetupTable medium = root.table("medium");
   cross_check_geometry(setup, root.table("geometry"));
   cross_check_windows(setup, root);
-  cross_check_thickness(setup, medium, warnings);
+  cross_check_thickness(setup, warnings);
   cross_check_noise(setup, warnings);
   cross_check_steps(setup, medium);
   cross_check_density(setup, medium, warnings);

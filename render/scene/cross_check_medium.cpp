@@ -53,7 +53,7 @@ std::string length_key(FieldSetup const& field) {
 
 }  // namespace
 
-void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings) {
+void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings) {
   MediumSetup const& slab = setup.medium;
   double const mm = unit::millimetre, lost = cut_off_share(slab);
   bool const limited = slab.automatic_thickness && lost > noticeable_loss;
@@ -66,21 +66,6 @@ void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<st
         limited ? "increase geometry.z_d_mm or z_a_mm"
                 : fmt::format("use \"auto\", {:.6g} mm", automatic_thickness_mm(slab.field))));
   }
-  if (slab.field.kind != FieldKind::file || slab.field.extrude) return;
-  double depth = 0;
-  try {
-    Bounds<double> const box = file_bounds(slab);
-    depth = box.high.z - box.low.z;
-  } catch (DataError const&) {
-    return;  // left to those who read it
-  }
-  if (!slab.automatic_thickness && std::abs(slab.thickness - depth) > 1e-6 * depth) {
-    warnings.push_back(
-        fmt::format("medium.thickness_mm: {:.6g} mm is not used, since a volume has its own depth, {:.6g} "
-                    "mm; leave it out, or give medium.field.spacing_mm",
-                    slab.thickness / mm, depth / mm));
-  }
-  medium.resolve("thickness_mm", depth / mm);
 }
 
 void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,

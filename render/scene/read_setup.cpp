@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "render/base/error.h"
 #include "render/base/units.h"
 #include "render/light/calibration_target.h"
+#include "render/medium/field_volume.h"
 #include "render/optics/glass_catalogue.h"
 #include "render/optics/paraxial.h"
 #include "render/scene/best_focus.h"
@@ -52,10 +54,34 @@ RenderSetup read_render_setup(SetupTable table) {
 
 constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a thickness of "auto" may take
 
-/// Writes down what thickness_mm = "auto" came to; a field with a size ends short of the dots and the lens.
+/// Gives medium.thickness the depth of the field's volume, whatever thickness_mm says. @return false where the field is
+/// as deep as thickness_mm (a slab, a plane that is extruded), or the file cannot be read, which its reader reports
+bool take_depth_of_volume(Setup& setup, SetupTable medium) {
+  MediumSetup& slab = setup.medium;
+  if (!has_own_depth(slab.field) || (slab.second_field && !has_own_depth(*slab.second_field))) return false;
+  double depth = 0;
+  try {
+    Bounds<double> const box = file_bounds(slab);
+    depth = box.high.z - box.low.z;
+  } catch (DataError const&) {
+    return false;
+  }
+  if (!slab.automatic_thickness && std::abs(slab.thickness - depth) > 1e-6 * depth) {
+    setup.warnings.push_back(
+        fmt::format("medium.thickness_mm: {:.6g} mm is not used, since a volume has its own depth, {:.6g} "
+                    "mm; leave it out, or give medium.field.spacing_mm",
+                    slab.thickness / unit::millimetre, depth / unit::millimetre));
+  }
+  slab.thickness = depth;
+  medium.resolve("thickness_mm", depth / unit::millimetre);
+  return true;
+}
+
+/// Sets the one depth of the medium that every command uses, and writes it into the resolved setup: a volume's own; for
+/// thickness_mm = "auto" that of the slab, which for a field with a size ends short of the dots and the lens.
 void resolve_thickness(Setup& setup, SetupTable medium) {
   MediumSetup& slab = setup.medium;
-  if (!slab.automatic_thickness) return;
+  if (take_depth_of_volume(setup, medium) || !slab.automatic_thickness) return;
   double thickness_mm = automatic_thickness_mm(slab);
   if (thickness_mm > automatic_thickness_mm(FieldSetup{})) {
     double const way_mm = (setup.z_d == 0 ? setup.z_a : std::min(setup.z_a, setup.z_d)) / unit::millimetre;

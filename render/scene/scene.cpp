@@ -116,21 +116,7 @@ double Scene::pupil_radius(double rays) const {
 
 double Scene::spot_scale_px() const { return setup.spot_scale_px(); }
 
-double Scene::spot_sigma_px() const {
-  SpotSize const spot{spot_scale_px()};
-  switch (setup.lens.spot) {
-    case SpotModel::gaussian:
-      return spot.matched_sigma();
-    case SpotModel::gaussian_first_zero:
-      return spot.first_zero_diameter() / 4;
-    case SpotModel::seed_eq8:
-      return pi * spot.first_zero_diameter() / 4;
-    case SpotModel::airy:
-    case SpotModel::none:
-      break;
-  }
-  return 0;
-}
+double Scene::spot_sigma_px() const { return setup.lens.spot == SpotModel::airy ? 0 : setup.spot_e2_diameter_px() / 4; }
 
 bool Scene::in_view(Vec2d on_target) const {
   Vec2d const pixel = to_pixel(on_target);

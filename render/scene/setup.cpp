@@ -72,6 +72,33 @@ double Setup::spot_diameter_px() const {
   return SpotSize{spot_scale_px()}.first_zero_diameter() * (lens.spot == SpotModel::seed_eq8 ? pi : 1.0);
 }
 
+double Setup::spot_e2_diameter_px() const {
+  SpotSize const spot{spot_scale_px()};
+  switch (lens.spot) {
+    case SpotModel::gaussian:
+    case SpotModel::airy:
+      return 4 * spot.matched_sigma();
+    case SpotModel::gaussian_first_zero:
+      return spot.first_zero_diameter();
+    case SpotModel::seed_eq8:
+      return pi * spot.first_zero_diameter();
+    case SpotModel::none:
+      break;
+  }
+  return 0;
+}
+
+double Setup::defocus_diameter_px() const {
+  ImagingGeometry const geometry = imaging();
+  // a point at the distance Z, seen through a lens that is focused at F, is a disc of M_F D_a |Z - F| / Z
+  double const focus = focus_distance(), magnification = geometry.image_distance / focus;
+  return magnification * geometry.entrance_pupil * std::abs(z_b() - focus) / z_b() / camera.pixel_pitch;
+}
+
+double Setup::image_diameter_px(double geometric_px) const {
+  return std::hypot(geometric_px, spot_e2_diameter_px(), defocus_diameter_px());
+}
+
 double Setup::pixel_area() const {
   if (pose || camera.tilted()) return posed_view_area(*this) / (camera.columns * camera.rows);
   double const px = camera.pixel_pitch / imaging().magnification;

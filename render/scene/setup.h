@@ -17,6 +17,9 @@
 
 namespace gladstone {
 
+/// e^-2 diameter of dot and particle images below which correlation locks to whole pixels [px].
+inline constexpr double least_image_px = 2;
+
 /// That a ray may take across the medium: 10 nm each in 10 mm.
 inline constexpr double most_steps = 1e6;
 
@@ -102,6 +105,16 @@ struct Setup {
   /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
   /// "seed_eq8" (pi times that, as the seed prints it); 0 without a spot.
   double spot_diameter_px() const;
+  /// e^-2 diameter (four standard deviations) of the spot that is drawn; of "airy" that of the matched Gaussian [px].
+  double spot_e2_diameter_px() const;
+  /// Diameter of the disc of confusion of a point in the dots' plane, on a sensor that is focused elsewhere [px].
+  double defocus_diameter_px() const;
+  /// The diameter of a dot's image, everywhere [px]: e^-2 diameters of the geometric image, the spot and the disc of
+  /// confusion, in quadrature (Adrian & Yao 1985; Olsen & Adrian 2000).
+  /// @param geometric_px diameter of the geometric image [px]
+  double image_diameter_px(double geometric_px) const;
+  /// Diameter of the geometric image of a dot of the target [px].
+  double geometric_dot_px() const { return dot_diameter() / pixel_size(); }
   /// Side of the square that is as large as what a pixel sees at the target's middle, by the chief rays there [m]: a
   /// disc of that diameter has an image of a pixel's width, or, foreshortened, of the same area.
   double pixel_size() const;

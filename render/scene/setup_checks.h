@@ -21,8 +21,8 @@ void cross_check_geometry(Setup const& setup, SetupTable geometry);
 /// Refuses windows within another thing, or out of the order that light meets them in, along the camera's axis.
 void cross_check_windows(Setup const& setup, SetupTable root);
 
-/// Fields whose slab ends where they are still large, and volumes whose thickness was given in vain.
-void cross_check_thickness(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings);
+/// Warns of fields whose slab ends where they are still large.
+void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings);
 
 /// Refuses closed forms that make no medium of which a file would be accepted, and densities below zero, which no gas
 /// has. A uniform gradient has those somewhere whatever it is: there they are a warning, and optically linear beyond.

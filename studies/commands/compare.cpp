@@ -15,6 +15,7 @@
 #include "studies/commands/command.h"
 #include "studies/error_report.h"
 #include "studies/figures/gnuplot.h"
+#include "studies/stored_comparison.h"
 
 namespace gladstone {
 
@@ -41,42 +42,56 @@ std::vector<fs::path> figures_in(fs::path const& folder) {
   return figures;
 }
 
-/// Writes errors.json and the figures into the case: all of them or, where one cannot be made, none.
-/// @return what was drawn
-std::vector<fs::path> write_beside(std::string const& place, Comparison const& comparison, std::string const& json,
-                                   bool figures) {
+/// What was written of a comparison.
+struct Written {
+  std::vector<fs::path> figures;
+  std::string json;  ///< text of errors.json
+};
+
+/// Writes comparison.h5 and the figures into a folder that is not in its place yet, and makes the text of errors.json,
+/// which the former names.
+/// @param place where they will stand, for messages
+Written write_parts(fs::path const& folder, std::string const& place, Comparison const& comparison, bool figures) {
+  if (figures) draw_if_possible(folder, place, comparison);
+  Written written{figures_in(folder), errors_json(comparison)};
+  name_final_place(folder.string(), place,
+                   [&] { write_chain((folder / case_file::comparison).string(), comparison, written.json); });
+  return written;
+}
+
+/// Writes errors.json, comparison.h5 and the figures into the case: all of them or, where one cannot be made, none.
+Written write_beside(std::string const& place, Comparison const& comparison, bool figures) {
   remove_leftovers(place, stem_beside("comparison"));
   Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
   fs::path const made = fs::path(staging.path()) / "figures";
   fs::create_directory(made);
-  if (figures) draw_if_possible(made, place, comparison);
-  std::vector<fs::path> const drawn = figures_in(made);
+  Written written = write_parts(made, place, comparison, figures);
   OutputFile errors((fs::path(place) / case_file::errors).string());
-  errors.write(json.data(), json.size());
+  errors.write(written.json.data(), written.json.size());
   comparison.sources.check();
-  for (auto const& name : drawn) fs::rename(made / name, place / name);
+  for (auto const& name : written.figures) fs::rename(made / name, place / name);
+  fs::rename(made / case_file::comparison, fs::path(place) / case_file::comparison);
   errors.commit();
-  return drawn;
+  return written;
 }
 
 /// The same, as a folder of their own.
-std::vector<fs::path> write_folder(OutputFolder& output, std::string const& place, Comparison const& comparison,
-                                   std::string const& json, bool figures) {
-  fs::path const made = output.temporary_path();
-  if (figures) draw_if_possible(made, place, comparison);
-  std::vector<fs::path> const drawn = figures_in(made);
+Written write_folder(OutputFolder& output, std::string const& place, Comparison const& comparison, bool figures) {
+  Written written = write_parts(output.temporary_path(), place, comparison, figures);
   output.fill([&](std::string const& folder) {
-    OutputFile::write_text((fs::path(folder) / case_file::errors).string(), json);
+    OutputFile::write_text((fs::path(folder) / case_file::errors).string(), written.json);
   });
   comparison.sources.check();
   output.commit();
-  return drawn;
+  return written;
 }
 
 /// What a folder of results holds besides errors.json.
-std::vector<std::string> figure_names() {
+std::vector<std::string> other_results() {
   std::vector<std::string> names(case_file::derived.begin(), case_file::derived.end());
-  std::erase_if(names, [](std::string const& name) { return fs::path(name).extension() != ".png"; });
+  std::erase_if(names, [](std::string const& name) {
+    return fs::path(name).extension() != ".png" && name != case_file::comparison;
+  });
   return names;
 }
 
@@ -127,18 +142,17 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     std::optional<OutputFolder> output;
     std::optional<OutputFile> tried;  // shows that the place can be written, until the comparison is done
     if (apart) {
-      output.emplace(place, FolderContent{case_file::errors, figure_names()});
+      output.emplace(place, FolderContent{case_file::errors, other_results()});
     } else {
       tried.emplace(in_case(folder, case_file::errors));
     }
     Comparison const comparison = compare_case(folder, device, compare);
-    std::string const json = errors_json(comparison);
     bool const draw = !arguments->no_figures;
-    auto const figures =
-        apart ? write_folder(*output, place, comparison, json, draw) : write_beside(place, comparison, json, draw);
+    Written const written =
+        apart ? write_folder(*output, place, comparison, draw) : write_beside(place, comparison, draw);
     if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
-    for (auto const& name : figures) spdlog::info("drew {}", (place / name).string());
-    print_result(options, json, error_report(comparison));
+    for (auto const& name : written.figures) spdlog::info("drew {}", (place / name).string());
+    print_result(options, written.json, error_report(comparison));
     return ok;
   };
 }

@@ -15,6 +15,7 @@
 #include "studies/case.h"
 #include "studies/commands/command.h"
 #include "studies/json_text.h"
+#include "studies/peak_locking.h"
 
 namespace gladstone {
 
@@ -101,6 +102,8 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
+      if (std::string advice = locking_advice(reference); !advice.empty())
+        measurement.field.warnings.push_back(std::move(advice));
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }

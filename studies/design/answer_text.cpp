@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "studies/design/sheet.h"
 #include "studies/design/verification_text.h"
 
 namespace gladstone {
@@ -93,6 +94,9 @@ std::string feasible_text(AnsweredQuestion const& answered) {
   if (!variant.lens.empty()) text += fmt::format("  {:<28}{}\n", "lens", variant.lens);
   text += "predicted by formula\n";
   for (Predicted const& one : predicted(best)) text += fmt::format("  {:<28}{:.6g}\n", one.key, one.value);
+  if (std::string const beyond = beyond_study(best); !beyond.empty()) {
+    text += "  random_px and gradient_min_kg_m4 lie beyond what the estimator's study measured: " + beyond + '\n';
+  }
   text += "what binds\n";
   for (std::string const& name : answered.answer.binding) text += "  " + name + '\n';
   if (answered.answer.binding.empty()) text += "  nothing\n";
@@ -141,6 +145,7 @@ Json feasible_json(AnsweredQuestion const& answered) {
   if (!variant.camera.empty()) json["camera"] = variant.camera;
   if (!variant.lens.empty()) json["lens"] = variant.lens;
   for (Predicted const& one : predicted(best)) json["predicted"][one.key] = one.value;
+  json["beyond_study"] = beyond_study(best);
   json["binding"] = answer.binding;
   json["costs"] = Json::array();
   for (RequirementCost const& cost : answer.costs) {

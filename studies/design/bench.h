@@ -68,22 +68,17 @@ struct Bench {
   T cone_diameter() const { return pupil() * z_d / z_b(); }
   /// N (1 + M) lambda [m].
   T spot_scale() const { return f_number * (1.0 + magnification()) * given->wavelength; }
-  /// d_d of F13: between the first zeros of the Airy pattern, as rounded as it is usually told (2.43934) [px].
+  /// d_d of F13: diameter between the first zeros of the Airy pattern, its factor rounded as usual (2.43934) [px].
   T diffraction_px() const { return 2.44 * spot_scale() / given->camera.pixel_pitch; }
   /// Standard deviation of the Gaussian matched to that spot [px].
   T spot_sigma_px() const { return 0.4206042622 * spot_scale() / given->camera.pixel_pitch; }
   T geometric_dot_px() const { return dot_diameter / pixel_at_dots(); }
-  /// e^-2 diameter of the dot's image: the disc's and the Gaussian spot's four sigmas in quadrature [px].
-  T dot_e2_px() const {
+  /// d_tau of F14, the e^-2 diameter of the dot's image: the disc's and the Gaussian spot's four sigmas in quadrature,
+  /// as Setup::image_diameter_px() [px].
+  T dot_image_px() const {
     using std::sqrt;
     T const geometric = geometric_dot_px(), spot = spot_sigma_px();
     return sqrt(geometric * geometric + 16.0 * spot * spot);
-  }
-  /// d_tau of F14 [px].
-  T dot_image_px() const {
-    using std::sqrt;
-    T const geometric = geometric_dot_px(), spot = diffraction_px();
-    return sqrt(geometric * geometric + spot * spot);
   }
   /// Width of the last pass's window in the medium's mid-plane [m].
   T window_width() const { return double(given->window.window_px()) * pixel_at_medium(); }

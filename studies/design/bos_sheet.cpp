@@ -12,8 +12,10 @@ namespace {
 
 constexpr double mm = unit::millimetre, um = unit::micrometre;
 constexpr double gradient_without_field = 10;  // [kg/m^4]
-constexpr double good_dot_px = 3;              // to which diffraction alone may widen a dot, F21
+constexpr double good_dot_px = 3;              // to which diffraction alone may widen a dot, F13
 constexpr double deforming_strain = 0.1;       // that windows which deform follow, F19
+
+constexpr double binding = 1e-3;  // by which a bench that a bound binds may exceed it
 
 constexpr double good_signal = 20;  // over its noise, F21
 
@@ -117,9 +119,12 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
                               1.0289939699621886 * b.spot_scale() / um, 1.644922989562259 * b.spot_scale() / um)});
   double const dot = b.dot_image_px();
   rows.push_back(
-      {"F14", "dot_diameter_px", "dot image", dot, "px", "sqrt((M d / p)^2 + d_d^2)", adrian,
-       std::max(at_least(dot, 2, 1.5), at_most(dot, 5, 7)),
-       fmt::format("of dots {:.4g} mm wide; 2 to 3 px for correlation, 3 to 5 px for tracking", b.dot_diameter / mm)});
+      {"F14", "dot_diameter_px", "dot image, e^-2 diameter", dot, "px", "sqrt((M d / p)^2 + (4 s)^2)", adrian,
+       std::max(at_least(dot, least_image_px, 1.5), at_most(dot, random_error_range.most_image, 7)),
+       fmt::format(
+           "of dots {:.4g} mm wide, s = 0.4206 N (1 + M) lambda / p = {:.3g} px; 2 to 3 px for correlation, 3 to "
+           "5 px for tracking",
+           b.dot_diameter / mm, b.spot_sigma_px())});
   rows.push_back({"F15", "dots_per_window", "dots in a window", b.dots_in_window(), "", "C N_w^2",
                   "Keane & Adrian 1992, Appl. Sci. Res. 49:191", at_least(b.dots_in_window(), 8, 5),
                   fmt::format("they cover {:.3g} % of the target", 100 * b.coverage())});
@@ -138,6 +143,13 @@ double peak_of_signal(Bench<double> const& b, double q) {
   NoiseSetup const& noise = b.given->camera.noise;
   double const shot = noise.enabled && noise.shot_noise ? 1 : 0;
   return 0.5 * q * (shot * q + std::sqrt(shot * q * q + 4 * (variance - shot * n)));
+}
+
+/// Largest f-number whose dot images are no wider than the recommendation allows (Bound::dot_most); 0 where the
+/// geometric image alone is wider.
+double widest_images_stop(Bench<double> const& b) {
+  double const most = random_error_range.most_image, geometric = b.geometric_dot_px();
+  return b.f_number * std::sqrt(std::max(0.0, most * most - geometric * geometric)) / (4 * b.spot_sigma_px());
 }
 
 /// Largest f-number whose peaks are bright enough, the share of the peak in a lit pixel being that of this stop;
@@ -162,16 +174,20 @@ void add_light(DesignSheet& sheet, Bench<double> const& b) {
   rows.push_back({"F21", "signal_to_noise", "peak over its noise", 1 / b.noise(), "", "n_e / sqrt(n_e + sigma_r^2)",
                   "Rose 1948, J. Opt. Soc. Am. 38:196", at_least(1 / b.noise(), good_signal, 5), ""});
   double const floor = b.focal_length * b.z_d / (b.z_b() * b.window_width());
-  double const sharp = good_dot_px * camera.pixel_pitch / (2.44 * (1 + b.magnification()) * b.given->wavelength);
+  double const sharp = widest_images_stop(b);
   double const bright = brightest_stop(b), most = std::fmin(sharp, bright);
   double const cone = b.focal_length * b.z_d / (b.z_b() * most);
   std::string closed =
       fmt::format("no f-number keeps all: the largest, f/{:.3g}, has a cone of {:.4g} mm", most, cone / mm);
+  closed += "; a cone wider than the window counts in the resolution, F12";
   if (bright < floor) closed += fmt::format("; the least takes {:.3g} times the light", std::pow(floor / bright, 2));
   rows.push_back({"F22", "f_number_floor", "least f-number: the cone within the window", floor, "", "f Z_D / (Z_B W_o)",
                   derived, at_least(b.f_number / floor, 1, 0.5), floor <= most ? "" : closed});
-  rows.push_back({"F22", "f_number_ceiling", "largest f-number: diffraction within 3 px", sharp, "",
-                  "3 p / (2.44 (1 + M) lambda)", derived, at_most(b.f_number / sharp, 1, 5.0 / good_dot_px), ""});
+  double const widest = random_error_range.most_image;
+  rows.push_back({"F22", "f_number_ceiling", fmt::format("largest f-number: dot images within {:g} px", widest), sharp,
+                  "", fmt::format("sqrt({:g}^2 - (M d / p)^2) p / (1.682 (1 + M) lambda)", widest), derived,
+                  at_most(b.f_number / sharp, 1 + binding, 7 / widest),
+                  sharp > 0 ? "as the recommendation has it" : "the dots' geometric images alone are wider"});
   if (!b.given->light) return;
   rows.push_back({"F22", "f_number_light", "largest f-number: peaks of 20 times their noise", bright, "",
                   "N sqrt(n_e / n_min), n_min = (q^2 + sqrt(q^4 + 4 q^2 sigma_r^2)) / 2, q = 20", derived,
@@ -180,7 +196,8 @@ void add_light(DesignSheet& sheet, Bench<double> const& b) {
                               peak_of_signal(b, good_signal), b.peak_share())});
 }
 
-/// In what a bench lies beyond the study of the random error, each as "; dots below 0.8 px"; empty: within.
+}  // namespace
+
 std::string beyond_study(Bench<double> const& b) {
   RandomErrorRange const& range = random_error_range;
   std::string text;
@@ -188,16 +205,18 @@ std::string beyond_study(Bench<double> const& b) {
     constexpr double slack = 5e-3;  // of what the study's values are rounded to
     bool const below = value < low * (1 - slack);
     if (below || value > high * (1 + slack))
-      text += fmt::format("{} {} {} {:.3g}{}", text.empty() ? "" : ",", what, below ? "below" : "above",
+      text += fmt::format("{}{} {} {:.3g}{}", text.empty() ? "" : ", ", what, below ? "below" : "above",
                           (below ? low : high) / unit, name);
   };
   check("dots", b.geometric_dot_px(), range.least_dot, HUGE_VAL, 1, " px");
-  check("images", b.dot_e2_px(), 0, range.most_image, 1, " px");
+  check("images", b.dot_image_px(), 0, range.most_image, 1, " px");
   check("spots", b.spot_sigma_px(), range.narrowest_spot, range.widest_spot, 1, " px");
   check("noise", b.noise(), range.least_noise, range.most_noise, 0.01, " %");
   check("a number of dots", b.dots_in_window(), range.fewest_dots, range.most_dots, 1, " in a window");
   return text;
 }
+
+namespace {
 
 void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) {
   auto& rows = sheet.rows;
@@ -221,7 +240,7 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
        fmt::format("along the displacement, across it 0.3 to 0.8 of that; dots of {:.3g} px under spots of {:.3g} px, "
                    "noise {:.3g} % of the peak, {:.3g} dots in a window{}",
                    b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
-                   beyond.empty() ? "" : "; beyond what was measured:" + beyond)});
+                   beyond.empty() ? "" : "; beyond what was measured: " + beyond)});
   double const epsilon = shown_gradient(*b.given) * b.deflection(), slab = b.given->thickness / b.z_d;
   double const theta = b.given->camera.columns * pitch / 2 / b.image_distance();
   bool const matched = setup.medium.faces == Faces::matched;

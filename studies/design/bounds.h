@@ -90,7 +90,7 @@ T excess(Limit const& limit, Bench<T> const& bench) {
     case Bound::dot_least:
       return log(limit.value / bench.geometric_dot_px());
     case Bound::dot_most:
-      return log(bench.dot_e2_px() / limit.value);
+      return log(bench.dot_image_px() / limit.value);
     case Bound::coverage:
       return log(bench.coverage() / limit.value);
     case Bound::noise_most:

@@ -48,6 +48,7 @@ double traced_displacement(CaseSetup const& loaded, UncertainInput const& input,
   changed.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
   changed.set({"correlate", "window_px"}, setup_array({setup_integer(std::min({columns, rows, 32}) / 2 * 2)}));
   changed.set({"medium", "field"}, steady_gradient());
+  changed.set({"medium", "thickness_mm"}, setup_number(loaded.setup.medium.thickness / unit::millimetre));
   changed.set({"render", "rays_per_dot"}, setup_integer(traced_rays));
   changed.set({"lens", "f_number"}, setup_number(std::numeric_limits<double>::infinity()));
   changed.set(input.path, setup_number(value));

@@ -14,6 +14,18 @@ struct RandomErrorRange {
 };
 inline constexpr RandomErrorRange random_error_range{0.8, 4.2, 0.1, 0.276, 0.006, 0.111, 5, 45};
 
+/// The part of random_error_px() that the places of the dots on the pixels cause, pattern (20 / N_I)^0.305 [px].
+template <class T>
+T pattern_error_px(T geometric_px, T spot_px, double dots) {
+  using std::exp;
+  using std::sqrt;
+  T const g2 = geometric_px * geometric_px, s2 = spot_px * spot_px;
+  constexpr double widest = random_error_range.widest_spot * random_error_range.widest_spot;
+  T const smooth = s2 < widest ? s2 : T(widest);
+  T const even = 0.0057 * exp(-5.4 * smooth), small = 0.21 * exp(-1.76 * g2 - 10.5 * smooth);
+  return sqrt(even * even + small * small) * std::pow(20 / dots, 0.305);
+}
+
 /// Random error of a displacement that our correlator measures with its default settings, along it, where it goes
 /// through all fractions of a pixel [px] (across it, where nothing moves, 0.3 to 0.8 of that: data/README.md): what the
 /// places of the dots on the pixels change, which falls as dots grow and as their spots smooth them, and what noise
@@ -33,15 +45,11 @@ inline constexpr RandomErrorRange random_error_range{0.8, 4.2, 0.1, 0.276, 0.006
 /// @param dots          N_I in the last pass's window
 template <class T>
 T random_error_px(T geometric_px, T spot_px, T noise, double dots) {
-  using std::exp;
   using std::pow;
   using std::sqrt;
-  T const g2 = geometric_px * geometric_px, s2 = spot_px * spot_px;
-  constexpr double widest = random_error_range.widest_spot * random_error_range.widest_spot;
-  T const smooth = s2 < widest ? s2 : T(widest);
-  T const even = 0.0057 * exp(-5.4 * smooth), small = 0.21 * exp(-1.76 * g2 - 10.5 * smooth);
-  T const part = 0.272 * noise * pow(g2 + 16.0 * s2, -0.295);
-  return sqrt((even * even + small * small) * std::pow(20 / dots, 0.61) + part * part * (20 / dots));
+  T const pattern = pattern_error_px(geometric_px, spot_px, dots);
+  T const part = 0.272 * noise * pow(geometric_px * geometric_px + 16.0 * spot_px * spot_px, -0.295);
+  return sqrt(pattern * pattern + part * part * (20 / dots));
 }
 
 }  // namespace gladstone

@@ -13,13 +13,20 @@
 namespace gladstone {
 namespace {
 
+/// Half width and height of what the camera sees in the medium's mid-plane [m].
+Vec2d half_view_at_medium(Setup const& setup) {
+  double const pixel = setup.camera.pixel_pitch / setup.imaging().magnification * setup.z_a / setup.z_b();
+  return 0.5 * pixel * Vec2d{double(setup.camera.columns), double(setup.camera.rows)};
+}
+
 /// Largest gradient of density in the view, averaged over the thickness [kg/m^4].
 double largest_gradient(Setup const& setup) {
   if (setup.medium.field.kind == FieldKind::none) return 0;
   if (setup.medium.field.kind == FieldKind::closed_form) {
+    Vec2d const half = half_view_at_medium(setup);
     auto const known = std::visit(
-        [](auto const& form) -> std::optional<double> {
-          if constexpr (requires { form.steepest_mean_density(); }) return form.steepest_mean_density();
+        [half](auto const& form) -> std::optional<double> {
+          if constexpr (requires { form.steepest_mean_density(half); }) return form.steepest_mean_density(half);
           return std::nullopt;
         },
         closed_form_of(setup.medium));

@@ -56,6 +56,10 @@ std::vector<std::string> beyond_closed_forms(Setup const& setup);
 /// The gradient that the sheet's displacements are of: the largest in view, or 10 kg/m^4 where there is none.
 double shown_gradient(BenchGiven const& given);
 
+/// In what a bench lies beyond the study that the random error (F26) was fitted to: "dots below 0.8 px, ..."; empty:
+/// within.
+std::string beyond_study(Bench<double> const& bench);
+
 /// Sheet of a BOS bench: F1 to F27. Gradients and deflections for which none is given are of 10 kg/m^4.
 DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench);
 

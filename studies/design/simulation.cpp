@@ -69,6 +69,8 @@ BenchStudies studies_of(std::string const& setup, Bench<double> const& bench, st
                std::clamp(simulated_windows * bench.given->window.window_px(), least_simulated_px, most_simulated_px));
   int const columns = std::min(camera.columns, side), rows = std::min(camera.rows, side);
   base.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
+  // the waves are as deep as the setup's own medium
+  base.set({"medium", "thickness_mm"}, setup_number(bench.given->thickness / unit::millimetre));
   return {std::move(base), repeats, seed};
 }
 

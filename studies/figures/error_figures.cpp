@@ -232,7 +232,7 @@ void write_budget_bars(std::string const& path, std::string const& title, ErrorB
   }
   plot.command(tics + ")");
   std::string const source = plot.add_table(columns);
-  constexpr std::string_view names[] = {"bias u", "bias v", "random u", "random v"};
+  constexpr std::string_view names[] = {"bias u", "bias v", "scatter u", "scatter v"};
   constexpr std::string_view colours[] = {"#56b4e9", "#0072b2", "#e69f00", "#d55e00"};
   std::string bars = "plot ";
   for (int k = 0; k < 4; ++k) {

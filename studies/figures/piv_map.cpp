@@ -12,7 +12,7 @@ namespace gladstone {
 namespace {
 
 constexpr std::array<double, 10> stops{1.4, 2, 2.8, 4, 5.6, 8, 11, 16, 22, 32};
-constexpr double least_image_px = 2, most_image_px = 4;  // F14
+constexpr double most_image_px = 4;  // F14
 
 std::string own_stop(double f_number) {
   return fmt::format(

@@ -61,6 +61,13 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
         std::string const measure =
             term.name == "total" ? "budget.total.rms_px" : fmt::format("budget.terms.{}.rms_px", term.name);
         std::vector<double> values = cells.values(measure, rows);
+        if (!points) {  // repeats tell the estimator's part of an undeformed window alone
+          std::vector<double> const after =
+              cells.values(fmt::format("budget.after_passes.terms.{}.rms_px", term.name), rows);
+          for (std::size_t i = 0; i < after.size() && i < values.size(); ++i) {
+            if (std::isfinite(after[i])) values[i] = after[i];
+          }
+        }
         if (points && (term.name == "estimator" || term.name == "pattern")) {
           values = points->values(fmt::format("budget.{}_px", term.name), points->rows_at(places));
         }

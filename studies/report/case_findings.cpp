@@ -16,10 +16,24 @@ std::string largest_term(ErrorBudget const& budget) {
   }
   if (!largest) return "";
   return fmt::format(
-      "The largest cause of error is {}, with a bias of ({}, {}) px, a random part of ({:.2g}, "
-      "{:.2g}) px and an rms of {:.3g} px; the total rms is {:.3g} px.",
+      "The largest cause of error is {}, with a bias of ({}, {}) px, a scatter over the field of "
+      "({:.2g}, {:.2g}) px and an rms of {:.3g} px; the total rms is {:.3g} px.",
       largest->name, TableCell::px(largest->bias_u_px).text, TableCell::px(largest->bias_v_px).text,
       largest->random_u_px, largest->random_v_px, largest->rms_px, budget.total.rms_px);
+}
+
+std::string budget_words(Comparison const& all) {
+  std::string text =
+      "Scatter is the standard deviation over the vectors of the field. That of estimator and noise changes with dots "
+      "and "
+      "noise; that of the other causes is the same in every repeat.";
+  if (all.frames_deformed) {
+    text +=
+        " Window is what is lost after the passes that deform the frames, and estimator what is added to that. "
+        "errors.json has them so under budget.after_passes; under budget.terms they are of an undeformed window, whose "
+        "loss the later passes win back.";
+  }
+  return text;
 }
 
 std::vector<std::string> uncertainty_statements(CaseView const& view) {
@@ -77,8 +91,9 @@ std::vector<std::string> findings_of(CaseView const& view) {
                   "{:.2g} % of them with gross errors.",
                   truth.rms_px, theory.rms_px, view.piv ? "the displacement of the flow" : "Eq. 9", truth.count,
                   all.vectors_in_file(), 100 * truth.gross_fraction));
-  if (std::string const cause = largest_term(all.budget); !cause.empty()) findings.push_back(cause);
+  if (std::string const cause = largest_term(all.shown_budget()); !cause.empty()) findings.push_back(cause);
   findings.push_back(uncertainty_statements(view).front());
+  for (std::string const& warning : all.warnings) findings.push_back("Warning: " + warning + '.');
   return findings;
 }
 

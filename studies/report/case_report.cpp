@@ -143,7 +143,7 @@ nlohmann::json budget_json(ErrorBudget const& budget) {
 }
 
 TextTable budget_table(std::string const& title, ErrorBudget const& budget) {
-  TextTable table{title, {"cause", "bias u", "bias v", "random u", "random v", "rms"}, {}};
+  TextTable table{title, {"cause", "bias u", "bias v", "scatter u", "scatter v", "rms"}, {}};
   auto const add = [&](BudgetTerm const& term) {
     table.rows.push_back({{term.name},
                           TableCell::px(term.bias_u_px),
@@ -176,6 +176,7 @@ FramePictures frame_pictures(std::string const& folder, std::string const& title
 ReportPage case_report(ReportOptions const& options, Device const& device) {
   CompareOptions compare;
   compare.vectors = options.vectors;
+  compare.reuse = true;
   CaseView view(compare_case(options.source, device, compare));
   Comparison const& all = view.comparison;
   add_maps(view);
@@ -187,7 +188,7 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
                               view.piv ? "PIV" : "BOS", all.vectors_in_file());
   page.findings = findings_of(view);
   bool const gridded = all.measured.columns > 1 && all.measured.rows > 1;
-  page.data = {{"errors", view.errors}, {"budget", budget_json(all.budget)}};
+  page.data = {{"errors", view.errors}, {"budget", budget_json(all.shown_budget())}};
   std::optional<BenchView> const bench = bench_view(load_case_setup(in_case(options.source, case_file::setup), {}));
   if (bench) page.sections.push_back(bench_section(*bench, "the case"));
   page.sections.push_back({"Images", {frame_pictures(options.source, "The two frames")}});
@@ -204,8 +205,10 @@ ReportPage case_report(ReportOptions const& options, Device const& device) {
       {"Errors", {Chart{"histogram", "Distribution of the error", page.findings.front()}, errors_table(view)}});
   page.sections.push_back(
       {"Causes of error",
-       {Chart{"budget", "rms of every cause", largest_term(all.budget)},
-        budget_table("The error budget [px]; the terms correlate, so that their squares do not add up", all.budget)}});
+       {Chart{"budget", "rms of every cause", largest_term(all.shown_budget())},
+        budget_table("The error budget [px]; the terms correlate, so that their squares do not add up",
+                     all.shown_budget()),
+        Paragraph{budget_words(all)}}});
   ReportSection uncertainty{"Uncertainty", {TextList{uncertainty_statements(view)}}};
   if (nlohmann::json bins = reliability_of(all); !bins.empty()) {
     uncertainty.blocks.push_back(Chart{

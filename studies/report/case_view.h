@@ -65,6 +65,9 @@ nlohmann::json budget_json(ErrorBudget const& budget);
 /// What the budget's largest term is, in a sentence; empty where none is known.
 std::string largest_term(ErrorBudget const& budget);
 
+/// What the words of a budget's table mean.
+std::string budget_words(Comparison const& all);
+
 /// What an uncertainty report says in the words of the GUM (JCGM 100:2008).
 std::vector<std::string> uncertainty_statements(CaseView const& view);
 

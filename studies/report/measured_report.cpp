@@ -63,11 +63,12 @@ ReportSection causes_section(ReportPage& page, SimulatedTwin const* twin) {
       "estimator's own together.",
       twin->columns, twin->rows, twin->seeds.size(), fmt::join(twin->seeds, ", "), twin->random_px,
       twin->systematic_px)});
-  page.data["budget"] = budget_json(twin->comparison.budget);
+  page.data["budget"] = budget_json(twin->comparison.shown_budget());
   causes.blocks.push_back(
-      Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.budget)});
+      Chart{"budget", "rms of every cause, of the simulated twin", largest_term(twin->comparison.shown_budget())});
   causes.blocks.push_back(budget_table("Budget by cause, of the simulated twin and not of the measurement itself [px]",
-                                       twin->comparison.budget));
+                                       twin->comparison.shown_budget()));
+  causes.blocks.push_back(Paragraph{budget_words(twin->comparison)});
   return causes;
 }
 

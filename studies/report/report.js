@@ -75,6 +75,11 @@
   /* ---- studies ---- */
   const rows = (data.rows || []).filter((row) => row.status === "ok");
   const measure = (row, name) => row.m[data.measures.findIndex((one) => one.name === name)];
+  /* A term of the budget: after the passes that deform the frames, where there are such. */
+  const termRms = (row, term) => {
+    const after = measure(row, "budget.after_passes.terms." + term + ".rms_px");
+    return known(after) ? after : measure(row, "budget.terms." + term + ".rms_px");
+  };
   const free = (data.axes || []).filter((axis) => axis.labels.length > 1);
   const axisOf = (key) => data.axes.find((axis) => axis.key === key);
   const place = (row, axis) => row.v[data.axes.indexOf(axis)];
@@ -204,7 +209,7 @@
         const groups = axis.labels.map((label, i) => ({
           label: label,
           bars: data.terms.map((term, k) => {
-            const values = (chosen.x ? rows.filter((row) => place(row, axis) === i) : rows).map((row) => measure(row, "budget.terms." + term + ".rms_px")).filter(known);
+            const values = (chosen.x ? rows.filter((row) => place(row, axis) === i) : rows).map((row) => termRms(row, term)).filter(known);
             return { label: label, term: term, colour: colours[k % colours.length], value: quantile(values, 0.5), n: values.length };
           }).filter((bar) => bar.n > 0)
         }));
@@ -318,7 +323,7 @@
       const y = d3.scaleLinear().domain([0, d3.max(terms, (t) => t.rms) || 1]).nice().range([height - margin.bottom, margin.top]);
       axes(svg, x, y, "cause", "rms [px]");
       const marks = svg.selectAll("rect.bar").data(terms.filter((t) => known(t.rms))).enter().append("rect").attr("class", "bar").attr("x", (t) => x(t.name)).attr("y", (t) => y(t.rms)).attr("width", x.bandwidth()).attr("height", (t) => y(0) - y(t.rms)).attr("fill", (t) => (t.name === "total" ? colours[6] : colours[0]));
-      walkable(svg, marks, (t) => t.name + " rms " + shown(t.rms) + " px\nbias " + shown(t.bias_u) + ", " + shown(t.bias_v) + " px\nrandom " + shown(t.random_u) + ", " + shown(t.random_v) + " px");
+      walkable(svg, marks, (t) => t.name + " rms " + shown(t.rms) + " px\nbias " + shown(t.bias_u) + ", " + shown(t.bias_v) + " px\nscatter over the field " + shown(t.random_u) + ", " + shown(t.random_v) + " px");
     },
 
     reliability(plot) {

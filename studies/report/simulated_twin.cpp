@@ -42,6 +42,7 @@ StudyFile study_of(CaseSetup const& loaded, SetupNode field) {
   CameraSetup const& camera = loaded.setup.camera;
   base.set({"camera", "pixels"}, setup_array({setup_integer(std::min(camera.columns, most_twin_px)),
                                               setup_integer(std::min(camera.rows, most_twin_px))}));
+  base.set({"medium", "thickness_mm"}, setup_number(loaded.setup.medium.thickness / unit::millimetre));
   AxisPlan medium;
   medium.key = "medium.field";
   medium.path = {"medium", "field"};

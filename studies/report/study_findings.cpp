@@ -74,7 +74,7 @@ std::string largest_cause(StudyView const& study) {
     std::size_t largest = study.terms.size();
     double most = -1;
     for (std::size_t k = 0; k < study.terms.size(); ++k) {
-      double const rms = study.of(*row, "budget.terms." + study.terms[k] + ".rms_px");
+      double const rms = study.term_rms(*row, study.terms[k]);
       if (rms > most) {
         most = rms;
         largest = k;
@@ -86,9 +86,12 @@ std::string largest_cause(StudyView const& study) {
   }
   if (judged == 0) return "";
   auto const first = static_cast<std::size_t>(std::max_element(wins.begin(), wins.end()) - wins.begin());
+  std::vector<double> known;
+  for (StudyRow const* row : study.finished) {
+    if (double const rms = study.term_rms(*row, study.terms[first]); std::isfinite(rms)) known.push_back(rms);
+  }
   return fmt::format("The largest cause of error is {} in {} of {} cases, with a median rms of {:.3g} px.",
-                     study.terms[first], wins[first], judged,
-                     quantile(study.values("budget.terms." + study.terms[first] + ".rms_px"), 0.5));
+                     study.terms[first], wins[first], judged, quantile(std::move(known), 0.5));
 }
 
 std::string strongest_axis(StudyView const& study) {

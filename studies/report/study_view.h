@@ -29,6 +29,11 @@ struct StudyView {
     auto const at = table.find_measure(measure);
     return at ? row.measures[*at] : std::nan("");
   }
+  /// rms of a term of the budget: after the passes that deform the frames, where there are such [px].
+  double term_rms(StudyRow const& row, std::string const& term) const {
+    double const after = of(row, "budget.after_passes.terms." + term + ".rms_px");
+    return std::isfinite(after) ? after : of(row, "budget.terms." + term + ".rms_px");
+  }
   bool knows(std::string const& measure) const {
     return std::any_of(finished.begin(), finished.end(),
                        [&](StudyRow const* row) { return std::isfinite(of(*row, measure)); });

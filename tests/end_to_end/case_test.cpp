@@ -26,7 +26,7 @@ TEST_F(Case, RenderCorrelateCompareMakeTheFilesOfTheContract) {
   EXPECT_TRUE(std::filesystem::exists(in("case/vectors.h5")));
   EXPECT_THAT(succeed({"compare", "case", "--no-figures"}), HasSubstr("Error budget"));
   EXPECT_THAT(names("case"), UnorderedElementsAre("reference.tif", "flow.tif", "truth.h5", "setup.toml", "summary.json",
-                                                  "vectors.h5", "errors.json"));
+                                                  "vectors.h5", "errors.json", "comparison.h5"));
   EXPECT_THAT(names(), UnorderedElementsAre("case", "setup.toml"));
 }
 

@@ -61,6 +61,32 @@ TEST_F(Reports, OfAStudyHoldsItsNumbersAndPictures) {
   }
 }
 
+// What `compare` has stored is taken where errors.json is the one that it belongs to and the files are the same; the
+// report is the same then, to the last digit. Anything else is compared anew.
+TEST_F(Reports, TakeAComparisonThatFits) {
+  render("case");
+  succeed({"correlate", "case", "--quiet"});
+  auto const reused = [this] {
+    Outcome const outcome = gladstone({"report", "case"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.err.find("took the comparison") != std::string::npos;
+  };
+  EXPECT_FALSE(reused()) << "there is none yet";
+  nlohmann::json const fresh = data_of("case/report.html");
+  succeed({"compare", "case", "--no-figures", "--quiet"});
+  EXPECT_TRUE(reused());
+  EXPECT_EQ(data_of("case/report.html"), fresh);
+  std::string const errors = read("case/errors.json");
+  write("case/errors.json", errors + '\n');
+  EXPECT_FALSE(reused()) << "another errors.json";
+  write("case/errors.json", errors);
+  EXPECT_TRUE(reused());
+  succeed({"correlate", "case", "--quiet", "--set", "correlate.overlap=0.25"});
+  EXPECT_FALSE(reused()) << "other vectors";
+  render("case");
+  EXPECT_FALSE(std::filesystem::exists(in("case/comparison.h5"))) << "of the case as it was";
+}
+
 TEST_F(Reports, OfACaseAddUpTheirCauses) {
   render("case");
   succeed({"correlate", "case", "--quiet"});

@@ -75,7 +75,7 @@ TEST(Design, FindsTheBestDotSize) {
   double best = HUGE_VAL;
   for (double d = 0.02e-3; d <= 0.3e-3; d *= 1.0001) {
     Bench<double> const bench{&given, 0.105, 11, 0.75, 0.25, d};
-    bool const within = bench.dot_e2_px() <= random_error_range.most_image && bench.coverage() <= most_coverage;
+    bool const within = bench.dot_image_px() <= random_error_range.most_image && bench.coverage() <= most_coverage;
     if (within) best = std::min(best, bench.random_error());
   }
   EXPECT_NEAR(answer.outcomes.front().solution.objective, best, 1e-4 * best);

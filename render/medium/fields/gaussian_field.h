@@ -30,9 +30,14 @@ struct GaussianField : Slab<T> {
   T finest() const { return radius / 2; }
   /// The largest slope of A exp(-r^2/a^2) is sqrt(2/e) A / a.
   T steepest() const { return this->gladstone_dale * std::abs(amplitude) * 0.85776388496 / radius; }
-  /// F29, at r = a / sqrt(2).
-  T steepest_mean_density() const {
-    return std::sqrt(2 * pi / std::exp(1.0)) * std::abs(amplitude) / (2 * this->half_thickness);
+  /// Largest slope, no farther than `reach` from the axis, of the density averaged over the slab, whose faces cut the
+  /// Gaussian off at z = +-h: at r = a / sqrt(2) or, if that is beyond, at `reach`. It is
+  ///   2 |A| r / a^2 exp(-r^2 / a^2) sqrt(pi) a erf(h / a) / (2 h),
+  /// F29 for h >> a: sqrt(2 pi / e) |A| / (2 h) [kg/m^4].
+  T steepest_mean_density_within(T reach) const {
+    T const r = std::min(reach, radius / std::sqrt(T(2))), h = this->half_thickness;
+    T const slope = T(2) * std::abs(amplitude) * r / (radius * radius) * std::exp(-r * r / (radius * radius));
+    return slope * std::sqrt(T(pi)) * radius * std::erf(h / radius) / (T(2) * h);
   }
   DensityRange densities(Vec2d) const {
     return {this->ambient_density + std::min(amplitude, 0.0), this->ambient_density + std::max(amplitude, 0.0)};

@@ -17,6 +17,8 @@ struct GaussianPlume : GaussianField<T> {
     return {this->template keys_in_scalar<U>()};
   }
 
+  T steepest_mean_density(Vec2d half_extent) const { return this->steepest_mean_density_within(half_extent.x); }
+
   GLADSTONE_HD IndexSample<T> sample(Vec3<T> p) const {
     using std::exp;
     T const a2 = this->radius * this->radius;

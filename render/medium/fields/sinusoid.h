@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/base/setup_table.h"
@@ -55,7 +56,13 @@ struct Sinusoid : Slab<T> {
 
   T finest() const { return wavelength / 4; }
   T steepest() const { return this->gladstone_dale * std::abs(amplitude) * 2 * pi / wavelength; }
-  T steepest_mean_density() const { return std::abs(amplitude) * 2 * pi / wavelength; }
+  /// Where the phase passes no multiple of pi within the extent, the slope is largest at one of its corners.
+  T steepest_mean_density(Vec2d half_extent) const {
+    T const reach = std::abs(wavevector.x) * half_extent.x + std::abs(wavevector.y) * half_extent.y;
+    bool const crest = std::floor((phase + reach) / pi) > std::floor((phase - reach) / pi);
+    T const share = crest ? T(1) : std::max(std::abs(std::cos(phase - reach)), std::abs(std::cos(phase + reach)));
+    return share * std::abs(amplitude) * 2 * pi / wavelength;
+  }
   DensityRange densities(Vec2d) const {
     return {this->ambient_density - std::abs(amplitude), this->ambient_density + std::abs(amplitude)};
   }

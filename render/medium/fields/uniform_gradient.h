@@ -34,7 +34,7 @@ struct UniformGradient : Slab<T> {
 
   T finest() const { return 2 * this->half_thickness; }
   T steepest() const { return this->gladstone_dale * length(gradient); }
-  T steepest_mean_density() const { return std::hypot(gradient.x, gradient.y); }
+  T steepest_mean_density(Vec2d) const { return std::hypot(gradient.x, gradient.y); }
   DensityRange densities(Vec2d half_extent) const {
     double const change = std::abs(gradient.x) * half_extent.x + std::abs(gradient.y) * half_extent.y +
                           std::abs(gradient.z) * this->half_thickness;

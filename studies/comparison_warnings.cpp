@@ -1,0 +1,37 @@
+#include "studies/comparison_warnings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analysis/errors/error_summary.h"
+#include "studies/peak_locking.h"
+
+namespace gladstone {
+namespace {
+
+/// Says where the true displacements are too small to be measured; empty where they are not, or nothing is to move.
+std::string signal_warning(Comparison const& all, bool piv) {
+  std::vector<Vec2d> const nothing(all.mask.size());
+  double const signal = summarize_errors(all.point.displacement_px, nothing, all.mask).rms_px;
+  double const error = summarize_errors(all.measured.displacement_px, all.recorded().displacement_px, all.mask).rms_px;
+  bool const small = signal < least_signal_px;
+  if (signal == 0 || !(small || signal < error)) return {};
+  return fmt::format(
+      "the true displacements are {:.2g} px rms per component, {}, and the vectors' error against {} is {:.2g} px: the "
+      "vectors show little of the {}; increase {}",
+      signal, small ? fmt::format("below {:g} px", least_signal_px) : "less than the error", all.recorded_name(), error,
+      piv ? "flow" : "field", piv ? "flow.dt_us or the magnification" : "geometry.z_d_mm or the magnification");
+}
+
+}  // namespace
+
+std::vector<std::string> comparison_warnings(Comparison const& comparison, Setup const& setup) {
+  std::vector<std::string> warnings;
+  for (std::string& text : std::vector{signal_warning(comparison, setup.piv.has_value()), locking_advice(setup)}) {
+    if (!text.empty()) warnings.push_back(std::move(text));
+  }
+  return warnings;
+}
+
+}  // namespace gladstone

@@ -1,0 +1,118 @@
+#include "studies/peak_locking.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/base/units.h"
+#include "studies/design/random_error.h"
+#include "studies/expected_particles.h"
+#include "studies/image_statistics.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double usual_dots = 20;      // in a window, of the error that is expected
+constexpr double smallest_seen = 0.5;  // [px] what is narrower by the autocorrelation is noise, not dots
+
+constexpr int most_judged_px = 512;  // of a frame, across and down
+
+double square(double x) { return x * x; }
+
+/// The cures of a setup, as keys with their values.
+std::string cures(Setup const& setup, SmallImages const& images) {
+  std::string text;
+  auto const add = [&text](std::string const& cure) { text += (text.empty() ? "" : " or ") + cure; };
+  if (double const factor = images.f_number_factor(least_image_px); std::isfinite(factor * setup.lens.f_number)) {
+    add(fmt::format("lens.f_number = {:.3g}", factor * setup.lens.f_number));
+  }
+  if (double const focus = defocus_distance(setup, least_image_px); std::isfinite(focus)) {
+    add(fmt::format("lens.focus_distance_mm = {:.6g}", focus / unit::millimetre));
+  }
+  if (!setup.piv) {
+    double const needed = std::sqrt(square(least_image_px) - square(images.spot_px) - square(images.blur_px));
+    add(fmt::format("target.dot_diameter_mm = {:.4g}", needed * setup.pixel_size() / unit::millimetre));
+  }
+  return text;
+}
+
+Image<double> middle_of(Image<double> const& frame) {
+  int const columns = std::min(frame.columns(), most_judged_px), rows = std::min(frame.rows(), most_judged_px);
+  int const left = (frame.columns() - columns) / 2, top = (frame.rows() - rows) / 2;
+  Image<double> middle(columns, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) middle(column, row) = frame(left + column, top + row);
+  }
+  return middle;
+}
+
+}  // namespace
+
+double SmallImages::diameter_px() const { return std::hypot(geometric_px, spot_px, blur_px); }
+
+double SmallImages::locking_error_px() const {
+  return pattern_error_px(geometric_px, std::hypot(spot_px, blur_px) / 4, usual_dots);
+}
+
+double SmallImages::f_number_factor(double diameter_px) const {
+  // g^2 + k^2 spot^2 + blur^2 / k^2 = d^2; of both roots the larger k
+  double const room = square(diameter_px) - square(geometric_px);
+  double const root = square(room) - 4 * square(spot_px * blur_px);
+  if (!(spot_px > 0) || !(root >= 0)) return std::nan("");
+  double const factor = std::sqrt((room + std::sqrt(root)) / (2 * square(spot_px)));
+  return factor > 1 ? factor : std::nan("");
+}
+
+SmallImages expected_images(Setup const& setup) {
+  if (!setup.piv) return {setup.geometric_dot_px(), setup.spot_e2_diameter_px(), setup.defocus_diameter_px()};
+  ParticleImage const image = particle_image(setup);
+  return {image.geometric_px, image.diffraction_px, image.blur_px};
+}
+
+double defocus_distance(Setup const& setup, double diameter_px) {
+  if (setup.lens.prescription || setup.lenslets || !setup.windows.empty()) return std::nan("");
+  SmallImages const images = expected_images(setup);
+  double const blur = std::sqrt(square(diameter_px) - square(images.geometric_px) - square(images.spot_px));
+  double const pupil = setup.lens.focal_length / setup.lens.f_number;
+  if (!(blur > 0) || !(pupil > 0)) return std::nan("");
+  double const distance = setup.piv ? particle_image(setup).distance : setup.z_b();
+  double const sharp = 1 / (1 / setup.lens.focal_length - 1 / distance);
+  // on a sensor that is farther away than the image, a point is a disc of D_a (z_i - z_sharp) / z_sharp
+  double const sensor = sharp * (1 + blur * setup.camera.pixel_pitch / pupil);
+  return 1 / (1 / setup.lens.focal_length - 1 / sensor);
+}
+
+std::string locking_advice(Setup const& setup) {
+  if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // its dots are those of the picture
+  SmallImages const images = expected_images(setup);
+  double const diameter = images.diameter_px();
+  if (!(diameter < least_image_px)) return {};
+  std::string text = fmt::format(
+      "{} images are {:.2f} px wide (e^-2 diameter): below {:g} px correlation locks to whole pixels, an error of "
+      "about "
+      "{:.2g} px",
+      setup.piv ? "particle" : "dot", diameter, least_image_px, images.locking_error_px());
+  std::string const cure = cures(setup, images);
+  if (cure.empty()) return text + "; widen them";
+  SmallImages const wide{images.geometric_px,
+                         std::sqrt(square(least_image_px) - square(images.geometric_px) - square(images.blur_px)),
+                         images.blur_px};
+  return text +
+         fmt::format("; {} widens them to {:g} px (about {:.2g} px)", cure, least_image_px, wide.locking_error_px());
+}
+
+std::string locking_advice(Image<double> const& frame) {
+  double const seen = image_statistics(middle_of(frame)).dot_diameter_px;
+  double const diameter = std::sqrt(square(seen) - 16.0 / 12);
+  if (!(diameter > smallest_seen && diameter < least_image_px)) return {};
+  SmallImages const images{0, diameter, 0}, wide{0, least_image_px, 0};
+  return fmt::format(
+      "dot images are about {:.2f} px wide (e^-2 diameter, by their autocorrelation): below {:g} px correlation "
+      "locks to whole pixels, an error of about {:.2g} px; an f-number {:.2g} times as large, or a little defocus, "
+      "widens them to {:g} px (about {:.2g} px)",
+      diameter, least_image_px, images.locking_error_px(), images.f_number_factor(least_image_px), least_image_px,
+      wide.locking_error_px());
+}
+
+}  // namespace gladstone

@@ -1,0 +1,114 @@
+#include "studies/stored_comparison.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/sha256.h"
+#include "studies/version_text.h"
+
+namespace gladstone {
+namespace {
+
+/// A link of the chain as a dataset [N, 2].
+struct Link {
+  char const* name;
+  std::vector<Vec2d>& (*values)(Comparison&);
+  char const* description;
+};
+
+constexpr std::array<Link, 10> links{{
+    {"/vectors/eq9_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.eq9_px; }, "Eq. 9 at the vector"},
+    {"/vectors/chief_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.chief_px; },
+     "the same with each slice's own distance from the dots as lever"},
+    {"/vectors/eq9_cone_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.eq9_cone_px; },
+     "the same averaged over the dot's disc and the stop's pupil"},
+    {"/vectors/thin_lens_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.thin_lens; },
+     "ray truth through an ideal lens in focus"},
+    {"/vectors/flow_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.flow_px; }, "displacement of the flow"},
+    {"/vectors/ambient_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.ambient_px; },
+     "ray truth without the medium"},
+    {"/vectors/ray_truth_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.point.displacement_px; },
+     "ray truth at the vector"},
+    {"/vectors/window_truth_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.window.displacement_px; },
+     "truth on the window"},
+    {"/vectors/deformed_window_truth_px",
+     [](Comparison& c) -> std::vector<Vec2d>& { return c.deformed_window.displacement_px; },
+     "truth on the window of the frames as the passes deform them"},
+    {"/vectors/noise_free_px", [](Comparison& c) -> std::vector<Vec2d>& { return c.noise_free; },
+     "measurement on noise-free, unquantised frames"},
+}};
+
+}  // namespace
+
+std::string comparison_fingerprint(SourceFiles const& sources, CompareOptions const& options) {
+  std::string text = build_text();
+  text += options.truth_at == TruthAt::reference ? " reference" : " mid";
+  text += " [" + options.conventions.value_or("") + ']';
+  for (SourceFiles::Source const& source : sources.all()) text += ' ' + source.name + ':' + source.sha256;
+  return text;
+}
+
+void write_chain(std::string const& path, Comparison const& comparison, std::string const& errors) {
+  Hdf5Writer file(path, {"gladstone comparison", 1, "", 0, "cpu"});
+  Comparison all = comparison;  // links give access to a comparison that changes
+  for (Link const& link : links) {
+    std::vector<Vec2d> const& values = link.values(all);
+    if (values.empty()) continue;
+    std::vector<double> numbers;
+    numbers.reserve(2 * values.size());
+    for (Vec2d const& value : values) numbers.insert(numbers.end(), {value.x, value.y});
+    file.write(link.name, std::span<double const>(numbers), {values.size(), 2}, "px", link.description,
+               "vector as in the file of vectors, component (u right, v down)");
+  }
+  std::array<std::int64_t, 3> const counts{static_cast<std::int64_t>(comparison.window.left_out),
+                                           static_cast<std::int64_t>(comparison.deformed_window.left_out),
+                                           comparison.frames_deformed ? 1 : 0};
+  file.write(
+      "/vectors/counts", std::span<std::int64_t const>(counts), {counts.size()}, "1",
+      "vectors with fewer than three dots on their window, the same of deformed frames, 1: several passes deform "
+      "the frames",
+      "number");
+  file.attribute("/", "made_from", comparison.fingerprint);
+  Sha256 hash;
+  hash.add(errors);
+  file.attribute("/", "errors_sha256", hash.finish());
+  file.close();
+}
+
+bool read_chain(std::string const& folder, std::string const& fingerprint, Comparison& comparison) {
+  namespace fs = std::filesystem;
+  std::string const path = (fs::path(folder) / case_file::comparison).string(),
+                    errors = (fs::path(folder) / case_file::errors).string();
+  std::error_code error;
+  if (!fs::exists(path, error) || !fs::exists(errors, error)) return false;
+  try {
+    Hdf5Reader const file(path);
+    if (file.attribute("made_from") != fingerprint || file.attribute("errors_sha256") != byte_sha256(errors)) {
+      return false;
+    }
+    Comparison filled = comparison;
+    std::size_t const count = comparison.measured.size();
+    for (Link const& link : links) {
+      if (!file.has(link.name)) continue;
+      std::vector<double> const numbers = file.read(link.name);
+      if (numbers.size() != 2 * count) return false;
+      std::vector<Vec2d>& values = link.values(filled);
+      values.resize(count);
+      for (std::size_t i = 0; i < count; ++i) values[i] = {numbers[2 * i], numbers[2 * i + 1]};
+    }
+    std::vector<std::int64_t> const counts = file.read_integers("/vectors/counts");
+    if (counts.size() != 3) return false;
+    filled.window.left_out = static_cast<std::size_t>(counts[0]);
+    filled.deformed_window.left_out = static_cast<std::size_t>(counts[1]);
+    filled.frames_deformed = counts[2] != 0;
+    comparison = std::move(filled);
+    return true;
+  } catch (DataError const&) {
+    return false;  // a damaged file is made anew
+  }
+}
+
+}  // namespace gladstone

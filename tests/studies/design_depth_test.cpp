@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "render/base/hdf5_file.h"
+#include "render/base/units.h"
+#include "render/scene/field_map.h"
+#include "render/scene/scene.h"
+#include "studies/design/sheet.h"
+#include "studies/report/bench_view.h"
+#include "studies/scene_renderer.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double slope = 100;  // of the files' density along X [kg/m^4]
+
+/// A folder with volume.h5, 16 x 16 x 30 mm (periodic along Z it would be 35 mm deep), and plane.h5, 16 x 16 mm, of the
+/// density 1.225 + 100 x.
+class DepthOfTheMedium : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto const* const info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("gladstone_depth_") + info->name());
+    std::filesystem::create_directories(folder_);
+    write("volume.h5", 7);
+    write("plane.h5", 1);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void write(std::string const& name, std::size_t planes) const {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < planes * 9; ++k) {
+      for (int i = 0; i < 9; ++i) values.push_back(1.225 + slope * 2e-3 * (i - 4));
+    }
+    Hdf5Writer file((folder_ / name).string(), {"test field", 1, "", 0, "cpu"});
+    file.write("density", values, {planes, 9, 9}, "kg m-3", "a ramp", "z, y, x");
+    file.close();
+  }
+  CaseSetup load(std::string const& medium, std::string const& field) const {
+    std::string const text = "schema = 1\n[camera]\npixels = [128, 128]\n[medium]\n" + medium + "\n[medium.field]\n" +
+                             field + "\n[correlate]\nwindow_px = [32, 16]\n";
+    return load_case_setup(SetupDocument::from_text(text, "setup.toml", folder_.string()));
+  }
+  static DesignSheet sheet_of(CaseSetup const& loaded) {
+    BenchGiven const given = bench_given(loaded);
+    return bos_sheet(loaded.setup, bench_of(loaded.setup, given));
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// Largest displacement by Eq. 9 that a rendering's truth holds, at every pixel [px].
+double rendered_displacement(CaseSetup const& loaded) {
+  Scene scene = build_scene(loaded.setup);
+  plan_step_of(scene);
+  double largest = 0;
+  for (Vec2d const one : map_field(scene, 1).eq9_px) largest = std::max(largest, length(one));
+  return largest;
+}
+
+// For every kind of field, whose depth is given, wrongly given or not: the sheet's displacement (F6) is that of the
+// rendering, by the gradient and the depth of one and the same medium, and the setup as resolved has the same sheet.
+// Within 1 %: where the slope grows up to the view's edge, the last pixel's centre is 0.5 of 64 px short of it, 0.8 %;
+// the shock is sampled every 4 px = 0.26 mm by the sheet, (2 0.13 / 3)^2 = 0.7 % off its crest at most; rays that are
+// oblique by 4 mm in 1 m change 1e-5.
+TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
+  std::string const volume = "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, 2.0, 5.0]",
+                    plane = "kind = \"file\"\nfile = \"plane.h5\"\nspacing_mm = [2.0, 2.0, 5.0]\nextrude = true",
+                    plume = "kind = \"gaussian_plume\"\namplitude_kg_m3 = -0.1\nradius_mm = ",
+                    blob = "kind = \"gaussian_blob\"\namplitude_kg_m3 = -0.1\nradius_mm = ",
+                    wave = "kind = \"sinusoid\"\namplitude_kg_m3 = 0.02\ndirection = [0.6, 0.8]\nwavelength_mm = ",
+                    shock = "kind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 3";
+  struct Field {
+    std::string text;
+    double depth_mm;  ///< where none is given
+    bool own_depth;   ///< whatever is given
+  };
+  for (Field const& field :
+       {Field{volume, 30, true},
+        {volume + "\nperiodic = [false, false, true]", 35, true},
+        {volume + "\ncenter_mm = [0.0, 0.0, 8.0]", 30, true},
+        {plane, 10, false},
+        {plume + "3.0", 21, false},
+        {plume + "40.0", 280, false},  // its steepest place is out of view
+        {blob + "3.0", 21, false},
+        {wave + "4.0", 10, false},
+        {wave + "200.0\nphase_rad = 1.5707963", 10, false},  // crest in the middle, no steepest place
+        {"kind = \"uniform_gradient\"\ngradient_kg_m4 = [10.0, 5.0, 0.0]", 10, false},
+        {shock, 10, false}}) {
+    for (std::string const given : {"", "thickness_mm = 30", "thickness_mm = 6"}) {
+      SCOPED_TRACE(field.text + '\n' + given);
+      CaseSetup loaded = load(given, field.text);
+      double const depth_mm = given.empty() || field.own_depth ? field.depth_mm : std::stod(given.substr(15));
+      EXPECT_NEAR(loaded.setup.medium.thickness / unit::millimetre, depth_mm, 1e-9);
+      DesignSheet const sheet = sheet_of(loaded);
+      double const rendered = rendered_displacement(loaded);
+      EXPECT_GT(rendered, 1e-3);
+      EXPECT_NEAR(sheet["displacement_px"], rendered, 0.01 * rendered);
+      // rendering writes the depth down; read again, nothing changes
+      CaseSetup const again =
+          load_case_setup(SetupDocument::from_text(loaded.document.resolved(), "resolved", folder_.string()));
+      for (char const* const key : {"displacement_px", "sensitivity_px_per_kg_m4", "gradient_min_kg_m4"}) {
+        EXPECT_NEAR(sheet_of(again)[key], sheet[key], 1e-9 * sheet[key]) << key;
+      }
+      EXPECT_EQ(!loaded.warnings.empty() && loaded.warnings.front().find("is not used") != std::string::npos,
+                field.own_depth && !given.empty() && depth_mm != std::stod(given.substr(15)));
+    }
+  }
+}
+
+// Three times as deep, three times as sensitive: M Z_D K L_z / (n0 p) is 0.006626657 px per kg/m^4 of 10 mm (Table 1).
+TEST_F(DepthOfTheMedium, SensitivityIsThatOfTheVolume) {
+  CaseSetup const loaded = load("", "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, 2.0, 5.0]");
+  DesignSheet const sheet = sheet_of(loaded);
+  EXPECT_NEAR(sheet["sensitivity_px_per_kg_m4"], 3 * 0.006626657, 2e-9);
+  EXPECT_NEAR(sheet["displacement_px"], slope * 3 * 0.006626657, 1e-3);
+  // the design map of a report is of the same depth, although it reads no field
+  std::optional<BenchView> const view = bench_view(load("",
+                                                        "kind = \"file\"\nfile = \"volume.h5\"\nspacing_mm = [2.0, "
+                                                        "2.0, 5.0]"));
+  ASSERT_TRUE(view);
+  EXPECT_NEAR(view->bench.sensitivity(), 3 * 0.006626657, 2e-9);
+}
+
+}  // namespace
+}  // namespace gladstone
