@@ -101,6 +101,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
                    : std::array{read_frame(a, "reference", sources), read_frame(b, "flow", sources)};
       add_preparation(other.settings, sources);
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
+      warn_of_exchanged_frames(measurement.field, sources);
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }
