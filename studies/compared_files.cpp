@@ -61,6 +61,15 @@ ComparedFiles compared_files(std::string const& folder, std::string const& vecto
   if (!hdf5) files.unverified = files.vectors;
   if (!hdf5) return files;
   Hdf5Reader const truth(files.truth), measured(files.vectors);
+  std::string const first = truth.attribute("reference_sha256"), second = truth.attribute("flow_sha256");
+  bool const exchanged = !first.empty() && first != second && measured.attribute("reference_sha256") == second &&
+                         measured.attribute("flow_sha256") == first;
+  if (exchanged) {
+    throw DataError(files.vectors, fmt::format("was measured from {0}'s flow frame to its reference (the frames were "
+                                               "exchanged, and every displacement has the opposite sign); run "
+                                               "gladstone correlate {0} again",
+                                               folder));
+  }
   for (std::string const frame : {"reference", "flow"}) {
     std::string const mine = truth.attribute(frame + "_sha256"), theirs = measured.attribute(frame + "_sha256");
     if (mine.empty() || theirs.empty()) {

@@ -57,14 +57,16 @@ class TruthMap {
 
 /// Leaves out what no camera can have seen. @throws DataError where nothing is left, or no place is in px
 LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
-  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
-  std::string const refusal = refusal_of_places(file.field, left_out, camera.columns, camera.rows);
+  bool const turned = file.conventions.exchanges_places();  // the file's x then runs down
+  int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
+  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, columns, rows);
+  std::string const refusal = refusal_of_places(file.field, left_out, columns, rows);
   if (!refusal.empty()) throw DataError(path, refusal);
   if (left_out.all() > 0) {
     spdlog::warn("{}: {} of {} vectors are left out: {}", path, left_out.all(),
                  file.field.size() + left_out.without_place(), left_out.text());
   }
-  std::string const doubt = doubt_about_places(file.field, camera.columns, camera.rows);
+  std::string const doubt = doubt_about_places(file.field, columns, rows);
   if (!doubt.empty()) spdlog::warn("{}: {}", path, doubt);
   return left_out;
 }
@@ -82,12 +84,33 @@ void check_preparation(Hdf5Reader const& measured, std::string const& path, Corr
   }
 }
 
+/// How the vectors are read: as the format says, with what they may have wrong. @throws DataError where nothing fits
+DetectedConventions detect(VectorFile const& file, std::string const& path, GroundTruth const& truth,
+                           CameraSetup const& camera) {
+  using Verdict = DetectedConventions::Verdict;
+  TruthMap const map(truth, camera);
+  DetectedConventions detected = detect_conventions(
+      file, [&map](Vec2d c) { return map.at(c); }, camera.rows);
+  if (detected.verdict == Verdict::fits_none) {
+    throw DataError(path,
+                    detected.report + ", or say with --conventions how it is to be read if it is as wrong as that");
+  }
+  if (detected.mistake.found()) {
+    spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
+  } else if (detected.verdict == Verdict::cannot_be_told || (detected.ambiguous && !file.also.empty())) {
+    spdlog::warn("{}: {}; say which with --conventions", path, detected.report);
+  }
+  return detected;
+}
+
 }  // namespace
 
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
                              CompareOptions const& options) {
   VectorFile file = read_vectors(path);
-  if (options.conventions) file.conventions = parse_conventions(*options.conventions, file.conventions);
+  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  if (options.conventions) override_conventions(file, *options.conventions);
+  file = convert_to_pixels(std::move(file), path);
   CameraSetup const& camera = loaded.setup.camera;
   LeftOutVectors const left_out = screen(file, path, camera);
   // what is left out was valid as given, but for what has no displacement
@@ -98,24 +121,16 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
                                           "correlated",
                                           file.field.size()));
   MeasuredVectors vectors{{}, loaded.correlate, file.foreign, {}, path, left_out, {}};
-  if (options.conventions) {
+  bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
+  if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
-  } else if (file.foreign) {
-    TruthMap const map(truth, camera);
-    auto const lookup = [&map](Vec2d c) { return map.at(c); };
-    vectors.detected = detect_conventions(file, lookup, camera.rows);
+  } else if (file.foreign || !hdf5) {  // a .h5 of ours names its frames
+    vectors.detected = detect(file, path, truth, camera);
     vectors.report = vectors.detected->report;
-    if (vectors.detected->verdict == DetectedConventions::Verdict::fits_none) {
-      throw DataError(path,
-                      vectors.report + ", or say with --conventions how it is to be read if it is as wrong as that");
-    }
     file.conventions = vectors.detected->conventions;
-    bool const told = vectors.detected->verdict != DetectedConventions::Verdict::cannot_be_told;
-    if (!told || vectors.detected->ambiguous)
-      spdlog::warn("{}: {}; say which with --conventions", path, vectors.report);
   }
   vectors.field = apply_conventions(std::move(file.field), file.conventions, camera.rows);
-  if (!file.foreign && path.ends_with(".h5")) {
+  if (!file.foreign && hdf5) {
     Hdf5Reader const measured(path);
     std::string const text = measured.attribute("setup");
     if (!text.empty()) {

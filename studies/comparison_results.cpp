@@ -39,9 +39,16 @@ nlohmann::ordered_json fit_json(ConventionFit const& fit) {
 nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   using Verdict = DetectedConventions::Verdict;
   nlohmann::ordered_json json = fit_json(detected.fit);
-  json["verdict"] = detected.verdict == Verdict::fits    ? "fits"
-                    : detected.verdict == Verdict::noisy ? "noisy"
-                                                         : "cannot_be_told";
+  json["verdict"] = detected.verdict == Verdict::fits       ? "fits"
+                    : detected.verdict == Verdict::noisy    ? "noisy"
+                    : detected.verdict == Verdict::mistaken ? "mistaken"
+                                                            : "cannot_be_told";
+  LikelyMistake const& mistake = detected.mistake;
+  json["likely_mistake"] = nullptr;
+  if (mistake.found()) {
+    json["likely_mistake"] = {{"text", mistake.text}, {"rms_without_px", known_or_null(mistake.rms_px)}};
+    if (!mistake.conventions.empty()) json["likely_mistake"]["conventions"] = mistake.conventions;
+  }
   json["ambiguous"] = detected.ambiguous;
   json["signal_px"] = known_or_null(detected.fit.signal_px);
   json["slope"] = known_or_null(detected.fit.slope);

@@ -50,6 +50,10 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
 /// Enters the pictures that masks and steps read among the sources, as preparation_1, preparation_2, ...
 void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
 
+/// Adds a warning where the frames named "reference" and "flow" are a case's flow frame and its reference, by what the
+/// truth.h5 beside them or their names say.
+void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sources);
+
 /// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
 /// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,

@@ -67,7 +67,7 @@ std::string error_report(Comparison const& comparison) {
                       comparison.vectors_in_file(), comparison.window.left_out,
                       comparison.chain == BudgetChain::piv ? "particles" : "dots");
   if (comparison.left_out.all() > 0) text += "  left out as well: " + comparison.left_out.text() + '\n';
-  if (comparison.detected) text += "  " + comparison.report + '\n';
+  if (!comparison.report.empty()) text += "  " + comparison.report + '\n';
   text += uncertainty_line(comparison);
   text += '\n';
   text += fmt::format("Error budget          [px]  {:>9} {:>9} {:>9} {:>9} {:>9}\n", "bias u", "bias v", "scatter u",

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace gladstone {
 namespace {
 
+using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
 using Truth = std::function<Vec2d(Vec2d)>;
 using Verdict = DetectedConventions::Verdict;
@@ -17,7 +19,7 @@ bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 /// Mirrored about the grid or about the image is a matter of position, like the offset, not of axes.
 bool same_axes(VectorConventions const& a, VectorConventions const& b) {
-  return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped;
+  return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
 }
 
 /// At most `most` vectors that count, evenly taken, with the extreme rows kept so that the grid's middle stays.
@@ -88,33 +90,41 @@ double largest_difference(DisplacementField const& field, VectorConventions cons
   return std::isfinite(signal) ? std::max(1.0, 3.0 * signal) : 1.0;
 }
 
-/// Every choice, the format's own first, so that it wins a tie.
-std::vector<VectorConventions> every_choice(VectorConventions const& own) {
-  std::vector<VectorConventions> choices;
+/// Every choice, the format's own first, so that they win a tie.
+std::vector<VectorConventions> every_choice(std::vector<VectorConventions> const& own) {
+  std::vector<VectorConventions> choices = own;
   auto const consider = [&choices](VectorConventions const& c) {
     if (std::find(choices.begin(), choices.end(), c) == choices.end()) choices.push_back(c);
   };
-  for (double const offset : {own.offset_px, 0.0, -0.5, -1.0, -1.5}) {
-    VectorConventions moved = own;
-    moved.offset_px = offset;
-    consider(moved);
+  auto const consider_axes = [&](VectorConventions reading) {
     for (bool const swapped : {false, true}) {
       for (bool const v_up : {false, true}) {
-        consider({false, v_up, swapped, offset, Mirror::grid});
-        consider({true, v_up, swapped, offset, Mirror::grid});
-        consider({true, v_up, swapped, offset, Mirror::image});
+        for (auto const& [y_up, mirror] :
+             {std::pair(false, Mirror::grid), std::pair(true, Mirror::grid), std::pair(true, Mirror::image)}) {
+          reading.swapped = swapped;
+          reading.v_up = v_up;
+          reading.y_up = y_up;
+          reading.mirror = mirror;
+          consider(reading);
+        }
       }
     }
+  };
+  VectorConventions reading = own.front();
+  for (double const offset : {own.front().offset_px, 0.0, -0.5, -1.0, -1.5}) {
+    reading.offset_px = offset;
+    consider_axes(reading);
+  }
+  reading.offset_px = own.front().offset_px;
+  for (auto const exchange : {Exchange::places, Exchange::components, Exchange::axes}) {
+    reading.exchange = exchange;
+    consider_axes(reading);
   }
   return choices;
 }
 
-/// Whether a fits better than b by more than chance: twice the logarithm of their likelihoods' ratio, of normal errors,
-/// beyond 9 as three standard deviations are. At an overlap of one half every vector shares its image with three
-/// others.
 bool surely_better(ConventionFit const& a, ConventionFit const& b) {
-  double const independent = 0.25 * static_cast<double>(a.components);
-  return a.rms_px < b.rms_px && independent * 2.0 * std::log(b.rms_px / a.rms_px) > 9.0;
+  return a.rms_px < b.rms_px && evidence_for(a, b) > 9.0;
 }
 
 bool better(ConventionFit const& a, ConventionFit const& b) { return a.rms_px < b.rms_px; }
@@ -144,44 +154,238 @@ Verdict judge(ConventionFit const& best) {
   return follows ? Verdict::noisy : Verdict::fits_none;
 }
 
-/// x and y exchanged, in places alone or in displacements as well.
-DisplacementField exchanged(DisplacementField field, bool displacements) {
-  for (Vec2d& p : field.position_px) std::swap(p.x, p.y);
-  if (displacements) {
-    for (Vec2d& d : field.displacement_px) std::swap(d.x, d.y);
-  }
+/// The least unlikelihood beside any of the format's own readings.
+double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own) {
+  double least = std::numeric_limits<double>::infinity();
+  for (VectorConventions const& one : own) least = std::min(least, unlikelihood(reading, one));
+  return least;
+}
+
+/// Of the readings that fit as well as the best does, but for chance, the likeliest.
+ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<VectorConventions> const& own) {
+  ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
+  return *std::min_element(fits.begin(), fits.end(), [&](ConventionFit const& a, ConventionFit const& b) {
+    auto const rank = [&](ConventionFit const& fit) {
+      bool const as_good = !(fit.rms_px > best.rms_px) || evidence_for(best, fit) < 9.0;
+      return as_good ? unlikelihood(fit.conventions, own) : std::numeric_limits<double>::infinity();
+    };
+    return rank(a) < rank(b);
+  });
+}
+
+/// A file's vectors with their displacements divided by a factor, or their places moved.
+DisplacementField changed(DisplacementField field, Vec2d factor, Vec2d shift) {
+  for (Vec2d& d : field.displacement_px) d = {d.x / factor.x, d.y / factor.y};
+  for (Vec2d& p : field.position_px) p += shift;
   return field;
 }
 
-/// What may be the matter with vectors that fit no choice.
-std::string likely_cause(DisplacementField const& field, std::vector<VectorConventions> const& choices,
-                         ConventionFit const& best, Truth const& truth, int image_rows, double most) {
-  for (bool const displacements : {false, true}) {
-    DisplacementField const other = exchanged(field, displacements);
-    for (VectorConventions const& choice : choices) {
-      ConventionFit const fit = fit_within(other, choice, truth, image_rows, most);
-      if (!(fit.rms_px < 0.5 * best.signal_px)) continue;
-      return fmt::format("with {} exchanged they would fit to {:.3g} px rms",
-                         displacements ? "x and y, u and v" : "x and y", fit.rms_px);
+/// The factor of least absolute deviations between a component and its truth: the median of their ratios, weighted by
+/// the truth, which half of the vectors may be wrong without moving far.
+double median_factor(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
+  std::vector<std::pair<double, double>> ratios;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    double const t = truth(ours.position_px[i]).*component;
+    if (!std::isfinite(t) || t == 0.0) continue;
+    ratios.emplace_back(ours.displacement_px[i].*component / t, std::abs(t));
+    sum += std::abs(t);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  double below = 0.0;
+  for (auto const& [ratio, weight] : ratios) {
+    below += weight;
+    if (below >= 0.5 * sum) return ratio;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Root mean square of a component of the truth [px].
+double component_signal(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
+  double square = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    double const t = ours.counts(i) ? truth(ours.position_px[i]).*component : std::nan("");
+    if (!std::isfinite(t)) continue;
+    square += t * t;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0;
+}
+
+/// The share of the true displacement, by component, that its mean over windows of 64 px follows, at most 1.
+Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
+  constexpr int half = 32, step = 8;
+  Vec2d product{}, square{};
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (!ours.counts(i)) continue;
+    Vec2d mean{};
+    int count = 0;
+    for (int dy = -half + step / 2; dy < half; dy += step) {
+      for (int dx = -half + step / 2; dx < half; dx += step) {
+        Vec2d const t = truth(ours.position_px[i] + Vec2d{static_cast<double>(dx), static_cast<double>(dy)});
+        if (!finite(t)) continue;
+        mean += t;
+        ++count;
+      }
     }
+    Vec2d const t = truth(ours.position_px[i]);
+    if (count == 0 || !finite(t)) continue;
+    product += Vec2d{mean.x * t.x, mean.y * t.y} / static_cast<double>(count);
+    square += Vec2d{t.x * t.x, t.y * t.y};
   }
-  if (std::abs(best.slope) < 0.1) {
+  auto const share = [](double p, double s) { return s > 0.0 ? std::clamp(p / s, 0.0, 1.0) : 0.0; };
+  return {share(product.x, square.x), share(product.y, square.y)};
+}
+
+/// Everything that the search for mistakes shares.
+struct Search {
+  DisplacementField const& few;  ///< of the file's vectors
+  Truth const& truth;
+  int image_rows;
+  double most;  ///< see fit_within()
+  ConventionFit own;
+
+  ConventionFit fit(DisplacementField const& field) const {
+    return fit_within(field, own.conventions, truth, image_rows, most);
+  }
+  /// By 30 % and, of many that were tried, not by chance.
+  bool is_mended(ConventionFit const& other) const {
+    return other.rms_px < 0.7 * own.rms_px && other.rms_px < 0.7 * other.signal_px && evidence_for(other, own) > 25.0;
+  }
+};
+
+/// Displacements that are a multiple of the true ones.
+LikelyMistake find_factor(Search const& search) {
+  DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
+  Vec2d const share = share_in_windows(sample(ours, 500), search.truth);
+  constexpr double least_followed = 0.05;  // by windows that still measure something
+  Vec2d factor{1.0, 1.0};
+  for (auto const component : {&Vec2d::x, &Vec2d::y}) {
+    if (!(component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px)))
+      continue;  // too little of it to tell a factor by
+    double const found = median_factor(ours, search.truth, component);
+    if (found > 0.0 && (found > 1.1 || found < std::max(least_followed, 0.9 * (share.*component))))
+      factor.*component = found;
+  }
+  if (factor == Vec2d{1.0, 1.0}) return {};
+  // one unit for both, where both say so
+  bool const both = std::abs(factor.x - factor.y) < 0.1 * std::max(factor.x, factor.y);
+  if (both) factor.x = factor.y = 0.5 * (factor.x + factor.y);
+  // of columns as the file has them, whatever component they are
+  Vec2d const of_columns = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
+  ConventionFit const mended = search.fit(changed(search.few, of_columns, {}));
+  if (!search.is_mended(mended)) return {};
+  std::string const text =
+      both ? fmt::format("displacements are {:.3g} times the truth, as in another unit than px", factor.x)
+           : fmt::format("u is {:.3g} times and v {:.3g} times the truth", factor.x, factor.y);
+  VectorConventions scaled = search.own.conventions;
+  scaled.px_per_frame = std::stod(fmt::format("{:.3g}", scaled.px_per_frame.value_or(1.0) * factor.x));
+  return {text, both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px};
+}
+
+/// Places from another origin: the shift that fits best, of a lattice of 4 px up to 64 px and then of quarters of a
+/// pixel.
+LikelyMistake find_shift(Search const& search) {
+  constexpr double farthest = 64.0;
+  DisplacementField const fewer = sample(search.few, 400);
+  auto const fit = [&](Vec2d shift) { return search.fit(changed(fewer, {1.0, 1.0}, shift)).rms_px; };
+  Vec2d best{};
+  double least = fit(best);
+  auto const look_around = [&](Vec2d middle, double reach, double step) {
+    for (double dy = -reach; dy <= reach; dy += step) {
+      for (double dx = -reach; dx <= reach; dx += step) {
+        double const rms = fit(middle + Vec2d{dx, dy});
+        if (!(rms < least)) continue;
+        least = rms;
+        best = middle + Vec2d{dx, dy};
+      }
+    }
+  };
+  look_around({}, farthest, 4.0);
+  for (double const step : {2.0, 1.0, 0.5, 0.25}) look_around(best, step, step);
+  constexpr double counting = 2.0;  // ways of counting pixels differ by less
+  if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
+  ConventionFit const mended = search.fit(changed(search.few, {1.0, 1.0}, best));
+  if (!search.is_mended(mended)) return {};
+  return {
+      fmt::format("places are shifted by ({:.4g}, {:.4g}) px", -best.x, -best.y), {}, mended.rms_px, search.own.rms_px};
+}
+
+/// Places that are a multiple of the true ones.
+LikelyMistake find_place_factor(Search const& search) {
+  auto const scaled = [](DisplacementField field, double factor) {
+    for (Vec2d& p : field.position_px) p = p / factor;
+    return field;
+  };
+  DisplacementField const fewer = sample(search.few, 400);
+  double best = 1.0, least = std::numeric_limits<double>::infinity();
+  auto const look_around = [&](double middle, double reach, double step) {
+    for (double e = -reach; e <= reach; e += step) {
+      double const factor = middle * std::exp(e), rms = search.fit(scaled(fewer, factor)).rms_px;
+      if (!(rms < least)) continue;
+      least = rms;
+      best = factor;
+    }
+  };
+  look_around(1.0, 1.4, 0.01);  // a quarter to four times
+  look_around(best, 0.01, 0.001);
+  if (std::abs(best - 1.0) < 0.01) return {};
+  ConventionFit const mended = search.fit(scaled(search.few, best));
+  if (!search.is_mended(mended)) return {};
+  VectorConventions words = search.own.conventions;
+  words.px = std::stod(fmt::format("{:.3g}", words.px.value_or(1.0) * best));
+  return {fmt::format("places are {:.3g} times the true ones, as in another unit than px", best), describe(words),
+          mended.rms_px, search.own.rms_px};
+}
+
+/// A factor or a shift, read as the format says or, where that fits nothing, in any other way that a factor mends.
+LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
+                                  std::vector<VectorConventions> const& own, bool any_reading) {
+  if (LikelyMistake found = find_factor(search); found.found()) return found;
+  // what a shift of a few pixels changes of a smooth field is more than this share of it
+  if (search.own.rms_px > 0.03 * search.own.signal_px) {
+    if (LikelyMistake found = find_shift(search); found.found()) return found;
+    if (LikelyMistake found = find_place_factor(search); found.found()) return found;
+  }
+  if (!any_reading) return {};
+  LikelyMistake best;
+  double const as_read = search.own.rms_px;
+  VectorConventions const first = search.own.conventions;
+  double least_unlikely = std::numeric_limits<double>::infinity();
+  for (ConventionFit const& fit : fits) {
+    if (fit.conventions.offset_px != first.offset_px) continue;
+    search.own = fit;
+    LikelyMistake found = find_factor(search);
+    double const unlikely = unlikelihood(fit.conventions, own);
+    if (!found.found() || !(unlikely < least_unlikely)) continue;
+    least_unlikely = unlikely;
+    best = {difference_of(fit.conventions, first) + " and " + found.text, found.conventions, found.rms_px, as_read};
+  }
+  return best;
+}
+
+/// What may be the matter with vectors that fit nothing at all.
+std::string likely_cause(ConventionFit const& best) {
+  if (std::abs(best.slope) < 0.1)
     return "places from another origin, or places or displacements that are not in px, look like this";
-  }
-  if (best.slope > 2.0) return "displacements in another unit than px look like this";
   return "places from another origin look like this";
 }
 
-std::string misfit_report(VectorFile const& file, DetectedConventions const& detected, std::string const& cause) {
+std::string misfit_report(VectorFile const& file, DetectedConventions const& detected) {
   ConventionFit const& best = detected.tried.front();
   std::string tried;
   for (ConventionFit const& fit : detected.tried) {
+    if (fit.conventions.exchange != detected.conventions.exchange) continue;
     tried += fmt::format("{}{} {:.3g} px", tried.empty() ? "" : "; ", describe(fit.conventions), fit.rms_px);
   }
   return fmt::format(
       "{} vectors fit no convention: at best they differ from the truth by {:.3g} px rms, where the truth itself is "
-      "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}. {}; mend the file",
-      file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried, cause);
+      "{:.3g} px rms (they follow {:.0f} +- {:.0f} % of it). Tried, each with its best offset: {}; no exchange of "
+      "columns, factor or shift fits either. {}; mend the file",
+      file.format, best.rms_px, best.signal_px, 100.0 * best.slope, 100.0 * best.slope_error, tried,
+      likely_cause(best));
 }
 
 std::string found_report(VectorFile const& file, DetectedConventions const& detected) {
@@ -192,11 +396,13 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
     return !same_axes(other.conventions, fit.conventions);
   });
   if (rival != detected.tried.end()) {
-    report += fmt::format("; next best {}: {:.3g} px", describe(rival->conventions), rival->rms_px);
+    report += fmt::format("; of other readings {} fits best: {:.3g} px", describe(rival->conventions), rival->rms_px);
   }
   report += ')';
   if (std::string const offset = offset_report(detected); !offset.empty()) report += "; " + offset;
-  if (detected.verdict == Verdict::cannot_be_told) {
+  if (detected.verdict == Verdict::mistaken) {
+    report += "; likely mistake: " + detected.mistake.warning();
+  } else if (detected.verdict == Verdict::cannot_be_told) {
     report += fmt::format(
         "; by so small a displacement, below {} px, conventions cannot be told, and the format's own were kept",
         telling_signal_px);
@@ -211,12 +417,26 @@ std::string found_report(VectorFile const& file, DetectedConventions const& dete
         "displacements that are not in px",
         100.0 * fit.slope);
   }
-  if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told)
-    report += "; another reading fits as well, and the format's own was kept";
+  if (detected.ambiguous && detected.verdict != Verdict::cannot_be_told && detected.verdict != Verdict::mistaken)
+    report +=
+        "; another reading fits as well (this displacement cannot tell them apart), and the format's own was kept";
   return report;
 }
 
 }  // namespace
+
+double unlikelihood(VectorConventions const& reading, VectorConventions const& own) {
+  bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up;
+  return (y && v ? 1.1 : (y ? 1.0 : 0.0) + (v ? 1.0 : 0.0)) + (reading.swapped != own.swapped ? 1.0 : 0.0) +
+         (reading.exchange != own.exchange ? 1.2 : 0.0) + (reading.offset_px != own.offset_px ? 0.3 : 0.0) +
+         (reading.y_up && own.y_up && reading.mirror != own.mirror ? 0.2 : 0.0);
+}
+
+double evidence_for(ConventionFit const& a, ConventionFit const& b) {
+  constexpr double alike_px = 1e-4;
+  double const independent = 0.25 * static_cast<double>(std::min(a.components, b.components));
+  return independent * 2.0 * std::log(std::max(b.rms_px, alike_px) / std::max(a.rms_px, alike_px));
+}
 
 ConventionFit fit_conventions(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                               int image_rows) {
@@ -224,43 +444,100 @@ ConventionFit fit_conventions(DisplacementField const& field, VectorConventions 
   return fit_within(few, conventions, truth, image_rows, largest_difference(few, conventions, truth, image_rows));
 }
 
+std::string difference_of(VectorConventions const& reading, VectorConventions const& own) {
+  std::vector<std::string> parts;
+  bool const y = reading.y_up != own.y_up, v = reading.v_up != own.v_up, frames = reading.swapped != own.swapped;
+  auto const direction = [](bool up) { return up ? "up" : "down"; };
+  if (reading.exchange != own.exchange) {
+    parts.emplace_back(reading.exchange == Exchange::places       ? "x and y are exchanged"
+                       : reading.exchange == Exchange::components ? "u and v are exchanged"
+                                                                  : "the axes are exchanged (x with y, u with v)");
+  }
+  if (y && v && reading.y_up == reading.v_up) {
+    parts.push_back(fmt::format("y and v point {}", direction(reading.y_up)));
+  } else if (y) {
+    parts.push_back(fmt::format("y points {}", direction(reading.y_up)));
+  }
+  if (frames && v && !y) {
+    parts.emplace_back("u points left");
+  } else {
+    if (v && !(y && reading.y_up == reading.v_up)) parts.push_back(fmt::format("v points {}", direction(reading.v_up)));
+    if (frames) parts.emplace_back("the frames were exchanged");
+  }
+  if (parts.empty() && reading.y_up && reading.mirror != own.mirror) {
+    parts.emplace_back(reading.mirror == Mirror::image ? "y counts from the image's last row"
+                                                       : "y is turned about the middle of the grid");
+  }
+  if (parts.empty() && reading.offset_px != own.offset_px) {
+    double const moved = own.offset_px - reading.offset_px;
+    parts.push_back(fmt::format("places lie {:.3g} px too far to the {}, as those of codes that count pixels otherwise",
+                                std::abs(moved), moved > 0.0 ? "right and down" : "left and up"));
+  }
+  std::string text;
+  for (std::string const& part : parts) text += (text.empty() ? "" : " and ") + part;
+  return text;
+}
+
+std::string LikelyMistake::warning() const {
+  std::string const remedy =
+      conventions.empty() ? "mend the file" : "mend the file, or accept it with --conventions " + conventions;
+  return fmt::format(
+      "{} (without that they would differ from the truth by {:.3g} px rms, as they are read by {:.3g} "
+      "px); {}",
+      text, rms_px, rms_as_read, remedy);
+}
+
 DetectedConventions detect_conventions(VectorFile const& file, Truth const& truth, int image_rows) {
   DisplacementField const few = sample(file.field, 4000);
-  VectorConventions const& own = file.conventions;
-  double const most = largest_difference(few, own, truth, image_rows);
-  std::vector<VectorConventions> const choices = every_choice(own);
+  std::vector<VectorConventions> own = file.also;
+  own.insert(own.begin(), file.conventions);
+  double const most = largest_difference(few, own.front(), truth, image_rows);
   std::vector<ConventionFit> fits;
-  for (VectorConventions const& choice : choices) fits.push_back(fit_within(few, choice, truth, image_rows, most));
-  auto const with_offset = [&](VectorConventions c, double offset) {
-    c.offset_px = offset;
-    return *std::find_if(fits.begin(), fits.end(), [&](ConventionFit const& f) { return f.conventions == c; });
-  };
+  for (VectorConventions const& choice : every_choice(own))
+    fits.push_back(fit_within(few, choice, truth, image_rows, most));
 
-  // Axes and sign by the best fit; the offset stays the format's own unless another is clearly better.
-  ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
-  ConventionFit chosen = with_offset(best.conventions, own.offset_px);
-  // Codes that deform images put their vectors where their grid says: what one pass of the same code has half a pixel
-  // off is right after several. Which it was the file does not say.
-  if (ConventionFit const plain = with_offset(best.conventions, 0.0); surely_better(plain, chosen)) chosen = plain;
-  if (best.rms_px < 0.95 * chosen.rms_px) chosen = best;
-
+  // Of the format's own readings the first, unless another is better: by an offset alone by more than chance, since
+  // codes that deform images put their vectors where their grid says, and one pass of theirs half a pixel from there.
   DetectedConventions result;
-  result.verdict = judge(best);
+  ConventionFit chosen = fits.front();
+  for (std::size_t i = 1; i < own.size(); ++i) {
+    bool const clear = same_axes(fits[i].conventions, chosen.conventions) || fits[i].rms_px < 0.9 * chosen.rms_px;
+    if (clear && surely_better(fits[i], chosen)) chosen = fits[i];
+  }
+  result.verdict = judge(*std::min_element(fits.begin(), fits.end(), better));
   result.tried = best_of_axes(fits);
+  result.best = likeliest(fits, own);
+  if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
+
+  // What fits better and is not the format's own is a mistake, if it is clear and, of so many choices, not chance.
+  bool const reads = result.verdict == Verdict::fits || result.verdict == Verdict::noisy;
+  double const clearly = same_axes(result.best.conventions, chosen.conventions) ? 0.95 : 0.9;
+  bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
+  if (reads && !is_own && result.best.rms_px < clearly * chosen.rms_px && evidence_for(result.best, chosen) > 16.0) {
+    result.mistake = {difference_of(result.best.conventions, chosen.conventions), describe(result.best.conventions),
+                      result.best.rms_px, chosen.rms_px};
+    for (ConventionFit const& other : result.tried) {  // what looks the same in this displacement
+      if (same_axes(other.conventions, result.best.conventions) || evidence_for(result.best, other) > 9.0) continue;
+      if (unlikelihood(other.conventions, own) > unlikelihood(result.best.conventions, own) + 0.5) continue;
+      result.mistake.text += ", or " + difference_of(other.conventions, chosen.conventions);
+    }
+  } else if (result.verdict != Verdict::cannot_be_told) {
+    result.mistake =
+        find_scale_or_shift({few, truth, image_rows, most, chosen}, fits, own, result.verdict == Verdict::fits_none);
+  }
+  if (result.mistake.found()) result.verdict = Verdict::mistaken;
+
   auto const rival = std::find_if(result.tried.begin(), result.tried.end(), [&](ConventionFit const& other) {
     return !same_axes(other.conventions, chosen.conventions);
   });
-  result.ambiguous = !(chosen.rms_px < 0.9 * rival->rms_px);
-  ConventionFit const fallback = with_offset(own, own.offset_px);
-  if (result.verdict == Verdict::cannot_be_told || (result.ambiguous && !(fallback.rms_px > 1.1 * chosen.rms_px))) {
-    chosen = fallback;
-  }
+  result.ambiguous =
+      rival != result.tried.end() && !(chosen.rms_px < 0.9 * rival->rms_px) && result.verdict != Verdict::mistaken;
   result.conventions = chosen.conventions;
   result.fit = chosen;
-  result.without_offset = with_offset(chosen.conventions, 0.0);
-  result.report = result.verdict == Verdict::fits_none
-                      ? misfit_report(file, result, likely_cause(few, choices, best, truth, image_rows, most))
-                      : found_report(file, result);
+  VectorConventions without = chosen.conventions;
+  without.offset_px = 0.0;
+  result.without_offset = fit_within(few, without, truth, image_rows, most);
+  result.report = result.verdict == Verdict::fits_none ? misfit_report(file, result) : found_report(file, result);
   return result;
 }
 

@@ -1,17 +1,47 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/vectors/vector_file.h"
+#include "render/base/error.h"
 
 namespace gladstone {
 namespace {
 
+using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
+
+/// Words for exchanged columns; the first has none.
+constexpr std::array<std::pair<Exchange, std::string_view>, 4> exchange_words{
+    {{Exchange::none, ""},
+     {Exchange::places, "places-exchanged"},
+     {Exchange::components, "components-exchanged"},
+     {Exchange::axes, "axes-exchanged"}}};
+
+/// The number behind NAME=. @throws std::invalid_argument
+double number_of(std::string_view word) {
+  std::size_t const equals = word.find('=');
+  std::string_view const text = word.substr(equals + 1);
+  double number = 0.0;
+  auto const [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && stop == text.data() + text.size() && std::isfinite(number)) return number;
+  throw std::invalid_argument(fmt::format("conventions: {} is not {}=NUMBER, such as {}={}", word,
+                                          word.substr(0, equals), word.substr(0, equals),
+                                          word.starts_with("offset") ? "-0.5" : "0.0614"));
+}
+
+/// The same, of a scale.
+double scale_of(std::string_view word) {
+  double const scale = number_of(word);
+  if (scale > 0.0) return scale;
+  throw std::invalid_argument(fmt::format("conventions: {} is not above 0; say how much a pixel is in the file", word));
+}
 
 }  // namespace
 
@@ -23,7 +53,8 @@ VectorConventions parse_conventions(std::string_view text, VectorConventions fro
     text.remove_prefix(std::min(end + 1, text.size()));
     while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
     while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-    constexpr std::string_view offset = "offset=";
+    auto const* const exchange = std::find_if(exchange_words.begin() + 1, exchange_words.end(),
+                                              [&](auto const& known) { return known.second == word; });
     if (word == "y-down") {
       conventions.y_up = false;
     } else if (word == "y-up") {
@@ -34,17 +65,20 @@ VectorConventions parse_conventions(std::string_view text, VectorConventions fro
       conventions.mirror = Mirror::image;
     } else if (word == "v-down" || word == "v-up") {
       conventions.v_up = word == "v-up";
-    } else if (word == "swapped") {
+    } else if (word == "frames-exchanged" || word == "swapped") {
       conventions.swapped = true;
-    } else if (word.starts_with(offset)) {
-      std::string_view const number = word.substr(offset.size());
-      auto const [stop, error] = std::from_chars(number.data(), number.data() + number.size(), conventions.offset_px);
-      if (error != std::errc{} || stop != number.data() + number.size() || !std::isfinite(conventions.offset_px)) {
-        throw std::invalid_argument(fmt::format("conventions: {} is not offset=NUMBER, such as offset=-0.5", word));
-      }
+    } else if (exchange != exchange_words.end()) {
+      conventions.exchange = exchange->first;
+    } else if (word.starts_with("offset=")) {
+      conventions.offset_px = number_of(word);
+    } else if (word.starts_with("px=")) {
+      conventions.px = scale_of(word);
+    } else if (word.starts_with("px/frame=")) {
+      conventions.px_per_frame = scale_of(word);
     } else {
       throw std::invalid_argument(fmt::format(
-          "conventions: unknown word \"{}\"; use y-down, y-up, y-up-image, v-down, v-up, swapped, offset=NUMBER",
+          "conventions: unknown word \"{}\"; use y-down, y-up, y-up-image, v-down, v-up, frames-exchanged, "
+          "axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER, px/frame=NUMBER",
           word));
     }
   }
@@ -53,11 +87,72 @@ VectorConventions parse_conventions(std::string_view text, VectorConventions fro
 
 std::string describe(VectorConventions const& conventions) {
   std::string_view const y = !conventions.y_up ? "y-down" : conventions.mirror == Mirror::grid ? "y-up" : "y-up-image";
-  return fmt::format("{},{}{},offset={}", y, conventions.v_up ? "v-up" : "v-down",
-                     conventions.swapped ? ",swapped" : "", conventions.offset_px);
+  std::string words = fmt::format("{},{}", y, conventions.v_up ? "v-up" : "v-down");
+  if (conventions.swapped) words += ",frames-exchanged";
+  if (conventions.exchange != Exchange::none)
+    words += fmt::format(",{}", exchange_words.at(static_cast<std::size_t>(conventions.exchange)).second);
+  words += fmt::format(",offset={}", conventions.offset_px);
+  if (conventions.px) words += fmt::format(",px={}", *conventions.px);
+  if (conventions.px_per_frame) words += fmt::format(",px/frame={}", *conventions.px_per_frame);
+  return words;
+}
+
+bool specifies_reading(std::string_view text) {
+  while (!text.empty()) {
+    std::size_t const end = std::min(text.find(','), text.size());
+    std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+    if (!word.empty() && !word.starts_with("px=") && !word.starts_with("px/frame=")) return true;
+  }
+  return false;
+}
+
+void override_conventions(VectorFile& file, std::string_view text) {
+  VectorConventions const told = parse_conventions(text, file.conventions);
+  if (specifies_reading(text)) {
+    file.conventions = told;
+    file.also.clear();
+    return;
+  }
+  file.conventions.px = told.px;
+  file.conventions.px_per_frame = told.px_per_frame;
+  for (VectorConventions& other : file.also) {
+    other.px = told.px;
+    other.px_per_frame = told.px_per_frame;
+  }
+}
+
+VectorFile convert_to_pixels(VectorFile file, std::string const& path) {
+  bool const places = !file.place_unit.empty() && !file.conventions.px;
+  bool const displacements = !file.displacement_unit.empty() && !file.conventions.px_per_frame;
+  if (places || displacements) {
+    std::string const what = (places ? "places in " + file.place_unit : std::string()) +
+                             (places && displacements ? " and " : "") +
+                             (displacements ? "displacements in " + file.displacement_unit : std::string());
+    throw DataError(path, fmt::format("has {} (vectors are compared in px); say how much a pixel is in them, with "
+                                      "--conventions {}{}{}, or export px",
+                                      what, places ? "px=NUMBER" : "", places && displacements ? "," : "",
+                                      displacements ? "px/frame=NUMBER" : ""));
+  }
+  double const px = file.conventions.px.value_or(1.0), px_per_frame = file.conventions.px_per_frame.value_or(1.0);
+  for (Vec2d& p : file.field.position_px) p = p / px;
+  for (Vec2d& d : file.field.displacement_px) d = d / px_per_frame;
+  for (Vec2d& d : file.field.sigma_px) d = d / px_per_frame;
+  for (Vec2d& d : file.field.raw_px) d = d / px_per_frame;
+  arrange_as_grid(file.field);
+  return file;
 }
 
 DisplacementField apply_conventions(DisplacementField field, VectorConventions const& conventions, int image_rows) {
+  if (conventions.exchanges_places()) {
+    for (Vec2d& p : field.position_px) std::swap(p.x, p.y);
+  }
+  if (conventions.exchanges_components()) {
+    for (std::vector<Vec2d>* const values : {&field.displacement_px, &field.sigma_px, &field.raw_px}) {
+      for (Vec2d& d : *values) std::swap(d.x, d.y);
+    }
+  }
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (Vec2d& p : field.position_px) {

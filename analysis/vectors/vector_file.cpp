@@ -20,9 +20,12 @@ struct TextReader {
   bool (*recognizes)(detail::TextTable const&);
   VectorFile (*read)(detail::TextTable const&);
 };
-constexpr std::array<TextReader, 4> text_readers{{
+constexpr std::array<TextReader, 7> text_readers{{
     {detail::is_gladstone_csv, detail::read_gladstone_csv},
     {detail::is_pivlab, detail::read_pivlab},
+    {detail::is_tecplot, detail::read_tecplot},
+    {detail::is_dantec, detail::read_dantec},
+    {detail::is_jpiv, detail::read_jpiv},
     {detail::is_openpiv, detail::read_openpiv},
     {detail::has_named_columns, detail::read_named_columns},
 }};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "analysis/vectors/vector_file.h"
@@ -37,6 +38,28 @@ Extent extent_of(DisplacementField const& screened) {
   Extent extent;
   for (Vec2d const& p : screened.position_px) extent.add(p);
   return extent;
+}
+
+/// Vectors at places (to 0.01 px) where another vector is, which would count twice; the first such place.
+struct RepeatedPlaces {
+  std::size_t count = 0;
+  Vec2d first{};
+};
+
+RepeatedPlaces find_repeated_places(DisplacementField const& screened) {
+  constexpr double same_px = 0.01;
+  std::vector<std::pair<long long, long long>> cells;
+  cells.reserve(screened.size());
+  for (Vec2d const& p : screened.position_px)
+    cells.emplace_back(std::llround(p.y / same_px), std::llround(p.x / same_px));
+  std::sort(cells.begin(), cells.end());
+  RepeatedPlaces repeated;
+  for (std::size_t i = 1; i < cells.size(); ++i) {
+    if (cells[i] != cells[i - 1]) continue;
+    if (repeated.count++ == 0)
+      repeated.first = {same_px * static_cast<double>(cells[i].second), same_px * static_cast<double>(cells[i].first)};
+  }
+  return repeated;
 }
 
 }  // namespace
@@ -110,6 +133,12 @@ std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors 
   if (static_cast<double>(screened.size()) > 2.0 * (size.x + 1.0) * (size.y + 1.0)) {
     return fmt::format("{} vectors lie closer than pixels ({}); export places in px, not in mm", screened.size(),
                        extent.text());
+  }
+  if (RepeatedPlaces const repeated = find_repeated_places(screened); repeated.count > 0) {
+    return fmt::format(
+        "{} of {} vectors stand at a place that another has already, first at ({:.6g}, {:.6g}) px, and would count "
+        "twice; remove the repeated rows",
+        repeated.count, screened.size(), repeated.first.x, repeated.first.y);
   }
   return {};
 }

@@ -31,8 +31,8 @@ struct LeftOutVectors {
 /// @param offset_px what is to be added to the file's coordinates, see VectorConventions
 LeftOutVectors screen_vectors(DisplacementField& field, double offset_px, int image_columns, int image_rows);
 
-/// Why screened vectors cannot be compared as a whole: most lie outside the image, or their places lie closer than
-/// pixels. Empty where they can.
+/// Why screened vectors cannot be compared as a whole: most lie outside the image, their places lie closer than pixels,
+/// or some are given twice. Empty where they can.
 std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors const& left_out, int image_columns,
                               int image_rows);
 

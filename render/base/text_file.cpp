@@ -50,6 +50,7 @@ std::optional<std::string_view> LineReader::next() {
       offset_ += size + (stop ? 1 : 0);
       ++number_;
       if (line.ends_with('\r')) line.remove_suffix(1);
+      if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // byte-order mark of UTF-8
       return line;
     }
     if (ended_) return std::nullopt;

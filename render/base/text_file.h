@@ -21,7 +21,7 @@ inline constexpr std::uint64_t most_setup_bytes = std::uint64_t{32} << 20;
 std::string read_text_file(std::string const& path, std::string const& wanted = "a file of text",
                            std::uint64_t most_bytes = std::uint64_t{4} << 30);
 
-/// The lines of a table or a header, one after the other, without their ends ("\n" or "\r\n").
+/// The lines of a table or a header in turn, without their ends ("\n" or "\r\n") and without UTF-8's byte-order mark.
 class LineReader {
  public:
   /// @throws DataError as InputFile

@@ -196,6 +196,7 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
       "the folder. Axes and offsets are found by the vortex, where it is among the files."});
   made.blocks.push_back(Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
   if (!result.conventions.empty()) made.blocks.push_back(TextList{result.conventions});
+  if (!result.mistakes.empty()) made.blocks.push_back(TextList{result.mistakes});
   made.blocks.push_back(Paragraph{"gladstone " + build_text() + ", on " + result.device + "."});
   page.sections.push_back(std::move(made));
   page.data = nlohmann::json::object();

@@ -76,6 +76,7 @@ std::string benchmark_json(BenchmarkResult const& result) {
                                 {"rms_ratio_deformed_window", mean_json(row.rms_ratio_deformed_window)},
                                 {"rms_ratio_total", mean_json(row.rms_ratio_total)}});
   json["conventions"] = result.conventions;
+  json["likely_mistakes"] = result.mistakes;
   return json_text(json) + '\n';
 }
 

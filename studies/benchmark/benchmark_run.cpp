@@ -6,20 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "analysis/uncertainty/uncertainty.h"
-#include "analysis/vectors/convention_detection.h"
-#include "analysis/vectors/vector_file.h"
-#include "analysis/vectors/vector_screening.h"
-#include "render/base/error.h"
 #include "render/base/image_file.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
 #include "render/base/source_files.h"
+#include "studies/benchmark/foreign_code.h"
 #include "studies/case_files.h"
 #include "studies/correlate.h"
 
@@ -89,49 +85,6 @@ void write_case_folder(MadeCase const& made, std::string const& folder) {
   output.commit();
 }
 
-/// One code's files by case, and how they are to be read.
-struct ForeignCode {
-  std::string name;
-  std::map<std::string, std::string> files;  ///< by case
-  std::optional<VectorConventions> conventions;
-};
-
-ForeignCode find_files(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases) {
-  ForeignCode code{given.name, {}, {}};
-  std::error_code error;
-  bool const is_folder = fs::is_directory(given.path, error);
-  for (BenchmarkCase const& one : cases)
-    for (char const* ending : {".csv", ".txt", ".h5"}) {
-      fs::path const path = is_folder ? fs::path(given.path) / (one.name + ending) : fs::path(given.path);
-      if (path.filename() == one.name + ending && fs::exists(path, error)) code.files.emplace(one.name, path.string());
-    }
-  if (code.files.empty())
-    throw DataError(given.path, fmt::format("holds no vectors of a case that is run (files named after cases, such as "
-                                            "{0}.csv, {0}.txt or {0}.h5); name them so",
-                                            cases.front().name));
-  return code;
-}
-
-/// A file's vectors in our conventions. The first file of a code that tells them tells them for all.
-DisplacementField foreign_field(ForeignCode& code, MadeCase const& made, std::vector<std::string>& told) {
-  std::string const& path = code.files.at(made.record.of.name);
-  VectorFile file = read_vectors(path);
-  LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, made.columns(), made.rows());
-  if (std::string const refusal = refusal_of_places(file.field, left_out, made.columns(), made.rows());
-      !refusal.empty())
-    throw DataError(path, refusal);
-  auto const is_known = [](Vec2d const& d) { return std::isfinite(d.x) && std::isfinite(d.y); };
-  if (std::none_of(file.field.displacement_px.begin(), file.field.displacement_px.end(), is_known))
-    throw DataError(path, "holds no displacement that is a number; export the vectors with their values");
-  if (file.foreign && !code.conventions) {
-    DetectedConventions const detected = detect_conventions(file, made.truth, made.rows());
-    if (detected.verdict == DetectedConventions::Verdict::fits_none) throw DataError(path, detected.report);
-    code.conventions = detected.conventions;
-    told.push_back(fmt::format("{}, by {}: {}", code.name, made.record.of.name, detected.report));
-  }
-  return apply_conventions(std::move(file.field), file.foreign ? *code.conventions : file.conventions, made.rows());
-}
-
 /// The case whose flow tells axes, signs and offsets of a code best comes first.
 std::vector<BenchmarkCase> in_order_of_telling(std::vector<BenchmarkCase> cases) {
   std::stable_sort(cases.begin(), cases.end(), [](BenchmarkCase const& a, BenchmarkCase const& b) {
@@ -195,7 +148,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
   for (BenchmarkCase const& one : benchmark_cases())
     if (is_wanted(options.cases, one.name)) cases.push_back(one);
   std::vector<ForeignCode> codes;
-  for (ForeignVectors const& given : options.vectors) codes.push_back(find_files(given, cases));
+  for (ForeignVectors const& given : options.vectors) codes.emplace_back(given, cases);
   BenchmarkResult result;
   result.device = device.name();
   for (BenchmarkCase const& one : in_order_of_telling(cases)) {
@@ -229,7 +182,11 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
       }
     }
     for (ForeignCode& code : codes)
-      if (code.files.contains(one.name)) score(code.name, foreign_field(code, made, result.conventions), {});
+      if (code.has(one.name)) score(code.name(), code.read(one.name, made.truth, made.columns(), made.rows()), {});
+  }
+  for (ForeignCode const& code : codes) {
+    if (!code.reading().empty()) result.conventions.push_back(code.name() + ": " + code.reading());
+    if (std::string mistake = code.mistake(); !mistake.empty()) result.mistakes.push_back(std::move(mistake));
   }
   // as they stand in the list
   auto const place = [&](std::string const& name) {

@@ -27,6 +27,7 @@ std::vector<BenchmarkEstimator> const& benchmark_estimators();
 /// Vectors of another code: a folder of files named after cases, or one such file.
 struct ForeignVectors {
   std::string name, path;
+  std::optional<std::string> conventions{};  ///< as the user tells them; empty: the format's own
 };
 
 struct BenchmarkOptions {
@@ -77,12 +78,13 @@ struct BenchmarkResult {
   std::vector<CoverageRow> coverage;
   int seeds = 0;
   std::vector<std::string> conventions;  ///< of each foreign code, in words
+  std::vector<std::string> mistakes;     ///< likely ones of foreign codes, a line each
   std::string device;
 };
 
 /// Makes the cases, FOLDER/CASE/ with reference.tif, flow.tif and truth.csv each, and scores vectors on them: ours, and
 /// those of others.
-/// @throws DataError where a foreign file cannot be read or fits no convention, OutputError
+/// @throws DataError where a foreign file cannot be read, fits nothing, or has vectors twice or not at all; OutputError
 BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device);
 
 /// Truth on the windows of the last pass, of the dots that both frames show: window_truth() and

@@ -2,9 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "analysis/vectors/vector_file.h"
 #include "render/base/error.h"
 #include "render/base/output_file.h"
 #include "render/base/output_place.h"
@@ -40,6 +42,21 @@ ForeignVectors parse_vectors(std::string const& given) {
   return vectors;
 }
 
+/// Assigns words of conventions to the code that they name (NAME=WORDS), or to all. @throws DataError
+void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const& given) {
+  bool used = false;
+  auto const named = std::find_if(vectors.begin(), vectors.end(),
+                                  [&](ForeignVectors const& one) { return given.starts_with(one.name + '='); });
+  for (ForeignVectors& one : vectors) {
+    if (named != vectors.end() && one.name != named->name) continue;
+    one.conventions = named != vectors.end() ? given.substr(one.name.size() + 1) : given;
+    parse_conventions(*one.conventions);  // refuses unknown words before anything is computed
+    used = true;
+  }
+  if (!used)
+    throw DataError("--conventions " + given, "has no vectors to be read so (they are another code's); add --vectors");
+}
+
 std::vector<std::string> names_of_cases() {
   std::vector<std::string> names;
   for (BenchmarkCase const& one : benchmark_cases()) names.push_back(one.name);
@@ -66,6 +83,7 @@ std::string summary_of(BenchmarkResult const& result, std::string const& folder)
   std::string text;
   for (std::string const& finding : benchmark_page(result, folder).findings) text += finding + '\n';
   for (std::string const& told : result.conventions) text += told + '\n';
+  for (std::string const& mistake : result.mistakes) text += mistake + '\n';
   return text + fmt::format("{} cases, {} scores: {}", result.cases.size(), result.rows.size(),
                             (fs::path(folder) / "benchmark.html").string());
 }
@@ -75,7 +93,7 @@ std::string summary_of(BenchmarkResult const& result, std::string const& folder)
 CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
     BenchmarkOptions benchmark;
-    std::vector<std::string> vectors;
+    std::vector<std::string> vectors, conventions;
     bool no_figures = false, learn = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -84,6 +102,9 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
       ->required();
   app.add_option("--vectors", arguments->vectors,
                  "NAME=F: another code's vectors, F a folder of files named after cases (vortex.csv, .txt, .h5)");
+  app.add_option("--conventions", arguments->conventions,
+                 "How those vectors are to be read, in the words of gladstone compare, or NAME=WORDS for one code; "
+                 "default: as their format says");
   app.add_option("--cases", arguments->benchmark.cases, "Only these cases")->check(one_of(names_of_cases()));
   app.add_option("--estimators", arguments->benchmark.estimators, "Only these of ours; none: only --vectors")
       ->check(one_of(names_of_estimators()));
@@ -97,6 +118,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
   return [arguments, &options] {
     BenchmarkOptions benchmark = arguments->benchmark;
     for (std::string const& given : arguments->vectors) benchmark.vectors.push_back(parse_vectors(given));
+    for (std::string const& given : arguments->conventions) assign_conventions(benchmark.vectors, given);
     fs::path const folder = benchmark.folder;
     auto const in_place = [&](char const* name) { return (folder / name).string(); };
     std::vector<std::string> inputs, outputs;
@@ -134,8 +156,9 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
     OutputFile::write_text(in_place("benchmark.md"), page_text(page, figures, true));
     html.write(text.data(), text.size());
     html.commit();
+    for (std::string const& mistake : result.mistakes) spdlog::warn("{}", mistake);
     print_result(options, json, summary_of(result, benchmark.folder));
-    return ok;
+    return result.mistakes.empty() ? ok : check_missed;
   };
 }
 

@@ -116,16 +116,17 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("case", arguments->folder, "Case folder")->required();
   app.add_option("--vectors", arguments->compare.vectors,
-                 "Vectors of ours, OpenPIV, PIVlab or any x,y,u,v in px, default CASE/vectors.h5; those outside the "
-                 "image or longer than it are left out");
+                 "Vectors of ours, OpenPIV, PIVlab, DaVis, Insight, Dantec, JPIV or any x,y,u,v, default "
+                 "CASE/vectors.h5; those outside the image or longer than it are left out");
   app.add_option("-o,--output", arguments->output, "Folder for errors.json and the figures, default CASE");
   app.add_option("--truth-at", arguments->truth_at,
                  "Where a dot counts: mid (symmetric codes) or reference (one-sided codes)")
       ->check(one_of({"mid", "reference"}));
   app.add_option(
       "--conventions", arguments->conventions,
-      "Axes and sign of foreign vectors instead of detecting them, and refusing what fits none: y-down or y-up "
-      "or y-up-image, v-down or v-up, swapped, offset=-0.5");
+      "How the file is to be read, whatever its format says and the truth shows: y-down or y-up or y-up-image, v-down "
+      "or v-up, frames-exchanged, axes-exchanged or places-exchanged or components-exchanged, offset=-0.5; of files "
+      "in other units px=0.0614,px/frame=6.14: what a pixel is in them");
   app.add_flag("--no-figures", arguments->no_figures, "Numbers only");
   return [arguments, &options] {
     Device const device = options.open_device();
@@ -150,10 +151,9 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     bool const draw = !arguments->no_figures;
     Written const written =
         apart ? write_folder(*output, place, comparison, draw) : write_beside(place, comparison, draw);
-    if (!comparison.report.empty()) spdlog::info("{}", comparison.report);
     for (auto const& name : written.figures) spdlog::info("drew {}", (place / name).string());
     print_result(options, written.json, error_report(comparison));
-    return ok;
+    return comparison.detected && comparison.detected->mistake.found() ? check_missed : ok;
   };
 }
 

@@ -104,6 +104,7 @@ CommandBody attach_correlate(CLI::App& app, GlobalOptions const& options) {
       measurement = correlate_frames(a, reference, b, flow, other.settings, device);
       if (std::string advice = locking_advice(reference); !advice.empty())
         measurement.field.warnings.push_back(std::move(advice));
+      warn_of_exchanged_frames(measurement.field, sources);
       write_vectors(written, measurement.field,
                     {"gladstone vectors", 1, other.resolved, 0, measurement.device, std::move(sources)});
     }

@@ -50,7 +50,9 @@ void screen(VectorFile& file, std::string const& path, std::string const& setup,
 DisplacementField read_measured(std::string const& path, std::string const& setup, ReportOptions const& options,
                                 CameraSetup const& camera) {
   VectorFile file = read_vectors(path);
-  if (!options.conventions.empty()) file.conventions = parse_conventions(options.conventions, file.conventions);
+  for (std::string const& warning : file.warnings) spdlog::warn("{}", warning);
+  if (!options.conventions.empty()) override_conventions(file, options.conventions);
+  file = convert_to_pixels(std::move(file), path);
   screen(file, path, setup, camera);
   DisplacementField field = file.foreign || !options.conventions.empty()
                                 ? apply_conventions(std::move(file.field), file.conventions, camera.rows)

@@ -53,9 +53,11 @@ TEST(DetectConventions, FindsEveryChoiceOfAxesSignsAndOffset) {
             VectorConventions const c{y_up, v_up, swapped, offset, mirror};
             DetectedConventions const found =
                 detect_conventions(written_by(c, image_rows, 0.0), asymmetric, image_rows);
-            EXPECT_EQ(found.conventions, c) << describe(c) << " -> " << found.report;
+            EXPECT_EQ(found.conventions, VectorConventions{}) << "they are read as the format says";
+            EXPECT_EQ(found.best.conventions, c) << describe(c) << " -> " << found.report;
+            EXPECT_EQ(found.mistake.found(), c != VectorConventions{}) << describe(c) << " -> " << found.report;
             EXPECT_FALSE(found.ambiguous) << found.report;
-            EXPECT_LT(found.fit.rms_px, 1e-12);
+            EXPECT_LT(found.best.rms_px, 1e-12);
           }
         }
       }
@@ -121,42 +123,102 @@ Vec2d noise(std::size_t i) {
 
 using Verdict = DetectedConventions::Verdict;
 
-// Vectors of the right size at the wrong places differ from the truth by sqrt(2) times its rms; none follows it.
-TEST(DetectConventions, RefusesWhatFitsNone) {
+// What is wrong with a file is named, and the file read as it says. A shift by a quarter of a period, an exchange of
+// columns and a factor leave differences of sqrt(2), sqrt(2) and 9 times the truth's rms, and none when they are
+// undone.
+TEST(DetectConventions, NamesTheLikelyMistake) {
   struct Wrong {
-    char const* name;
+    char const* mistake;
     void (*make)(Vec2d& place, Vec2d& displacement);
-    char const* cause;
+    char const* conventions;  ///< that read it rightly; empty: none do
   };
   for (Wrong const &wrong : {
-           Wrong{"shifted",
-                 [](Vec2d&p, Vec2d&) {
-                   p += Vec2d{12.0, -4.0};
-                 },
-                 "another origin"},
-           Wrong{"x and y exchanged", [](Vec2d&p, Vec2d&) { std::swap(p.x, p.y); },
-                 "with x and y exchanged they would fit"},
-           Wrong{"all exchanged",
+           Wrong{"v points up", [](Vec2d&, Vec2d&d) { d.y = -d.y; }, "y-down,v-up,offset=0"},
+           Wrong{"u points left", [](Vec2d&, Vec2d&d) { d.x = -d.x; }, "y-down,v-up,frames-exchanged,offset=0"},
+           Wrong{"the frames were exchanged", [](Vec2d&, Vec2d&d) { d = -d; },
+                 "y-down,v-down,frames-exchanged,offset=0"},
+           Wrong{"x and y are exchanged", [](Vec2d&p, Vec2d&) { std::swap(p.x, p.y); },
+                 "y-down,v-down,places-exchanged,offset=0"},
+           Wrong{"u and v are exchanged", [](Vec2d&, Vec2d&d) { std::swap(d.x, d.y); },
+                 "y-down,v-down,components-exchanged,offset=0"},
+           Wrong{"the axes are exchanged (x with y, u with v)",
                  [](Vec2d&p, Vec2d&d) {
                    std::swap(p.x, p.y);
                    std::swap(d.x, d.y);
                  },
-                 "with x and y, u and v exchanged they would fit"},
-           Wrong{"in mm of the dots", [](Vec2d&p, Vec2d&) { p = 0.085 * p; }, "not in px"},
-           Wrong{"no displacement", [](Vec2d&, Vec2d&d) { d = {}; }, "not in px"},
-           Wrong{"displacement in mm", [](Vec2d&, Vec2d&d) { d = 0.01 * d; }, "not in px"},
-           Wrong{"ten times too long", [](Vec2d&, Vec2d&d) { d = 10.0 * d; }, "another unit than px"},
+                 "y-down,v-down,axes-exchanged,offset=0"},
+           Wrong{"places are shifted by (12, -4) px",
+                 [](Vec2d&p, Vec2d&) {
+                   p += Vec2d{12.0, -4.0};
+                 },
+                 ""},
+           Wrong{"displacements are 0.01 times the truth", [](Vec2d&, Vec2d&d) { d = 0.01 * d; },
+                 "y-down,v-down,offset=0,px/frame=0.01"},
+           Wrong{"displacements are 10 times the truth", [](Vec2d&, Vec2d&d) { d = 10.0 * d; },
+                 "y-down,v-down,offset=0,px/frame=10"},
+           Wrong{"v points up and displacements are 10 times the truth",
+                 [](Vec2d&, Vec2d&d) {
+                   d = {10.0 * d.x, -10.0 * d.y};
+                 },
+                 "y-down,v-up,offset=0,px/frame=10"},
+           Wrong{"places are 1.3 times the true ones", [](Vec2d&p, Vec2d&) { p = 1.3 * p; },
+                 "y-down,v-down,offset=0,px=1.3"},
        }) {
     VectorFile file = waves_on_a_grid();
     for (std::size_t i = 0; i < file.field.size(); ++i)
       wrong.make(file.field.position_px[i], file.field.displacement_px[i]);
     DetectedConventions const found = detect_conventions(file, waves, 200);
-    EXPECT_EQ(found.verdict, Verdict::fits_none) << wrong.name << ": " << found.report;
-    EXPECT_EQ(found.tried.size(), 8u) << "two directions of y, two of v, two orders of the frames";
-    EXPECT_THAT(found.report,
-                AllOf(HasSubstr("fit no convention"), HasSubstr("v-up,swapped"), HasSubstr("the truth itself is 0.0"),
-                      HasSubstr("mend the file"), HasSubstr(wrong.cause)))
-        << wrong.name;
+    EXPECT_EQ(found.verdict, Verdict::mistaken) << wrong.mistake << ": " << found.report;
+    EXPECT_THAT(found.mistake.text, testing::StartsWith(wrong.mistake));
+    EXPECT_EQ(found.mistake.conventions, wrong.conventions) << wrong.mistake;
+    EXPECT_EQ(found.conventions, file.conventions) << "it is read as its format says";
+    EXPECT_LT(found.mistake.rms_px, 0.02 * found.mistake.rms_as_read) << wrong.mistake;
+    EXPECT_EQ(found.tried.size(), 32u) << "directions of y, of v, orders of the frames, four exchanges of columns";
+    EXPECT_THAT(found.report, HasSubstr("likely mistake"));
+  }
+}
+
+// A quarter of the truth is what windows leave of a wave as short as they are, and of a uniform displacement nothing
+// but another unit does.
+TEST(DetectConventions, TellsAFactorFromWideWindows) {
+  VectorFile file = waves_on_a_grid();
+  for (Vec2d& d : file.field.displacement_px) d = 0.25 * d;
+  EXPECT_EQ(detect_conventions(file, waves, 200).verdict, Verdict::fits);
+  auto const slow = [](Vec2d p) { return Vec2d{1.0 + 0.002 * p.x, 0.7 - 0.001 * p.y}; };
+  for (std::size_t i = 0; i < file.field.size(); ++i)
+    file.field.displacement_px[i] = 0.25 * slow(file.field.position_px[i]);
+  EXPECT_THAT(detect_conventions(file, slow, 200).mistake.text, HasSubstr("displacements are 0.25 times the truth"));
+}
+
+// A field that turns about the middle looks the same with its frames exchanged and upside down: both are named.
+TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
+  VectorFile file;
+  file.format = "test";
+  auto const vortex = [](Vec2d p) { return Vec2d{0.02 * (p.y - 99.5), -0.02 * (p.x - 99.5)}; };
+  for (int row = 0; row < 12; ++row) {
+    for (int column = 0; column < 12; ++column) {
+      Vec2d const p{11.5 + 16.0 * column, 11.5 + 16.0 * row};
+      file.field.position_px.push_back(p);
+      file.field.displacement_px.push_back(-vortex(p));
+    }
+  }
+  DetectedConventions const found = detect_conventions(file, vortex, 200);
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("the frames were exchanged, or "));
+  EXPECT_THAT(found.mistake.text, HasSubstr("y and v point up"));
+  EXPECT_NEAR(found.fit.rms_px, 2.0 * found.fit.signal_px, 1e-9) << "they are not forgiven";
+}
+
+// No displacement at all, noise, and places in mm of the dots, all within 16 px, follow the truth in no reading.
+TEST(DetectConventions, RefusesWhatFitsNone) {
+  for (auto const make : {+[](Vec2d&, Vec2d&d, Vec2d) { d = {}; }, +[](Vec2d&, Vec2d&d, Vec2d n) { d = 0.1 * n; },
+                          +[](Vec2d&p, Vec2d&, Vec2d) { p = 0.085 * p; }}) {
+    VectorFile file = waves_on_a_grid();
+    for (std::size_t i = 0; i < file.field.size(); ++i)
+      make(file.field.position_px[i], file.field.displacement_px[i], noise(i));
+    DetectedConventions const found = detect_conventions(file, waves, 200);
+    EXPECT_EQ(found.verdict, Verdict::fits_none) << found.report;
+    EXPECT_THAT(found.report, AllOf(HasSubstr("fit no convention"), HasSubstr("v-up,frames-exchanged"),
+                                    HasSubstr("the truth itself is 0.0"), HasSubstr("mend the file")));
   }
 }
 
@@ -215,8 +277,9 @@ TEST(DetectConventions, TellsBySmallSignalsThatAreMeasuredBetter) {
     file.field.displacement_px[i] = {d.x, -d.y};
   }
   DetectedConventions const found = detect_conventions(file, truth, 200);
-  EXPECT_EQ(found.verdict, Verdict::fits) << found.report;
-  EXPECT_TRUE(found.conventions.v_up);
+  EXPECT_EQ(found.verdict, Verdict::mistaken) << found.report;
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("v points up"));
+  EXPECT_TRUE(found.best.conventions.v_up);
 }
 
 // Half a pixel in waves of slope 2 pi 0.1 px / 37 px is a difference of up to 0.0085 px, and none with the offset.
@@ -224,11 +287,19 @@ TEST(DetectConventions, ReportsTheOffsetWithAndWithout) {
   VectorFile file = waves_on_a_grid();
   for (Vec2d& p : file.field.position_px) p += Vec2d{0.5, 0.5};
   DetectedConventions const found = detect_conventions(file, waves, 200);
-  EXPECT_EQ(found.conventions.offset_px, -0.5);
-  EXPECT_LT(found.fit.rms_px, 1e-12);
-  EXPECT_GT(found.without_offset.rms_px, 0.003);
-  EXPECT_THAT(found.report, HasSubstr("x - 0.5 px fits better: rms "));
-  EXPECT_THAT(found.report, HasSubstr("instead of 0.00"));
+  EXPECT_EQ(found.best.conventions.offset_px, -0.5);
+  EXPECT_LT(found.best.rms_px, 1e-12);
+  EXPECT_GT(found.fit.rms_px, 0.003);
+  EXPECT_THAT(found.mistake.text, testing::StartsWith("places lie 0.5 px too far to the right and down"));
+
+  VectorFile half = file;
+  half.conventions.offset_px = -0.5;
+  DetectedConventions const right = detect_conventions(half, waves, 200);
+  EXPECT_FALSE(right.mistake.found()) << right.report;
+  EXPECT_LT(right.fit.rms_px, 1e-12);
+  EXPECT_GT(right.without_offset.rms_px, 0.003);
+  EXPECT_THAT(right.report, HasSubstr("x - 0.5 px fits better: rms "));
+  EXPECT_THAT(right.report, HasSubstr("instead of 0.00"));
 
   VectorFile own = waves_on_a_grid();
   own.conventions.offset_px = -0.5;  // as its format says; the numbers say nothing of it
@@ -248,6 +319,7 @@ VectorFile noisy_waves(double moved, double offset) {
     file.field.displacement_px[i] += Vec2d{error(bits), error(bits)};
   }
   file.conventions.offset_px = offset;
+  file.also = {VectorConventions{}};  // as several passes of the same code have it
   return file;
 }
 

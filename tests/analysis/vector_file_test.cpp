@@ -202,10 +202,109 @@ TEST_F(VectorFiles, PivlabExportIsReadAndPutInRows) {
   }
 }
 
-TEST_F(VectorFiles, CalibratedPivlabExportIsRefusedWithAHint) {
-  EXPECT_THAT(problem("PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
-                      "x [m],y [m],u [m/s],v [m/s],Vector type [-]\r\n1,1,1,1,1\r\n"),
-              AllOf(HasSubstr("bad.csv:3"), HasSubstr("x [m]"), HasSubstr("px/frame")));
+// 0.5 mm and 2 m/s a pixel. Without these factors the file cannot be compared, and the message says what to give.
+TEST_F(VectorFiles, CalibratedExportsTakeTheirFactors) {
+  VectorFile calibrated = read_vectors(file("p.txt",
+                                            "PIVlab, ASCII chart output - today\r\nFRAME: 1\r\n"
+                                            "x [mm],y [mm],u [m/s],v [m/s],Vector type [-]\r\n5,6,1,-3,1\r\n"));
+  EXPECT_EQ(calibrated.place_unit, "mm");
+  EXPECT_EQ(calibrated.displacement_unit, "m/s");
+  try {
+    convert_to_pixels(calibrated, "p.txt");
+    FAIL() << "no factor was given";
+  } catch (DataError const& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("p.txt: "), HasSubstr("places in mm and displacements in m/s"),
+                                    HasSubstr("--conventions px=NUMBER,px/frame=NUMBER")));
+  }
+  override_conventions(calibrated, "px=0.5,px/frame=2");
+  EXPECT_FALSE(specifies_reading("px=0.5,px/frame=2"));
+  EXPECT_TRUE(specifies_reading("px=0.5, v-up"));
+  VectorFile const pixels = convert_to_pixels(calibrated, "p.txt");
+  EXPECT_EQ(pixels.field.position_px[0], (Vec2d{10.0, 12.0}));
+  EXPECT_EQ(pixels.field.displacement_px[0], (Vec2d{0.5, -1.5}));
+}
+
+// One measurement of 49 x 49 vectors as other programs write it (tests/cases/vectors, 512 px high). Read as each
+// format says, all are the same to their last digit: 1e-6 px, and for mm.csv, of 1e-4 mm and six digits of m/s, half of
+// 1e-4 / 0.0614 px in place and of 1e-5 / 6.14 px a frame in displacement.
+TEST_F(VectorFiles, OtherProgramsFilesAreTheSameVectors) {
+  struct Case {
+    char const* name;
+    char const* format;
+    char const* conventions;
+    std::size_t invalid = 0;
+    double place_px = 1e-6, displacement_px = 2e-6;
+  };
+  std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/vectors/";
+  auto const in_ours = [&](Case const& one) {
+    VectorFile file = read_vectors(folder + one.name);
+    EXPECT_EQ(file.format, one.format) << one.name;
+    override_conventions(file, one.conventions);
+    file = convert_to_pixels(std::move(file), one.name);
+    EXPECT_TRUE(file.warnings.empty()) << one.name;
+    return apply_conventions(std::move(file.field), file.conventions, 512);
+  };
+  DisplacementField const expected = in_ours({"semicolon.csv", "named columns", ""});
+  ASSERT_EQ(expected.size(), 2401u);
+  EXPECT_EQ(expected.position_px[0], (Vec2d{11.5, 11.5}));
+  EXPECT_EQ(expected.displacement_px[0], (Vec2d{-0.900597, 0.844581}));
+  for (Case const& one :
+       {Case{"jpiv.jvc", "JPIV", ""}, Case{"davis.dat", "DaVis", ""}, Case{"insight.vec", "Insight", "", 267},
+        Case{"dantec.csv", "Dantec", ""}, Case{"mm.csv", "named columns", "px=0.0614,px/frame=6.14", 0, 1e-3, 2e-6}}) {
+    DisplacementField const field = in_ours(one);
+    ASSERT_EQ(field.size(), expected.size()) << one.name;
+    EXPECT_EQ(field.columns, 49) << one.name;
+    std::size_t invalid = 0;
+    for (std::size_t i = 0; i < field.size(); ++i) {
+      EXPECT_LT(length(field.position_px[i] - expected.position_px[i]), one.place_px) << one.name << ' ' << i;
+      if (field.counts(i)) {
+        EXPECT_LT(length(field.displacement_px[i] - expected.displacement_px[i]), one.displacement_px)
+            << one.name << ' ' << i;
+      } else {
+        ++invalid;
+      }
+    }
+    EXPECT_EQ(invalid, one.invalid) << one.name;
+  }
+}
+
+TEST_F(VectorFiles, CodesOfOtherProgramsAreTheirs) {
+  using enum VectorStatus;
+  auto const status = [&](std::string const& name, std::string const& text) {
+    return read_vectors(file(name, text)).field.status;
+  };
+  EXPECT_EQ(status("a.vec",
+                   "TITLE=\"a\" VARIABLES=\"X mm\", \"Y mm\", \"U m/s\", \"V m/s\", \"CHC\", ZONE I=4, J=1\n"
+                   "1, 1, 2, 2, 1\n2, 1, 2, 2, 3\n3, 1, 2, 2, -1\n4, 1, 2, 2, 0\n"),
+            (std::vector{valid, replaced, invalid, invalid}));
+  EXPECT_EQ(status("b.dat",
+                   "TITLE = \"b\"\nVARIABLES = \"x\"\n\"y\"\n\"Vx\" \"Vy\" \"isValid\"\nZONE I=2, J=1\n"
+                   "1 1 2 2 1\n2 1 0 0 0\n"),
+            (std::vector{valid, masked}));
+  EXPECT_EQ(status("c.csv",
+                   ">>*HEADER*<<\n>>*DATA*<<\nx;y;x (pix)[pix];y (pix)[pix];U pix[pix];V pix[pix];Status\n"
+                   "0;0;1,5;1;2;2;0\n1;0;2,5;1;2;2;16\n2;0;3,5;1;2;2;1\n"),
+            (std::vector{valid, replaced, invalid}));
+  EXPECT_EQ(status("d.jvc", "1 1 2 2 1.0\n2 1 2 2 -1.0\n"), (std::vector{valid, invalid}));
+  VectorFile const zeros = read_vectors(
+      file("e.dat", "VARIABLES = \"x\", \"y\", \"Vx\", \"Vy\"\nZONE I=2\n1 1 2 2\n2 1 0 0\nZONE I=1\n9 9 9 9\n"));
+  EXPECT_EQ(zeros.field.status, (std::vector{valid, masked}));
+  ASSERT_EQ(zeros.warnings.size(), 2u);
+  EXPECT_THAT(zeros.warnings[0], HasSubstr("e.dat:5: another zone"));
+  EXPECT_THAT(zeros.warnings[1], HasSubstr("1 of 2 vectors are exactly zero"));
+  EXPECT_THAT(problem("VARIABLES = x, y, u, v\nZONE I=2, F=BLOCK\n1 2\n1 1\n"), HasSubstr("BLOCK packing"));
+  EXPECT_THAT(problem("x [mm],y [px],u,v\n1,2,3,4\n"), AllOf(HasSubstr("bad.csv:1"), HasSubstr("different units")));
+}
+
+// A comma is a decimal one where something else separates, and a separator where it must be.
+TEST_F(VectorFiles, DecimalsMayHaveCommas) {
+  for (char const* text :
+       {"x;y;u;v\n1,5;2;3,25;-4,5\n", "x\ty\tu\tv\n1,5\t2\t3,25\t-4,5\n", "x y u v\n1,5 2 3,25 -4,5\n",
+        "x,y,u,v\n1.5, 2, 3.25, -4.5\n", "x;y;u;v\n1.5;2;3.25;-4.5\n"}) {
+    VectorFile const back = read_vectors(file("n.csv", text));
+    EXPECT_EQ(back.field.position_px[0], (Vec2d{1.5, 2.0})) << text;
+    EXPECT_EQ(back.field.displacement_px[0], (Vec2d{3.25, -4.5})) << text;
+  }
 }
 
 TEST_F(VectorFiles, NamedColumnsAreReadInAnyOrder) {
@@ -242,13 +341,17 @@ TEST_F(VectorFiles, BrokenTextIsRefusedAtItsLine) {
 }
 
 TEST(VectorConventions, AreSaidAsTheyAreTold) {
-  VectorConventions const told = parse_conventions("y-up, v-up,offset=-0.5,swapped");
+  VectorConventions const told =
+      parse_conventions("y-up, v-up,offset=-0.5,frames-exchanged,axes-exchanged,px=0.0614,px/frame=6.14");
+  EXPECT_EQ(parse_conventions("swapped"), parse_conventions("frames-exchanged"));
+  EXPECT_TRUE(told.exchanges_places() && told.exchanges_components());
   EXPECT_TRUE(told.y_up && told.v_up && told.swapped);
   EXPECT_EQ(told.offset_px, -0.5);
   EXPECT_EQ(parse_conventions(describe(told)), told);
   EXPECT_EQ(parse_conventions("y-up-image").mirror, VectorConventions::Mirror::image);
   EXPECT_THROW(parse_conventions("y-sideways"), std::invalid_argument);
   EXPECT_THROW(parse_conventions("offset=half"), std::invalid_argument);
+  EXPECT_THROW(parse_conventions("px=0"), std::invalid_argument);
 }
 
 }  // namespace

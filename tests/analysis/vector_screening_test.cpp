@@ -45,6 +45,20 @@ TEST(ScreenVectors, LeavesGoodOnesAsTheyAre) {
   EXPECT_THAT(doubt_about_places(field, columns, rows), IsEmpty());
 }
 
+// Three rows of a file given twice would count twice in every mean.
+TEST(ScreenVectors, RefusesVectorsGivenTwice) {
+  DisplacementField field = lattice();
+  for (std::size_t const i : {2u, 17u, 40u}) {
+    field.position_px.push_back(field.position_px[i]);
+    field.displacement_px.push_back(field.displacement_px[i]);
+    field.peak_ratio.push_back(field.peak_ratio[i]);
+    field.status.push_back(VectorStatus::valid);
+  }
+  LeftOutVectors const left_out = screen_vectors(field, 0.0, columns, rows);
+  EXPECT_THAT(refusal_of_places(field, left_out, columns, rows),
+              AllOf(HasSubstr("3 of 58 vectors stand at a place"), HasSubstr("first at (47.5, 15.5) px")));
+}
+
 TEST(ScreenVectors, TakesImpossiblePlacesOutAndCountsThem) {
   DisplacementField field = lattice();
   field.position_px[3].x = nan;

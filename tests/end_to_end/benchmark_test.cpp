@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 
+#include "studies/benchmark/benchmark_cases.h"
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -96,6 +99,91 @@ TEST_F(Benchmark, LearnsTheCombinationThatShips) {
   }
   EXPECT_EQ(terms, 5u);
   EXPECT_FALSE(std::filesystem::exists(in("learnt/benchmark.html")));
+}
+
+/// A code's vectors for `uniform` and `stretch`, every 16 px, with the truth changed.
+template <class Change>
+std::map<std::string, std::string> changed_truth(Change const& change) {
+  std::map<std::string, std::string> files;
+  for (std::string const name : {"uniform", "vortex"}) {
+    BenchmarkCase const& of = *std::find_if(benchmark_cases().begin(), benchmark_cases().end(),
+                                            [&](BenchmarkCase const& one) { return one.name == name; });
+    std::string text = "x,y,u,v\n";
+    for (int y = 16; y < 1024; y += 16) {
+      for (int x = 16; x < 1024; x += 16) {
+        Vec2d const d = change(of.flow({static_cast<double>(x), static_cast<double>(y)}));
+        text += fmt::format("{},{},{:.9g},{:.9g}\n", x, y, d.x, d.y);
+      }
+    }
+    files[name + ".csv"] = text;
+  }
+  return files;
+}
+
+// The negative of the truth is off by twice its rms in any case: the vortex alone cannot tell exchanged frames from
+// axes that point up, the uniform displacement not from exchanged columns, but both together can. Exchanged columns of
+// displacements are named as well.
+TEST_F(Benchmark, ForgivesNoWrongSigns) {
+  auto const write_all = [&](std::string const& folder, auto const& files) {
+    std::filesystem::create_directories(in(folder));
+    for (auto const& [name, text] : files) write(folder + '/' + name, text);
+  };
+  write_all("negative", changed_truth([](Vec2d d) { return -d; }));
+  write_all("turned", changed_truth([](Vec2d d) { return Vec2d{d.y, d.x}; }));
+  write_all("right", changed_truth([](Vec2d d) { return d; }));
+  std::vector<std::string> const run{"benchmark", "-o", "b", "--estimators", "none", "--no-figures", "--json"};
+  auto const score = [&](std::vector<std::string> const& more) {
+    std::vector<std::string> arguments = run;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return gladstone(arguments);
+  };
+  Outcome const negative = score({"--cases", "vortex", "uniform", "--vectors", "m=negative"});
+  EXPECT_EQ(negative.exit_code, 1) << negative.err;
+  EXPECT_THAT(negative.err, testing::HasSubstr("m: likely mistake: the frames were exchanged"));
+  auto const scored = nlohmann::json::parse(negative.out);
+  EXPECT_NEAR(score_of(scored, "m", "uniform")["rms_px"].get<double>(), 0.6, 1e-6);
+  EXPECT_LT(score_of(scored, "m", "vortex")["gain"].get<double>(), -0.9);
+  EXPECT_THAT(scored["likely_mistakes"].dump(), testing::HasSubstr("the frames were exchanged"));
+
+  Outcome const alone = score({"--cases", "vortex", "--vectors", "m=negative"});
+  EXPECT_EQ(alone.exit_code, 1) << alone.err;
+  EXPECT_THAT(alone.err, testing::HasSubstr("cannot tell apart"));
+
+  Outcome const turned = score({"--cases", "vortex", "uniform", "--vectors", "m=turned"});
+  EXPECT_EQ(turned.exit_code, 1) << turned.err;
+  EXPECT_THAT(turned.err, testing::HasSubstr("u and v are exchanged"));
+
+  Outcome const told =
+      score({"--cases", "vortex", "uniform", "--vectors", "m=negative", "--conventions", "m=frames-exchanged"});
+  EXPECT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_LT(score_of(nlohmann::json::parse(told.out), "m", "uniform")["rms_px"].get<double>(), 1e-6);
+  Outcome const right = score({"--cases", "vortex", "uniform", "--vectors", "m=right"});
+  EXPECT_EQ(right.exit_code, 0) << right.err;
+  EXPECT_EQ(nlohmann::json::parse(right.out)["likely_mistakes"].size(), 0u);
+}
+
+// 63 x 63 vectors 16 px apart: 31 rows of them are 1953, and one row given twice is 63.
+TEST_F(Benchmark, RefusesHalfAGridAndRowsGivenTwice) {
+  std::string const whole = changed_truth([](Vec2d d) { return d; }).at("uniform.csv");
+  auto const lines = [&](std::size_t count) {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < count; ++i) at = whole.find('\n', at) + 1;
+    return whole.substr(0, at);
+  };
+  auto const refused = [&](std::string const& text, std::string const& piece) {
+    write("uniform.csv", text);
+    Outcome const outcome =
+        gladstone({"benchmark", "-o", "b", "--cases", "uniform", "--estimators", "none", "--vectors", "m=uniform.csv"});
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(piece));
+  };
+  // rows are expected as far as 96 px from the lower border: up to y = 912, the 57th
+  refused(lines(1 + 31 * 63), "has 1953 of the 3591 vectors of its grid");
+  refused(whole + lines(64).substr(8), "63 of 4032 vectors stand at a place");
+  std::string gap = whole;
+  std::size_t const at = gap.find("\n512,512,") + 1;
+  gap.erase(at, gap.find('\n', at) + 1 - at);
+  refused(gap, "has 3968 of the 3969 vectors of its grid");
 }
 
 TEST_F(Benchmark, RefusesWhatItCannotScore) {

@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
   std::string_view const input = fuzz::text_of(data, size);
   std::string const path = fuzz::file_of(input, "vectors.txt");
   fuzz::read(input, [&] {
-    VectorFile file = read_vectors(path);
+    VectorFile file = convert_to_pixels(read_vectors(path), path);
     LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, 128, 128);
     if (!refusal_of_places(file.field, left_out, 128, 128).empty()) return;
     doubt_about_places(file.field, 128, 128);

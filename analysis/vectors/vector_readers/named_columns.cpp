@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "analysis/vectors/vector_readers/vector_readers.h"
 #include "render/base/error.h"
@@ -30,11 +32,49 @@ void read_status(TextTable const& table, std::size_t column, DisplacementField& 
   }
 }
 
+VectorFile read_quantities(TextTable const& table, std::string const& format) {
+  std::array<std::size_t, 4> const columns{table.quantity({"x"}), table.quantity({"y"}),
+                                           table.quantity({"u", "vx", "dx"}), table.quantity({"v", "vy", "dy"})};
+  std::array<std::string, 4> units;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    std::string unit = parse_column_name(table.names[columns[i]]).unit;
+    units[i] = is_pixel_unit(unit) ? std::string() : std::move(unit);
+  }
+  auto const require_one_unit = [&](std::size_t a, std::size_t b) {
+    if (units[a] == units[b]) return;
+    throw DataError(fmt::format("{}:{}", table.path, table.header_line),
+                    fmt::format("columns {} and {} are in different units; export both in px", table.names[columns[a]],
+                                table.names[columns[b]]));
+  };
+  require_one_unit(0, 1);
+  require_one_unit(2, 3);
+  VectorFile file{plain_vectors(table.values[columns[0]], table.values[columns[1]], table.values[columns[2]],
+                                table.values[columns[3]]),
+                  format,
+                  {},
+                  true};
+  file.place_unit = units[0];
+  file.displacement_unit = units[2];
+  file.warnings = table.warnings;
+  return file;
+}
+
+void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px) {
+  std::vector<VectorConventions> readings = file.also;
+  readings.insert(readings.begin(), file.conventions);
+  for (VectorConventions reading : readings) {
+    for (double const offset : offsets_px) {
+      reading.offset_px = offset;
+      file.also.push_back(reading);
+    }
+  }
+}
+
 bool has_named_columns(TextTable const&) { return true; }  // the last row of the table: its columns are checked here
 
 VectorFile read_named_columns(TextTable const& table) {
-  DisplacementField field = plain_vectors(table.column({"x", "x_px"}), table.column({"y", "y_px"}),
-                                          table.column({"u", "u_px"}), table.column({"v", "v_px"}));
+  VectorFile file = read_quantities(table, "named columns");
+  DisplacementField& field = file.field;
   auto const sigma_u = table.find({"sigma_u_px", "sigma_u", "su"});
   auto const sigma_v = table.find({"sigma_v_px", "sigma_v", "sv"});
   if (sigma_u && sigma_v) {
@@ -44,7 +84,7 @@ VectorFile read_named_columns(TextTable const& table) {
   }
   if (auto const ratio = table.find({"peak_ratio"})) field.peak_ratio = table.values[*ratio];
   if (auto const status = table.find({"status"})) read_status(table, *status, field);
-  return {std::move(field), "named columns", {}, true};
+  return file;
 }
 
 }  // namespace gladstone::detail

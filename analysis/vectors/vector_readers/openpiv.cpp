@@ -8,8 +8,8 @@ bool is_openpiv(TextTable const& table) {
 }
 
 VectorFile read_openpiv(TextTable const& table) {
-  DisplacementField field =
-      plain_vectors(table.column({"x"}), table.column({"y"}), table.column({"u"}), table.column({"v"}));
+  VectorFile file = read_quantities(table, "OpenPIV");
+  DisplacementField& field = file.field;
   auto const flags = table.find({"flags", "flag"});
   auto const mask = table.find({"mask"});
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -21,9 +21,14 @@ VectorFile read_openpiv(TextTable const& table) {
       field.status[i] = flags ? VectorStatus::masked : VectorStatus::invalid;  // without flags, mask marks the invalid
     }
   }
-  VectorConventions conventions;
-  conventions.offset_px = -0.5;  // ws/2 where the centre is (ws - 1)/2
-  return {std::move(field), "OpenPIV", conventions, true};
+  // As measured, or turned round by transform_coordinates; x = ws/2, which several passes measure at and one pass does
+  // half a pixel from: its centre is (ws - 1)/2.
+  file.conventions.offset_px = -0.5;
+  VectorConventions turned = file.conventions;
+  turned.y_up = turned.v_up = true;
+  file.also = {turned};
+  add_offsets(file, {0.0});
+  return file;
 }
 
 }  // namespace gladstone::detail

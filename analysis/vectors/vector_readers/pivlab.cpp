@@ -1,7 +1,4 @@
-#include <fmt/format.h>
-
 #include "analysis/vectors/vector_readers/vector_readers.h"
-#include "render/base/error.h"
 
 namespace gladstone::detail {
 
@@ -11,15 +8,8 @@ bool is_pivlab(TextTable const& table) {
 }
 
 VectorFile read_pivlab(TextTable const& table) {
-  for (std::string_view const calibrated : {"x [m]", "y [m]", "u [m/s]", "v [m/s]", "u [m/frame]", "v [m/frame]"}) {
-    if (!table.find({calibrated})) continue;
-    throw DataError(fmt::format("{}:{}", table.path, table.header_line),
-                    fmt::format("column {} is calibrated, vectors are compared in px; clear the calibration in PIVlab "
-                                "and export again in px and px/frame",
-                                calibrated));
-  }
-  DisplacementField field = plain_vectors(table.column({"x [px]"}), table.column({"y [px]"}),
-                                          table.column({"u [px/frame]"}), table.column({"v [px/frame]"}));
+  VectorFile file = read_quantities(table, "PIVlab");
+  DisplacementField& field = file.field;
   if (auto const type = table.find({"vector type [-]"})) {
     for (std::size_t i = 0; i < field.size(); ++i) {
       double const value = table.values[*type][i];
@@ -30,9 +20,9 @@ VectorFile read_pivlab(TextTable const& table) {
       }
     }
   }
-  VectorConventions conventions;
-  conventions.offset_px = -1.5;  // first pixel is 1, and ws/2 where the centre is (ws - 1)/2
-  return {std::move(field), "PIVlab", conventions, true};
+  if (file.place_unit.empty()) file.conventions.offset_px = -1.5;  // 1-based, and ws/2 where the centre is (ws - 1)/2
+  add_offsets(file, {-1.0, -0.5, 0.0});
+  return file;
 }
 
 }  // namespace gladstone::detail

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "analysis/vectors/vector_file.h"
@@ -24,11 +25,33 @@ VectorFile read_pivlab(TextTable const& table);
 bool is_openpiv(TextTable const& table);
 VectorFile read_openpiv(TextTable const& table);
 
+/// Tecplot's ASCII with VARIABLES x, y, u or Vx, v or Vy, in POINT packing: DaVis' .dat (isValid 0 masked; without that
+/// column vectors of exactly no length are taken for masked) and TSI Insight's .vec (CHC 1 measured, above 1 another
+/// peak or interpolated, below 1 invalid). y and v point upwards, y from the image's last row.
+bool is_tecplot(TextTable const& table);
+VectorFile read_tecplot(TextTable const& table);
+
+/// Dantec DynamicStudio's numeric export (">>*HEADER*<<"): Status 0 valid, 16 substituted, others rejected. y and v
+/// point upwards, y from the image's last row.
+bool is_dantec(TextTable const& table);
+VectorFile read_dantec(TextTable const& table);
+
+/// JPIV's .jvc, without a header: x, y, u, v and a quality, which is below 0 for invalid vectors. y and v point
+/// downwards.
+bool is_jpiv(TextTable const& table);
+VectorFile read_jpiv(TextTable const& table);
+
 /// Any table with columns x, y, u, v (or x_px, ...), optionally sigma_u, sigma_v (su, sv), status.
 bool has_named_columns(TextTable const& table);
 VectorFile read_named_columns(TextTable const& table);
 
-/// x, y, u, v of a table under their plain names; what has a displacement that is not finite becomes invalid.
+/// x, y, u, v of a table, under whatever names and in whatever units they are, with these units.
+VectorFile read_quantities(TextTable const& table, std::string const& format);
+
+/// Lets each of the format's readings count pixels by these offsets as well [px].
+void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px);
+
+/// The same numbers as a field; what has a displacement that is not finite becomes invalid.
 DisplacementField plain_vectors(std::vector<double> const& x, std::vector<double> const& y,
                                 std::vector<double> const& u, std::vector<double> const& v);
 

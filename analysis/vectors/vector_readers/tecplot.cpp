@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/vectors/vector_readers/vector_readers.h"
+
+namespace gladstone::detail {
+namespace {
+
+/// DaVis writes vectors that were taken out or masked as zeros.
+void mask_zeros(VectorFile& file, std::string const& path) {
+  std::size_t masked = 0;
+  for (std::size_t i = 0; i < file.field.size(); ++i) {
+    if (!(file.field.displacement_px[i] == Vec2d{})) continue;
+    file.field.status[i] = VectorStatus::masked;
+    ++masked;
+  }
+  if (masked == 0) return;
+  file.warnings.push_back(fmt::format(
+      "{}: {} of {} vectors are exactly zero and are taken for masked, as DaVis writes them; export the column isValid "
+      "to say which are",
+      path, masked, file.field.size()));
+}
+
+}  // namespace
+
+bool is_tecplot(TextTable const& table) { return table.tecplot; }
+
+VectorFile read_tecplot(TextTable const& table) {
+  auto const choice = table.find({"chc"});
+  auto const valid = table.find({"isvalid", "valid", "is valid"});
+  VectorFile file = read_quantities(table, choice ? "Insight" : table.find_quantity({"vx"}) ? "DaVis" : "Tecplot");
+  VectorConventions upwards;
+  upwards.y_up = upwards.v_up = true;
+  upwards.mirror = VectorConventions::Mirror::image;
+  file.conventions = upwards;
+  add_offsets(file, {-0.5, -1.0, -1.5});
+  for (std::size_t i = 0; i < file.field.size(); ++i) {
+    VectorStatus& status = file.field.status[i];
+    if (choice) {
+      double const code = table.values[*choice][i];
+      if (!(code >= 1.0)) status = VectorStatus::invalid;
+      if (code > 1.0 && status == VectorStatus::valid) status = VectorStatus::replaced;
+    } else if (valid && !(table.values[*valid][i] > 0.0)) {
+      status = VectorStatus::masked;
+    }
+  }
+  if (!choice && !valid) mask_zeros(file, table.path);
+  return file;
+}
+
+}  // namespace gladstone::detail
