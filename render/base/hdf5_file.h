@@ -35,6 +35,9 @@ class Hdf5Reader {
   std::vector<std::string> dataset_names() const;
   /// Paths of all datasets of numbers, in every group, in alphabetical order: "/dots/flux".
   std::vector<std::string> number_datasets() const;
+  /// Paths of all datasets of numbers that can be reached, each once: in every group, then through soft and external
+  /// links, "data/fields/rho".
+  std::vector<std::string> linked_number_datasets() const;
   std::vector<std::size_t> shape(std::string const& dataset) const;
   /// Bits of precision of the stored numbers: 24 for float, 53 for double, an integer's width.
   int significant_bits(std::string const& dataset) const;
@@ -43,9 +46,12 @@ class Hdf5Reader {
   std::vector<std::int64_t> read_integers(std::string const& dataset) const;
   /// Rows [first, first + count) of the leading axis, converted to double; `out` has exactly their size.
   void read_rows(std::string const& dataset, std::size_t first, std::size_t count, std::span<double> out) const;
-  /// Rows [first, first + count) of the second axis of one element of the leading axis.
-  void read_rows_of(std::string const& dataset, std::size_t element, std::size_t first, std::size_t count,
-                    std::span<double> out) const;
+  /// A box of a dataset, converted to double; `out` has exactly its size, the last axis fastest.
+  void read_box(std::string const& dataset, std::vector<std::size_t> const& start, std::vector<std::size_t> const& size,
+                std::span<double> out) const;
+  /// Datasets of the coordinates that netCDF-4 attaches to the axes of a dataset (dimension scales), "" where there is
+  /// none. HDF5 Dimension Scale Specification, attribute DIMENSION_LIST.
+  std::vector<std::string> dimension_scales(std::string const& dataset) const;
   /// A text or numeric attribute of the root as text; empty where there is none.
   std::string attribute(std::string const& name) const;
   /// The same of a dataset of numbers.

@@ -1,7 +1,9 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <set>
 
 #include "render/base/available_memory.h"
 #include "render/base/contracts.h"
@@ -51,6 +53,52 @@ std::vector<std::string> all_datasets(hid_t file) {
   return names;
 }
 
+/// Every link of a group and of those below it; links into other groups are not followed.
+herr_t collect_link(hid_t, char const* name, H5L_info_t const* info, void* names) {
+  bool const direct = info->type == H5L_TYPE_HARD;
+  auto& lists = *static_cast<std::array<std::vector<std::string>, 2>*>(names);
+  lists[direct ? 0 : 1].emplace_back(name);
+  return 0;
+}
+
+/// The names of HDF5's registered filters (portal.hdfgroup.org, "Registered Filter Plugins") that are met most.
+std::string filter_name(H5Z_filter_t filter, std::string const& written) {
+  struct Known {
+    int filter;
+    char const* name;
+  };
+  constexpr std::array known{Known{H5Z_FILTER_SZIP, "szip"}, Known{305, "lzo"},          Known{307, "bzip2"},
+                             Known{32000, "lzf"},            Known{32001, "blosc"},      Known{32004, "lz4"},
+                             Known{32008, "bitshuffle"},     Known{32013, "zfp"},        Known{32015, "zstd"},
+                             Known{32017, "sz"},             Known{32018, "fcidecomp"},  Known{32024, "sz3"},
+                             Known{32026, "blosc2"}};
+  auto const* const found =
+      std::find_if(known.begin(), known.end(), [filter](Known const& one) { return one.filter == filter; });
+  std::string const name = found != known.end() ? found->name : written.substr(0, written.find(' '));
+  return name.empty() ? "number " + std::to_string(filter) : name + " (number " + std::to_string(filter) + ')';
+}
+
+/// Reports why a dataset could not be read: filters that are not installed, else damage.
+[[noreturn]] void throw_unreadable(hid_t dataset, std::string const& path, std::string const& name) {
+  std::string missing;
+  Id const created(H5Dget_create_plist(dataset), H5Pclose);
+  for (int i = 0; i < H5Pget_nfilters(created); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t count = 0;
+    std::array<char, 64> written{};
+    H5Z_filter_t const filter = H5Pget_filter2(created, static_cast<unsigned>(i), &flags, &count, nullptr,
+                                               written.size() - 1, written.data(), &config);
+    if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+    missing += (missing.empty() ? "" : ", ") + filter_name(filter, written.data());
+  }
+  if (missing.empty()) {
+    throw DataError(path, "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
+  }
+  throw DataError(path, "dataset \"" + name + "\" is compressed by a filter that is not installed here: " + missing +
+                            "; rewrite it where the filter is, h5repack -f GZIP=4 " + path +
+                            " repacked.h5, or name the folder of the filter's plugin in HDF5_PLUGIN_PATH");
+}
+
 }  // namespace
 
 struct Hdf5Reader::Handle {
@@ -86,7 +134,7 @@ std::vector<Value> read_whole(hid_t dataset, hid_t type, std::string const& path
   require_memory(path, what, std::accumulate(shape.begin(), shape.end(), 1.0 * sizeof(Value), std::multiplies<>()));
   std::vector<Value> values(product(shape));
   if (!values.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    throw DataError(path, "dataset \"" + name + "\" cannot be read (the file is damaged or cut short)");
+    throw_unreadable(dataset, path, name);
   }
   return values;
 }
@@ -149,7 +197,7 @@ void Hdf5Reader::Handle::read(std::string const& path, std::string const& datase
   H5Sselect_hyperslab(on_disk, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr);
   Id const in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   if (H5Dread(rows, H5T_NATIVE_DOUBLE, in_memory, on_disk, H5P_DEFAULT, out.data()) < 0) {
-    throw DataError(path, "dataset \"" + dataset + "\" cannot be read (the file is damaged or cut short)");
+    throw_unreadable(rows, path, dataset);
   }
 }
 
@@ -206,6 +254,57 @@ std::vector<std::string> Hdf5Reader::number_datasets() const {
   return names;
 }
 
+std::vector<std::string> Hdf5Reader::linked_number_datasets() const {
+  Lock const lock(library_lock());
+  std::array<std::vector<std::string>, 2> links;
+  H5Lvisit(handle_->file, H5_INDEX_NAME, H5_ITER_INC, collect_link, &links);
+  std::vector<std::string> names;
+  std::set<std::pair<unsigned long, haddr_t>> seen;
+  for (auto const& list : links) {
+    for (std::string const& name : list) {
+      Id const object(H5Oopen(handle_->file, name.c_str(), H5P_DEFAULT), H5Oclose);
+      H5O_info_t info;
+      bool const dataset = object.valid() && H5Iget_type(object) == H5I_DATASET && H5Oget_info(object, &info) >= 0;
+      if (!dataset || !seen.emplace(info.fileno, info.addr).second) continue;
+      Id const type(H5Dget_type(object), H5Tclose);
+      H5T_class_t const kind = H5Tget_class(type);
+      if (kind == H5T_INTEGER || kind == H5T_FLOAT) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> Hdf5Reader::dimension_scales(std::string const& dataset) const {
+  Lock const lock(library_lock());
+  Id const opened = handle_->open(path_, dataset);
+  std::vector<std::string> scales(shape_of(opened).size());
+  constexpr char const* name = "DIMENSION_LIST";
+  if (H5Aexists(opened, name) <= 0) return scales;
+  Id const attribute(H5Aopen(opened, name, H5P_DEFAULT), H5Aclose);
+  Id const stored(H5Aget_type(attribute), H5Tclose);
+  Id const space(H5Aget_space(attribute), H5Sclose);
+  bool const fits = H5Tget_class(stored) == H5T_VLEN &&
+                    H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(scales.size());
+  if (!fits) return scales;
+  Id const element(H5Tget_super(stored), H5Tclose);
+  if (H5Tequal(element, H5T_STD_REF_OBJ) <= 0) return scales;
+  Id const type(H5Tvlen_create(H5T_STD_REF_OBJ), H5Tclose);
+  std::vector<hvl_t> lists(scales.size());
+  if (H5Aread(attribute, type, lists.data()) < 0) return scales;
+  for (std::size_t axis = 0; axis < scales.size(); ++axis) {
+    if (lists[axis].len == 0) continue;
+    Id const scale(H5Rdereference2(opened, H5P_DEFAULT, H5R_OBJECT, lists[axis].p), H5Oclose);
+    if (!scale.valid() || H5Iget_type(scale) != H5I_DATASET) continue;
+    ssize_t const size = H5Iget_name(scale, nullptr, 0);
+    if (size <= 0) continue;
+    scales[axis].resize(static_cast<std::size_t>(size) + 1);
+    H5Iget_name(scale, scales[axis].data(), scales[axis].size());
+    scales[axis].pop_back();
+  }
+  H5Dvlen_reclaim(type, space, H5P_DEFAULT, lists.data());
+  return scales;
+}
+
 std::vector<std::size_t> Hdf5Reader::shape(std::string const& dataset) const {
   Lock const lock(library_lock());
   return shape_of(handle_->open(path_, dataset));
@@ -245,17 +344,13 @@ void Hdf5Reader::read_rows(std::string const& dataset, std::size_t first, std::s
   handle_->read(path_, dataset, start, size, out);
 }
 
-void Hdf5Reader::read_rows_of(std::string const& dataset, std::size_t element, std::size_t first, std::size_t count,
-                              std::span<double> out) const {
+void Hdf5Reader::read_box(std::string const& dataset, std::vector<std::size_t> const& start,
+                          std::vector<std::size_t> const& size, std::span<double> out) const {
   Lock const lock(library_lock());
   auto const shape = shape_of(handle_->open_rows(path_, dataset));
-  GLADSTONE_EXPECTS(shape.size() > 1 && element < shape[0] && first + count <= shape[1]);
-  std::vector<hsize_t> start(shape.size(), 0), size(shape.begin(), shape.end());
-  start[0] = element;
-  size[0] = 1;
-  start[1] = first;
-  size[1] = count;
-  handle_->read(path_, dataset, start, size, out);
+  GLADSTONE_EXPECTS(start.size() == shape.size() && size.size() == shape.size());
+  for (std::size_t axis = 0; axis < shape.size(); ++axis) GLADSTONE_EXPECTS(start[axis] + size[axis] <= shape[axis]);
+  handle_->read(path_, dataset, {start.begin(), start.end()}, {size.begin(), size.end()}, out);
 }
 
 namespace {
@@ -279,7 +374,9 @@ std::string attribute_text(hid_t object, std::string const& name) {
   if (kind == H5T_STRING) {
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(opened, type, value.data()) < 0) return {};
-    return value.substr(0, value.find('\0'));
+    value = value.substr(0, value.find('\0'));
+    if (H5Tget_strpad(type) == H5T_STR_SPACEPAD) value.erase(value.find_last_not_of(' ') + 1);
+    return value;
   }
   if (kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_NONE) {
     std::uint64_t value = 0;

@@ -13,6 +13,10 @@
 namespace gladstone {
 namespace {
 
+std::unique_ptr<FieldSource> open_file(FieldSetup const& field) {
+  return open_field(field.file, field.dataset, 1, field.axes);
+}
+
 /// The world grid of a file's field; checks that it fits the setup.
 RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   RegularGrid grid = source.grid();
@@ -29,6 +33,9 @@ RegularGrid world_grid(FieldSetup const& field, FieldSource const& source) {
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
     throw DataError(field.file, fmt::format("{} has {} x {} nodes (at least 2 x 2 are needed)", source.name(),
                                             grid.nodes[0], grid.nodes[1]));
+  }
+  if (!field.spacing && !source.units().unknown.empty()) {
+    throw DataError(field.file, source.units().unknown + "; give medium.field.spacing_mm");
   }
   grid.spacing = field.spacing ? *field.spacing : grid.spacing * source.units().metres();
   grid.periodic = field.periodic;
@@ -66,6 +73,41 @@ std::string lost_digits(FieldSetup const& field, FieldSource const& source, doub
       source.name(), field.file, bits, step, 100 * step / std::max(high - low, step));
 }
 
+/// A question where the values are plausible in another quantity or unit: they differ from the ambient by more than a
+/// factor of a hundred throughout, which no gas flow at one pressure does, or are densities where indices would be.
+/// @param low, high  smallest and largest refractivity
+std::string unlikely_range(MediumSetup const& setup, std::string const& name, double low, double high) {
+  FieldSetup const& field = setup.field;
+  double const ambient = setup.ambient_refractivity();
+  if (!(ambient > 0) || low < 0) return {};
+  constexpr double factor = 100;
+  bool const density = field.quantity == FieldQuantity::density;
+  double const unit = density ? setup.gladstone_dale : 1.0;  // of the values, as refractivity
+  std::string likely;
+  // a gas has 1e-5 < n - 1 < 2e-3, and its density as read is then 1 within 0.2 %
+  bool const index = density && field.scale == 1.0 && low > (1 + 1e-5) * unit && high < (1 + 2e-3) * unit;
+  if (index) {
+    likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
+  } else if (high < ambient / factor) {
+    auto const near = [&](double ratio) { return high * ratio > ambient / 10 && low * ratio < ambient * 10; };
+    if (density && near(1 / unit)) {
+      likely = "as refractivities n - 1 they would fit; if they are, set quantity = \"refractivity\"";
+    } else if (near(1e3)) {
+      likely = "in g/cm^3 they would fit; if they are, set scale = 1000";
+    }
+  } else if (low > factor * ambient) {
+    bool const as_density = !density && low * setup.gladstone_dale < 10 * ambient;
+    likely = as_density ? "as densities in kg/m^3 they would fit; if they are, set quantity = \"density\"" : "";
+  } else {
+    return {};
+  }
+  if (likely.empty()) likely = "check medium.field.quantity, scale and medium.ambient_density_kg_m3";
+  return fmt::format("medium.field.quantity: the values of {} in {} reach from {:.6g} to {:.6g}{}, where the ambient has "
+                     "{:.4g}{}; {}",
+                     name, field.file, low / unit, high / unit, density ? " kg/m^3" : " (n - 1)", ambient / unit,
+                     density ? " kg/m^3" : "", likely);
+}
+
 double finest_cell(FieldSetup const& field, RegularGrid const& grid) {
   double const across = std::min(grid.spacing.x, grid.spacing.y);
   return field.extrude ? across : std::min(across, grid.spacing.z);
@@ -92,6 +134,13 @@ BuiltMedium build_grid(MediumSetup const& setup, RegularGrid const& grid, FieldS
                                             source.name(), 1 + volume->lowest(), 1 + volume->highest()));
   }
   BuiltMedium built;
+  for (std::string const& note : source.notes()) {
+    built.warnings.push_back(fmt::format("medium.field.file: {}: {}", field.file, note));
+  }
+  std::string odd = unlikely_range(setup, source.name(), volume->lowest(), volume->highest());
+  if (!odd.empty()) built.warnings.push_back(std::move(odd));
+  built.lowest = volume->lowest();
+  built.highest = volume->highest();
   std::string lost = lost_digits(field, source, volume->lowest(), volume->highest());
   if (!lost.empty()) built.warnings.push_back(std::move(lost));
   std::string assumed = assumed_lengths(field, source, grid);
@@ -133,7 +182,7 @@ BuiltMedium build_without_grid(MediumSetup const& setup) {
 
 std::size_t medium_bytes_needed(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return 0;
-  auto const source = open_field(setup.field.file, setup.field.dataset);
+  auto const source = open_file(setup.field);
   RegularGrid const& grid = source->grid();
   return grid.nodes[2] == 1 ? RefractiveIndexVolume<double>::bytes_needed(grid)
                             : RefractiveIndexVolume<float>::bytes_needed(grid);
@@ -141,7 +190,7 @@ std::size_t medium_bytes_needed(MediumSetup const& setup) {
 
 Bounds<double> file_bounds(MediumSetup const& setup) {
   FieldSetup const& field = setup.field;
-  RegularGrid const grid = world_grid(field, *open_field(field.file, field.dataset));
+  RegularGrid const grid = world_grid(field, *open_file(field));
   Bounds<double> box = grid_bounds(grid);
   if (field.extrude) {
     box.low.z = field.center.z - setup.thickness / 2;
@@ -152,19 +201,19 @@ Bounds<double> file_bounds(MediumSetup const& setup) {
 
 double steps_across(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return setup.thickness / build_without_grid(setup).coarsest_step;
-  RegularGrid const grid = world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset));
+  RegularGrid const grid = world_grid(setup.field, *open_file(setup.field));
   double const depth = setup.field.extrude ? setup.thickness : grid.spacing.z * grid.nodes[2];
   return depth / (cells_a_step(setup) * finest_cell(setup.field, grid));
 }
 
 double finest_length(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return build_without_grid(setup).finest;
-  return finest_cell(setup.field, world_grid(setup.field, *open_field(setup.field.file, setup.field.dataset)));
+  return finest_cell(setup.field, world_grid(setup.field, *open_file(setup.field)));
 }
 
 BuiltMedium build_medium(MediumSetup const& setup) {
   if (setup.field.kind != FieldKind::file) return build_without_grid(setup);
-  auto const source = open_field(setup.field.file, setup.field.dataset);
+  auto const source = open_file(setup.field);
   RegularGrid const grid = world_grid(setup.field, *source);
   return setup.field.extrude ? build_grid<double, 2>(setup, grid, *source) : build_grid<float, 3>(setup, grid, *source);
 }

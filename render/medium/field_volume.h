@@ -20,6 +20,7 @@ struct BuiltMedium {
   double coarsest_step = 0;           ///< largest step that is ever sensible: see plan_step [m]
   double steepest = 0;                ///< upper bound of |grad n|, where known [1/m]
   RegularGrid grid;                   ///< of a file's field
+  double lowest = 0, highest = 0;     ///< n - 1 at the nodes of a file's field [1]
   std::vector<std::string> warnings;  ///< of what the file's numbers cannot give
 };
 

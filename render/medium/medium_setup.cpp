@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "render/base/contracts.h"
+#include "render/base/fields/field_axes.h"
 #include "render/base/setup_table.h"
 #include "render/base/units.h"
 #include "render/medium/gladstone_dale.h"
@@ -35,6 +36,10 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
     table.problem("file", "there is no file " + field.file + "; relative names start at the setup file's folder");
   }
   field.dataset = table.text("dataset", "");
+  field.axes = table.text("axes", "");
+  if (!field.axes.empty() && !is_axis_order(field.axes)) {
+    table.problem("axes", "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
+  }
   field.quantity = table.choice("quantity", field.quantity,
                                 {{"density", FieldQuantity::density},
                                  {"refractive_index", FieldQuantity::refractive_index},

@@ -29,6 +29,7 @@ struct FieldSetup {
   // file
   std::string file;
   std::string dataset;
+  std::string axes;   ///< world axes in the file's order, the slowest first ("zxy"); empty: as the file has them
   std::string where;  ///< of the key `file`, for messages
   FieldQuantity quantity = FieldQuantity::density;
   double scale = 1.0;            ///< file value times scale = kg/m^3, or a pure number

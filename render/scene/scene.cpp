@@ -37,7 +37,7 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
   if (field.kind != FieldKind::file || field.quantity != FieldQuantity::density) return;
   double const lowest = lowest_density(setup, medium);
   if (lowest >= 0) return;
-  auto const source = open_field(field.file, field.dataset);
+  auto const source = open_field(field.file, field.dataset, 1, field.axes);
   RegularGrid const& grid = source->grid();
   auto const width = static_cast<std::size_t>(grid.nodes[0]);
   std::vector<double> plane(width * static_cast<std::size_t>(grid.nodes[1]));

@@ -173,7 +173,7 @@ TEST_F(Hdf5, PartsOfRowsAreReadAlone) {
   Hdf5Reader const reader(in_folder("a.h5"));
   std::vector<double> const all = ramp(12);
   std::vector<double> part(2);
-  reader.read_rows_of("/group/deeper/ramp", 2, 1, 2, part);
+  reader.read_box("/group/deeper/ramp", {2, 1}, {1, 2}, part);
   EXPECT_THAT(part, ElementsAre(all[7], all[8]));
 }
 

@@ -6,9 +6,11 @@
 #include <filesystem>
 
 #include "render/base/error.h"
-#include "render/base/fields/readers/jhtdb.h"
+#include "render/base/fields/oriented_field.h"
+#include "render/base/fields/readers/hdf5.h"
 #include "render/base/fields/readers/nrrd.h"
-#include "render/base/fields/readers/vti.h"
+#include "render/base/fields/readers/vtk.h"
+#include "render/base/fields/resampled_field.h"
 #include "render/base/input_file.h"
 
 namespace gladstone {
@@ -16,25 +18,32 @@ namespace {
 
 struct FieldFormat {
   char const* extension;
-  std::unique_ptr<FieldSource> (*open)(std::string const& path, std::string const& dataset, int values);
+  std::unique_ptr<CheckedSource> (*open)(std::string const& path, FieldWish const& wish);
 };
 
 /// One row per format: its reader and how its files are called.
 constexpr std::array field_formats{
-    FieldFormat{".h5", open_jhtdb},  FieldFormat{".hdf5", open_jhtdb}, FieldFormat{".vti", open_vti},
-    FieldFormat{".nrrd", open_nrrd}, FieldFormat{".nhdr", open_nrrd},
+    FieldFormat{".h5", open_hdf5},       FieldFormat{".hdf5", open_hdf5},     FieldFormat{".he5", open_hdf5},
+    FieldFormat{".nc", open_hdf5},       FieldFormat{".mat", open_hdf5},      FieldFormat{".vti", open_vtk_xml},
+    FieldFormat{".vtr", open_vtk_xml},   FieldFormat{".vtk", open_vtk_legacy}, FieldFormat{".nrrd", open_nrrd},
+    FieldFormat{".nhdr", open_nrrd},
 };
 
 }  // namespace
 
-std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values) {
+std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values,
+                                        std::string const& axes) {
   require_input_file(path, "a field file");
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::string known;
   for (auto const& format : field_formats) {
-    if (extension == format.extension) return format.open(path, dataset, values);
+    if (extension == format.extension) {
+      auto oriented = std::make_unique<OrientedField>(format.open(path, {dataset, values, axes}));
+      if (oriented->uniform()) return oriented;
+      return std::make_unique<ResampledField>(std::move(oriented));
+    }
     known += (known.empty() ? "" : ", ") + std::string(format.extension);
   }
   throw DataError(path, "is of no format that is read here; known are " + known);

@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "render/base/fields/field_axes.h"
 #include "render/base/fields/field_units.h"
 #include "render/base/regular_grid.h"
 
 namespace gladstone {
 
-/// A gridded field in a file, before it is read: its grid is known, its values are read slab by slab, so that a volume
-/// is never held twice.
+/// A gridded field in a file, before its values are read: x, y and z ascend, x is fastest, nodes are uniform. Values are
+/// read slab by slab; only where the file has its axes in another order, or not uniform, are they all held in memory.
 class FieldSource {
  public:
   virtual ~FieldSource() = default;
@@ -21,6 +22,10 @@ class FieldSource {
   /// Nodes, spacing and origin as the file has them, in units().length; the y index runs upwards.
   virtual RegularGrid const& grid() const = 0;
   virtual FieldUnits const& units() const = 0;
+  /// Which axis of the file is taken for which.
+  virtual FieldReading const& reading() const = 0;
+  /// Warnings: what had to be assumed or ignored, and what resampling changes; may read the whole field.
+  virtual std::vector<std::string> notes() = 0;
   /// What the numbers are called in the file ("Density_0001"), for messages.
   virtual std::string const& name() const = 0;
   /// Numbers at every node: 1 of a scalar field, 3 of a velocity.
@@ -42,10 +47,12 @@ class FieldSource {
   int values_;
 };
 
-/// Opens a field file: one row per format in field_file.cpp (.h5 JHTDB cut-out, .vti, .nrrd, .nhdr).
+/// Opens a field file: one row per format in field_file.cpp (HDF5, VTK, NRRD).
 /// @param dataset name inside the file; empty: the only suitable one
-/// @param values that every node is to have: 1, or 3 of a velocity
+/// @param values  numbers at every node: 1, or 3 of a velocity
+/// @param axes    world axes in the file's order, the slowest first ("zxy"); empty: as the file has them
 /// @throws DataError naming the file, the dataset and what to do
-std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values = 1);
+std::unique_ptr<FieldSource> open_field(std::string const& path, std::string const& dataset, int values = 1,
+                                        std::string const& axes = "");
 
 }  // namespace gladstone

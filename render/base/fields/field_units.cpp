@@ -42,8 +42,22 @@ constexpr std::array lengths{
 
 }  // namespace
 
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view blanks(" \t\r\n\v\f\0", 7);
+  std::size_t const first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
+}
+
+std::optional<double> unit_ratio(std::string_view from, std::string_view to) {
+  if (from == to) return 1.0;
+  double const size = length_unit(from), other = length_unit(to);
+  if (!(size > 0 && other > 0)) return std::nullopt;
+  return size / other;
+}
+
 double length_unit(std::string_view name) {
-  std::string word(name);
+  std::string word = trimmed(name);
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (bool const plural : {false, true}) {

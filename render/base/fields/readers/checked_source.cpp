@@ -30,18 +30,22 @@ std::string share(std::size_t count, std::size_t all) {
 
 }  // namespace
 
-void CheckedSource::read_planes(int first_plane, int count, std::span<double> out) {
-  std::size_t const plane = row_values() * static_cast<std::size_t>(grid_.nodes[1]);
-  GLADSTONE_EXPECTS(first_plane >= 0 && count >= 0 && count <= grid_.nodes[2] - first_plane);
-  GLADSTONE_EXPECTS(out.size() == plane * static_cast<std::size_t>(count));
-  throw_if_interrupted();
-  read_raw_planes(first_plane, count, out);
-  refuse_bad_values(out);
+void CheckedSource::describe(std::array<int, 3> const& nodes, std::size_t rank, std::string by) {
+  nodes_ = nodes;
+  reading_.axes.clear();
+  reading_.shape.clear();
+  for (std::size_t axis = rank; axis-- > 0;) {
+    reading_.axes += axes_[axis].world;
+    reading_.shape.push_back(static_cast<std::size_t>(nodes[axis]));
+    if (nodes[axis] > 1 && axes_[axis].step < 0) reading_.turned_round += axes_[axis].world;
+  }
+  std::sort(reading_.turned_round.begin(), reading_.turned_round.end());
+  reading_.by = std::move(by);
 }
 
 void CheckedSource::read_rows(int plane, int first_row, int count, std::span<double> out) {
-  GLADSTONE_EXPECTS(plane >= 0 && plane < grid_.nodes[2]);
-  GLADSTONE_EXPECTS(first_row >= 0 && count >= 0 && count <= grid_.nodes[1] - first_row);
+  GLADSTONE_EXPECTS(plane >= 0 && plane < nodes_[2]);
+  GLADSTONE_EXPECTS(first_row >= 0 && count >= 0 && count <= nodes_[1] - first_row);
   GLADSTONE_EXPECTS(out.size() == row_values() * static_cast<std::size_t>(count));
   throw_if_interrupted();
   read_raw_rows(plane, first_row, count, out);
@@ -50,14 +54,15 @@ void CheckedSource::read_rows(int plane, int first_row, int count, std::span<dou
 
 void CheckedSource::refuse_bad_values(std::span<double const> read) {
   if (std::none_of(read.begin(), read.end(), is_bad)) return;
-  std::size_t const width = row_values(), all = grid_.size() * static_cast<std::size_t>(values());
-  int const rows = std::clamp(static_cast<int>(values_at_once / width), 1, grid_.nodes[1]);
+  std::size_t const width = row_values();
+  std::size_t const all = row_values() * static_cast<std::size_t>(nodes_[1]) * static_cast<std::size_t>(nodes_[2]);
+  int const rows = std::clamp(static_cast<int>(values_at_once / width), 1, nodes_[1]);
   std::vector<double> values;
   std::size_t holes = 0, not_finite = 0;
-  for (int z = 0; z < grid_.nodes[2]; ++z) {
-    for (int row = 0; row < grid_.nodes[1]; row += rows) {
+  for (int z = 0; z < nodes_[2]; ++z) {
+    for (int row = 0; row < nodes_[1]; row += rows) {
       throw_if_interrupted();
-      int const count = std::min(rows, grid_.nodes[1] - row);
+      int const count = std::min(rows, nodes_[1] - row);
       values.resize(width * static_cast<std::size_t>(count));
       read_raw_rows(z, row, count, values);
       holes += static_cast<std::size_t>(std::count_if(values.begin(), values.end(), is_hole));

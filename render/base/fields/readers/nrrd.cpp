@@ -1,11 +1,14 @@
 #include "render/base/fields/readers/nrrd.h"
 
+#include <bzlib.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -14,18 +17,25 @@
 #include "render/base/fields/readers/nrrd_header.h"
 #include "render/base/input_file.h"
 #include "render/base/interrupt.h"
+#include "render/base/text_file.h"
 
 namespace gladstone {
 namespace {
 
-/// The data section as a stream of bytes: raw through pread, gzip through zlib.
+using Encoding = NrrdHeader::Encoding;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+
+/// The data section as a stream of bytes: raw through pread, gzip through zlib, the other encodings decoded into memory
+/// when the first byte is asked for; text becomes doubles.
 class NrrdBytes {
  public:
   explicit NrrdBytes(NrrdHeader const& header) : header_(header), file_(header.data_path, "the data of a field") {
     try {
       offset_ = header_.data_offset;
       skip_lines();
-      header_.encoding == NrrdHeader::Encoding::raw ? prepare_raw() : prepare_gzip();
+      if (header_.encoding == Encoding::raw) prepare_raw();
+      if (header_.encoding == Encoding::gzip) prepare_gzip();
     } catch (...) {
       close();
       throw;
@@ -37,9 +47,14 @@ class NrrdBytes {
 
   /// Bytes [first, first + size) of the field.
   void read(std::size_t first, void* out, std::size_t size) {
-    if (header_.encoding == NrrdHeader::Encoding::raw) {
+    if (header_.encoding == Encoding::raw) {
       std::size_t const got = file_.read(offset_ + first, out, size);
       if (got < size) cut_short(first + got);
+      return;
+    }
+    if (header_.encoding != Encoding::gzip) {
+      if (decoded_.empty()) decode();
+      std::memcpy(out, decoded_.data() + first, size);
       return;
     }
     if (first < position_) {
@@ -76,6 +91,145 @@ class NrrdBytes {
     std::size_t const there = size > offset_ ? size - offset_ : 0;
     if (there < needed) cut_short(there);
     if (header_.byte_skip == -1) offset_ = size - needed;
+    bool const placed = header_.byte_skip != 0 || header_.line_skip != 0;  // where the data begin is certain
+    if (there > needed && !placed && !only_line_ends(offset_ + needed, there - needed)) too_long(there);
+  }
+
+  /// Whether there is nothing in a part of the file but the line end that an editor has added.
+  bool only_line_ends(std::size_t offset, std::size_t size) const {
+    std::array<char, 4> rest{};
+    if (size > rest.size()) return false;
+    std::size_t const got = file_.read(offset, rest.data(), size);
+    return std::all_of(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(got),
+                       [](char c) { return c == '\n' || c == '\r'; });
+  }
+
+  /// The data section as it is stored, without the bytes to be skipped.
+  std::string stored() const {
+    std::size_t const size = file_.size() > offset_ ? file_.size() - offset_ : 0;
+    require_memory(header_.data_path, "its data", static_cast<double>(size) + static_cast<double>(decoded_bytes()));
+    std::string bytes(size, '\0');
+    bytes.resize(file_.read(offset_, bytes.data(), size));
+    if (header_.encoding != Encoding::bzip2) {
+      bytes.erase(0, std::min(bytes.size(), static_cast<std::size_t>(header_.byte_skip)));
+    }
+    return bytes;
+  }
+
+  std::size_t values() const { return header_.data_bytes() / header_.value_bytes(); }
+  std::size_t decoded_bytes() const {
+    return header_.encoding == Encoding::ascii ? values() * sizeof(double) : header_.data_bytes();
+  }
+
+  void decode() {
+    std::string const bytes = stored();
+    // what the header says may be far from what the file holds: a digit or two a byte, 1 MB a bit at the very best
+    double const most = header_.encoding == Encoding::bzip2 ? 1e6 : 1;
+    if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) cut_short(0);
+    decoded_.resize(decoded_bytes());
+    try {
+      if (header_.encoding == Encoding::ascii) decode_text(bytes);
+      if (header_.encoding == Encoding::hex) decode_hex(bytes);
+      if (header_.encoding == Encoding::bzip2) decode_bzip2(bytes);
+    } catch (...) {
+      decoded_.clear();
+      throw;
+    }
+  }
+
+  void decode_text(std::string const& text) {
+    char const* at = text.data();
+    char const* const end = at + text.size();
+    auto const skip = [&] {
+      while (at != end && (is_blank(*at) || *at == ',')) ++at;
+    };
+    std::size_t const count = values();
+    for (std::size_t i = 0; i < count; ++i) {
+      skip();
+      double value = 0;
+      if (at != end && *at == '+') ++at;
+      auto const [rest, error] = std::from_chars(at, end, value);
+      if (at == end) too_few_numbers(i);
+      if (error == std::errc::invalid_argument) {
+        throw DataError(header_.data_path, fmt::format("is damaged: number {} of its text is \"{}\"; copy it again",
+                                                       i + 1, excerpt(std::string(at, std::find_if(at, end, is_blank)))));
+      }
+      std::memcpy(decoded_.data() + i * sizeof value, &value, sizeof value);
+      at = rest;
+    }
+    skip();
+    if (at != end) {
+      throw DataError(header_.data_path, fmt::format("holds more than the {} numbers of its sizes {}; correct the sizes",
+                                                     count, header_.sizes_text()));
+    }
+  }
+
+  [[noreturn]] void too_few_numbers(std::size_t there) const {
+    throw DataError(header_.data_path, fmt::format("is cut short: {} numbers are there and {} are needed (sizes {}); "
+                                                   "copy it again",
+                                                   there, values(), header_.sizes_text()));
+  }
+
+  void decode_hex(std::string const& text) {
+    std::size_t digits = 0;
+    for (char const c : text) {
+      if (is_blank(c)) continue;
+      int digit = 0;
+      if (std::from_chars(&c, &c + 1, digit, 16).ec != std::errc()) {
+        throw DataError(header_.data_path, fmt::format("is damaged: digit {} of its hex is no digit; copy it again",
+                                                       digits + 1));
+      }
+      if (digits / 2 < decoded_.size()) {
+        char& byte = decoded_[digits / 2];
+        byte = static_cast<char>(digits % 2 == 0 ? digit << 4 : static_cast<unsigned char>(byte) | digit);
+      }
+      ++digits;
+    }
+    if (digits / 2 < decoded_.size()) cut_short(digits / 2);
+    if (digits > 2 * decoded_.size()) too_long(digits / 2);
+  }
+
+  void decode_bzip2(std::string const& packed) {
+    bz_stream stream{};
+    if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) {
+      throw MemoryError(header_.data_path, "cannot be decompressed (out of memory)");
+    }
+    auto const close = [](bz_stream* opened) { BZ2_bzDecompressEnd(opened); };
+    std::unique_ptr<bz_stream, decltype(close)> const guard(&stream, close);
+    constexpr std::size_t most = 64 * 1024 * 1024;
+    std::vector<char> skipped(static_cast<std::size_t>(std::min<long long>(header_.byte_skip, 1 << 20)));
+    std::size_t to_skip = static_cast<std::size_t>(header_.byte_skip), in = 0, out = 0;
+    bool ended = false;
+    std::array<char, 16> beyond{};
+    std::size_t surplus = 0;
+    while (!ended) {
+      throw_if_interrupted();
+      if (stream.avail_in == 0) {
+        stream.next_in = const_cast<char*>(packed.data() + in);  // bzlib does not write there
+        stream.avail_in = static_cast<unsigned>(std::min(most, packed.size() - in));
+        in += stream.avail_in;
+      }
+      bool const skipping = to_skip > 0, full = !skipping && out == decoded_.size();
+      char* const to = skipping ? skipped.data() : full ? beyond.data() : decoded_.data() + out;
+      std::size_t const room = skipping ? std::min(skipped.size(), to_skip)
+                               : full   ? beyond.size()
+                                        : std::min(most, decoded_.size() - out);
+      stream.next_out = to;
+      stream.avail_out = static_cast<unsigned>(room);
+      unsigned const had = stream.avail_in;
+      int const result = BZ2_bzDecompress(&stream);
+      if (result != BZ_OK && result != BZ_STREAM_END) {
+        throw DataError(header_.data_path, "is damaged (bzip2 cannot decompress it); copy it again");
+      }
+      std::size_t const got = room - stream.avail_out;
+      if (skipping) to_skip -= got;
+      if (full) surplus += got;
+      if (!skipping && !full) out += got;
+      if (surplus > 0) too_long(decoded_.size() + surplus);
+      ended = result == BZ_STREAM_END;
+      if (!ended && got == 0 && stream.avail_in == had && in == packed.size()) cut_short(out);
+    }
+    if (out < decoded_.size()) cut_short(out);
   }
 
   void prepare_gzip() {
@@ -126,8 +280,12 @@ class NrrdBytes {
 
   /// Beyond the last value zlib compares its checksum.
   void check_end() {
-    char beyond = 0;
-    if (gzread(stream_, &beyond, 1) < 0) damaged();
+    std::array<char, 4096> beyond{};
+    int const got = gzread(stream_, beyond.data(), static_cast<unsigned>(beyond.size()));
+    if (got < 0) damaged();
+    auto const* const end = beyond.begin() + std::max(got, 0);
+    bool const line_end = got <= 4 && std::all_of(beyond.begin(), end, [](char c) { return c == '\n' || c == '\r'; });
+    if (got > 0 && header_.byte_skip == 0 && !line_end) too_long(header_.data_bytes() + static_cast<std::size_t>(got));
     position_ = std::numeric_limits<std::size_t>::max();  // any further reading starts again
   }
 
@@ -139,10 +297,17 @@ class NrrdBytes {
 
   [[noreturn]] void cut_short(std::size_t there) const {
     throw DataError(header_.data_path,
-                    fmt::format("is cut short: {} bytes of data are there and {} are needed (sizes {} x {} x {}, {} "
-                                "bytes a value); copy it again",
-                                there, header_.data_bytes(), header_.sizes[0], header_.sizes[1], header_.sizes[2],
-                                header_.value_bytes()));
+                    fmt::format("is cut short: {} bytes of data are there and {} are needed (sizes {}, {} bytes a "
+                                "value); copy it again",
+                                there, header_.data_bytes(), header_.sizes_text(), header_.value_bytes()));
+  }
+
+  [[noreturn]] void too_long(std::size_t there) const {
+    throw DataError(header_.data_path,
+                    fmt::format("holds more data than its header says: {} bytes or more are there and {} are needed "
+                                "(sizes {}, {} bytes a value), so that the place of the field is unknown; correct the "
+                                "sizes, or give \"byte skip\" if something stands before the field",
+                                there, header_.data_bytes(), header_.sizes_text(), header_.value_bytes()));
   }
 
   NrrdHeader const& header_;
@@ -151,6 +316,7 @@ class NrrdBytes {
   std::size_t offset_ = 0;    ///< of the first value, in the stored file
   std::size_t skipped_ = 0;   ///< decompressed bytes before the first value
   std::size_t position_ = 0;  ///< of the stream, in decompressed bytes from the first value
+  std::vector<char> decoded_;  ///< all bytes, of encodings that are held in memory
 };
 
 template <class Stored>
@@ -191,35 +357,34 @@ void convert(NrrdHeader::Type type, std::vector<char> const& bytes, bool swap, s
 
 class NrrdSource final : public CheckedSource {
  public:
-  NrrdSource(std::string const& path, NrrdHeader header)
+  NrrdSource(std::string const& path, NrrdHeader header, FieldWish const& wish)
       : CheckedSource(path, header.content.empty() ? std::filesystem::path(path).filename().string() : header.content,
-                      1),
+                      wish.values),
         header_(std::move(header)),
         bytes_(header_) {
-    grid_.nodes = header_.sizes;
-    grid_.spacing = {header_.spacing[0], header_.spacing[1], header_.spacing[2]};
     units_ = header_.units;
-    grid_.origin = {header_.origin[0], header_.origin[1], header_.origin[2]};
+    notes_ = header_.notes;
+    axes_ = header_.axes;
+    name_axes(axes_, wish.axes, header_.dimension, path);
+    describe(header_.sizes, header_.dimension,
+             !wish.axes.empty()  ? "axes = \"" + wish.axes + '"'
+             : header_.directed ? "by its space directions"
+                                : "the default order");
   }
 
  private:
   int significant_bits() const override { return header_.significant_bits(); }
 
-  void read_raw_planes(int first_plane, int count, std::span<double> out) override {
-    std::size_t const plane = header_.plane_bytes() / header_.value_bytes();
-    for (int z = 0; z < count; ++z) {
-      read_raw_rows(first_plane + z, 0, header_.sizes[1], out.subspan(static_cast<std::size_t>(z) * plane, plane));
-    }
-  }
-
   void read_raw_rows(int plane, int first_row, int count, std::span<double> out) override {
-    std::size_t const row_bytes = header_.value_bytes() * static_cast<std::size_t>(header_.sizes[0]);
+    bool const text = header_.encoding == Encoding::ascii;  // whose numbers are doubles
+    std::size_t const bytes = text ? sizeof(double) : header_.value_bytes();
+    std::size_t const row = row_values() * bytes;
     std::size_t const first =
-        static_cast<std::size_t>(plane) * header_.plane_bytes() + static_cast<std::size_t>(first_row) * row_bytes;
-    bool const swap = header_.big_endian != (std::endian::native == std::endian::big);
-    stored_.resize(row_bytes * static_cast<std::size_t>(count));
+        row * (static_cast<std::size_t>(plane) * static_cast<std::size_t>(nodes_[1]) + static_cast<std::size_t>(first_row));
+    bool const swap = !text && header_.big_endian != (std::endian::native == std::endian::big);
+    stored_.resize(row * static_cast<std::size_t>(count));
     bytes_.read(first, stored_.data(), stored_.size());
-    convert(header_.type, stored_, swap, out);
+    convert(text ? NrrdHeader::Type::float64 : header_.type, stored_, swap, out);
   }
 
   NrrdHeader header_;
@@ -229,14 +394,11 @@ class NrrdSource final : public CheckedSource {
 
 }  // namespace
 
-std::unique_ptr<FieldSource> open_nrrd(std::string const& path, std::string const& dataset, int values) {
-  if (values != 1) {
-    throw DataError(path, "NRRD files are read as scalar fields alone; write a velocity as .h5 or .vti");
+std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldWish const& wish) {
+  if (!wish.dataset.empty()) {
+    throw DataError(path, "holds one field without a name; leave dataset = \"" + wish.dataset + "\" out");
   }
-  if (!dataset.empty()) {
-    throw DataError(path, "holds one field without a name; leave dataset = \"" + dataset + "\" out");
-  }
-  return std::make_unique<NrrdSource>(path, read_nrrd_header(path));
+  return std::make_unique<NrrdSource>(path, read_nrrd_header(path, wish.values), wish);
 }
 
 }  // namespace gladstone

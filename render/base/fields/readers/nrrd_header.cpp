@@ -44,12 +44,6 @@ std::vector<TypeName> const& type_names() {
   return names;
 }
 
-std::string trimmed(std::string const& text) {
-  auto const first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -78,12 +72,11 @@ class Fields {
       std::string const line = trimmed(std::string(*text));
       if (line.empty()) return true;
       if (line.front() == '#' || line.find(":=") != std::string::npos) continue;
-      auto const colon = line.find(": ");
-      if (colon == std::string::npos && line.back() != ':') {
+      auto const colon = line.find(':');
+      if (colon == std::string::npos) {
         throw DataError(path_, "header line \"" + excerpt(line) + "\" is no NRRD field");
       }
-      std::string const key = lower(line.substr(0, std::min(colon, line.size() - 1)));
-      values_[canonical(key)] = colon == std::string::npos ? std::string() : trimmed(line.substr(colon + 2));
+      values_[canonical(trimmed(lower(line.substr(0, colon))))] = trimmed(line.substr(colon + 1));
     }
     return false;
   }
@@ -124,13 +117,18 @@ class Fields {
     return values;
   }
 
-  /// "(1,0,0) (0,1,0)" as vectors.
+  /// "(1,0,0) none (0,1,0)" as vectors; empty ones of "none".
   std::vector<std::vector<double>> vectors(std::string const& key) const {
     std::vector<std::vector<double>> result;
     std::string const text = required(key);
     for (std::size_t at = 0; at < text.size();) {
-      if (text[at] == ' ') {
+      if (text[at] == ' ' || text[at] == '\t') {
         ++at;
+        continue;
+      }
+      if (lower(text.substr(at, 4)) == "none") {
+        result.emplace_back();
+        at += 4;
         continue;
       }
       auto const close = text.find(')', at);
@@ -168,88 +166,217 @@ void read_type(Fields const& fields, NrrdHeader& header) {
   });
   if (found == all.end()) fields.refuse("type", "is no type of numbers; write float, double, or an integer type");
   header.type = found->type;
-  std::string const endian = lower(fields.text("endian"));
-  if (found->bytes > 1 && endian != "little" && endian != "big") fields.refuse("endian", "must be little or big");
-  header.big_endian = endian == "big";
 }
 
 void read_encoding(Fields const& fields, NrrdHeader& header) {
+  using Encoding = NrrdHeader::Encoding;
   std::string const name = lower(fields.required("encoding"));
-  if (name == "raw") {
-    header.encoding = NrrdHeader::Encoding::raw;
-  } else if (name == "gzip" || name == "gz") {
-    header.encoding = NrrdHeader::Encoding::gzip;
-  } else {
-    fields.refuse("encoding", "is not read here; write the field in encoding raw or gzip");
+  static std::map<std::string, Encoding> const known{
+      {"raw", Encoding::raw},     {"gzip", Encoding::gzip},   {"gz", Encoding::gzip},    {"bzip2", Encoding::bzip2},
+      {"bz2", Encoding::bzip2},   {"ascii", Encoding::ascii}, {"text", Encoding::ascii}, {"txt", Encoding::ascii},
+      {"hex", Encoding::hex}};
+  auto const found = known.find(name);
+  if (found == known.end()) {
+    fields.refuse("encoding", "is not read here; write the field in encoding raw, gzip, bzip2, ascii or hex");
   }
+  header.encoding = found->second;
+  std::string const endian = lower(fields.text("endian"));
+  bool const matters = header.value_bytes() > 1 && header.encoding != Encoding::ascii;
+  if (matters && endian != "little" && endian != "big") fields.refuse("endian", "must be little or big");
+  header.big_endian = endian == "big";
 }
 
-std::size_t read_sizes(Fields const& fields, NrrdHeader& header) {
-  int const dimension = fields.number<int>("dimension", 0, 1);
-  if (dimension != 2 && dimension != 3) fields.refuse("dimension", "must be 2 or 3 (one number at every point)");
-  auto const sizes = fields.numbers<long long>("sizes", static_cast<std::size_t>(dimension));
-  for (std::size_t axis = 0; axis < sizes.size(); ++axis) {
-    if (sizes[axis] < 1) fields.refuse("sizes", "must be positive");
-    if (sizes[axis] > std::numeric_limits<int>::max()) fields.refuse("sizes", "is larger than any field");
-    header.sizes[axis] = static_cast<int>(sizes[axis]);
-  }
-  if (static_cast<double>(header.sizes[0]) * header.sizes[1] * header.sizes[2] > 1e15) {
-    fields.refuse("sizes", "is larger than any field");
-  }
-  return static_cast<std::size_t>(dimension);
-}
-
-/// The unit that a field of quoted units, one an axis, names for all of them; empty where it names none.
-std::string one_unit(Fields const& fields, std::string const& key) {
-  std::string unit;
+/// The words of a field in quotes, one an axis: "mm" "mm" "???".
+std::vector<std::string> quoted_words(Fields const& fields, std::string const& key) {
+  std::vector<std::string> words;
   std::istringstream text(fields.text(key));
   for (std::string before, word; std::getline(text, before, '"') && std::getline(text, word, '"');) {
-    if (word.empty() || word == unit) continue;
-    if (!unit.empty()) fields.refuse(key, "must name one unit for all axes");
-    unit = word;
+    words.push_back(word == "???" ? "" : trimmed(word));
   }
-  return unit;
+  return words;
 }
 
-void read_axes(Fields const& fields, std::size_t dimension, NrrdHeader& header) {
-  if (fields.has("space directions")) {
-    auto const directions = fields.vectors("space directions");
-    if (directions.size() != dimension) fields.refuse("space directions", "must be one vector for each axis");
-    for (std::size_t axis = 0; axis < dimension; ++axis) {
-      if (directions[axis].size() <= axis) fields.refuse("space directions", "has too short a vector");
-      for (std::size_t component = 0; component < directions[axis].size(); ++component) {
-        bool const off_axis = component != axis && directions[axis][component] != 0.0;
-        if (off_axis) fields.refuse("space directions", "is oblique; resample the field along x, y, z");
+/// The axes of a header, of which those in space are kept.
+class Axes {
+ public:
+  Axes(Fields const& fields, int values, NrrdHeader& header) : fields_(fields), header_(header) {
+    header_.values = values;
+    read_sizes();
+    if (fields_.has("space directions")) {
+      directions_ = fields_.vectors("space directions");
+      if (directions_.size() != sizes_.size()) fields_.refuse("space directions", "must be one vector for each axis");
+    }
+    choose(values);
+    for (std::size_t i = 0; i < kept_.size(); ++i) header_.sizes[i] = static_cast<int>(sizes_[kept_[i]]);
+    header_.dimension = kept_.size();
+    header_.units.values = quoted_words(fields_, "sample units").empty() ? trimmed(fields_.text("sample units"))
+                                                                         : quoted_words(fields_, "sample units").front();
+    if (directions_.empty()) {
+      place_along_axes();
+    } else {
+      place_by_directions();
+    }
+    convert_units();
+    if (header_.dimension == 2) header_.axes[2].step = std::abs(header_.axes[0].step);
+  }
+
+ private:
+  void read_sizes() {
+    int const dimension = fields_.number<int>("dimension", 0, 1);
+    if (dimension > 16) fields_.refuse("dimension", "is more than 16, the most that NRRD has");
+    sizes_ = fields_.numbers<long long>("sizes", static_cast<std::size_t>(dimension));
+    double all = 1;
+    for (long long const size : sizes_) {
+      if (size < 1) fields_.refuse("sizes", "must be positive");
+      if (size > std::numeric_limits<int>::max()) fields_.refuse("sizes", "is larger than any field");
+      all *= static_cast<double>(size);
+    }
+    if (all > 1e15) fields_.refuse("sizes", "is larger than any field");
+  }
+
+  /// Chooses the axes in space: not the components, and of more than three not those of length one.
+  void choose(int values) {
+    for (std::size_t axis = 0; axis < sizes_.size(); ++axis) kept_.push_back(axis);
+    if (values > 1) {
+      if (sizes_.size() < 3 || sizes_.front() != values) {
+        fields_.refuse("sizes", fmt::format("has no first axis of {} components, as a velocity has", values));
       }
-      header.spacing[axis] = directions[axis][axis];
+      kept_.erase(kept_.begin());
     }
-  } else if (fields.has("spacings")) {
-    auto const spacings = fields.numbers<double>("spacings", dimension);
-    for (std::size_t axis = 0; axis < dimension; ++axis) {
-      if (!std::isnan(spacings[axis])) header.spacing[axis] = spacings[axis];  // nan: not known
+    std::erase_if(kept_, [this](std::size_t axis) {
+      return !directions_.empty() && directions_[axis].empty() && sizes_[axis] == 1;
+    });
+    while (kept_.size() > 3) {
+      auto const single = [this](std::size_t axis) { return sizes_[axis] == 1; };
+      auto const last = std::find_if(kept_.rbegin(), kept_.rend(), single);
+      if (last == kept_.rend()) break;
+      kept_.erase(last.base() - 1);
     }
-  } else if (fields.has("axis mins") || fields.has("axis maxs")) {
-    fields.refuse(fields.has("axis mins") ? "axis mins" : "axis maxs", "is not read here; write spacings instead");
+    if (kept_.size() == 2 || kept_.size() == 3) return;
+    fields_.refuse("dimension", fmt::format("must be 2 or 3 ({} at every point), beside axes of length one",
+                                            values == 1 ? "one number" : fmt::format("{} numbers", values)));
   }
-  std::string const key = fields.has("space directions") ? "space directions" : "spacings";
-  header.units.spaced = fields.has(key);
-  header.units.length = one_unit(fields, fields.has("space directions") ? "space units" : "units");
-  header.units.values = one_unit(fields, "sample units");
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    bool const usable = std::isfinite(header.spacing[axis]) && header.spacing[axis] > 0.0;
-    if (!usable) fields.refuse(key, "must give positive spacings; turn an axis that runs backwards round");
+
+  /// Spacings along the axes, or the ends of each.
+  void place_along_axes() {
+    auto const all = sizes_.size();
+    auto const units = quoted_words(fields_, "units");
+    header_.units.spaced = fields_.has("spacings") || fields_.has("axis mins") || fields_.has("axis maxs");
+    auto const spacings = fields_.has("spacings") ? fields_.numbers<double>("spacings", all) : std::vector<double>{};
+    bool const ends = fields_.has("axis mins") && fields_.has("axis maxs");
+    auto const lows = fields_.has("axis mins") ? fields_.numbers<double>("axis mins", all) : std::vector<double>{};
+    auto const highs = fields_.has("axis maxs") ? fields_.numbers<double>("axis maxs", all) : std::vector<double>{};
+    bool assumed_cells = false;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      std::size_t const axis = kept_[i];
+      StoredAxis& placed = header_.axes[i];
+      unit_of_[i] = axis < units.size() ? units[axis] : "";
+      Centre const centre = centre_of(axis);
+      double const cells = static_cast<double>(sizes_[axis]) - (centre == Centre::node ? 1 : 0);
+      if (!spacings.empty() && std::isfinite(spacings[axis])) {
+        placed.step = spacings[axis];
+      } else if (ends && std::isfinite(lows[axis]) && std::isfinite(highs[axis]) && cells > 0) {
+        placed.step = (highs[axis] - lows[axis]) / cells;
+        assumed_cells = assumed_cells || centre == Centre::unknown;
+      } else if (header_.units.spaced && sizes_[axis] > 1) {
+        bool const infinite = !spacings.empty() && std::isinf(spacings[axis]);
+        if (infinite) fields_.refuse("spacings", "must be finite");
+        header_.units.unknown = fmt::format("the spacing of axis {} ({} nodes, taken as {}) is unknown in the header",
+                                            axis + 1, sizes_[axis], placed.world);
+      }
+      if (placed.step == 0 || !std::isfinite(placed.step)) {
+        fields_.refuse(spacings.empty() ? "axis maxs" : "spacings", "gives an axis no length; it must be other than 0");
+      }
+      if (!lows.empty() && std::isfinite(lows[axis])) {
+        placed.first = lows[axis] + (centre == Centre::node ? 0.0 : placed.step / 2);
+      }
+    }
+    if (assumed_cells) {
+      header_.notes.emplace_back(
+          "\"axis mins\" and \"axis maxs\" without \"centers\" are taken as the outer faces of cells, as teem does; "
+          "if they are the first and last node, write \"centers: node node node\"");
+    }
   }
-  if (dimension == 2) header.spacing[2] = header.spacing[0];
-  if (!fields.has("space origin")) return;
-  auto const origin = fields.vectors("space origin");
-  if (origin.size() != 1 || origin[0].size() < dimension || origin[0].size() > 3) {
-    fields.refuse("space origin", "must be one vector");
+
+  enum class Centre { node, cell, unknown };
+  Centre centre_of(std::size_t axis) const {
+    std::istringstream words(lower(fields_.text(fields_.has("centers") ? "centers" : "centerings")));
+    std::string word;
+    for (std::size_t i = 0; i <= axis; ++i) {
+      if (!(words >> word)) return Centre::unknown;
+    }
+    return word == "node" ? Centre::node : word == "cell" ? Centre::cell : Centre::unknown;
   }
-  for (std::size_t axis = 0; axis < origin[0].size(); ++axis) {
-    if (!std::isfinite(origin[0][axis])) fields.refuse("space origin", "must be finite");
-    header.origin[axis] = origin[0][axis];
+
+  /// Vectors along the axes of space, in any order and direction.
+  void place_by_directions() {
+    std::string const key = "space directions";
+    auto const units = quoted_words(fields_, "space units");
+    auto const origins = fields_.has("space origin") && lower(fields_.text("space origin")) != "none"
+                             ? fields_.vectors("space origin")
+                             : std::vector<std::vector<double>>{};
+    if (origins.size() > 1) fields_.refuse("space origin", "must be one vector");
+    header_.units.spaced = header_.directed = true;
+    std::string taken;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      auto const& direction = directions_[kept_[i]];
+      if (direction.size() < 2 || direction.size() > 3) {
+        fields_.refuse(key, "must give each axis in space a vector of two or three numbers");
+      }
+      std::size_t along = 0;
+      for (std::size_t k = 0; k < direction.size(); ++k) {
+        if (!std::isfinite(direction[k])) fields_.refuse(key, "must be vectors of finite numbers");
+        if (std::abs(direction[k]) > std::abs(direction[along])) along = k;
+      }
+      double const step = direction[along];
+      if (step == 0) fields_.refuse(key, "gives an axis no length");
+      for (std::size_t k = 0; k < direction.size(); ++k) {
+        constexpr double rounding = 1e-6;  // of angles, in rad: a millionth of the field's width
+        if (k != along && std::abs(direction[k]) > rounding * std::abs(step)) {
+          fields_.refuse(key, "is oblique; resample the field along x, y, z");
+        }
+      }
+      char const world = "xyz"[along];
+      if (taken.find(world) != std::string::npos) fields_.refuse(key, "gives two axes one direction");
+      taken += world;
+      header_.axes[i].world = world;
+      header_.axes[i].step = step;
+      unit_of_[i] = along < units.size() ? units[along] : "";
+      if (origins.empty()) continue;
+      if (origins[0].size() != direction.size()) fields_.refuse("space origin", "must have as many numbers as a direction");
+      if (!std::isfinite(origins[0][along])) fields_.refuse("space origin", "must be finite");
+      header_.axes[i].first = origins[0][along];
+    }
+    if (kept_.size() < 3) {
+      std::string rest = "xyz";
+      std::erase_if(rest, [&taken](char axis) { return taken.find(axis) != std::string::npos; });
+      header_.axes[2].world = rest.front();
+    }
   }
-}
+
+  /// Lengths of all axes in the unit of the first that names one.
+  void convert_units() {
+    std::string& common = header_.units.length;
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      if (sizes_[kept_[i]] > 1 && common.empty()) common = unit_of_[i];
+    }
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      if (unit_of_[i].empty() || sizes_[kept_[i]] == 1) continue;
+      auto const ratio = unit_ratio(unit_of_[i], common);
+      std::string const key = header_.directed ? "space units" : "units";
+      if (!ratio) fields_.refuse(key, "must name units of length that are known here, or one for all axes");
+      header_.axes[i].step *= *ratio;
+      header_.axes[i].first *= *ratio;
+    }
+  }
+
+  Fields const& fields_;
+  NrrdHeader& header_;
+  std::vector<long long> sizes_;                 ///< of all axes
+  std::vector<std::size_t> kept_;                ///< numbers of the axes in space, the fastest first
+  std::vector<std::vector<double>> directions_;  ///< of all axes; empty: none are given
+  std::array<std::string, 3> unit_of_;           ///< of the axes in space
+};
 
 }  // namespace
 
@@ -265,10 +392,17 @@ int NrrdHeader::significant_bits() const {
 }
 
 std::size_t NrrdHeader::plane_bytes() const {
-  return value_bytes() * static_cast<std::size_t>(sizes[0]) * static_cast<std::size_t>(sizes[1]);
+  return value_bytes() * static_cast<std::size_t>(values) * static_cast<std::size_t>(sizes[0]) *
+         static_cast<std::size_t>(sizes[1]);
 }
 
-NrrdHeader read_nrrd_header(std::string const& path) {
+std::string NrrdHeader::sizes_text() const {
+  std::string text = values == 1 ? "" : std::to_string(values) + " x ";
+  text += std::to_string(sizes[0]) + " x " + std::to_string(sizes[1]);
+  return dimension == 2 ? text : text + " x " + std::to_string(sizes[2]);
+}
+
+NrrdHeader read_nrrd_header(std::string const& path, int values) {
   LineReader file(path, "a field file");
   char magic[7] = {};
   bool const nrrd = InputFile(path).read(0, magic, sizeof magic) == sizeof magic &&
@@ -281,7 +415,7 @@ NrrdHeader read_nrrd_header(std::string const& path) {
   NrrdHeader header;
   read_type(fields, header);
   read_encoding(fields, header);
-  read_axes(fields, read_sizes(fields, header), header);
+  Axes(fields, values, header);
   header.content = fields.text("content");
   header.line_skip = fields.number<long>("line skip", 0, 0);
   header.byte_skip = fields.number<long long>("byte skip", 0, -1);
