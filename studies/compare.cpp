@@ -10,6 +10,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
+#include "render/base/stop_point.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
@@ -108,6 +109,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
+  stop_point("comparing");
   PreparedCase const prepared = prepare_case(loaded);
   std::optional<RenderedCase> rendered;
   if (!vectors.foreign) rendered = render_case(prepared, *device.renderer, RenderTheory::no);
