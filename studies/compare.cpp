@@ -10,6 +10,7 @@
 #include "analysis/correlation/standard_correlator.h"
 #include "analysis/errors/deformed_window_truth.h"
 #include "render/base/error.h"
+#include "render/base/stop_point.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/build_camera.h"
 #include "render/sensor/detector.h"
@@ -147,6 +148,7 @@ Comparison compare_case(std::string const& folder, Device const& device, Compare
   CaseSetup loaded = load_case_setup(files.setup, {});
   GroundTruth const dots = read_truth(files.truth);
   MeasuredVectors vectors = load_vectors(files.vectors, loaded, dots, options);
+  stop_point("comparing");
   std::string fingerprint = comparison_fingerprint(files.sources, options);
   Comparison comparison = comparison_of(vectors, loaded.setup.piv.has_value());
   if (options.reuse && read_chain(folder, fingerprint, comparison)) {

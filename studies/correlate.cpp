@@ -16,6 +16,7 @@
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
 #include "render/base/setup_table.h"
+#include "render/base/stop_point.h"
 #include "studies/case.h"
 #include "studies/peak_locking.h"
 
@@ -24,8 +25,10 @@ namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
   SetupTable root = document.root();
-  for (char const* other : {"schema", "experiment", "camera", "lens", "geometry", "medium", "target", "particles",
-                            "laser", "flow", "render"}) {  // of a whole setup
+  // of a whole setup, which may carry the question of gladstone design
+  for (char const* other :
+       {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light", "particles",
+        "laser", "flow", "calibration", "render", "requirements", "limits", "inventory", "free", "correlations"}) {
     if (root.has(other)) root.pass_over(other);
   }
   for (auto const& assignment : overrides) {
@@ -114,6 +117,7 @@ Measurement correlate_frames(std::string const& reference_name, Image<double> co
                                 reference.columns(), reference.rows(), largest));
   }
   check_finite(reference_name, reference, flow_name, flow);
+  stop_point("correlating");
   return correlate_frames(FramesView(reference, flow), settings, device);
 }
 

@@ -1,21 +1,26 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <iostream>
 #include <string_view>
 
 #include "render/base/error.h"
+#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 #include "render/base/nearest_name.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
+#include "studies/commands/run_warnings.h"
 #include "studies/version_text.h"
 
 namespace gladstone {
@@ -85,7 +90,8 @@ int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* co
   } else if (chooses && !is_option) {
     message += "; commands are " + quoted_list(known);
   }
-  fmt::print(stderr, "gladstone: {} See gladstone {}--help\n", message.ends_with('?') ? message : message + '.', path);
+  print_error(
+      fmt::format("gladstone: {} See gladstone {}--help", message.ends_with('?') ? message : message + '.', path));
   return bad_input;
 }
 
@@ -96,7 +102,7 @@ int run(int argc, char** argv) {
   app.fallthrough();
   app.require_subcommand(0, 1);
   app.add_flag("--json", options.json, "Print one JSON object on stdout and nothing else there");
-  app.add_flag("--quiet", options.quiet, "No log, no progress bars");
+  app.add_flag("--quiet", options.quiet, "No information and no progress bars on stderr; warnings and errors stay");
   app.add_option("--threads", options.threads, "Threads to use; 0: all cores")->check(whole_number(0, 4096));
   app.add_option("--device", options.device, "auto, cpu or cuda")->check(one_of({"auto", "cpu", "cuda"}));
   app.footer(
@@ -128,7 +134,7 @@ int run(int argc, char** argv) {
   if (std::vector<std::string> const unknown = app.remaining(true); !unknown.empty() || parsed_one == parsed.end()) {
     return refuse_arguments(unknown, parsed_one == parsed.end() ? nullptr : *parsed_one, app);
   }
-  if (options.quiet) spdlog::set_level(spdlog::level::err);
+  if (options.quiet) spdlog::set_level(spdlog::level::warn);
   Progress::enable(!options.quiet);
   set_thread_count(options.threads);
   for (std::size_t i = 0; i < commands.size(); ++i) {
@@ -139,13 +145,13 @@ int run(int argc, char** argv) {
 
 int guarded(int argc, char** argv) {
   auto const fail = [](char const* kind, std::string const& what, int code) {
-    fmt::print(stderr, "gladstone: {}{}\n", kind, what);
+    print_error(fmt::format("gladstone: {}{}", kind, what));
     return code;
   };
   try {
     return run(argc, argv);
   } catch (SetupError const& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    print_error(error.what());
     return bad_input;
   } catch (Interrupted const& error) {
     return fail("", error.what(), interrupted_by_user);
@@ -158,16 +164,36 @@ int guarded(int argc, char** argv) {
   }
 }
 
+/// Opens what the caller has closed of stdin, stdout and stderr, so that no file of the command gets such a number and
+/// has messages written into it. Reading and writing there fail.
+void occupy_closed_streams() {
+  for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream) ::_exit(bad_input);
+  }
+}
+
+/// Whether all that was printed has arrived.
+bool is_printed() {
+  std::cout.flush();
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+}
+
 }  // namespace
 }  // namespace gladstone
 
 int main(int argc, char** argv) {
+  gladstone::occupy_closed_streams();
   spdlog::set_default_logger(spdlog::stderr_color_mt("gladstone"));
   spdlog::set_pattern("%^%l:%$ %v");
+  gladstone::record_warnings(*spdlog::default_logger());
   gladstone::catch_interrupts();
+  gladstone::InputGuard const guard;
   int const code = gladstone::guarded(argc, argv);
-  if (std::fflush(stdout) != 0) {
-    fmt::print(stderr, "gladstone: standard output cannot be written\n");
+  if (!gladstone::is_printed()) {
+    gladstone::print_error(
+        "gladstone: standard output cannot be written, and the result that was to be printed is lost; free some space "
+        "there, or print to another place");
     return gladstone::bad_input;
   }
   return code;

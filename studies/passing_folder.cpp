@@ -1,20 +1,42 @@
 #include "studies/passing_folder.h"
 
-#include <stdlib.h>
+#include <sys/stat.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include "render/base/error.h"
 
 namespace gladstone {
+namespace {
 
-PassingFolder::PassingFolder() : path_((std::filesystem::temp_directory_path() / "gladstone_XXXXXX").string()) {
-  if (::mkdtemp(path_.data()) == nullptr) throw OutputError(path_, "cannot be made");
+constexpr char const* stem = ".gladstone.";
+
+std::string folder_of_temporaries() {
+  std::error_code error;
+  std::filesystem::path const folder = std::filesystem::temp_directory_path(error);
+  return error ? "/tmp" : folder.string();
 }
 
-PassingFolder::~PassingFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+}  // namespace
+
+PassingFolder::PassingFolder() {
+  std::string const above = folder_of_temporaries();
+  int problem = 0;
+  try {
+    remove_leftovers(above, stem);
+    partial_.emplace(above, stem, Partial::Kind::folder);
+    path_ = partial_->path() + "/files";
+    // others may look at the lock, to find out whether this process is alive, and at nothing else
+    if (::mkdir(path_.c_str(), 0700) != 0) problem = errno;
+  } catch (std::system_error const& error) {
+    problem = error.code().value();
+  }
+  if (problem == 0) return;
+  throw OutputError(above, std::string("no temporary folder can be made there (") + std::strerror(problem) +
+                               "); set TMPDIR to a folder that you may write to");
 }
 
 }  // namespace gladstone

@@ -1,20 +1,22 @@
 #pragma once
 
+#include <optional>
 #include <string>
+
+#include "render/base/partial.h"
 
 namespace gladstone {
 
-/// A folder among the temporary ones that is gone with its owner.
+/// Unique temporary folder, which only this user can read; removed on destruction. What killed processes of this user
+/// left is removed when the next one is made in the same place (TMPDIR).
 class PassingFolder {
  public:
   /// @throws OutputError
   PassingFolder();
-  ~PassingFolder();
-  PassingFolder(PassingFolder const&) = delete;
-  PassingFolder& operator=(PassingFolder const&) = delete;
   std::string const& path() const { return path_; }
 
  private:
+  std::optional<Partial> partial_;
   std::string path_;
 };
 

@@ -7,6 +7,7 @@
 #include "render/base/image_file.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
+#include "render/base/stop_point.h"
 #include "render/focused_dots/table_error.h"
 #include "render/sensor/detector.h"
 #include "studies/case.h"
@@ -58,6 +59,7 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
+  stop_point("rendering");
   rendered.rendering = std::make_shared<Rendering const>(
       scene.setup.piv
           ? renderer.render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::in_place)

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +73,14 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   };
   for (Vec2d const place : stops) {
     summary["views"].push_back({{"file", name_of(place)}, {"stop_mm", {place.x / mm, place.y / mm}}});
+  }
+  // a lenslet's picture has so many pixels over the stop: views between them are interpolated
+  if (double const seen = written.camera.picture_px(); across > 2 * seen) {
+    spdlog::warn(
+        "--views {}: {} views of either frame will be written, though a lenslet's picture of the stop is {:.3g} px "
+        "wide "
+        "(views in between are interpolated and show nothing new); --views {} has one for every pixel",
+        across, written.views, seen, std::max(1, static_cast<int>(std::ceil(seen))));
   }
   OutputFolder output(folder, {marker, {"view_*.tif", "*_refocused.tif"}});
   output.fill([&](std::string const& place) {

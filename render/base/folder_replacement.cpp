@@ -14,8 +14,10 @@
 #include <thread>
 
 #include "render/base/error.h"
+#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
+#include "render/base/stop_point.h"
 
 namespace gladstone {
 namespace {
@@ -111,11 +113,13 @@ void go_back(fs::path const& folder, FolderContent const& content, std::vector<f
   }
 }
 
-/// A folder where a file belongs, or the other way round, is found before anything is moved.
-void refuse_folders_in_the_way(fs::path const& staged, fs::path const& folder, std::string const& asked,
+/// A folder where a file belongs, or the other way round, and an input of the command are found before anything is
+/// moved.
+void refuse_what_is_in_the_way(fs::path const& staged, fs::path const& folder, std::string const& asked,
                                FolderContent const& content) {
   for (fs::path const& file : files_to_retire(staged, folder, content)) {
     std::error_code error;
+    refuse_recorded_input(folder / file, fs::path(asked) / file);
     if (fs::is_directory(fs::symlink_status(folder / file, error))) {
       throw OutputError((fs::path(asked) / file).string(), "is a folder where a file belongs; move it elsewhere");
     }
@@ -162,7 +166,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
   fs::path const work = fs::path(folder) / replacing;
   std::string const name = partial.path();
   std::vector<fs::path> const files = files_below(fs::path(name) / staged_files, content.marker);
-  refuse_folders_in_the_way(fs::path(name) / staged_files, folder, asked, content);
+  refuse_what_is_in_the_way(fs::path(name) / staged_files, folder, asked, content);
   auto const fail = [&asked](std::string const& what, int error) {
     throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are in their places");
   };
@@ -173,9 +177,12 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
     finish_replacement(folder, content);
   }
   flush_to_disk(folder);
+  stop_point("replacement-begun");
   try {
     retire(folder, content);
+    stop_point("replacement-retired");
     install(folder, content);
+    stop_point("replacement-installed");
   } catch (MoveError const& stuck) {
     try {
       go_back(folder, content, files);

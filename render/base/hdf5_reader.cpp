@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <set>
 
 #include "render/base/available_memory.h"
@@ -103,7 +104,8 @@ std::string filter_name(H5Z_filter_t filter, std::string const& written) {
 
 struct Hdf5Reader::Handle {
   Id file;
-  std::string rows_name;  ///< the dataset that read_rows last read from, kept open for its cache
+  std::uint64_t bytes = 0;  ///< size of the file
+  std::string rows_name;    ///< the dataset that read_rows last read from, kept open for its cache
   Id rows{H5I_INVALID_HID, H5Dclose};
 
   /// Opens a dataset of numbers. @throws DataError
@@ -124,6 +126,47 @@ std::vector<std::size_t> shape_of(hid_t dataset) {
   std::vector<hsize_t> sizes(static_cast<std::size_t>(std::max(rank, 0)));
   if (rank > 0) H5Sget_simple_extent_dims(space, sizes.data(), nullptr);
   return {sizes.begin(), sizes.end()};
+}
+
+/// What is believed without proof [bytes]: parts of a dataset that nobody wrote are not stored.
+constexpr double always_believed = 64e6;
+
+/// The largest number of bytes that the filters of a dataset pack into one byte of its file: 1032 in deflate, which
+/// szip does not reach; infinite for filters that pack constant data into nothing.
+double largest_packing(hid_t created) {
+  double packing = 1;
+  for (int i = 0; i < H5Pget_nfilters(created); ++i) {
+    unsigned flags = 0, config = 0;
+    std::size_t parameters = 0;
+    H5Z_filter_t const filter =
+        H5Pget_filter2(created, static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, &config);
+    if (filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_FLETCHER32) continue;
+    bool const bounded = filter == H5Z_FILTER_DEFLATE || filter == H5Z_FILTER_SZIP;
+    packing *= bounded ? 1032 : std::numeric_limits<double>::infinity();
+  }
+  return packing;
+}
+
+/// Refuses what the header of a dataset says where the file is too short to hold it.
+/// @param file_bytes size of the file
+void require_stored(hid_t dataset, double file_bytes, std::string const& path, std::string const& name) {
+  Id const type(H5Dget_type(dataset), H5Tclose), created(H5Dget_create_plist(dataset), H5Pclose);
+  auto const shape = shape_of(dataset);
+  double const value = static_cast<double>(H5Tget_size(type));
+  double const stored = std::accumulate(shape.begin(), shape.end(), value, std::multiplies<>());
+  double chunk_bytes = 0;
+  if (H5Pget_layout(created) == H5D_CHUNKED) {
+    std::vector<hsize_t> chunk(shape.size());
+    H5Pget_chunk(created, static_cast<int>(chunk.size()), chunk.data());
+    chunk_bytes = std::accumulate(chunk.begin(), chunk.end(), value, std::multiplies<>());
+  }
+  bool const elsewhere = H5Pget_external_count(created) > 0 || H5Pget_layout(created) == H5D_VIRTUAL;
+  double const most = std::max(always_believed, file_bytes * largest_packing(created));
+  if (elsewhere || std::max(stored, chunk_bytes) <= most) return;
+  throw DataError(path, "dataset \"" + name + "\" of " + sizes_text(shape) + " values cannot be read (the file of " +
+                            std::to_string(static_cast<long long>(file_bytes)) +
+                            " bytes is too short to hold them: it is damaged or cut short, or most of them were never "
+                            "written); copy it again, or write it anew");
 }
 
 template <class Value>
@@ -154,6 +197,7 @@ Id Hdf5Reader::Handle::open(std::string const& path, std::string const& dataset,
     throw DataError(path, message + (message.ends_with('?') ? " It has " : "; it has ") + quoted_list(names) +
                               (cut ? " and more" : ""));
   }
+  require_stored(opened, static_cast<double>(bytes), path, dataset);
   Id const type(H5Dget_type(opened), H5Tclose);
   H5T_class_t const kind = H5Tget_class(type);
   if (kind != H5T_INTEGER && (kind != H5T_FLOAT || integers_only)) {
@@ -173,13 +217,13 @@ hid_t Hdf5Reader::Handle::open_rows(std::string const& path, std::string const& 
     std::vector<hsize_t> chunk(shape.size());
     H5Pget_chunk(created, static_cast<int>(chunk.size()), chunk.data());
     Id const type(H5Dget_type(opened), H5Tclose);
-    std::size_t bytes = H5Tget_size(type) * chunk[0];
+    std::size_t row_bytes = H5Tget_size(type) * chunk[0];
     for (std::size_t axis = 1; axis < shape.size(); ++axis) {
-      bytes *= (shape[axis] + chunk[axis] - 1) / chunk[axis] * chunk[axis];
+      row_bytes *= (shape[axis] + chunk[axis] - 1) / chunk[axis] * chunk[axis];
     }
     constexpr std::size_t slots = 12289, most = 128 * 1024 * 1024;
     Id const access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    H5Pset_chunk_cache(access, slots, std::clamp<std::size_t>(bytes, 1024 * 1024, most), 1.0);
+    H5Pset_chunk_cache(access, slots, std::clamp<std::size_t>(row_bytes, 1024 * 1024, most), 1.0);
     opened.reset();
     opened = Id(H5Dopen2(file, dataset.c_str(), access), H5Dclose);
   }
@@ -204,7 +248,7 @@ void Hdf5Reader::Handle::read(std::string const& path, std::string const& datase
 Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
   Lock const lock(library_lock());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  require_input_file(path, "an HDF5 file");
+  std::uint64_t const bytes = InputFile(path, "an HDF5 file").size();
   if (H5Fis_hdf5(path.c_str()) <= 0)
     throw DataError(path, "is not an HDF5 file; check the name, or make or fetch it again");
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -213,7 +257,7 @@ Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
 #endif
   Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!file.valid()) throw DataError(path, "cannot be opened as HDF5 (it is damaged or cut short); copy it again");
-  handle_ = std::unique_ptr<Handle>(new Handle{.file = std::move(file), .rows_name = {}});
+  handle_ = std::unique_ptr<Handle>(new Handle{.file = std::move(file), .bytes = bytes, .rows_name = {}});
 }
 
 Hdf5Reader::~Hdf5Reader() {
@@ -355,7 +399,8 @@ void Hdf5Reader::read_box(std::string const& dataset, std::vector<std::size_t> c
 
 namespace {
 
-std::string attribute_text(hid_t object, std::string const& name) {
+/// @param most bytes that a text can have
+std::string attribute_text(hid_t object, std::string const& name, std::uint64_t most) {
   if (H5Aexists(object, name.c_str()) <= 0) return {};
   Id const opened(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
   Id const type(H5Aget_type(opened), H5Tclose);
@@ -372,6 +417,7 @@ std::string attribute_text(hid_t object, std::string const& name) {
     return value;
   }
   if (kind == H5T_STRING) {
+    if (H5Tget_size(type) > most) return {};  // damaged
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(opened, type, value.data()) < 0) return {};
     value = value.substr(0, value.find('\0'));
@@ -398,12 +444,12 @@ std::string attribute_text(hid_t object, std::string const& name) {
 
 std::string Hdf5Reader::attribute(std::string const& name) const {
   Lock const lock(library_lock());
-  return attribute_text(handle_->file, name);
+  return attribute_text(handle_->file, name, handle_->bytes);
 }
 
 std::string Hdf5Reader::attribute_of(std::string const& dataset, std::string const& name) const {
   Lock const lock(library_lock());
-  return attribute_text(handle_->open(path_, dataset), name);
+  return attribute_text(handle_->open(path_, dataset), name, handle_->bytes);
 }
 
 }  // namespace gladstone

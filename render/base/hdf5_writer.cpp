@@ -131,7 +131,7 @@ std::string date_and_time() {
 Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Growth growth) : path_(path) {
   Lock const lock(library_lock());
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  handle_.reset(new Handle{OutputFile(path), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth});
+  handle_.reset(new Handle{OutputFile(path, origin.filetype), Id(H5I_INVALID_HID, H5Fclose), origin.sources, growth});
   std::string const temporary = handle_->output.temporary_path();
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (growth == Hdf5Growth::in_memory) {

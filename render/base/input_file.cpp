@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "render/base/error.h"
+#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 
 namespace gladstone {
@@ -47,6 +48,7 @@ InputFile::InputFile(std::string const& path, std::string const& wanted) : path_
     throw;
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
+  record_input(path, status);
 }
 
 InputFile::~InputFile() {

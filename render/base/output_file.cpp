@@ -9,6 +9,9 @@
 #include <system_error>
 
 #include "render/base/error.h"
+#include "render/base/file_kind.h"
+#include "render/base/input_guard.h"
+#include "render/base/stop_point.h"
 
 namespace gladstone {
 namespace {
@@ -31,17 +34,19 @@ int flush_to_disk(std::string const& path) {
   return ::close(file) == 0 ? error : (error ? error : errno);
 }
 
-OutputFile::OutputFile(std::string const& path) : place_(path) {
+OutputFile::OutputFile(std::string const& path, std::string const& kind) : place_(path) {
   std::error_code error;
   if (fs::is_directory(place_.path(), error)) throw OutputError(place_.asked(), "is a folder; name a file");
-  if (std::string const kind = special_file(place_.path()); !kind.empty()) {
-    throw OutputError(place_.asked(), "is no ordinary file (it is " + kind + "); name a file");
+  if (std::string const special = special_file(place_.path()); !special.empty()) {
+    throw OutputError(place_.asked(), "is no ordinary file (it is " + special + "); name a file");
   }
   if (is_mount(place_.path())) {
     throw OutputError(
         place_.asked(),
         "cannot be replaced (a file of its own is mounted there); mount its folder, or name another file");
   }
+  refuse_recorded_input(place_.path(), place_.asked());
+  if (!kind.empty()) refuse_replacing(kind);
   place_.make_parents();
   std::string const stem = stem_beside(place_.name());
   remove_leftovers(place_.folder(), stem);
@@ -70,12 +75,26 @@ void OutputFile::write(void const* data, std::size_t size) {
   }
 }
 
+void OutputFile::refuse_replacing(std::string const& kind) const {
+  std::string const old = file_kind(place_.path());
+  if (old.empty() || old == kind) return;
+  throw OutputError(place_.asked(), "holds data of another kind (" + old + "), and would be overwritten" +
+                                        (kind.empty() ? "" : " by " + kind) +
+                                        "; choose another output, or remove this file");
+}
+
 void OutputFile::commit() {
+  stop_point("file-written");
+  refuse_recorded_input(place_.path(), place_.asked());
   struct stat old {};
-  if (::stat(place_.path().c_str(), &old) == 0) ::fchmod(partial_->descriptor(), old.st_mode & 07777);
+  if (::stat(place_.path().c_str(), &old) == 0) {
+    refuse_replacing(file_kind(partial_->path(), place_.name()));
+    ::fchmod(partial_->descriptor(), old.st_mode & 07777);
+  }
   if (::fsync(partial_->descriptor()) != 0 && errno != EINVAL && errno != EROFS)
     place_.fail("cannot be written", errno);
   if (int const error = partial_->move_to(place_.path())) place_.fail("cannot be put in its place", error);
+  record_output(partial_->descriptor());
   partial_->keep();
   committed_ = true;
   flush_to_disk(place_.folder());

@@ -62,7 +62,11 @@ CommandBody attach_report(CLI::App& app, GlobalOptions const& options);
 /// Of `gladstone sweep`: its own commands.
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options);
 
-/// Prints the result of a command: the JSON text with --json, the readable text otherwise.
+/// Prints the result of a command: with --json the JSON object, to which the warnings of the run are added; the
+/// readable text otherwise.
 void print_result(GlobalOptions const& options, std::string const& json, std::string const& text);
+
+/// Prints a line on stderr. It may be closed or full: then nothing happens.
+void print_error(std::string const& text);
 
 }  // namespace gladstone

@@ -1,13 +1,41 @@
+#include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "studies/commands/command.h"
+#include "studies/commands/run_warnings.h"
+#include "studies/json_text.h"
 
 namespace gladstone {
+namespace {
+
+/// The object with all warnings of the run under "warnings", after those that it has there already.
+std::string with_warnings(std::string const& json) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::parse(json, nullptr, false);
+  if (!all.is_object()) return json;
+  nlohmann::ordered_json& warnings = all["warnings"];
+  if (!warnings.is_array()) warnings = nlohmann::ordered_json::array();
+  for (std::string const& text : recorded_warnings()) {
+    // what a command lists itself may stand on the log behind the name of its file
+    auto const listed = [&text](nlohmann::ordered_json const& one) {
+      return one.is_string() && text.ends_with(one.get_ref<std::string const&>());
+    };
+    if (std::none_of(warnings.begin(), warnings.end(), listed)) warnings.push_back(text);
+  }
+  return json_text(all);
+}
+
+}  // namespace
 
 void print_result(GlobalOptions const& options, std::string const& json, std::string const& text) {
-  std::string const& chosen = options.json ? json : text;
+  std::string const chosen = options.json ? with_warnings(json) : text;
   std::fwrite(chosen.data(), 1, chosen.size(), stdout);
   if (!chosen.empty() && chosen.back() != '\n') std::fputc('\n', stdout);
+}
+
+void print_error(std::string const& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fputc('\n', stderr);
 }
 
 }  // namespace gladstone

@@ -185,7 +185,7 @@ CommandBody attach_sweep(CLI::App& app, GlobalOptions const& options) {
     for (auto const& [sub, body] : *parsed) {
       if (sub->parsed()) return body();
     }
-    fmt::print(stderr, "gladstone: sweep needs one of plan, run, status, collect. See gladstone sweep --help\n");
+    print_error("gladstone: sweep needs one of plan, run, status, collect. See gladstone sweep --help");
     return bad_input;
   };
 }

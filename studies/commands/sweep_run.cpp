@@ -15,6 +15,7 @@
 #include "render/base/error.h"
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
+#include "render/base/stop_point.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/sweep_slurm.h"
 #include "studies/json_text.h"
@@ -183,6 +184,7 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
     auto const finished = [&] {
       ++computed;
       progress.advance();
+      stop_point("case-finished");
     };
     int jobs = arguments.jobs > 0 ? arguments.jobs : device == "cuda" ? std::max(1, gpu_count()) : 1;
     jobs = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(jobs), due));
@@ -225,8 +227,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
     } catch (Interrupted const&) {
       if (arguments->slurm.submit) throw;  // it says what becomes of the job
       if (arguments->worker < 0) {
-        fmt::print(stderr,
-                   "gladstone: interrupted; finished cases are kept, and the same command goes on from there\n");
+        print_error("gladstone: interrupted; finished cases are kept, and the same command goes on from there");
       }
       return interrupted_by_user;
     }

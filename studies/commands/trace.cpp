@@ -6,6 +6,7 @@
 
 #include "render/base/output_file.h"
 #include "render/base/source_files.h"
+#include "render/base/stop_point.h"
 #include "studies/case.h"
 #include "studies/commands/arguments.h"
 #include "studies/commands/command.h"
@@ -37,6 +38,7 @@ CommandBody attach_trace(CLI::App& app, GlobalOptions const& options) {
     refuse_inputs_as_outputs({arguments->output}, inputs);
     OutputFile output(arguments->output);
     std::vector<Ray<double>> const rays = read_rays(arguments->rays, loaded.setup.farthest_off_axis());
+    stop_point("tracing-rays");
     if (options.device == "cuda") throw DeviceError("trace: follows its few rays on the CPU; use --device cpu or auto");
     Scene scene = build_scene(loaded.setup);
     for (auto const& text : scene.medium.warnings) spdlog::warn("{}", text);

@@ -8,6 +8,7 @@
 
 #include "render/base/error.h"
 #include "render/base/output_file.h"
+#include "studies/case_files.h"
 #include "studies/design/answer_text.h"
 #include "studies/design/measurement_inputs.h"
 #include "studies/design/sheet.h"
@@ -16,9 +17,23 @@
 #include "studies/figures/gnuplot.h"
 #include "studies/figures/layout_figure.h"
 #include "studies/figures/piv_map.h"
+#include "studies/sweep/manifest.h"
 
 namespace gladstone {
 namespace {
+
+/// A setup that belongs to a rendered case or a planned study is not replaced: what was made from it would be of
+/// another. @throws OutputError
+void refuse_setup_of_results(std::string const& path) {
+  std::error_code error;
+  std::filesystem::path const folder = std::filesystem::absolute(path, error).parent_path();
+  for (char const* const made : {case_file::summary, case_file::truth, run_file::manifest}) {
+    if (!std::filesystem::exists(path, error) || !std::filesystem::exists(folder / made, error)) continue;
+    throw OutputError(path, fmt::format("belongs to the results in this folder ({}), and would be overwritten; choose "
+                                        "another output",
+                                        made));
+  }
+}
 
 /// Writes a figure's file into the folder; without gnuplot says so.
 template <class Draw>
@@ -135,7 +150,10 @@ DesignReport design(DesignRequest const& request) {
   DesignReport report;
   if (!request.figures.empty()) report.json["figures"] = nlohmann::ordered_json::array();
   std::optional<OutputFile> applied;
-  if (!request.apply.empty()) applied.emplace(request.apply);
+  if (!request.apply.empty()) {
+    refuse_setup_of_results(request.apply);
+    applied.emplace(request.apply, "TOML");
+  }
   add_sheet(request, loaded, uncertain, !request.figures.empty() && !question, report);
   if (question) add_answer(request, written, std::move(*question), loaded, applied, report);
   return report;

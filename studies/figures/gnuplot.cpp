@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -13,7 +12,9 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "render/base/contracts.h"
 #include "render/base/error.h"
@@ -27,15 +28,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string make_temporary_folder() {
-  std::error_code error;
-  fs::path folder = fs::temp_directory_path(error);
-  if (error) folder = "/tmp";
-  std::string pattern = (folder / "gladstone_figure_XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) {
-    throw OutputError(folder.string(), fmt::format("no temporary folder for figures ({})", std::strerror(errno)));
+/// The environment without the user's default terminal, which gnuplot starts before the script names another: it fails
+/// where that one is not compiled in.
+std::vector<char*> environment_of_gnuplot() {
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!std::string_view(*variable).starts_with("GNUTERM=")) kept.push_back(*variable);
   }
-  return pattern;
+  kept.push_back(nullptr);
+  return kept;
 }
 
 /// Runs gnuplot on script.gp within the folder, its messages going to log.txt; returns its exit code.
@@ -49,7 +50,7 @@ int run_gnuplot(std::string const& folder) {
   std::array<std::string, 3> arguments{"gnuplot", "-d", "script.gp"};  // -d: no start-up file of the user's
   std::array<char*, 4> argv{arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
   pid_t child = 0;
-  int const error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, argv.data(), environ);
+  int const error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, argv.data(), environment_of_gnuplot().data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw GnuplotMissing();
   int status = 0;
@@ -101,16 +102,11 @@ bool is_full(std::string const& folder) {
 }  // namespace
 
 GnuplotFigure::GnuplotFigure(int width_px, int height_px)
-    : width_px_(width_px), height_px_(height_px), folder_(make_temporary_folder()) {
+    : width_px_(width_px), height_px_(height_px), folder_(temporary_.path()) {
   GLADSTONE_EXPECTS(width_px > 0 && height_px > 0);
   command("set border linewidth 1 linecolor '#404040'");
   command("set tics nomirror out scale 0.5 textcolor '#202020'");
   command("set key noautotitle textcolor '#202020'");
-}
-
-GnuplotFigure::~GnuplotFigure() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
 }
 
 void GnuplotFigure::command(std::string_view line) {

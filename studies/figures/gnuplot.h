@@ -7,6 +7,7 @@
 
 #include "render/base/error.h"
 #include "render/base/image.h"
+#include "studies/passing_folder.h"
 
 namespace gladstone {
 
@@ -20,12 +21,11 @@ class GnuplotMissing : public Error {
 };
 
 /// A figure in the making: commands and data for one run of gnuplot, in the house style (DejaVu Sans, UTF-8 text taken
-/// literally). Data stand in a temporary folder that goes with the object.
+/// literally). Data are stored in a temporary folder, removed with the object.
 class GnuplotFigure {
  public:
   /// @param width_px,height_px of the picture
   GnuplotFigure(int width_px, int height_px);
-  ~GnuplotFigure();
   GnuplotFigure(GnuplotFigure const&) = delete;
   GnuplotFigure& operator=(GnuplotFigure const&) = delete;
 
@@ -55,7 +55,8 @@ class GnuplotFigure {
 
   int width_px_;
   int height_px_;
-  std::string folder_;
+  PassingFolder temporary_;
+  std::string folder_;  ///< its path
   std::string script_;
   int files_ = 0;
 };

@@ -13,6 +13,7 @@
 
 #include "render/base/error.h"
 #include "render/base/input_file.h"
+#include "render/base/input_guard.h"
 #include "render/base/interrupt.h"
 #include "render/base/output_file.h"
 #include "render/base/parallel.h"
@@ -64,6 +65,7 @@ void refuse_foreign_run(fs::path const& folder) {
   fs::path const manifest = folder / run_file::manifest;
   std::error_code error;
   if (fs::exists(manifest, error)) {
+    UnguardedReading const to_be_replaced;
     if (version_of_manifest(InputFile(manifest.string(), "another folder"))) return;
     throw OutputError(manifest.string(),
                       "is no gladstone manifest, and would be overwritten; choose another folder, or remove this file");
@@ -138,6 +140,7 @@ Planned write_plan(std::string const& run, StudyPlan const& plan) {
   Planned planned = Planned::fresh;
   if (fs::exists(manifest, error)) {
     refuse_foreign_run(folder);
+    UnguardedReading const to_be_replaced;
     InputFile const there(manifest.string(), "another folder");
     int const version = *version_of_manifest(there);
     std::vector<CaseResult> const results = whole_results(folder);

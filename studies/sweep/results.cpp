@@ -20,6 +20,7 @@
 #include "render/base/content_hash.h"
 #include "render/base/error.h"
 #include "render/base/partial.h"
+#include "render/base/stop_point.h"
 #include "render/base/text_file.h"
 #include "studies/version_text.h"
 
@@ -242,6 +243,7 @@ void write_result(std::string const& run, CaseResult const& result) {
       if (written < 0 && errno != EINTR) error = errno;
       if (written == 0) error = EIO;
     }
+    stop_point("result-written");
     if (error == 0) error = partial.move_to(path.string());
     if (error == 0) partial.keep();
   } catch (std::system_error const& problem) {

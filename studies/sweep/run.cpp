@@ -10,6 +10,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
+#include "render/base/stop_point.h"
 #include "studies/sweep/case_list.h"
 #include "studies/sweep/claims.h"
 
@@ -145,7 +146,10 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
         // between the look and the claim another runner may have finished it
         if (!is_done(index)) {
           tell(index, CaseEvent::begun);
-          write_result(run, runner.run(cases[index], selection.keep_images ? images_folder(run, index) : ""));
+          stop_point("case-begun");
+          CaseResult const result = runner.run(cases[index], selection.keep_images ? images_folder(run, index) : "");
+          stop_point("case-computed");
+          write_result(run, result);
           tell(index, CaseEvent::finished);
         }
       }

@@ -15,6 +15,7 @@
 
 #include "render/base/error.h"
 #include "render/base/interrupt.h"
+#include "render/base/stop_point.h"
 
 namespace gladstone {
 namespace {
@@ -28,6 +29,7 @@ constexpr char const* executable = "/proc/self/exe";
   int const nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDOUT_FILENO);  // the result is the parent's to print
   ::fcntl(report, F_SETFD, 0);
+  ::unsetenv(stop_variable);  // tests stop the process that they start
   if (!variable.empty()) ::putenv(const_cast<char*>(variable.c_str()));
   ::execv(executable, argv.data());
   ::_exit(126);

@@ -6,16 +6,12 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <functional>
-#include <thread>
 
 #include "render/base/error.h"
 
 namespace gladstone {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// A process that catches interrupts and then waits in one call for ever, as in opening a file of a server that is
 /// gone.
@@ -27,34 +23,44 @@ class Blocked {
     if (child_ == 0) {
       prepare();
       catch_interrupts();
-      if (write(ready_[1], "x", 1) != 1) _exit(1);
-      for (;;) pause();
+      sigset_t all, none;
+      sigfillset(&all);
+      sigemptyset(&none);
+      sigprocmask(SIG_SETMASK, &all, nullptr);
+      for (;;) {
+        if (write(ready_[1], "x", 1) != 1) _exit(1);
+        sigsuspend(&none);  // signals come here and nowhere else; back when one has been handled
+      }
     }
-    char x = 0;
-    EXPECT_EQ(read(ready_[0], &x, 1), 1);
+    close(ready_[1]);
+    EXPECT_TRUE(goes_on());
   }
   ~Blocked() {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
     waitpid(child_, nullptr, 0);
+    close(ready_[0]);
   }
   Blocked(Blocked const&) = delete;
   Blocked& operator=(Blocked const&) = delete;
 
-  /// Sends a signal and gives it time. @return the exit code; -1 where it goes on, 128 + N where signal N ended it
+  /// Sends a signal. @return the exit code; -1 where it goes on, 128 + N where signal N ended it
   int after(int signal) {
     ::kill(child_, signal);
+    if (goes_on()) return -1;
     int status = 0;
-    for (int wait = 0; wait < 20; ++wait) {
-      std::this_thread::sleep_for(5ms);
-      if (waitpid(child_, &status, WNOHANG) != child_) continue;
-      child_ = 0;
-      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    }
-    return -1;
+    waitpid(child_, &status, 0);
+    child_ = 0;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
  private:
+  /// Waits until it waits for the next signal, or has ended.
+  bool goes_on() const {
+    char x = 0;
+    return read(ready_[0], &x, 1) == 1;
+  }
+
   std::array<int, 2> ready_{};
   pid_t child_ = 0;
 };

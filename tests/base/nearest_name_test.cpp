@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 
 namespace gladstone {
 namespace {
@@ -29,9 +29,9 @@ TEST(NearestName, IsTheLikelyMeaningOrNothing) {
 // Edit distances take the product of both lengths: a book against a hundred keys would take minutes.
 TEST(NearestName, OfAVeryLongWordIsNoneAtOnce) {
   std::string const book(std::size_t{16} << 20, 'a');
-  auto const start = std::chrono::steady_clock::now();
+  std::clock_t const start = std::clock();
   EXPECT_EQ(nearest_name(book, std::vector<std::string>(100, "magnification")), std::nullopt);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1);
 }
 
 TEST(QuotedList, ReadsAsASentence) {

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -411,7 +411,7 @@ TEST(SetupDocument, ManyUnknownKeysAreCountedAndTheFirstTold) {
   std::string text;
   std::size_t const count = 100000;
   for (std::size_t i = 0; i < count; ++i) text += "key" + std::to_string(i) + " = 1\n";
-  auto const start = std::chrono::steady_clock::now();
+  std::clock_t const start = std::clock();
   auto setup = document(text);
   setup.root().number("known", 1.0);
   try {
@@ -425,7 +425,7 @@ TEST(SetupDocument, ManyUnknownKeysAreCountedAndTheFirstTold) {
     EXPECT_THAT(what, HasSubstr("\ncase.toml:20:1: unknown key \"key19\""));
     EXPECT_THAT(what, testing::EndsWith("\nand 99980 problems more"));
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5);
 }
 
 TEST(SetupDocument, ALongKeyIsCutInItsMessage) {

@@ -104,6 +104,57 @@ TEST_F(CommandLine, ValidateMeetsEveryOracle) {
   for (auto const& oracle : json["oracles"]) EXPECT_TRUE(oracle["passed"]) << oracle;
 }
 
+// A field that moves no dot makes the case meaningless, whoever listens.
+TEST_F(CommandLine, QuietSilencesInformationAndNoWarning) {
+  std::vector<std::string> const still{"render", "setup.toml", "-o",
+                                       "case",   "--set",      "medium.field.gradient_kg_m4=[1e-6, 0.0, 0.0]"};
+  auto const with = [&still](std::vector<std::string> const& more) {
+    std::vector<std::string> all = still;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  Outcome const quiet = gladstone(with({"--quiet"})), loud = gladstone(with({})),
+                json = gladstone(with({"--quiet", "--json"}));
+  for (Outcome const& outcome : {quiet, loud, json}) {
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.err, HasSubstr("warning: nothing moves"));
+  }
+  EXPECT_THAT(quiet.err, testing::Not(HasSubstr("info: ")));
+  EXPECT_THAT(loud.err, HasSubstr("info: "));
+  auto const warnings = nlohmann::json::parse(json.out)["warnings"];
+  ASSERT_EQ(warnings.size(), 1u) << warnings;
+  EXPECT_THAT(warnings[0].get<std::string>(), HasSubstr("nothing moves"));
+}
+
+TEST_F(CommandLine, TheJsonOfEveryCommandHasTheWarningsOfTheRun) {
+  write("lens.toml",
+        "schema = 1\nf_number = 10.0\nfield_deg = [0.0]\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
+        "index = 1.5168\nstop = true\n[[surface]]\nsemi_diameter_mm = 12.7\n");
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8]\n");
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  for (std::vector<std::string> const& command :
+       std::vector<std::vector<std::string>>{{"render", "setup.toml", "-o", "case"},
+                                             {"correlate", "case"},
+                                             {"compare", "case", "--no-figures"},
+                                             {"report", "case"},
+                                             {"trace", "setup.toml", "--rays", "rays.csv", "-o", "ends.csv"},
+                                             {"info", "image", "case/reference.tif"},
+                                             {"info", "lens", "lens.toml"},
+                                             {"info", "mie", "--x", "5", "--m", "1.5"},
+                                             {"design", "setup.toml"},
+                                             {"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"},
+                                             {"sweep", "run", "run"},
+                                             {"sweep", "status", "run"},
+                                             {"sweep", "collect", "run", "--no-figures"}}) {
+    EXPECT_TRUE(json_of(command)["warnings"].is_array()) << testing::PrintToString(command);
+  }
+  // what is only on the log, as it is only found while the file is read
+  succeed({"correlate", "case", "-o", "v.csv"});
+  auto const warnings = json_of({"compare", "case", "--vectors", "v.csv", "--no-figures", "--quiet"})["warnings"];
+  ASSERT_EQ(warnings.size(), 1u) << warnings;
+  EXPECT_THAT(warnings[0].get<std::string>(), HasSubstr("unverified: v.csv"));
+}
+
 TEST_F(CommandLine, QuietSaysNothingAboutSuccess) {
   Outcome const outcome = gladstone({"render", "setup.toml", "-o", "case", "--quiet"});
   EXPECT_EQ(outcome.err, "");

@@ -21,6 +21,43 @@ class MaskedFrames : public Workplace {
   }
 };
 
+// Every table that a setup of ours can have stands in the file of --config, and in the case's own that --set changes.
+TEST_F(MaskedFrames, AreCorrelatedAsAnyWholeSetupSays) {
+  std::string const setup = with(with(small_setup, "z_d_mm = 250.0", "z_d_mm = { value = 250.0, sigma = 1.0 }"),
+                                 "z_a_mm = 750.0", "z_a_mm = { value = 750.0, sigma = 2.0 }") +
+                            R"(
+[[window]]
+side = "target"
+glass = "N-BK7"
+thickness_mm = 20
+position_mm = [0.0, 0.0, -100.0]
+[light]
+radiance_w_m2_sr = 8000.0
+exposure_us = 20.0
+[[correlations]]
+keys = ["geometry.z_a_mm", "geometry.z_d_mm"]
+coefficient = -0.8
+[requirements]
+objective = "gradient_min"
+resolution_mm = 4.0
+[limits]
+z_a_mm = [300.0, 2000.0]
+[inventory]
+f_numbers = [8, 16]
+[free]
+keys = ["geometry.z_a_mm"]
+)";
+  write("whole.toml", setup);
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "v.csv", "--config", "whole.toml"});
+  write("windowed.toml", with(setup, "[light]\nradiance_w_m2_sr = 8000.0\nexposure_us = 20.0\n", ""));
+  render("windowed", {}, "windowed.toml");
+  succeed({"correlate", "windowed", "--set", "correlate.overlap=0.75"});
+  succeed({"correlate", "case/reference.tif", "case/flow.tif", "-o", "v.csv", "--config", "windowed/setup.toml"});
+  write("misspelt.toml", with(setup, "[correlate]", "[corelate]"));
+  expect_refused({"correlate", "case/reference.tif", "case/flow.tif", "-o", "w.csv", "--config", "misspelt.toml"}, 2,
+                 {"corelate", "did you mean"});
+}
+
 // 64 px, of which the left half is masked: windows of 16 px that lie in it by more than half have status 2.
 TEST_F(MaskedFrames, AreRecordedWithTheVectors) {
   Image<std::uint16_t> mask(64, 64, 1);

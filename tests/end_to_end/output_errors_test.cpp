@@ -12,14 +12,15 @@ using namespace std::chrono_literals;
 /// Places that cannot be written and runs that are broken off: the old output stays, and nothing else.
 class OutputErrors : public Workplace {
  protected:
-  /// A rendering of minutes, stopped in the middle.
+  /// A rendering of minutes, interrupted when it begins to trace.
   Outcome interrupt_a_rendering(int signal) const {
-    Program program({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_);
-    for (int wait = 0; wait < 1000 && !is_rendering(); ++wait) std::this_thread::sleep_for(10ms);
+    Program program({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
+                    stopping_at("rendering"));
+    EXPECT_TRUE(program.wait_until_stopped());
     EXPECT_TRUE(is_rendering());
-    std::this_thread::sleep_for(300ms);
     program.send(signal);
-    return program.finish(2s);
+    program.send(SIGCONT);
+    return program.finish(60s);
   }
   bool is_rendering() const {
     auto all = names();
@@ -150,7 +151,7 @@ TEST_F(OutputErrors, FilesThatMayNotGrow) {
   EXPECT_TRUE(everything() == before) << testing::PrintToString(names());
 }
 
-TEST_F(OutputErrors, ControlCInMidRenderLeavesNothingWithinTwoSeconds) {
+TEST_F(OutputErrors, ControlCInMidRenderLeavesNothing) {
   for (int const signal : {SIGINT, SIGTERM}) {
     Outcome const outcome = interrupt_a_rendering(signal);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
@@ -172,6 +173,25 @@ TEST_F(OutputErrors, WhatAKilledRunLeftIsClearedAwayByTheNext) {
   EXPECT_TRUE(is_rendering());
   render("case");
   EXPECT_FALSE(is_rendering());
+}
+
+// At every step of a replacement a killed run leaves the old files, or new ones that the next command completes.
+TEST_F(OutputErrors, AReplacementThatIsKilledAtAnyStepLeavesOneWholeCase) {
+  render("old");
+  render("new", {"--set", "target.seed=8"});
+  for (std::string const point : {"rendering", "file-written", "file-written:4", "replacement-begun",
+                                  "replacement-retired", "replacement-installed"}) {
+    std::filesystem::remove_all(in("case"));
+    render("case");
+    Program program({"render", "setup.toml", "-o", "case", "--set", "target.seed=8"}, folder_, stopping_at(point));
+    ASSERT_TRUE(program.wait_until_stopped()) << point;
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish(60s).signal, SIGKILL);
+    succeed({"correlate", "case"});  // completes what was begun
+    expect_same_case(point.starts_with("replacement") ? "new" : "old", "case");
+    EXPECT_FALSE(std::filesystem::exists(in("case/.replacing"))) << point;
+    succeed({"compare", "case", "--no-figures"});
+  }
 }
 
 TEST_F(OutputErrors, RenderingAgainKeepsWhatTheUserAddedAndDropsWhatWasMeasured) {

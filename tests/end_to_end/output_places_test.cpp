@@ -17,14 +17,14 @@ namespace fs = std::filesystem;
 /// Where results may go, and that other writers and inputs are left alone.
 class Places : public Workplace {
  protected:
-  /// A rendering of minutes that has begun.
-  std::unique_ptr<Program> start_rendering(std::function<bool()> const& prepare = {}) const {
-    auto program = std::make_unique<Program>(
-        std::vector<std::string>{"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
-        prepare);
-    for (int wait = 0; wait < 1000 && partials().empty(); ++wait) std::this_thread::sleep_for(10ms);
+  /// A rendering, and what happens to it when it begins to trace.
+  Outcome signalled_rendering(int signal, std::function<bool()> const& prepare = {}) const {
+    Program program({"render", "setup.toml", "-o", "case"}, folder_, stopping_at("rendering", prepare));
+    EXPECT_TRUE(program.wait_until_stopped());
     EXPECT_EQ(partials().size(), 1u);
-    return program;
+    program.send(signal);
+    program.send(SIGCONT);
+    return program.finish(60s);
   }
   std::vector<std::string> partials() const {
     std::vector<std::string> all = names();
@@ -45,18 +45,23 @@ bool enter_container() {
 }
 
 TEST_F(Places, ALiveRunOfAnotherContainerIsLeftAloneAndADeadOneClearedAway) {
-  std::unique_ptr<Program> const inside = start_rendering(enter_container);
-  if (partials().empty() && inside->finish(0s).exit_code == 126) GTEST_SKIP() << "no namespaces here";
+  int alive[2];  // open for writing in every process of the container
+  ASSERT_EQ(::pipe(alive), 0);
+  Program inside({"render", "setup.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_,
+                 enter_container);
+  ::close(alive[1]);
+  while (partials().empty() && !inside.has_ended()) std::this_thread::yield();
+  if (partials().empty() && inside.finish(60s).exit_code == 126) GTEST_SKIP() << "no namespaces here";
   auto const theirs = partials();
   ASSERT_EQ(theirs.size(), 1u);
   EXPECT_THAT(theirs[0], HasSubstr("-container-"));
   render("case");
   EXPECT_EQ(partials(), theirs) << "it goes on writing there";
-  inside->finish(0s);  // and with it the container
-  for (int wait = 0; wait < 100 && !partials().empty(); ++wait) {
-    render("case");
-    std::this_thread::sleep_for(10ms);
+  inside.finish(0s);  // and with it the container
+  char none = 0;
+  while (::read(alive[0], &none, 1) < 0 && errno == EINTR) {  // ends when all of them have
   }
+  ::close(alive[0]);
   fs::remove_all(in("case"));
   render("case");
   EXPECT_TRUE(partials().empty());
@@ -187,15 +192,12 @@ TEST_F(Places, AFileThatTheSetupNamesIsNoOutput) {
 }
 
 TEST_F(Places, AHangUpCleansUpUnlessItIsIgnored) {
-  auto const program = start_rendering();
-  program->send(SIGHUP);
-  Outcome const outcome = program->finish(2s);
+  Outcome const outcome = signalled_rendering(SIGHUP);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
-  EXPECT_TRUE(partials().empty());
-  auto const detached = start_rendering([] { return ::signal(SIGHUP, SIG_IGN) != SIG_ERR; });
-  detached->send(SIGHUP);
-  std::this_thread::sleep_for(500ms);
-  EXPECT_EQ(partials().size(), 1u) << "under nohup it goes on";
+  EXPECT_EQ(names(), std::vector<std::string>{"setup.toml"});
+  Outcome const detached = signalled_rendering(SIGHUP, [] { return ::signal(SIGHUP, SIG_IGN) != SIG_ERR; });
+  EXPECT_EQ(detached.exit_code, 0) << "under nohup it goes on: " << detached.err;
+  EXPECT_EQ(names(), (std::vector<std::string>{"case", "setup.toml"}));
 }
 
 TEST_F(Places, AStudyIsRefusedItsPlaceBeforeItIsPlanned) {

@@ -18,30 +18,14 @@ class Sources : public Workplace {
     return Hdf5Reader(in(file).string()).attribute(name);
   }
   nlohmann::json errors() const { return nlohmann::json::parse(read("case/errors.json")); }
-  /// Starts a command and waits until it has begun: it has tried its place.
-  std::unique_ptr<Program> start(std::vector<std::string> arguments, std::string const& partial) const {
-    auto program = std::make_unique<Program>(std::move(arguments), folder_);
-    auto const begun = [&] {
-      auto const all = names("case");
-      return std::any_of(all.begin(), all.end(), [&](std::string const& name) { return name.starts_with(partial); });
-    };
-    for (int wait = 0; wait < 2000 && !begun(); ++wait) std::this_thread::sleep_for(1ms);
-    EXPECT_TRUE(begun());
-    return program;
-  }
-  /// A correlation or comparison of seconds, and while it goes on another rendering into the same case.
-  /// @param seconds of computing after which everything has been read
-  Outcome rendered_under(std::vector<std::string> arguments, std::string const& partial, double seconds) const {
-    auto const program = start(std::move(arguments), partial);
-    program->wait_until_computed(seconds);
-    program->send(SIGSTOP);
-    render("case", {"--set", "target.seed=8"}, "large.toml");
-    program->send(SIGCONT);
-    return program->finish(60s);
-  }
-  void write_large_setup() const {
-    write("large.toml", with(with(small_setup, "[64, 64]", "[512, 512]"), "[32, 16]\noverlap = 0.5",
-                             "[64, 32, 32]\noverlap = 0.75\nmethod = \"mqd\""));
+  /// Runs a command, and where it is at a point at which everything has been read, renders another case into the same
+  /// folder.
+  Outcome rendered_under(std::vector<std::string> arguments, std::string const& point) const {
+    Program program(std::move(arguments), folder_, stopping_at(point));
+    EXPECT_TRUE(program.wait_until_stopped());
+    render("case", {"--set", "target.seed=8"});
+    program.send(SIGCONT);
+    return program.finish(60s);
   }
 };
 
@@ -74,9 +58,8 @@ TEST_F(Sources, EqualContentGivesEqualHashes) {
 }
 
 TEST_F(Sources, FramesThatAreReplacedWhileTheyAreCorrelatedGiveNoVectors) {
-  write_large_setup();
-  render("case", {}, "large.toml");
-  Outcome const outcome = rendered_under({"correlate", "case", "--threads", "1"}, ".vectors.h5.partial-", 0.5);
+  render("case");
+  Outcome const outcome = rendered_under({"correlate", "case"}, "correlating");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("case/"), HasSubstr("has changed since it was read"),
                                  HasSubstr("run gladstone correlate case again")));
@@ -86,11 +69,9 @@ TEST_F(Sources, FramesThatAreReplacedWhileTheyAreCorrelatedGiveNoVectors) {
 }
 
 TEST_F(Sources, ACaseThatIsReplacedWhileItIsComparedGivesNoErrors) {
-  write_large_setup();
-  render("case", {}, "large.toml");
+  render("case");
   succeed({"correlate", "case"});
-  Outcome const outcome =
-      rendered_under({"compare", "case", "--no-figures", "--threads", "1"}, ".errors.json.partial-", 1.2);
+  Outcome const outcome = rendered_under({"compare", "case", "--no-figures"}, "comparing");
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("has changed since it was read"));
   EXPECT_FALSE(std::filesystem::exists(in("case/errors.json")));
@@ -124,14 +105,14 @@ TEST_F(Sources, VectorsThatTellNoFramesReadUnverified) {
 TEST_F(Sources, RaysThatAreReplacedWhileTheyAreTracedGiveNoTable) {
   std::filesystem::create_directory(in("case"));
   std::string rays = "x_mm,y_mm,z_mm,dx,dy,dz\n";
-  for (int i = 0; i < 200000; ++i) rays += fmt::format("{},0,-250,0,0,1\n", i * 1e-5);
+  for (int i = 0; i < 20; ++i) rays += fmt::format("{},0,-250,0,0,1\n", i * 0.1);
   write("rays.csv", rays);
-  auto const program =
-      start({"trace", "setup.toml", "--rays", "rays.csv", "-o", "case/ends.csv"}, ".ends.csv.partial-");
-  program->send(SIGSTOP);
+  Program program({"trace", "setup.toml", "--rays", "rays.csv", "-o", "case/ends.csv"}, folder_,
+                  stopping_at("tracing-rays"));
+  ASSERT_TRUE(program.wait_until_stopped());
   write("rays.csv", rays + "0,0,-250,0,0,1\n");
-  program->send(SIGCONT);
-  Outcome const outcome = program->finish(60s);
+  program.send(SIGCONT);
+  Outcome const outcome = program.finish(60s);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err, HasSubstr("rays.csv: has changed since it was read"));
   EXPECT_TRUE(names("case").empty());
@@ -152,9 +133,10 @@ TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,0.25\n");
   write("points.toml", with(with(small_setup, "dots_per_32px_window = 10.0", "kind = \"points\"\nfile = \"dots.csv\""),
                             "[64, 64]", "[64, 64]\nexposure = 1e4"));
-  Program program({"render", "points.toml", "-o", "case", "--set", "render.rays_per_dot=1000000"}, folder_);
-  program.wait_until_computed(0.8);  // the dots have been read by then
+  Program program({"render", "points.toml", "-o", "case"}, folder_, stopping_at("rendering"));
+  ASSERT_TRUE(program.wait_until_stopped());  // the dots have been read by then
   write("dots.csv", "x_mm,y_mm\n0,0\n1,0.5\n-1,-0.25\n");
+  program.send(SIGCONT);
   Outcome const outcome = program.finish(60s);
   EXPECT_EQ(outcome.exit_code, 2) << outcome.out;
   EXPECT_THAT(outcome.err,
@@ -162,16 +144,26 @@ TEST_F(Sources, AnInputThatIsReplacedWhileItIsRenderedGivesNoCase) {
   EXPECT_FALSE(std::filesystem::exists(in("case")));
 }
 
+// The second writer comes while the first one renders (into no case, then over one), or while that replaces the files.
 TEST_F(Sources, TwoRenderingsIntoOneCaseAtATimeLeaveOneOfThemWhole) {
   render("a", {"--set", "target.seed=8"});
   render("b", {"--set", "target.seed=9"});
-  for (int round = 0; round < 5; ++round) {
-    Program one({"render", "setup.toml", "-o", "case", "--set", "target.seed=8"}, folder_);
-    Program other({"render", "setup.toml", "-o", "case", "--set", "target.seed=9"}, folder_);
-    EXPECT_EQ(one.finish(60s).exit_code, 0);
-    EXPECT_EQ(other.finish(60s).exit_code, 0);
-    std::string const winner = read("case/setup.toml") == read("a/setup.toml") ? "a" : "b";
-    expect_same_case(winner, "case");
+  for (std::string const point : {"rendering", "rendering", "replacement-begun", "replacement-retired"}) {
+    Program second({"render", "setup.toml", "-o", "case", "--set", "target.seed=9"}, folder_, stopping_at("rendering"));
+    ASSERT_TRUE(second.wait_until_stopped());
+    Program first({"render", "setup.toml", "-o", "case", "--set", "target.seed=8"}, folder_, stopping_at(point));
+    ASSERT_TRUE(first.wait_until_stopped()) << point;
+    bool const one_by_one = point == "rendering";
+    second.send(SIGCONT);
+    if (one_by_one) {
+      EXPECT_EQ(second.finish(60s).exit_code, 0);
+    }
+    first.send(SIGCONT);
+    EXPECT_EQ(first.finish(60s).exit_code, 0);
+    if (!one_by_one) {
+      EXPECT_EQ(second.finish(60s).exit_code, 0);
+    }
+    expect_same_case(one_by_one ? "a" : "b", "case");  // who replaces the files last
     EXPECT_EQ(names("case").size(), 5u) << testing::PrintToString(names("case"));
     EXPECT_EQ(names(), (std::vector<std::string>{"a", "b", "case", "setup.toml"}));
     succeed({"correlate", "case"});

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <set>
+#include <thread>
 
 #include "render/base/content_hash.h"
 #include "render/base/image_file.h"
@@ -28,7 +28,7 @@ repeats = 2
 seed = 3
 )";
 
-/// Six cases long enough to be stopped in.
+/// Six cases long enough for several processes to share.
 constexpr char const* slow_study = R"(base = "setup.toml"
 [axes]
 "lens.f_number" = [8, 16]
@@ -49,11 +49,6 @@ class Sweeps : public Workplace {
     plan(run, study);
     succeed({"sweep", "run", run, "--quiet"});
     succeed({"sweep", "collect", run, "--no-figures", "--quiet"});
-  }
-  /// Waits for it, at most 10 s.
-  static bool comes_true(std::function<bool()> const& condition) {
-    for (int wait = 0; wait < 10000 && !condition(); ++wait) std::this_thread::sleep_for(1ms);
-    return condition();
   }
   /// Every line's first `old` becomes `replacement`, with a hash that says so: as if it had been planned.
   void plan_otherwise(std::string const& run, std::string const& old, std::string const& replacement) const {
@@ -208,32 +203,27 @@ TEST_F(Sweeps, JobsAndShardsInAnyOrderGiveTheSameStudy) {
   expect_same_study("whole", "apart");
 }
 
-// The moments count from the first claim and end within one and a half times what a case takes of the undisturbed run:
-// ten of them, each of which loses what is under way, leave cases to be computed.
-TEST_F(Sweeps, KilledAtAnyMomentTheNextRunFinishesTheSameStudy) {
-  write("slow.toml", with(slow_study, "1000, 1200, 1400", "250, 260, 270, 280, 290, 300"));
-  plan("whole", "slow.toml");
-  auto const whole = json_of({"sweep", "run", "whole"});
-  ASSERT_EQ(whole["computed"], 12);
-  succeed({"sweep", "collect", "whole", "--no-figures", "--quiet"});
-  double const case_takes = whole["seconds"].get<double>() / 12;
-  plan("run", "slow.toml");
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> moment(0, 1.5 * case_takes);
+// At each of these points a process is killed that has finished one case, and loses what it does on a second one; then
+// the first of three processes, whose workers end with it.
+TEST_F(Sweeps, KilledAtAnyPointTheNextRunFinishesTheSameStudy) {
+  finish("whole");
+  plan("run");
   Claims const claims(in("run").string(), Claims::Use::look);
-  int interrupted = 0;
-  for (int kill = 0; kill < 10; ++kill) {
-    // now one process, now two
-    Program program({"sweep", "run", "run", "--quiet", "--jobs", kill % 2 == 0 ? "1" : "2"}, folder_);
-    EXPECT_TRUE(comes_true([&] { return claims.any_held(); }));
-    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
-    bool const at_work = claims.any_held();
+  auto const kill_at = [&](std::string const& point, std::string const& jobs) {
+    Program program({"sweep", "run", "run", "--quiet", "--jobs", jobs}, folder_, stopping_at(point));
+    ASSERT_TRUE(program.wait_until_stopped()) << point;
+    EXPECT_TRUE(jobs != "1" || claims.any_held());
     program.send(SIGKILL);
-    interrupted += program.finish(10s).signal == SIGKILL && at_work;
-    EXPECT_TRUE(comes_true([&] { return !claims.any_held(); }));  // no claim outlives its process
+    EXPECT_EQ(program.finish(60s).signal, SIGKILL);
+    while (claims.any_held()) std::this_thread::yield();  // no claim outlives its process
+  };
+  int done = 0;
+  for (std::string const point : {"case-begun:2", "case-computed:2", "result-written:2", "case-finished"}) {
+    kill_at(point, "1");
+    EXPECT_EQ(status("run")["done"], ++done) << point;
   }
-  EXPECT_GE(interrupted, 8);
-  EXPECT_LT(status("run")["done"], 12);
+  kill_at("case-finished:2", "2");
+  EXPECT_GE(status("run")["done"], done + 2);
   succeed({"sweep", "run", "run", "--quiet"});
   succeed({"sweep", "collect", "run", "--no-figures", "--quiet"});
   expect_same_study("whole", "run");
@@ -437,13 +427,13 @@ TEST_F(Sweeps, AnInputThatHasChangedStopsTheRun) {
 }
 
 TEST_F(Sweeps, ControlCKeepsWhatIsFinished) {
-  write("slow.toml", with(slow_study, "1000, 1200, 1400", "100, 100000, 200000"));
   for (std::string const jobs : {"1", "2"}) {
-    plan("run" + jobs, "slow.toml");
-    Program program({"sweep", "run", "run" + jobs, "--jobs", jobs}, folder_);
-    for (int wait = 0; wait < 1000 && status("run" + jobs)["done"] == 0; ++wait) std::this_thread::sleep_for(10ms);
+    plan("run" + jobs);
+    Program program({"sweep", "run", "run" + jobs, "--jobs", jobs}, folder_, stopping_at("case-finished"));
+    ASSERT_TRUE(program.wait_until_stopped());
     program.send(SIGINT);
-    Outcome const outcome = program.finish(5s);
+    program.send(SIGCONT);
+    Outcome const outcome = program.finish(60s);
     EXPECT_EQ(outcome.exit_code, 130) << outcome.err << outcome.signal;
     EXPECT_THAT(outcome.err, HasSubstr("finished cases are kept"));
     EXPECT_EQ(outcome.out, "");

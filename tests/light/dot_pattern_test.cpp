@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -61,11 +61,10 @@ TEST(RandomDots, AreUniform) {
 // The density of Table 1: 20 dots of 3 px in 32 x 32 px, 14 % of the area.
 TEST(RandomDots, AMillionTakeSeconds) {
   double const side = std::sqrt(1e6 * 1024 / 20);
-  auto const start = std::chrono::steady_clock::now();
+  std::clock_t const start = std::clock();
   auto const dots = random_dots({side, side}, 1000000, 3.0, 7);
-  std::chrono::duration<double> const taken = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(dots.size(), 1000000u);
-  EXPECT_LT(taken.count(), 10.0);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 10.0);
 }
 
 // Memory follows the number of dots, not the ratio of target to dot size.

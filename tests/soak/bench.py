@@ -92,14 +92,20 @@ class Bench:
     def at(self, name):
         return os.path.join(self.folder, name)
 
-    def start(self, *arguments, limit_bytes=None):
+    def start(self, *arguments, limit_bytes=None, stop_at=None):
+        """@param stop_at point at which the program stops itself (CONTRIBUTING.md), for wait_until_stopped()"""
         def prepare():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # a full disk is an error of writing, not a signal
             if limit_bytes is not None:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit_bytes, limit_bytes))
         return subprocess.Popen([self.program, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, errors="replace", preexec_fn=prepare,
-                                start_new_session=True)
+                                start_new_session=True, env=os.environ | {"GLADSTONE_STOP_AT": stop_at or ""})
+
+    @staticmethod
+    def wait_until_stopped(process):
+        """Until it has stopped itself, or has ended without reaching the point."""
+        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
     def finish(self, process, seconds=120):
         """The exit code and stderr; a signal that the test did not send, and a run without end, are wrong."""

@@ -38,9 +38,23 @@ def strike(process, number, whole_group=True):
         os.killpg(process.pid, number) if whole_group else os.kill(process.pid, number)
 
 
+# Named points of commands, the same in every run with one seed.
+POINTS = {
+    "render": ["rendering", "file-written", "file-written:4", "replacement-begun", "replacement-retired",
+               "replacement-installed"],
+    "correlate": ["correlating", "file-written"],
+    "compare": ["comparing", "file-written"],
+}
+
+
 def kill(bench, rng, seconds, folder, *arguments):
-    process = bench.start(*arguments, "--quiet")
-    wait_for_moment(rng, process, seconds, folder)
+    """At a named point, or at a random moment; whether that comes before the end makes no difference to what must hold."""
+    point = rng.choice(POINTS.get(arguments[0], [None])) if rng.random() < 0.5 else None
+    process = bench.start(*arguments, "--quiet", stop_at=point)
+    if point:
+        bench.wait_until_stopped(process)
+    else:
+        wait_for_moment(rng, process, seconds, folder)
     strike(process, signal.SIGKILL)
     return bench.finish(process)[0]
 

@@ -1,8 +1,8 @@
 #include "studies/sweep/study_file.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <set>
 
 #include "tests/studies/support/study_folder.h"
@@ -224,10 +224,10 @@ TEST_F(Studies, ManyCasesArePlannedInATimeThatGrowsWithTheirNumber) {
 "lens.f_number" = { linear = [8, 16, 200] }
 "geometry.z_d_mm" = { linear = [200, 300, 100] }
 )");
-  auto const start = std::chrono::steady_clock::now();
+  std::clock_t const start = std::clock();  // of processor time, whatever else the machine does
   StudyPlan const plan = plan_study(file, "cpu");
   EXPECT_EQ(write_plan(in("run"), plan), Planned::fresh);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::duration<double>(20000 * 600e-6));
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 20000 * 600e-6);
   Manifest const manifest = read_manifest(in("run"));
   ASSERT_EQ(manifest.size(), 20000u);
   for (std::size_t const index : {0, 4095, 4096, 19999}) {

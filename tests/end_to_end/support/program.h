@@ -2,19 +2,22 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <sstream>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "render/base/stop_point.h"
 
 namespace gladstone::end_to_end {
 
@@ -65,39 +68,41 @@ class Program {
 
   void send(int signal) const { ::kill(child_, signal); }
 
-  /// Waits until it has computed for some time [s of processor time, of all its threads], whatever else the machine
-  /// does.
-  void wait_until_computed(double seconds) const {
-    for (int wait = 0; wait < 30000; ++wait) {
-      std::ifstream stat("/proc/" + std::to_string(child_) + "/stat");
-      std::string text;
-      std::getline(stat, text);
-      // 14th and 15th of its numbers; the second is a name in brackets
-      std::istringstream numbers(text.substr(std::min(text.rfind(')') + 1, text.size())));
-      std::string skipped;
-      for (int i = 0; i < 11; ++i) numbers >> skipped;
-      double user = 0, system = 0;
-      numbers >> user >> system;
-      if (user + system >= seconds * static_cast<double>(::sysconf(_SC_CLK_TCK))) return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  /// Waits until it has stopped itself at the point of stopping_at(), however long that takes.
+  /// @return false: it has ended without reaching the point
+  bool wait_until_stopped() {
+    int status = 0;
+    while (::waitpid(child_, &status, WUNTRACED) < 0 && errno == EINTR) {
     }
+    if (WIFSTOPPED(status)) return true;
+    ended_ = status;
+    return false;
+  }
+
+  /// Whether it has ended.
+  bool has_ended() {
+    int status = 0;
+    if (!ended_ && ::waitpid(child_, &status, WNOHANG) == child_) ended_ = status;
+    return ended_.has_value();
   }
 
   /// What it has written to stderr so far.
   std::string err() const { return content(streams_ / "err"); }
 
-  /// Waits for the end; what outlives the limit is killed.
+  /// Waits for the end; what outlives the limit hangs, and is killed.
   Outcome finish(std::chrono::milliseconds limit) {
     auto const end = std::chrono::steady_clock::now() + limit;
-    int status = 0;
-    while (::waitpid(child_, &status, WNOHANG) == 0) {
+    while (!has_ended()) {
       if (std::chrono::steady_clock::now() >= end) {
+        int status = 0;
         ::kill(child_, SIGKILL);
         ::waitpid(child_, &status, 0);
-        break;
+        ended_ = status;
+      } else {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
+    int const status = *ended_;
     child_ = 0;
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
             content(streams_ / "out"), content(streams_ / "err")};
@@ -106,7 +111,14 @@ class Program {
  private:
   std::filesystem::path streams_;
   pid_t child_ = 0;
+  std::optional<int> ended_;  ///< its status, from when it has been waited for
 };
+
+/// For a Program to stop itself where it reaches a point for the first time, or "NAME:3": for the third time.
+/// @param more to prepare
+inline std::function<bool()> stopping_at(std::string const& point, std::function<bool()> const& more = {}) {
+  return [=] { return ::setenv(stop_variable, point.c_str(), 1) == 0 && (!more || more()); };
+}
 
 /// Runs the program to its end, at most 60 s.
 inline Outcome run(std::vector<std::string> arguments, std::filesystem::path const& folder,

@@ -1,0 +1,86 @@
+#include "render/base/file_kind.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "render/base/error.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/input_guard.h"
+
+namespace gladstone {
+namespace {
+
+using namespace std::string_view_literals;
+
+std::string first_bytes(std::string const& path) {
+  std::string bytes(4096, '\0');
+  int const file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return "";
+  ssize_t const size = ::pread(file, bytes.data(), bytes.size(), 0);
+  ::close(file);
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  return bytes;
+}
+
+std::string kind_of_hdf5(std::string const& path) {
+  UnguardedReading const unguarded;
+  try {
+    std::string const filetype = Hdf5Reader(path).attribute("filetype");
+    return filetype.empty() ? "HDF5" : filetype;
+  } catch (DataError const&) {
+    return "";  // damaged: nothing that could be lost
+  }
+}
+
+bool is_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+         c == '.' || c == '"';
+}
+
+/// Whether the first line that is no comment is a table's head or "key = ...".
+bool reads_as_toml(std::string_view text) {
+  while (!text.empty()) {
+    std::size_t const end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    while (!line.empty() && (line.front() == ' ' || line.front() == '\t' || line.front() == '\r'))
+      line.remove_prefix(1);
+    if (line.empty() || line.front() == '#') continue;
+    if (line.front() == '[') return true;
+    while (!line.empty() && is_name(line.front())) line.remove_prefix(1);
+    while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+    return line.starts_with('=');
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string file_kind(std::string const& path, std::string const& name) {
+  constexpr std::array signatures{std::pair{"II*\0"sv, "TIFF"},
+                                  std::pair{"MM\0*"sv, "TIFF"},
+                                  std::pair{"II+\0"sv, "TIFF"},
+                                  std::pair{"MM\0+"sv, "TIFF"},
+                                  std::pair{"\x89PNG"sv, "PNG"},
+                                  std::pair{"%PDF"sv, "PDF"},
+                                  std::pair{"<html"sv, "HTML"},
+                                  std::pair{"<!DOCTYPE html"sv, "HTML"},
+                                  std::pair{"<!doctype html"sv, "HTML"},
+                                  std::pair{"<svg"sv, "SVG"},
+                                  std::pair{"<?xml"sv, "SVG"},
+                                  std::pair{"{"sv, "JSON"},
+                                  std::pair{"x_px,y_px,u_px,v_px"sv, "gladstone vectors"}};
+  std::string const bytes = first_bytes(path);
+  if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return kind_of_hdf5(path);
+  for (auto const& [signature, kind] : signatures) {
+    if (bytes.starts_with(signature)) return kind;
+  }
+  return name.ends_with(".toml") && reads_as_toml(bytes) ? "TOML" : "";
+}
+
+}  // namespace gladstone

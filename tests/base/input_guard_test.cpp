@@ -1,0 +1,148 @@
+#include "render/base/input_guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "render/base/error.h"
+#include "render/base/file_kind.h"
+#include "render/base/hdf5_file.h"
+#include "render/base/input_file.h"
+#include "render/base/output_file.h"
+#include "render/base/output_folder.h"
+#include "render/base/text_file.h"
+#include "tests/base/support/output.h"
+
+namespace gladstone {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// What a command has read is not replaced by what it writes.
+class InputGuards : public Output {
+ protected:
+  void SetUp() override {
+    Output::SetUp();
+    std::ofstream(in_folder("input.txt")) << "precious";
+  }
+  auto refused() const {
+    return ThrowsMessage<OutputError>(HasSubstr("would be overwritten, and is read by this command"));
+  }
+};
+
+TEST_F(InputGuards, WhatWasReadIsRefusedAsOutputUnderEveryName) {
+  fs::create_symlink("input.txt", in_folder("link.txt"));
+  fs::create_hard_link(in_folder("input.txt"), in_folder("hard.txt"));
+  InputGuard const guard;
+  std::thread([&] { read_text_file(in_folder("input.txt")); }).join();  // by any thread
+  for (std::string const name : {"input.txt", "link.txt", "hard.txt"}) {
+    EXPECT_THAT([&] { OutputFile::write_text(in_folder(name), "new"); }, refused()) << name;
+  }
+  EXPECT_THAT([&] { OutputFile(in_folder("link.txt")); },
+              ThrowsMessage<OutputError>(AllOf(HasSubstr("link.txt: "), HasSubstr("(as " + in_folder("input.txt")))));
+  EXPECT_EQ(content(in_folder("input.txt")), "precious");
+  OutputFile::write_text(in_folder("other.txt"), "new");
+}
+
+TEST_F(InputGuards, WhatIsReadAfterThePlaceWasTriedIsRefusedAtTheEnd) {
+  InputGuard const guard;
+  OutputFile output(in_folder("input.txt"));
+  read_text_file(in_folder("input.txt"));
+  output.write("new", 3);
+  EXPECT_THAT([&] { output.commit(); }, refused());
+  EXPECT_EQ(content(in_folder("input.txt")), "precious");
+}
+
+TEST_F(InputGuards, AFolderThatReplacesAnInputStaysAsItWas) {
+  fs::create_directory(in_folder("case"));
+  std::ofstream(in_folder("case/marker")) << "old";
+  std::ofstream(in_folder("case/derived.csv")) << "precious";
+  InputGuard const guard;
+  read_text_file(in_folder("case/derived.csv"));
+  OutputFolder output(in_folder("case"), {"marker", {"derived.csv"}});
+  OutputFile::write_text(output.temporary_path() + "/marker", "new");
+  EXPECT_THAT([&] { output.commit(); }, refused());
+  EXPECT_EQ(content(in_folder("case/marker")), "old");
+  EXPECT_EQ(content(in_folder("case/derived.csv")), "precious");
+}
+
+TEST_F(InputGuards, WhatTheCommandItselfWroteIsNoInput) {
+  InputGuard const guard;
+  for (std::string const text : {"one", "two", "three"}) {
+    OutputFile::write_text(in_folder("own.txt"), text);
+    EXPECT_EQ(read_text_file(in_folder("own.txt")), text);
+  }
+  {
+    UnguardedReading const to_be_replaced;
+    read_text_file(in_folder("input.txt"));
+  }
+  OutputFile::write_text(in_folder("input.txt"), "new");
+}
+
+TEST_F(InputGuards, WithoutAGuardNothingIsRecorded) {
+  {
+    InputGuard const guard;
+    read_text_file(in_folder("input.txt"));
+  }
+  read_text_file(in_folder("input.txt"));
+  InputGuard const guard;
+  OutputFile::write_text(in_folder("input.txt"), "new");
+}
+
+/// What files of a case and a run hold, by content.
+class FileKinds : public Output {
+ protected:
+  void put(std::string const& name, std::string const& text) const {
+    std::ofstream(in_folder(name), std::ios::binary) << text;
+  }
+  std::string kind(std::string const& name) const { return file_kind(in_folder(name)); }
+};
+
+TEST_F(FileKinds, AreToldByContent) {
+  Hdf5Writer(in_folder("a.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
+  EXPECT_EQ(kind("a.h5"), "gladstone truth");
+  put("damaged.h5", "\x89HDF\r\n\x1a\n and no more");
+  EXPECT_EQ(kind("damaged.h5"), "");
+  put("a.tif", std::string("II*\0....", 8));
+  EXPECT_EQ(kind("a.tif"), "TIFF");
+  put("manifest.jsonl", "{\"manifest\":3}\n{}\n");
+  EXPECT_EQ(kind("manifest.jsonl"), "JSON");
+  put("vectors.csv", "x_px,y_px,u_px,v_px,sigma_u_px\n");
+  EXPECT_EQ(kind("vectors.csv"), "gladstone vectors");
+  put("setup.toml", "# of a case\n\nschema = 1\n");
+  EXPECT_EQ(kind("setup.toml"), "TOML");
+  put("table.toml", "  [lens]\nf_number = 8\n");
+  EXPECT_EQ(kind("table.toml"), "TOML");
+  put("prose.toml", "# a heading\nWords, and no keys = values.\n");
+  EXPECT_EQ(kind("prose.toml"), "");
+  put("report.html", "<!DOCTYPE html>\n<html>");
+  EXPECT_EQ(kind("report.html"), "HTML");
+  put("empty", "");
+  EXPECT_EQ(kind("empty"), "");
+  EXPECT_EQ(kind("absent"), "");
+}
+
+// A report that is sent to a truth file, whoever has read it.
+TEST_F(FileKinds, AnOutputOfAnotherKindDestroysNoResult) {
+  Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "", 0, "cpu"}).close();
+  std::string const before = content(in_folder("truth.h5"));
+  auto const refused = ThrowsMessage<OutputError>(
+      AllOf(HasSubstr("truth.h5: holds data of another kind (gladstone truth)"), HasSubstr("choose another output")));
+  EXPECT_THAT([&] { OutputFile(in_folder("truth.h5"), "HTML"); }, refused) << "before anything is computed";
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "<html>"); }, refused);
+  EXPECT_THAT([&] { OutputFile::write_text(in_folder("truth.h5"), "# Markdown"); }, refused);
+  EXPECT_THAT([&] { Hdf5Writer(in_folder("truth.h5"), {"gladstone vectors", 1, "", 0, "cpu"}); }, refused);
+  EXPECT_EQ(content(in_folder("truth.h5")), before);
+  Hdf5Writer(in_folder("truth.h5"), {"gladstone truth", 2, "other", 0, "cpu"}).close();
+  put("notes.txt", "mine");
+  OutputFile::write_text(in_folder("notes.txt"), "<html>");  // named by the user, and of no kind that is known
+}
+
+}  // namespace
+}  // namespace gladstone

@@ -1,0 +1,106 @@
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+/// No output takes the place of what the command reads, nor of another part of a case or a study.
+class OverwrittenInputs : public Workplace {
+ protected:
+  /// The command ends with exit code 2, names the file, and leaves it as it was.
+  void expect_kept(std::string const& file, std::vector<std::string> arguments) const {
+    std::string const before = read(file);
+    ASSERT_NE(before, "") << file;
+    arguments.emplace_back("--quiet");
+    Outcome const outcome = gladstone(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << testing::PrintToString(arguments) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(file + ": "));
+    EXPECT_THAT(outcome.err,
+                AnyOf(HasSubstr("would be overwritten"), HasSubstr("is no folder"), HasSubstr("is a file")));
+    EXPECT_TRUE(read(file) == before) << file << " is destroyed by " << testing::PrintToString(arguments);
+  }
+};
+
+TEST_F(OverwrittenInputs, OfACase) {
+  render("case");
+  succeed({"correlate", "case"});
+  succeed({"compare", "case", "--no-figures"});
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-250,0,0,1\n");
+  for (std::string const name :
+       {"setup.toml", "truth.h5", "reference.tif", "flow.tif", "vectors.h5", "summary.json", "errors.json"}) {
+    expect_kept("case/" + name, {"report", "case", "-o", "case/" + name});
+    expect_kept("case/" + name, {"report", "case", "--format", "md", "-o", "case/" + name});
+    expect_kept("case/" + name, {"trace", "setup.toml", "--rays", "rays.csv", "-o", "case/" + name});
+  }
+  for (std::string const name : {"truth.h5", "reference.tif"}) {
+    expect_kept("case/" + name, {"report", "case", "--figures", "case/" + name});
+    expect_kept("case/" + name, {"info", "mie", "--x", "5", "--m", "1.5", "--figure", "case/" + name});
+  }
+  expect_kept("case/truth.h5", {"correlate", "case", "-o", "case/truth.h5"});
+  expect_kept("case/truth.h5", {"correlate", "case/reference.tif", "case/flow.tif", "-o", "case/truth.h5"});
+  // what belongs there is still written again
+  succeed({"report", "case", "-o", "case/report.html"});
+  succeed({"report", "case", "-o", "case/report.html"});
+  succeed({"correlate", "case"});
+  succeed({"compare", "case", "--no-figures"});
+}
+
+TEST_F(OverwrittenInputs, OfAStudy) {
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16]\n");
+  succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  succeed({"sweep", "run", "run", "--keep-images"});
+  succeed({"sweep", "collect", "run", "--no-figures"});
+  for (std::string const name :
+       {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "base.toml", "study.toml", "study.h5"}) {
+    expect_kept("run/" + name, {"report", "run", "-o", "run/" + name});
+  }
+  for (std::string const name : {"manifest.jsonl", "cases/0.json", "cases/0/truth.h5", "cases/0/reference.tif",
+                                 "cases/0/vectors.h5", "cases/0/setup.toml", "base.toml", "study.toml", "study.h5"}) {
+    expect_kept("run/" + name, {"sweep", "collect", "run", "--no-figures", "--dataset", "run/" + name});
+  }
+  // what belongs there is still written again
+  succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"lens.f_number\" = [8, 16, 32]\n");
+  succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  succeed({"sweep", "run", "run", "--keep-images"});
+  for (int round = 0; round < 2; ++round) {
+    succeed({"sweep", "collect", "run", "--no-figures", "--dataset", "run/set.h5"});
+    succeed({"report", "run"});
+  }
+}
+
+TEST_F(OverwrittenInputs, OfALensADesignAndAMeasurement) {
+  write("lens.toml",
+        "schema = 1\nf_number = 10.0\nfield_deg = [0.0]\n[[surface]]\nradius_mm = 51.5\nthickness_mm = 3.6\n"
+        "index = 1.5168\nstop = true\n[[surface]]\nsemi_diameter_mm = 12.7\n");
+  expect_kept("lens.toml", {"info", "lens", "lens.toml", "--figure", "lens.toml"});
+  std::string const question = with(small_setup, "[correlate]", R"([requirements]
+objective = "gradient_min"
+resolution_mm = 20.0
+[limits]
+z_total_max_mm = 2000.0
+z_a_mm = [300.0, 1500.0]
+z_d_mm = [100.0, 1200.0]
+[free]
+keys = ["geometry.z_a_mm", "geometry.z_d_mm"]
+[correlate])");
+  write("design.toml", question);
+  expect_kept("design.toml", {"design", "design.toml", "--verify", "0", "--apply", "design.toml"});
+  render("case");
+  expect_kept("case/setup.toml", {"design", "design.toml", "--verify", "0", "--apply", "case/setup.toml"});
+  succeed({"design", "design.toml", "--verify", "0", "--apply", "best.toml"});
+  succeed({"design", "design.toml", "--verify", "0", "--apply", "best.toml"});
+
+  fs::create_directory(in("measured"));
+  for (std::string const name : {"setup.toml", "reference.tif", "flow.tif"})
+    fs::copy(in("case/" + name), in("measured/" + name));
+  succeed({"correlate", "measured/reference.tif", "measured/flow.tif", "-o", "measured/vectors.h5"});
+  expect_kept("measured/vectors.h5", {"report", "measured", "-o", "measured/vectors.h5"});
+  expect_kept("measured/setup.toml", {"report", "measured", "-o", "measured/setup.toml"});
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
