@@ -1,6 +1,7 @@
 #include "studies/case.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 
@@ -15,11 +16,12 @@
 #include "studies/light_exposure.h"
 #include "studies/scene_renderer.h"
 #include "studies/uncertain_inputs.h"
+#include "studies/usual_values.h"
 
 namespace gladstone {
 namespace {
 
-constexpr double least_displacement_px = 1e-6;  // below it nothing moves
+constexpr double least_displacement_px = 1e-6;   // below it nothing moves
 
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
@@ -157,6 +159,12 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
     loaded.setup.camera.exposure_e = exposure_under(*light, loaded.setup);
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
+  std::vector<std::string> const unusual = unusual_values(loaded.document);
+  if (loaded.document.has_problems()) {  // a wrong unit may be what makes the setup impossible
+    for (std::string const& text : unusual) spdlog::warn("{}", text);
+  } else {
+    loaded.warnings.insert(loaded.warnings.begin(), unusual.begin(), unusual.end());
+  }
   loaded.document.finish();
   return loaded;
 }
@@ -204,6 +212,12 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
            fmt::format("nothing moves: by Eq. 9 the field displaces no place of the view by more than {:.2g} px; check "
                        "quantity, scale, spacing and place of medium.field, or its amplitude",
                        prepared.strain.largest_px));
+    } else if (prepared.strain.largest_px < measurable_displacement_px) {
+      warn(prepared.warnings,
+           fmt::format("displacements are too small to measure: by Eq. 9 the field displaces no place of the view by "
+                       "more than {:.2g} px (correlation resolves {} px at best); increase geometry.z_d_mm or the "
+                       "focal length, or check quantity, scale and spacing of medium.field",
+                       prepared.strain.largest_px, measurable_displacement_px));
     }
     if (prepared.strain.caustic_fraction > 0) {
       warn(prepared.warnings,

@@ -64,7 +64,8 @@ struct RenderedCase {
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
 
-/// The exposure that a camera takes of this light: its own, or by its brightest pixel [e].
+/// The exposure that a camera takes of this light: its own, or by its brightest pixel, but no more electrons than the
+/// particles' photons set free (photon_limited_exposure) [e].
 double exposure_of(Scene const& scene, RenderedLight const& light);
 
 /// What the camera records of a rendering.

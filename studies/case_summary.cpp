@@ -88,12 +88,12 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
   Rendering const& rendering = *rendered.rendering;
   TruthAccuracy const& accuracy = outcome.accuracy;
   RaysPlan const& plan = prepared.rays;
-  bool const piv = scene.setup.piv.has_value();
+  bool const piv = scene.setup.piv.has_value(), formula = rendering.method == RenderMethod::formula;
   nlohmann::json summary{
       {"magnification", scene.imaging.magnification},
       {"step_mm", prepared.step.step_mm},
       {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
-      {"rays_per_dot", plan.rays},
+      {"rays_per_dot", formula ? nlohmann::json(nullptr) : nlohmann::json(plan.rays)},
       {"rays_planned", spread_of(rendering.truth.rays_planned)},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
@@ -112,8 +112,10 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"dots_unknown", accuracy.unknown}}},
       {"estimator",
        {{"dots_by_table", accuracy.by_table},
-        {"dots_by_rays", rendering.truth.size() - accuracy.by_table},
-        {"no_table_since", to_string(rendering.table)},
+        {"dots_by_rays", formula ? 0 : rendering.truth.size() - accuracy.by_table},
+        {"dots_by_formula", formula ? rendering.truth.size() : 0},
+        {"no_table_since", formula ? "images and truth are given by a formula, without rays (method = \"formula\")"
+                                   : to_string(rendering.table)},
         {"table_error", outcome.table_error ? table_error_json(*outcome.table_error) : nlohmann::json(nullptr)},
         {"side_faces", plan.side_faces ? side_faces_json(*plan.side_faces, plan.bits) : nlohmann::json(nullptr)}}},
       {"method", to_string(rendering.method)},
@@ -124,7 +126,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
         {"reference", status_counts(rendering.statuses, 0)},
         {"flow", status_counts(rendering.statuses, 1)}}},
       {"rays_lost_by_surface",
-       rendering.method == RenderMethod::formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
+       formula ? nlohmann::json(nullptr) : losses_json(sample_ray_losses(scene))},
       {"pupil_margin_mm", rendered.pupil_margin / unit::millimetre},
       {"caustic_fraction", prepared.strain.caustic_fraction},
       {"saturated", {{"reference", frames.saturated_reference}, {"flow", frames.saturated_flow}}},
@@ -135,7 +137,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"seconds_render", rendered.seconds},
   };
   if (piv) summary.update(particle_summary(scene, rendering.truth, rendered.exposure_e));
-  if (!scene.setup.render.rays_per_dot) summary["rays_plan"] = plan_json(plan, rendering.truth.size());
+  if (!scene.setup.render.rays_per_dot && !formula) summary["rays_plan"] = plan_json(plan, rendering.truth.size());
   return summary;
 }
 

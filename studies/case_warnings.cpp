@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "render/base/units.h"
+#include "render/scene/particle_scene.h"
+#include "render/sensor/detector.h"
 
 namespace gladstone {
 
@@ -155,12 +157,45 @@ void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& c
                              in_flow, saturation_cure(camera, light_e)));
 }
 
+void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest) {
+  if (!scene.setup.piv) return;
+  CameraSetup const& camera = scene.setup.camera;
+  double const photons = scene.photon_unit, limit_e = photon_limited_exposure(scene);
+  std::string const cure =
+      "raise laser.pulse_energy_mj, open the lens (lens.f_number), or seed larger particles (particles.diameter_um)";
+  if (!(brightest > 0) || photons < 1) {
+    warn(warnings, fmt::format("particles: the brightest sends {:.2g} photons through the lens at a pulse, {}; {}",
+                               brightest > 0 ? photons : 0.0,
+                               camera.noise.enabled ? "which no sensor shows"
+                                                    : "which no sensor shows (the images have no noise that would say "
+                                                      "so; add [camera.noise])",
+                               cure));
+  } else if (camera.absolute_exposure) {
+    return;
+  } else if (camera.exposure_e && exposure_e > limit_e * (1 + 1e-9)) {
+    warn(warnings, fmt::format("camera.exposure: the brightest particle sends {:.3g} photons through the lens, which "
+                               "set free {:.3g} electrons at a quantum efficiency of {:.3g}, not {:.6g}: images have "
+                               "less noise than that light; set camera.exposure = \"auto\" or \"absolute\", or {}",
+                               photons, limit_e, camera.noise.quantum_efficiency, exposure_e, cure));
+  } else if (double const wanted = Detector::auto_exposure(camera, brightest); !camera.exposure_e && wanted > limit_e) {
+    double const full_scale = std::pow(2.0, camera.bit_depth) - 1;
+    warn(warnings,
+         fmt::format("camera.exposure = \"auto\" is limited by the light: the brightest particle sends {:.3g} photons "
+                     "through the lens, which set free {:.3g} electrons at a quantum efficiency of {:.3g}, and its "
+                     "pixel comes to {:.2g} % of full scale in place of 90 %. For 90 %, {:.3g} times the light is "
+                     "needed: {}, or lower camera.noise.full_well_e",
+                     photons, limit_e, camera.noise.quantum_efficiency,
+                     100 * Detector(camera, limit_e).ideal_level(brightest) / full_scale, wanted / limit_e, cure));
+  }
+}
+
 RenderedOutcome warn_of_rendering(std::vector<std::string>& warnings, PreparedCase const& prepared,
                                   RenderedCase const& rendered, RecordedFrames const& frames) {
   Setup const& setup = prepared.scene.setup;
   Rendering const& rendering = *rendered.rendering;
   warn_of_saturation(warnings, setup.camera, frames.saturated_reference, frames.saturated_flow,
                      rendered.exposure_e * rendering.in_place->brightest());
+  warn_of_exposure(warnings, prepared.scene, rendered.exposure_e, rendering.in_place->brightest());
   RenderedOutcome outcome;
   outcome.unseen = warn_of_unseen(warnings, prepared.scene, rendering.truth, rendered.pupil_margin);
   outcome.accuracy = truth_accuracy(rendering.truth, truth_tolerance_px);

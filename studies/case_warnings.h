@@ -44,6 +44,10 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
 void warn_of_saturation(std::vector<std::string>& warnings, CameraSetup const& camera, std::size_t in_reference,
                         std::size_t in_flow, double light_e);
 
+/// Warns of a PIV exposure that the particles' photons do not give: "auto" limited by them, or a number beyond them.
+/// @param brightest light of the brightest pixel of both frames, in units of the scene's photon_unit
+void warn_of_exposure(std::vector<std::string>& warnings, Scene const& scene, double exposure_e, double brightest);
+
 /// What can be said of a rendered case.
 struct RenderedOutcome {
   std::size_t unseen = 0;  ///< sources that are not seen, of any kind

@@ -46,6 +46,11 @@ void add_inputs(SourceFiles& sources, std::string const& truth, std::string cons
 
 }  // namespace
 
+void compared_inputs(std::string const& folder) {
+  SourceFiles sources;
+  add_inputs(sources, in_case(folder, case_file::truth), folder);
+}
+
 ComparedFiles compared_files(std::string const& folder, std::string const& vectors) {
   ComparedFiles files;
   files.setup = in_case(folder, case_file::setup);

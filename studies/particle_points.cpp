@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::uint64_t rough_rays = 128;
 constexpr int correction_rounds = 2;
+constexpr int projection_rounds = 4;  // each squares what the last has left, or divides it by the flow's strain
 constexpr double out_of_sight = std::numeric_limits<double>::quiet_NaN();
 
 /// The vectors of a picture as places of the sheet.
@@ -34,13 +35,13 @@ class SheetPoints {
     Particles virtual_ones;
     virtual_ones.resize(place_.size());
     double const half = scene_.setup.piv->flow.dt / 2;
-    for (std::size_t i = 0; i < place_.size(); ++i) {
+    parallel_for(place_.size(), [&](std::size_t i) {
       Vec3d const middle = plane_.point_outwards({place_[i].x, place_[i].y, 0});
       virtual_ones.place[0][i] = moved(velocity_, middle, -half, scene_.particles.path.steps);
       virtual_ones.place[1][i] = moved(velocity_, middle, half, scene_.particles.path.steps);
       virtual_ones.diameter[i] = diameter_;
       for (auto& photons : virtual_ones.photons) photons[i] = seen_[i] ? 1.0 : 0.0;
-    }
+    });
     return virtual_ones;
   }
 
@@ -81,31 +82,72 @@ class SheetPoints {
   ParticleVelocity velocity_;
 };
 
+bool without_medium(Scene const& scene) {
+  return std::holds_alternative<NoMedium<double>>(scene.medium.view) && !scene.second_medium;
+}
+
+/// Which of a particle's places in the image count.
+enum class SeenThrough { medium, ambient };
+
+/// Traces the particles whose images are at the places.
+GroundTruth trace_points(Scene& scene, Renderer& renderer, SheetPoints here, TruthAt at, SeenThrough through) {
+  std::uint64_t const all_rays = scene.rays_per_dot;
+  auto const trace = [&] {
+    return renderer.render_particles(scene, here.particles(), ParticleLight::equal, RenderImages::no).truth;
+  };
+  bool const ambient = through == SeenThrough::ambient;
+  scene.rays_per_dot = std::min(all_rays, rough_rays);
+  for (int round = 0; round < correction_rounds; ++round) {
+    GroundTruth const truth = trace();
+    here.correct(ambient ? truth.particles.reference_ambient_px : truth.reference_px,
+                 ambient ? truth.particles.displacement_ambient_px : truth.displacement_px, at);
+  }
+  scene.rays_per_dot = all_rays;
+  return trace();
+}
+
+/// Displacements of the particles whose pinhole projections are at the places: what the rays of an ideal lens without
+/// medium have as their centroids, in a thousandth of their time.
+std::vector<Vec2d> project_points(Scene const& scene, SheetPoints here, TruthAt at) {
+  auto const project = [&](std::vector<Vec2d>& first, std::vector<Vec2d>& moved) {
+    Particles const particles = here.particles();
+    first.assign(particles.size(), {out_of_sight, out_of_sight});
+    moved = first;
+    parallel_for(particles.size(), [&](std::size_t i) {
+      if (!(particles.photons[0][i] > 0)) return;
+      auto const a = scene.camera.project(particles.place[0][i]), b = scene.camera.project(particles.place[1][i]);
+      if (!a || !b) return;
+      first[i] = *a;
+      moved[i] = *b - *a;
+    });
+  };
+  std::vector<Vec2d> first, moved;
+  for (int round = 0; round < projection_rounds; ++round) {
+    project(first, moved);
+    here.correct(first, moved, at);
+  }
+  project(first, moved);
+  return moved;
+}
+
 }  // namespace
 
 ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at) {
   SheetPoints const start(scene, places_px);
   ParticlePoints points;
   points.flow_px = start.flow_px();
-  std::uint64_t const all_rays = scene.rays_per_dot;
-  auto const truth_of = [&](bool ambient) {
-    SheetPoints here = start;
-    auto const trace = [&] {
-      return renderer.render_particles(scene, here.particles(), ParticleLight::equal, RenderImages::no).truth;
-    };
-    scene.rays_per_dot = std::min(all_rays, rough_rays);
-    for (int round = 0; round < correction_rounds; ++round) {
-      GroundTruth const truth = trace();
-      here.correct(ambient ? truth.particles.reference_ambient_px : truth.reference_px,
-                   ambient ? truth.particles.displacement_ambient_px : truth.displacement_px, at);
-    }
-    scene.rays_per_dot = all_rays;
-    return trace();
-  };
-  points.seen = truth_of(false);
-  bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view) && !scene.second_medium;
-  points.ambient_px = empty ? points.seen.displacement_px : truth_of(true).particles.displacement_ambient_px;
+  points.seen = trace_points(scene, renderer, start, at, SeenThrough::medium);
+  points.ambient_px = without_medium(scene) ? points.seen.displacement_px
+                                            : trace_points(scene, renderer, start, at, SeenThrough::ambient)
+                                                  .particles.displacement_ambient_px;
   return points;
+}
+
+std::vector<Vec2d> particle_displacements(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+                                          TruthAt at) {
+  SheetPoints start(scene, places_px);
+  if (without_medium(scene) && scene.setup.on_bench()) return project_points(scene, std::move(start), at);
+  return trace_points(scene, renderer, std::move(start), at, SeenThrough::medium).displacement_px;
 }
 
 }  // namespace gladstone

@@ -22,4 +22,9 @@ struct ParticlePoints {
 /// @param at whether a place is that of mid-time, half the displacement away from the first image, or the first image's
 ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at);
 
+/// Displacements with the medium alone, of the particles that particle_points() finds [px]. Without medium, through an
+/// ideal thin lens on the Z axis, no ray is traced: the pinhole projection is exact there.
+std::vector<Vec2d> particle_displacements(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
+                                          TruthAt at);
+
 }  // namespace gladstone

@@ -9,6 +9,7 @@
 #include "render/base/output_folder.h"
 #include "render/base/stop_point.h"
 #include "render/focused_dots/table_error.h"
+#include "render/scene/particle_scene.h"
 #include "render/sensor/detector.h"
 #include "studies/case.h"
 #include "studies/case_summary.h"
@@ -52,7 +53,8 @@ void hash_inputs(CaseSetup& loaded) {
 double exposure_of(Scene const& scene, RenderedLight const& light) {
   CameraSetup const& camera = scene.setup.camera;
   if (camera.absolute_exposure) return scene.photon_unit * camera.noise.quantum_efficiency;
-  return camera.exposure_e ? *camera.exposure_e : Detector::auto_exposure(camera, light.brightest());
+  if (camera.exposure_e) return *camera.exposure_e;
+  return std::min(Detector::auto_exposure(camera, light.brightest()), photon_limited_exposure(scene));
 }
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {

@@ -1,5 +1,7 @@
 #include "render/light/particle_material.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,8 @@
 
 namespace gladstone {
 namespace {
+
+constexpr double least_index = 0.01;  // real part; metals have 0.05 and more
 
 /// sqrt(1 + sum of B L^2 / (L^2 - C)), L the wavelength and C in um^2.
 template <std::size_t N>
@@ -86,8 +90,10 @@ std::complex<double> read_particle_index(SetupTable table, double wavelength) {
   if (!table.has("material")) {
     auto const parts = table.numbers("index", {1.45, 0.0}, 2, Range::at_least(0.0, 100.0));
     if (parts.size() != 2) return 1.45;
-    if (parts[0] == 0) {
-      table.problem("index", "has a real part of 0 (index = [n, k] is n + i k, n > 0); give the refractive index");
+    if (parts[0] < least_index) {
+      table.problem("index", fmt::format("has a real part of {:g} (index = [n, k] is n + i k; {} <= n <= 100); give the "
+                                         "refractive index",
+                                         parts[0], least_index));
       return 1.45;
     }
     return {parts[0], parts[1]};

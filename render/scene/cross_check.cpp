@@ -105,9 +105,6 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
   }
   if (!setup.on_bench() && !cross_check_camera(setup, root)) return false;
   if (setup.lenslets) cross_check_lenslets(setup, warnings);
-  if (std::string const hint = metres_hint(setup.lens.focal_length); !hint.empty() && !setup.lens.prescription) {
-    warnings.push_back("lens.focal_length_mm: so short a lens makes a tiny picture of a wide field" + hint);
-  }
   return true;
 }
 

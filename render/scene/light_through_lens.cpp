@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "render/base/parallel.h"
@@ -55,6 +56,12 @@ double brightest_photons(Scene const& scene, Particles const& particles, Particl
     brightest = std::max(brightest, most);
   });
   return brightest;
+}
+
+double photon_limited_exposure(Scene const& scene) {
+  NoiseSetup const& noise = scene.setup.camera.noise;
+  if (!scene.setup.piv || !noise.enabled) return std::numeric_limits<double>::infinity();
+  return scene.photon_unit * noise.quantum_efficiency;
 }
 
 double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "render/base/parallel.h"
@@ -16,6 +17,7 @@ namespace {
 constexpr double path_tolerance_px = 1e-5;
 constexpr double bending_margin = 0.02;       // by which media may turn light on its way to the lens [rad]
 constexpr double scattering_contrast = 1e-3;  // of the index: what seeds a gas has 0.3 and more
+constexpr double lit_share = 0.5;             // of the particles: fewer are worth a word
 constexpr double kept_pairs = 0.75;           // that lose little: Keane & Adrian's rule of a quarter
 
 /// Share of the particles' volume that the camera sees: of places that an additive recurrence spreads evenly over X and
@@ -102,6 +104,56 @@ std::string warning_of_wide_particles(Scene const& scene) {
       widest / unit::micrometre, px, point_px);
 }
 
+/// Of a volume that ends within the view. Empty: it fills the view, or is not given.
+std::string warning_of_small_volume(Scene const& scene) {
+  constexpr int along = 16;           // places of the view, along either side
+  constexpr double negligible = 0.01;  // share of them
+  ParticleSetup const& particles = scene.setup.piv->particles;
+  if (!particles.volume) return {};
+  Pose<double> const plane = scene.sheet_plane();
+  CameraSetup const& camera = scene.setup.camera;
+  double const thickness = scene.setup.piv->laser.thickness;
+  Vec3d const half = 0.5 * *particles.volume + Vec3d{thickness, thickness, thickness};
+  std::vector<char> outside(static_cast<std::size_t>(along) * along);
+  std::atomic<int> seen = 0;
+  parallel_for(outside.size(), [&](std::size_t i) {
+    Vec2d const share{(static_cast<int>(i) % along + 0.5) / along, (static_cast<int>(i) / along + 0.5) / along};
+    auto const at = scene.camera.unproject({share.x * camera.columns - 0.5, share.y * camera.rows - 0.5}, plane);
+    if (!at) return;
+    ++seen;
+    Vec3d const off = plane.point_outwards({at->place.x, at->place.y, 0}) - particles.center;
+    outside[i] = std::abs(off.x) > half.x || std::abs(off.y) > half.y || std::abs(off.z) > half.z ? 1 : 0;
+  });
+  double const share = static_cast<double>(std::count(outside.begin(), outside.end(), 1)) / std::max(1, seen.load());
+  if (share < negligible) return {};
+  return fmt::format(
+      "particles.volume_mm: the volume is smaller than the view: {:.0f} % of the image sees no particles (the sensor "
+      "sees some {:.4g} x {:.4g} mm of the sheet); enlarge volume_mm, or check center_mm",
+      100 * share, camera.columns * scene.setup.pixel_size() * 1e3, camera.rows * scene.setup.pixel_size() * 1e3);
+}
+
+/// Of particles that are seeded where the sheet does not light them. Empty: most are lit.
+std::string warning_of_dark_particles(Scene const& scene, ParticleCensus const& census) {
+  std::size_t const count = scene.particles.size();
+  double const share = static_cast<double>(std::max(census.lit[0], census.lit[1])) / static_cast<double>(count);
+  if (count == 0 || !(share < lit_share)) return {};
+  return fmt::format(
+      "particles: {:.0f} % of {} lie outside the laser sheet at either pulse and are not seen (their number, "
+      "particles.per_pixel included, counts them); make particles.volume_mm as thin as the sheet, {:.4g} mm and its "
+      "wings, or check laser.offset_mm and tilt_deg",
+      100 * (1 - share), count, scene.setup.piv->laser.thickness / unit::millimetre);
+}
+
+/// Of a flow that moves no image by as much as correlation resolves, though it does move. Empty: there is none.
+std::string warning_of_small_displacements(Scene const& scene, ParticleCensus const& census) {
+  if (census.in_view == 0 || !(census.largest_px > 0) || census.largest_px >= measurable_displacement_px) return {};
+  return fmt::format(
+      "flow.dt_us: displacements are too small to measure: no particle in view moves by more than {:.2g} px (correlation "
+      "resolves {} px at best); lengthen the time between the pulses, to some {:.3g} us for 8 px",
+      census.largest_px, measurable_displacement_px,
+      8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond);
+}
+
 }  // namespace
 
 double particle_count(Setup const& setup) {
@@ -165,8 +217,13 @@ ParticleCensus count_particles(Scene const& scene) {
   ParticleCensus census;
   Particles const& particles = scene.particles;
   std::vector<char> in_view(particles.size());
+  std::vector<double> moved_px(particles.size());
   parallel_chunks(particles.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) in_view[i] = scene.source_in_view(i) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      auto const first = scene.camera.project(particles.place[0][i]), second = scene.camera.project(particles.place[1][i]);
+      in_view[i] = first && scene.camera.sensor.covers(*first) ? 1 : 0;
+      if (first && second) moved_px[i] = length(*second - *first);
+    }
   });
   for (std::size_t i = 0; i < particles.size(); ++i) {
     double const first = particles.photons[0][i], second = particles.photons[1][i];
@@ -174,6 +231,7 @@ ParticleCensus count_particles(Scene const& scene) {
     census.lit[1] += second > 0 ? 1 : 0;
     if (!(first > 0) || in_view[i] == 0) continue;
     ++census.in_view;
+    census.largest_px = std::max(census.largest_px, moved_px[i]);
     census.paired += second >= much * first ? 1 : 0;
   }
   return census;
@@ -196,7 +254,10 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
-  if (std::string const wide = warning_of_wide_particles(scene); !wide.empty()) warnings.push_back(wide);
+  for (std::string const& text : {warning_of_wide_particles(scene), warning_of_small_volume(scene),
+                            warning_of_dark_particles(scene, census), warning_of_small_displacements(scene, census)}) {
+    if (!text.empty()) warnings.push_back(text);
+  }
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
   if (std::size_t const outside = scene.particles.outside_flow; outside > 0) {
     warnings.push_back(

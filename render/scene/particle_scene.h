@@ -48,11 +48,19 @@ double brightest_photons(Scene const& scene, Particles const& particles, Particl
 /// does not hold: it has a unit of its own, the brightest of these particles.
 double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light);
 
+/// Most electrons that light of 1 can set free: its photons times the quantum efficiency, where the sensor has noise.
+/// Infinite without noise, whose full well is only the scale of grey levels, and for BOS, whose light has no photons.
+double photon_limited_exposure(Scene const& scene);
+
+/// Displacements that correlation resolves at best; smaller ones are warned of [px].
+inline constexpr double measurable_displacement_px = 0.01;
+
 /// What the warnings of a PIV case rest on.
 struct ParticleCensus {
   std::size_t lit[2] = {0, 0};  ///< particles in volume and sheet at either pulse
   std::size_t in_view = 0;      ///< of the first pulse's, whose chief ray meets the sensor
   std::size_t paired = 0;       ///< of those in view, lit at the second pulse too, by a tenth as much or more
+  double largest_px = 0;        ///< displacement of the images of those in view, without medium [px]
 };
 ParticleCensus count_particles(Scene const& scene);
 

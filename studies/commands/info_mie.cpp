@@ -20,6 +20,7 @@ namespace gladstone {
 namespace {
 
 constexpr char const* command_name = "info mie";
+constexpr double least_relative_index = 0.01;  // metals have 0.05 and more
 
 std::optional<double> as_number(std::string_view text) {
   double value = 0;
@@ -50,12 +51,12 @@ std::complex<double> relative_index(MieQuestion const& question) {
   std::size_t const comma = text.find(',');
   auto const real = as_number(text.substr(0, comma));
   auto const imaginary = comma == std::string_view::npos ? 0.0 : as_number(text.substr(comma + 1));
-  if (!real || !imaginary || *real <= 0 || *imaginary < 0 || *real > 100 || *imaginary > 100) {
+  if (!real || !imaginary || *real < least_relative_index || *imaginary < 0 || *real > 100 || *imaginary > 100) {
     throw DataError(
         command_name,
-        fmt::format("--m {} is no refractive index (RE or RE,IM for n + i k; 0 < n <= 100, 0 <= k <= 100, k > 0 "
+        fmt::format("--m {} is no refractive index (RE or RE,IM for n + i k; {} <= n <= 100, 0 <= k <= 100, k > 0 "
                     "absorbs); as in --m 1.5,0.01",
-                    question.m));
+                    question.m, least_relative_index));
   }
   return {*real, *imaginary};
 }
@@ -81,6 +82,12 @@ int describe_mie(MieQuestion const& question, GlobalOptions const& options) {
   std::complex<double> const m = relative_index(question);
   MieCoefficients const sphere(x, m);
   MieEfficiencies const q = sphere.efficiencies();
+  if (!std::isfinite(q.q_ext + q.q_sca + q.q_back + q.g)) {
+    throw DataError(command_name,
+                    fmt::format("--m {} at --x {}: the series overflows (no material's index is so far from 1); give a "
+                                "refractive index between 0.01 and 100",
+                                question.m, question.x));
+  }
   ScatteringDiagram diagram{x, m, q, drawn_angles(x), {}, {}};
   std::vector<double> s11, polarization;
   for (double const angle : diagram.angle_deg) {

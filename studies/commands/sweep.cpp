@@ -111,7 +111,8 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_flag("--no-figures", arguments->no_figures, "Tables only");
   app.add_option("--dataset", arguments->dataset,
-                 "Pack images and truth of the cases that were run with --keep-images into one HDF5 file");
+                 "Pack images and true displacements at their pixels, of the cases that were run with --keep-images, "
+                 "into one HDF5 file");
   return [arguments, &options] {
     std::string const& run = arguments->run;
     StudyTable const table = collect_study(run);
@@ -139,7 +140,7 @@ CommandBody attach_collect(CLI::App& app, GlobalOptions const& options) {
     }
     std::string packed;
     if (!arguments->dataset.empty()) {
-      PackedDataset const set = pack_dataset(run, arguments->dataset);
+      PackedDataset const set = pack_dataset(run, arguments->dataset, *options.open_device().renderer);
       json["dataset"] = {{"file", arguments->dataset}, {"cases", set.cases}, {"without", set.without}};
       packed = fmt::format("packed {} cases into {}{}\n", set.cases, arguments->dataset,
                            set.without ? fmt::format("; {} have no images or are not done", set.without) : "");

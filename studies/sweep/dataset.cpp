@@ -9,14 +9,17 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
 #include "render/base/hdf5_file.h"
 #include "render/base/image_file.h"
 #include "render/base/output_place.h"
 #include "render/base/progress.h"
 #include "render/base/text_file.h"
+#include "studies/case.h"
 #include "studies/case_files.h"
+#include "studies/compared_files.h"
+#include "studies/displacement_truth.h"
+#include "studies/quiet_log.h"
 #include "studies/sweep/run.h"
 #include "studies/sweep/study_columns.h"
 
@@ -25,8 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lattice constant of the displacement maps [px].
-constexpr int map_step_px = 4;
+/// Lattice constants of the displacement maps: every pixel of PIV, whose flow is known everywhere; of BOS, whose every
+/// node is a dot that is traced through the medium, every fourth [px].
+constexpr int piv_spacing_px = 1, bos_spacing_px = 4;
 /// Rows of a chunk of the lists.
 constexpr std::size_t list_chunk = 8192;
 
@@ -46,12 +50,6 @@ std::optional<CaseWithImages> case_with_images(std::string const& folder) {
     if (truth.has(name)) return CaseWithImages{folder, sources, truth.shape(name)[0]};
   }
   throw DataError((fs::path(folder) / case_file::truth).string(), "has the truth of neither dots nor particles");
-}
-
-std::vector<Vec2d> pairs_of(std::vector<double> const& numbers) {
-  std::vector<Vec2d> pairs(numbers.size() / 2);
-  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {numbers[2 * i], numbers[2 * i + 1]};
-  return pairs;
 }
 
 std::vector<std::uint16_t> levels_of(Image<double> const& image) {
@@ -79,23 +77,40 @@ std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<st
   return both;
 }
 
-/// u and v on the lattice, NaN where no truth is near.
-std::vector<double> map_of(std::vector<Vec2d> const& place, std::vector<Vec2d> const& displacement,
-                           std::vector<std::size_t> const& size) {
-  MapGrid const grid{static_cast<int>(size[1]), static_cast<int>(size[0]), {0, 0}, map_step_px};
-  DisplacementMaps const maps = map_scattered(place, displacement, grid);
-  std::vector<double> both;
-  both.reserve(2 * maps.u_px.size());
-  for (std::size_t i = 0; i < maps.u_px.size(); ++i) {
-    both.push_back(maps.u_px.data()[i]);
-    both.push_back(maps.v_px.data()[i]);
-  }
-  return both;
+/// A map of the data set: its name, the image that its places are of, and that in words.
+struct DisplacementMapName {
+  char const* name;
+  TruthAt at;
+  char const* place;
+};
+constexpr std::array maps{
+    DisplacementMapName{"/displacement_px", TruthAt::reference,
+                        "frame A: the displacement of what the first frame shows at this pixel"},
+    DisplacementMapName{"/displacement_mid_px", TruthAt::mid_position,
+                        "mid-time: the displacement of what is at this pixel midway between its images in both frames"},
+};
+
+/// A kept case made ready to trace once more. @throws DataError where a file that it names has changed
+PreparedCase prepare_again(CaseWithImages const& one) {
+  compared_inputs(one.folder);
+  QuietLog const quiet;  // what there is to warn of stands in its summary.json
+  CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
+  StrainMap const unused;
+  KnownParts known;
+  known.strain = &unused;
+  return prepare_case(loaded, known);
+}
+
+std::vector<double> numbers_of(Image<Vec2d> const& map) {
+  std::vector<double> numbers;
+  numbers.reserve(2 * map.size());
+  for (Vec2d const& d : map) numbers.insert(numbers.end(), {d.x, d.y});
+  return numbers;
 }
 
 }  // namespace
 
-PackedDataset pack_dataset(std::string const& run, std::string const& path) {
+PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer) {
   std::string const study = (fs::path(run) / run_file::study).string();
   std::string const manifest = (fs::path(run) / run_file::manifest).string();
   refuse_inputs_as_outputs({path}, {study, manifest, (fs::path(run) / run_file::table).string()});
@@ -120,8 +135,12 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
   Image<double> const sample = read_image(in_case(kept.front().folder, case_file::reference));
   std::vector<std::size_t> const size{static_cast<std::size_t>(sample.rows()),
                                       static_cast<std::size_t>(sample.columns())};
-  std::vector<std::size_t> const nodes{(size[0] + map_step_px - 1) / map_step_px,
-                                       (size[1] + map_step_px - 1) / map_step_px};
+  for (CaseWithImages const& one : kept) {
+    if (one.sources == kept.front().sources) continue;
+    throw DataError(run, "has cases of BOS and of PIV, whose truth differs in kind; pack studies of one experiment");
+  }
+  auto const spacing = static_cast<std::size_t>(kept.front().sources == "/particles" ? piv_spacing_px : bos_spacing_px);
+  std::vector<std::size_t> const nodes{(size[0] + spacing - 1) / spacing, (size[1] + spacing - 1) / spacing};
   std::size_t const cases = kept.size();
   auto const all = static_cast<std::size_t>(begin.back());
 
@@ -129,16 +148,19 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
   SourceFiles sources;
   sources.add("manifest", manifest, SourceFiles::Holds::bytes);
   Hdf5Writer file(path,
-                  {"gladstone dataset", 1, fs::exists(study, error) ? read_text_file(study) : "",
+                  {"gladstone dataset", 2, fs::exists(study, error) ? read_text_file(study) : "",
                    table.rows.front().seed, table.rows.front().device, sources},
                   Hdf5Growth::on_disk);
   write_columns(file, "/parameters/", "case", table, axis_columns(table));
   file.make_rows<std::uint16_t>("/images", {cases, 2, size[0], size[1]}, {1, 1, size[0], size[1]}, "1",
                                 "grey levels as in reference.tif and flow.tif", "case, frame, row, column");
-  file.make_rows<double>("/displacement_px", {cases, nodes[0], nodes[1], 2}, {1, nodes[0], nodes[1], 2}, "px",
-                         "ray truth on a lattice, by local linear regression from /truth",
-                         "case, row, column, component (u, v)");
-  file.attribute("/displacement_px", "spacing_px", static_cast<double>(map_step_px));
+  for (DisplacementMapName const& map : maps) {
+    file.make_rows<double>(map.name, {cases, nodes[0], nodes[1], 2}, {1, nodes[0], nodes[1], 2}, "px",
+                           "true displacement from flow, medium and camera, on a lattice of pixels",
+                           "case, row, column, component (u right, v down)");
+    file.attribute(map.name, "spacing_px", static_cast<double>(spacing));
+    file.attribute(map.name, "place", map.place);
+  }
   std::size_t const chunk = std::clamp<std::size_t>(all, 1, list_chunk);
   for (char const* name : {"/truth/reference_px", "/truth/displacement_px"}) {
     file.make_rows<double>(name, {all, 2}, {chunk, 2}, "px", "of every dot or particle, case by case",
@@ -164,7 +186,11 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path) {
     file.write_rows<double>("/truth/reference_px", row, place);
     file.write_rows<double>("/truth/displacement_px", row, displacement);
     file.write_rows<double>("/truth/flux", row, flux);
-    file.write_rows<double>("/displacement_px", i, map_of(pairs_of(place), pairs_of(displacement), nodes));
+    PreparedCase const prepared = prepare_again(one);
+    for (DisplacementMapName const& map : maps) {
+      file.write_rows<double>(map.name, i,
+                              numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(spacing))));
+    }
     progress.advance(1);
   }
   file.close();
