@@ -14,5 +14,9 @@ pkg_check_modules(NLopt REQUIRED IMPORTED_TARGET nlopt_cxx)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(TomlPlusPlus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
+# VTK's XML files and what they are compressed by
+pkg_check_modules(PugiXml REQUIRED IMPORTED_TARGET pugixml)
+pkg_check_modules(Lz4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(Lzma REQUIRED IMPORTED_TARGET liblzma)
 # of OpenSSL, the library of hashes alone
 pkg_check_modules(OpenSSLCrypto REQUIRED IMPORTED_TARGET libcrypto)

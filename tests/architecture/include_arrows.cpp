@@ -36,7 +36,7 @@ std::vector<Room> const& table() {
       {"render/base",
        {},
        {"Eigen", "x86 intrinsics"},
-       {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "zlib", "fmt"}},
+       {"HDF5", "OpenImageIO", "OpenSSL", "toml++", "TBB", "zlib", "lz4", "lzma", "pugixml", "fmt"}},
       {"render/image_codecs", {"render/base"}, {}, {"OpenImageIO"}},
       {"render/light", {"render/base"}, {"Eigen"}, {"fmt"}},
       {"render/medium", {"render/base"}, {"Eigen"}, {"fmt"}},
@@ -93,6 +93,9 @@ std::vector<LibraryPattern> const& known_libraries() {
       {"Ceres", "ceres/.*"},
       {"NLopt", "nlopt\\.h(pp)?"},
       {"zlib", "zlib\\.h"},
+      {"lz4", "lz4\\.h"},
+      {"lzma", "lzma\\.h"},
+      {"pugixml", "pugixml\\.hpp"},
       {"CUDA",
        "cu(da|fft|rand|blas|solver|sparse)[^/]*|cuda/.*|cub/.*|thrust/.*|cooperative_groups.*|mma\\.h|nv[^/]*/.*|"
        "nv(ml|rtc|Toolsext)\\w*\\.h|device_(launch_parameters|functions|types)\\.h|driver_types\\.h|"

@@ -283,7 +283,7 @@ class NrrdBytes {
     std::array<char, 4096> beyond{};
     int const got = gzread(stream_, beyond.data(), static_cast<unsigned>(beyond.size()));
     if (got < 0) damaged();
-    auto const* const end = beyond.begin() + std::max(got, 0);
+    auto const end = beyond.begin() + std::max(got, 0);
     bool const line_end = got <= 4 && std::all_of(beyond.begin(), end, [](char c) { return c == '\n' || c == '\r'; });
     if (got > 0 && header_.byte_skip == 0 && !line_end) too_long(header_.data_bytes() + static_cast<std::size_t>(got));
     position_ = std::numeric_limits<std::size_t>::max();  // any further reading starts again
