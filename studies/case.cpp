@@ -21,7 +21,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_displacement_px = 1e-6;   // below it nothing moves
+constexpr double least_displacement_px = 1e-6;  // below it nothing moves
 
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;

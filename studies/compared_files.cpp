@@ -46,7 +46,7 @@ void add_inputs(SourceFiles& sources, std::string const& truth, std::string cons
 
 }  // namespace
 
-void compared_inputs(std::string const& folder) {
+void require_unchanged_inputs(std::string const& folder) {
   SourceFiles sources;
   add_inputs(sources, in_case(folder, case_file::truth), folder);
 }

@@ -16,4 +16,8 @@ struct ComparedFiles {
 /// @throws DataError where one is not there, or the vectors were measured on other frames than the truth belongs to
 ComparedFiles compared_files(std::string const& folder, std::string const& vectors);
 
+/// Requires the files that a case's setup names to be those that it was rendered from; missing ones are left to their
+/// readers. @throws DataError for one that has changed
+void require_unchanged_inputs(std::string const& folder);
+
 }  // namespace gladstone

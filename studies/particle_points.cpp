@@ -137,9 +137,10 @@ ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec
   ParticlePoints points;
   points.flow_px = start.flow_px();
   points.seen = trace_points(scene, renderer, start, at, SeenThrough::medium);
-  points.ambient_px = without_medium(scene) ? points.seen.displacement_px
-                                            : trace_points(scene, renderer, start, at, SeenThrough::ambient)
-                                                  .particles.displacement_ambient_px;
+  points.ambient_px =
+      without_medium(scene)
+          ? points.seen.displacement_px
+          : trace_points(scene, renderer, start, at, SeenThrough::ambient).particles.displacement_ambient_px;
   return points;
 }
 

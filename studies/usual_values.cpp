@@ -18,7 +18,8 @@ struct OtherUnit {
   double factor;  ///< its size in the key's own unit
 };
 
-constexpr std::array of_mm{OtherUnit{"m", 1e3}, OtherUnit{"um", 1e-3}, OtherUnit{"cm", 10.0}, OtherUnit{"inches", 25.4}};
+constexpr std::array of_mm{OtherUnit{"m", 1e3}, OtherUnit{"um", 1e-3}, OtherUnit{"cm", 10.0},
+                           OtherUnit{"inches", 25.4}};
 constexpr std::array of_um{OtherUnit{"mm", 1e3}, OtherUnit{"m", 1e6}, OtherUnit{"nm", 1e-3}};
 constexpr std::array of_nm{OtherUnit{"um", 1e3}, OtherUnit{"mm", 1e6}, OtherUnit{"m", 1e9}};
 constexpr std::array of_us{OtherUnit{"ms", 1e3}, OtherUnit{"s", 1e6}, OtherUnit{"ns", 1e-3}};
@@ -85,7 +86,9 @@ std::vector<double> numbers_of(SetupNode const& node) {
   return numbers;
 }
 
-std::string with_unit(double value, char const* unit) { return fmt::format("{:.6g}{}{}", value, *unit ? " " : "", unit); }
+std::string with_unit(double value, char const* unit) {
+  return fmt::format("{:.6g}{}{}", value, *unit ? " " : "", unit);
+}
 
 /// Returns the text on a value outside its key's range; empty where it is inside.
 std::string unusual_value(UsualRange const& usual, double value) {

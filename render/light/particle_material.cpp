@@ -91,9 +91,10 @@ std::complex<double> read_particle_index(SetupTable table, double wavelength) {
     auto const parts = table.numbers("index", {1.45, 0.0}, 2, Range::at_least(0.0, 100.0));
     if (parts.size() != 2) return 1.45;
     if (parts[0] < least_index) {
-      table.problem("index", fmt::format("has a real part of {:g} (index = [n, k] is n + i k; {} <= n <= 100); give the "
-                                         "refractive index",
-                                         parts[0], least_index));
+      table.problem("index",
+                    fmt::format("has a real part of {:g} (index = [n, k] is n + i k; {} <= n <= 100); give the "
+                                "refractive index",
+                                parts[0], least_index));
       return 1.45;
     }
     return {parts[0], parts[1]};

@@ -106,7 +106,7 @@ std::string warning_of_wide_particles(Scene const& scene) {
 
 /// Of a volume that ends within the view. Empty: it fills the view, or is not given.
 std::string warning_of_small_volume(Scene const& scene) {
-  constexpr int along = 16;           // places of the view, along either side
+  constexpr int along = 16;            // places of the view, along either side
   constexpr double negligible = 0.01;  // share of them
   ParticleSetup const& particles = scene.setup.piv->particles;
   if (!particles.volume) return {};
@@ -148,7 +148,8 @@ std::string warning_of_dark_particles(Scene const& scene, ParticleCensus const& 
 std::string warning_of_small_displacements(Scene const& scene, ParticleCensus const& census) {
   if (census.in_view == 0 || !(census.largest_px > 0) || census.largest_px >= measurable_displacement_px) return {};
   return fmt::format(
-      "flow.dt_us: displacements are too small to measure: no particle in view moves by more than {:.2g} px (correlation "
+      "flow.dt_us: displacements are too small to measure: no particle in view moves by more than {:.2g} px "
+      "(correlation "
       "resolves {} px at best); lengthen the time between the pulses, to some {:.3g} us for 8 px",
       census.largest_px, measurable_displacement_px,
       8 / census.largest_px * scene.setup.piv->flow.dt / unit::microsecond);
@@ -220,7 +221,8 @@ ParticleCensus count_particles(Scene const& scene) {
   std::vector<double> moved_px(particles.size());
   parallel_chunks(particles.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      auto const first = scene.camera.project(particles.place[0][i]), second = scene.camera.project(particles.place[1][i]);
+      auto const first = scene.camera.project(particles.place[0][i]),
+                 second = scene.camera.project(particles.place[1][i]);
       in_view[i] = first && scene.camera.sensor.covers(*first) ? 1 : 0;
       if (first && second) moved_px[i] = length(*second - *first);
     }
@@ -254,8 +256,9 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
-  for (std::string const& text : {warning_of_wide_particles(scene), warning_of_small_volume(scene),
-                            warning_of_dark_particles(scene, census), warning_of_small_displacements(scene, census)}) {
+  for (std::string const& text :
+       {warning_of_wide_particles(scene), warning_of_small_volume(scene), warning_of_dark_particles(scene, census),
+        warning_of_small_displacements(scene, census)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);

@@ -92,7 +92,7 @@ constexpr std::array maps{
 
 /// A kept case made ready to trace once more. @throws DataError where a file that it names has changed
 PreparedCase prepare_again(CaseWithImages const& one) {
-  compared_inputs(one.folder);
+  require_unchanged_inputs(one.folder);
   QuietLog const quiet;  // what there is to warn of stands in its summary.json
   CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
   StrainMap const unused;
@@ -188,8 +188,8 @@ PackedDataset pack_dataset(std::string const& run, std::string const& path, Rend
     file.write_rows<double>("/truth/flux", row, flux);
     PreparedCase const prepared = prepare_again(one);
     for (DisplacementMapName const& map : maps) {
-      file.write_rows<double>(map.name, i,
-                              numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(spacing))));
+      file.write_rows<double>(
+          map.name, i, numbers_of(displacement_truth(prepared.scene, renderer, map.at, static_cast<int>(spacing))));
     }
     progress.advance(1);
   }

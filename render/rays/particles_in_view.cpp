@@ -1,0 +1,60 @@
+#include "render/rays/particles_in_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "render/base/parallel.h"
+#include "render/scene/spot.h"
+#include "render/scene/trace_ray.h"
+
+namespace gladstone {
+namespace {
+
+constexpr double spare_px = 16;
+constexpr double blur_factor = 1.5, shift_factor = 2;
+
+/// Whether the image of a point reaches a sensor that is larger by a margin all around. True where its chief ray is not
+/// known.
+bool reaches(Camera const& camera, Vec3d place, double margin_px) {
+  std::optional<Vec2d> const chief = camera.project(place);
+  if (!chief) return true;
+  Vec2d const last{camera.sensor.columns - 1.0, camera.sensor.rows - 1.0};
+  Vec2d const beside{std::max({-chief->x, chief->x - last.x, 0.0}), std::max({-chief->y, chief->y - last.y, 0.0})};
+  double const apart = std::max(beside.x, beside.y);
+  if (apart <= margin_px) return true;
+  if (camera.chief_rays_only()) return false;
+  auto const disc = camera.aim_disc(place);
+  if (!disc) return true;
+  CameraView<double> const view = camera.view();
+  double blur_px = 0;
+  for (Vec3d const rim : {disc->a, disc->b, -disc->a, -disc->b}) {
+    Ray<double> const ray{place, normalized(disc->centre + rim - place)};
+    RayHit<double> const hit = trace_ray(view, NoMedium<double>{}, TracingOptions<double>{}, ray, 1.0);
+    if (hit.status <= RayStatus::vignetted) blur_px = std::max(blur_px, length(hit.pixel - *chief));
+  }
+  return !(apart > margin_px + blur_factor * blur_px);
+}
+
+}  // namespace
+
+std::vector<char> particles_near_view(Scene const& scene, Particles const& particles) {
+  std::vector<char> near(particles.size(), 1);
+  if (scene.setup.lenslets) return near;
+  std::optional<AiryTable> airy;
+  double const px_per_metre = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
+  double const margin_px = scene.setup.view_margin_px + make_spot(scene, airy).half_width() + spare_px +
+                           shift_factor * scene.pupil_margin * px_per_metre;
+  parallel_chunks(particles.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      bool found = false;
+      for (std::size_t pulse = 0; pulse < 2 && !found; ++pulse) {
+        found = particles.photons[pulse][i] > 0 && reaches(scene.camera, particles.place[pulse][i], margin_px);
+      }
+      near[i] = found ? 1 : 0;
+    }
+  });
+  return near;
+}
+
+}  // namespace gladstone
