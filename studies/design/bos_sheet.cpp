@@ -235,9 +235,10 @@ void add_errors(DesignSheet& sheet, Setup const& setup, Bench<double> const& b) 
                   Margin::none, "standard deviation"});
   rows.push_back(
       {"F26", "random_error_px", "random error of a vector", sigma, "px",
-       "sqrt(pattern^2 (20 / N_I)^0.61 + (0.272 q d^-0.59)^2 20 / N_I)", "data/estimators/random_error.csv",
+       "sqrt(pattern^2 (20 / N_I)^0.48 + (0.287 q (1 + 1.6 s^2) d^-0.737)^2 20 / N_I)",
+       "data/estimators/random_error.csv",
        std::max(at_most(sigma, 0.05, 0.1), beyond.empty() ? Margin::none : Margin::marginal),
-       fmt::format("along the displacement, across it 0.3 to 0.8 of that; dots of {:.3g} px under spots of {:.3g} px, "
+       fmt::format("along the displacement, across it 0.3 to 1.1 of that; dots of {:.3g} px under spots of {:.3g} px, "
                    "noise {:.3g} % of the peak, {:.3g} dots in a window{}",
                    b.geometric_dot_px(), b.spot_sigma_px(), 100 * q, b.dots_in_window(),
                    beyond.empty() ? "" : "; beyond what was measured: " + beyond)});

@@ -139,10 +139,10 @@ std::vector<std::array<double, 9>> measured_errors() {
 }
 
 // The study's bench is Table 1's with 12 bits, 3 electrons of read noise and the brightest pixel at 90 % of full scale.
-// What the docstring says of the fit: 20 % rms, at most a factor of 1.7.
+// What the docstring says of the fit: 18 % rms (17.96), at most a factor of 1.7 (1.655).
 TEST(Bench, RandomErrorIsTheStudys) {
   auto const rows = measured_errors();
-  ASSERT_EQ(rows.size(), 72u);
+  ASSERT_EQ(rows.size(), 144u);
   double square = 0;
   for (auto const& row : rows) {
     BenchGiven given = table1_given();
@@ -158,7 +158,7 @@ TEST(Bench, RandomErrorIsTheStudys) {
     EXPECT_LT(std::abs(std::log(ratio)), std::log(1.7)) << row[0] << ' ' << row[1] << ' ' << row[2] << ' ' << row[3];
     square += std::log(ratio) * std::log(ratio);
   }
-  EXPECT_LT(std::sqrt(square / 72), 0.2);
+  EXPECT_LT(std::sqrt(square / 144), 0.18);
 }
 
 using Jet5 = ceres::Jet<double, choice_count>;

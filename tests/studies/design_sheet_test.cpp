@@ -118,7 +118,7 @@ TEST(DesignSheet, LightLimitsTheStop) {
   })) << "exposure = \"auto\" takes what light it needs";
 }
 
-// The study went from f/4 to f/11, with noise of 0.6 to 11 % of the peak: what is beyond is told and never green.
+// The study went from f/4 to f/32, with noise of 0.6 to 11 % of the peak: what is beyond is told and never green.
 TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   auto const row = [](std::string const& more) {
     return sheet_of(std::string(table1_setup) + more)->sheet.row("random_error_px");
@@ -129,7 +129,7 @@ TEST(DesignSheet, SaysWhereTheRandomErrorWasNotMeasured) {
   EXPECT_THAT(within.note, testing::Not(testing::HasSubstr("beyond")));
   for (auto const& [more, what] :
        {std::pair<std::string, char const*>{"", "noise below 0.6 %"},
-        {noise + "[lens]\nf_number = 32\n", "spots above 0.276 px"},
+        {noise + "[lens]\nf_number = 45\n", "spots above 0.8 px"},
         {noise + "[target]\ndots_per_32px_window = 8\n", "a number of dots below 5 in a window"}}) {
     EXPECT_EQ(row(more).margin, Margin::marginal) << what;
     EXPECT_THAT(row(more).note,
