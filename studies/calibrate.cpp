@@ -103,7 +103,10 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   }
   calibration.columns = picture.columns();
   calibration.rows = picture.rows();
-  calibration.planes.push_back({file, setup.planes[plane], hash});
+  CalibratedPlane& calibrated = calibration.planes.emplace_back();
+  calibrated.file = file;
+  calibrated.z = setup.planes[plane];
+  calibrated.sha256 = hash;
   return picture;
 }
 
