@@ -32,12 +32,15 @@ class ByteStream {
       : payload_(payload), file_(file), name_(name), end_(payload.appended ? file.size() : payload.text.size()) {
     at_ = payload.appended ? payload.offset : 0;
     if (at_ > end_) cut_short();
+    if (payload.appended) return;
+    buffer_ = payload.text;
+    at_ = end_;
   }
 
   /// The next bytes. @throws DataError where there are fewer
   std::vector<char> next(std::uint64_t size) {
-    std::uint64_t const most = payload_.format == VtkPayload::Format::base64 ? (end_ - at_) / 4 * 3 + 6 : end_ - at_;
-    if (size > most) cut_short();
+    std::uint64_t const left = end_ - at_ + (buffer_.size() - buffered_);
+    if (size > (payload_.format == VtkPayload::Format::base64 ? left / 4 * 3 + 6 : left)) cut_short();
     require_memory(file_.path(), "data array \"" + excerpt(name_) + '"', static_cast<double>(size));
     std::vector<char> bytes(size);
     if (payload_.format == VtkPayload::Format::base64) {
@@ -88,18 +91,13 @@ class ByteStream {
   int next_character() {
     while (true) {
       if (buffered_ == buffer_.size()) {
-        if (!payload_.appended || at_ >= end_) {
-          if (payload_.appended || at_ >= end_) return -1;
-          buffer_ = payload_.text;
-          at_ = end_;
-        } else {
-          throw_if_interrupted();
-          constexpr std::uint64_t at_once = 1 << 18;
-          buffer_.resize(std::min(at_once, end_ - at_));
-          buffer_.resize(file_.read(at_, buffer_.data(), buffer_.size()));
-          if (buffer_.empty()) return -1;
-          at_ += buffer_.size();
-        }
+        if (at_ >= end_) return -1;
+        throw_if_interrupted();
+        constexpr std::uint64_t at_once = 1 << 18;
+        buffer_.resize(std::min(at_once, end_ - at_));
+        buffer_.resize(file_.read(at_, buffer_.data(), buffer_.size()));
+        if (buffer_.empty()) return -1;
+        at_ += buffer_.size();
         buffered_ = 0;
       }
       char const c = buffer_[buffered_++];
@@ -123,9 +121,9 @@ class ByteStream {
   VtkPayload const& payload_;
   InputFile const& file_;
   std::string const& name_;
-  std::uint64_t at_ = 0, end_;
-  std::string buffer_;
-  std::size_t buffered_ = 0;
+  std::uint64_t at_ = 0, end_;  ///< next byte of the file that is not buffered yet, and their end
+  std::string buffer_;          ///< of base64: of the file, or the whole text of data in place
+  std::size_t buffered_ = 0;    ///< characters of it that are decoded
   std::array<char, 3> group_{};
   std::size_t given_ = 0, decoded_ = 0;
 };
