@@ -69,9 +69,10 @@ StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path,
   double const largest = std::max(std::abs(x.front()), std::abs(x.back()));
   for (std::size_t i = 1; i < x.size(); ++i) {
     if ((x[i] - x[i - 1]) * step > 0) continue;
-    refuse(fmt::format("coordinates neither ascend nor descend throughout ({:.9g} at node {} is followed by {:.9g}); "
-                       "sort the nodes",
-                       x[i - 1], i - 1, x[i]));
+    refuse(
+        fmt::format("coordinates neither ascend nor descend throughout ({:.9g} at node {} is followed by {:.9g}); "
+                    "sort the nodes",
+                    x[i - 1], i - 1, x[i]));
   }
   axis.step = step;
   // Coordinates are floats, and rounded to decimals by the client: two units in the last place of the largest.

@@ -23,9 +23,9 @@ struct FieldFormat {
 
 /// One row per format: its reader and how its files are called.
 constexpr std::array field_formats{
-    FieldFormat{".h5", open_hdf5},       FieldFormat{".hdf5", open_hdf5},     FieldFormat{".he5", open_hdf5},
-    FieldFormat{".nc", open_hdf5},       FieldFormat{".mat", open_hdf5},      FieldFormat{".vti", open_vtk_xml},
-    FieldFormat{".vtr", open_vtk_xml},   FieldFormat{".vtk", open_vtk_legacy}, FieldFormat{".nrrd", open_nrrd},
+    FieldFormat{".h5", open_hdf5},     FieldFormat{".hdf5", open_hdf5},      FieldFormat{".he5", open_hdf5},
+    FieldFormat{".nc", open_hdf5},     FieldFormat{".mat", open_hdf5},       FieldFormat{".vti", open_vtk_xml},
+    FieldFormat{".vtr", open_vtk_xml}, FieldFormat{".vtk", open_vtk_legacy}, FieldFormat{".nrrd", open_nrrd},
     FieldFormat{".nhdr", open_nrrd},
 };
 

@@ -13,8 +13,9 @@
 
 namespace gladstone {
 
-/// A gridded field in a file, before its values are read: x, y and z ascend, x is fastest, nodes are uniform. Values are
-/// read slab by slab; only where the file has its axes in another order, or not uniform, are they all held in memory.
+/// A gridded field in a file, before its values are read: x, y and z ascend, x is fastest, nodes are uniform. Values
+/// are read slab by slab; only where the file has its axes in another order, or not uniform, are they all held in
+/// memory.
 class FieldSource {
  public:
   virtual ~FieldSource() = default;

@@ -50,8 +50,8 @@ void OrientedField::read_rows(int plane, int first_row, int count, std::span<dou
   GLADSTONE_EXPECTS(first_row >= 0 && count >= 0 && count <= grid_.nodes[1] - first_row);
   load();
   auto const width = static_cast<std::size_t>(values());
-  std::array<std::size_t, 3> const strides{
-      width, stored_->row_values(), stored_->row_values() * static_cast<std::size_t>(stored_->nodes()[1])};
+  std::array<std::size_t, 3> const strides{width, stored_->row_values(),
+                                           stored_->row_values() * static_cast<std::size_t>(stored_->nodes()[1])};
   auto const offset = [&](std::size_t axis, int node) {
     int const stored = backwards_[axis] ? grid_.nodes[axis] - 1 - node : node;
     return strides[stored_axis_[axis]] * static_cast<std::size_t>(stored);

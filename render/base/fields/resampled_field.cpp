@@ -164,9 +164,10 @@ std::vector<std::string> ResampledField::notes() {
                         "xyz"[axis], finest_spacing(x), coarsest_spacing(x), grid_.nodes[axis],
                         grid_.spacing[static_cast<int>(axis)]);
   }
-  notes.push_back(fmt::format("axes that are not uniform were resampled: {}; nodes predicted from their neighbours are "
-                              "off by at most {:.2g} ({:.2g} % of the range of values), which bounds the error",
-                              axes, error_, range_ > 0 ? 100 * error_ / range_ : 0.0));
+  notes.push_back(
+      fmt::format("axes that are not uniform were resampled: {}; nodes predicted from their neighbours are "
+                  "off by at most {:.2g} ({:.2g} % of the range of values), which bounds the error",
+                  axes, error_, range_ > 0 ? 100 * error_ / range_ : 0.0));
   return notes;
 }
 

@@ -18,8 +18,8 @@ struct FieldWish {
 };
 
 /// A field as its file stores it: axes in the file's order and direction, three of them, a plane's slowest of one node.
-/// Refuses values no field has: JHTDB's -999.9 where it has no data, nan and inf. Readers give the raw values; where one
-/// is bad the whole field is read once more, to say how many there are.
+/// Refuses values no field has: JHTDB's -999.9 where it has no data, nan and inf. Readers give the raw values; where
+/// one is bad the whole field is read once more, to say how many there are.
 class CheckedSource {
  public:
   CheckedSource(std::string path, std::string name, int values)

@@ -26,6 +26,9 @@ struct ArrayAxes {
   std::optional<std::size_t> component;  ///< number of the axis of a velocity's components
 };
 
+/// Whether an axis is as long as the vectors of a plane or of space.
+bool may_be_components(std::size_t size) { return size == 2 || size == 3; }
+
 /// The axes of an array that has so many values at every node; nullopt if it is no such field.
 std::optional<ArrayAxes> find_axes(Shape const& shape, int values) {
   ArrayAxes axes;
@@ -35,13 +38,15 @@ std::optional<ArrayAxes> find_axes(Shape const& shape, int values) {
     if (shape.size() < 3 || (shape.back() != count && shape.front() != count)) return std::nullopt;
     axes.component = shape.back() == count ? shape.size() - 1 : 0;
     std::erase(axes.spatial, *axes.component);
+  } else if (shape.size() > 3 &&
+             (may_be_components(shape.back()) || (may_be_components(shape.front()) && shape.back() != 1))) {
+    return std::nullopt;  // a vector at every node, not an axis of two or three nodes
   }
   // of too many axes those of length one are left out: the last (one value a node), the first (one time), any other
   while (axes.spatial.size() > 3) {
     auto const single = [&shape](std::size_t axis) { return shape[axis] == 1; };
-    auto const found = single(axes.spatial.back())
-                           ? axes.spatial.end() - 1
-                           : std::find_if(axes.spatial.begin(), axes.spatial.end(), single);
+    auto const found = single(axes.spatial.back()) ? axes.spatial.end() - 1
+                                                   : std::find_if(axes.spatial.begin(), axes.spatial.end(), single);
     if (found == axes.spatial.end()) return std::nullopt;
     axes.spatial.erase(found);
   }
@@ -54,10 +59,9 @@ struct CoordinateName {
   char const* suffix;
   char const* unit;
 };
-constexpr std::array coordinate_names{CoordinateName{"coor", ""},   CoordinateName{"", ""},
-                                      CoordinateName{"_coor", ""},  CoordinateName{"_mm", "mm"},
-                                      CoordinateName{"_m", "m"},    CoordinateName{"_um", "um"},
-                                      CoordinateName{"_cm", "cm"}};
+constexpr std::array coordinate_names{
+    CoordinateName{"coor", ""}, CoordinateName{"", ""},      CoordinateName{"_coor", ""}, CoordinateName{"_mm", "mm"},
+    CoordinateName{"_m", "m"},  CoordinateName{"_um", "um"}, CoordinateName{"_cm", "cm"}};
 
 std::string last_step(std::string const& path) { return path.substr(path.rfind('/') + 1); }
 
@@ -87,8 +91,8 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
     auto const axes = find_axes(shape, values);
     if (!axes || coordinate_name(name)) continue;
     if (axes->spatial.size() == 3) volumes.push_back(name);
-    bool const wide = std::all_of(axes->spatial.begin(), axes->spatial.end(),
-                                  [&shape](std::size_t axis) { return shape[axis] > 1; });
+    bool const wide =
+        std::all_of(axes->spatial.begin(), axes->spatial.end(), [&shape](std::size_t axis) { return shape[axis] > 1; });
     if (axes->spatial.size() == 2 && wide) planes.push_back(name);
   }
   auto const& fields = volumes.empty() ? planes : volumes;
@@ -125,6 +129,12 @@ class Hdf5Source final : public CheckedSource {
       nodes[i] = static_cast<int>(size);
     }
     units_.values = trimmed(file_.attribute_of(name_, "units"));
+    if (values_ == 1 && rank() == 3 && may_be_components(length(0)) && length(1) > 3 && length(2) > 3) {
+      notes_.push_back(
+          fmt::format("the last axis of \"{}\" of shape {} may be the components of a vector; it is taken as "
+                      "one in space",
+                      name_, shape_text(shape_)));
+    }
     std::string const by = place_axes(wish.axes);
     describe(nodes, rank(), by);
     std::vector<double> first(1);
@@ -138,12 +148,13 @@ class Hdf5Source final : public CheckedSource {
   std::size_t length(std::size_t axis) const { return shape_[number(axis)]; }
 
   [[noreturn]] void refuse_shape() const {
-    std::string const why = shape_.size() == 4 ? fmt::format("holds {} values a point", shape_[3])
-                                               : fmt::format("has rank {}", shape_.size());
+    bool const in_front = shape_.size() == 4 && shape_[3] > 3 && may_be_components(shape_[0]);
+    std::string const why = shape_.size() == 4
+                                ? fmt::format("holds {} values a point", in_front ? shape_[0] : shape_[3])
+                                : fmt::format("has rank {}", shape_.size());
     std::string const wanted = values_ == 1 ? "a scalar field has shape [nz, ny, nx], [nz, ny, nx, 1] or [ny, nx]"
                                             : fmt::format("a velocity has shape [nz, ny, nx, {}]", values_);
-    throw DataError(path_,
-                    fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape_), why, wanted));
+    throw DataError(path_, fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape_), why, wanted));
   }
 
   /// Finds out which axis is which, and where its nodes lie. @return what determined it
@@ -162,7 +173,7 @@ class Hdf5Source final : public CheckedSource {
     std::string by = "by its dimension scales";
     if (order.size() != rank() || !is_axis_order(order)) {
       for (std::size_t letter = 0; letter < 3; ++letter) of_letter[letter] = find_coordinates("xyz"[letter]);
-      order = order_by_lengths(of_letter, by);
+      if (wanted.empty()) order = order_by_lengths(of_letter, by);
     }
     if (!wanted.empty()) {
       order = wanted;
@@ -264,9 +275,10 @@ class Hdf5Source final : public CheckedSource {
     if (fitting.empty() || fits(usual)) {
       bool const matlab = !file_.attribute_of(name_, "MATLAB_class").empty();
       if (matlab && fitting.size() > 1 && rank() == 3) {
-        notes_.push_back(fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); "
-                                     "if meshgrid made it, set axes = \"zxy\"",
-                                     name_, shape_text(shape_)));
+        notes_.push_back(
+            fmt::format("\"{}\" is an array of MATLAB of shape {}, taken as z, y, x (as ndgrid makes it); "
+                        "if meshgrid made it, set axes = \"zxy\"",
+                        name_, shape_text(shape_)));
       }
       return usual;
     }

@@ -151,16 +151,18 @@ class NrrdBytes {
       auto const [rest, error] = std::from_chars(at, end, value);
       if (at == end) too_few_numbers(i);
       if (error == std::errc::invalid_argument) {
-        throw DataError(header_.data_path, fmt::format("is damaged: number {} of its text is \"{}\"; copy it again",
-                                                       i + 1, excerpt(std::string(at, std::find_if(at, end, is_blank)))));
+        throw DataError(header_.data_path,
+                        fmt::format("is damaged: number {} of its text is \"{}\"; copy it again", i + 1,
+                                    excerpt(std::string(at, std::find_if(at, end, is_blank)))));
       }
       std::memcpy(decoded_.data() + i * sizeof value, &value, sizeof value);
       at = rest;
     }
     skip();
     if (at != end) {
-      throw DataError(header_.data_path, fmt::format("holds more than the {} numbers of its sizes {}; correct the sizes",
-                                                     count, header_.sizes_text()));
+      throw DataError(header_.data_path,
+                      fmt::format("holds more than the {} numbers of its sizes {}; correct the sizes", count,
+                                  header_.sizes_text()));
     }
   }
 
@@ -176,8 +178,8 @@ class NrrdBytes {
       if (is_blank(c)) continue;
       int digit = 0;
       if (std::from_chars(&c, &c + 1, digit, 16).ec != std::errc()) {
-        throw DataError(header_.data_path, fmt::format("is damaged: digit {} of its hex is no digit; copy it again",
-                                                       digits + 1));
+        throw DataError(header_.data_path,
+                        fmt::format("is damaged: digit {} of its hex is no digit; copy it again", digits + 1));
       }
       if (digits / 2 < decoded_.size()) {
         char& byte = decoded_[digits / 2];
@@ -313,9 +315,9 @@ class NrrdBytes {
   NrrdHeader const& header_;
   InputFile file_;
   gzFile stream_ = nullptr;
-  std::size_t offset_ = 0;    ///< of the first value, in the stored file
-  std::size_t skipped_ = 0;   ///< decompressed bytes before the first value
-  std::size_t position_ = 0;  ///< of the stream, in decompressed bytes from the first value
+  std::size_t offset_ = 0;     ///< of the first value, in the stored file
+  std::size_t skipped_ = 0;    ///< decompressed bytes before the first value
+  std::size_t position_ = 0;   ///< of the stream, in decompressed bytes from the first value
   std::vector<char> decoded_;  ///< all bytes, of encodings that are held in memory
 };
 
@@ -367,7 +369,7 @@ class NrrdSource final : public CheckedSource {
     axes_ = header_.axes;
     name_axes(axes_, wish.axes, header_.dimension, path);
     describe(header_.sizes, header_.dimension,
-             !wish.axes.empty()  ? "axes = \"" + wish.axes + '"'
+             !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
              : header_.directed ? "by its space directions"
                                 : "the default order");
   }
@@ -379,8 +381,8 @@ class NrrdSource final : public CheckedSource {
     bool const text = header_.encoding == Encoding::ascii;  // whose numbers are doubles
     std::size_t const bytes = text ? sizeof(double) : header_.value_bytes();
     std::size_t const row = row_values() * bytes;
-    std::size_t const first =
-        row * (static_cast<std::size_t>(plane) * static_cast<std::size_t>(nodes_[1]) + static_cast<std::size_t>(first_row));
+    std::size_t const first = row * (static_cast<std::size_t>(plane) * static_cast<std::size_t>(nodes_[1]) +
+                                     static_cast<std::size_t>(first_row));
     bool const swap = !text && header_.big_endian != (std::endian::native == std::endian::big);
     stored_.resize(row * static_cast<std::size_t>(count));
     bytes_.read(first, stored_.data(), stored_.size());

@@ -172,9 +172,9 @@ void read_encoding(Fields const& fields, NrrdHeader& header) {
   using Encoding = NrrdHeader::Encoding;
   std::string const name = lower(fields.required("encoding"));
   static std::map<std::string, Encoding> const known{
-      {"raw", Encoding::raw},     {"gzip", Encoding::gzip},   {"gz", Encoding::gzip},    {"bzip2", Encoding::bzip2},
-      {"bz2", Encoding::bzip2},   {"ascii", Encoding::ascii}, {"text", Encoding::ascii}, {"txt", Encoding::ascii},
-      {"hex", Encoding::hex}};
+      {"raw", Encoding::raw},     {"gzip", Encoding::gzip}, {"gz", Encoding::gzip},
+      {"bzip2", Encoding::bzip2}, {"bz2", Encoding::bzip2}, {"ascii", Encoding::ascii},
+      {"text", Encoding::ascii},  {"txt", Encoding::ascii}, {"hex", Encoding::hex}};
   auto const found = known.find(name);
   if (found == known.end()) {
     fields.refuse("encoding", "is not read here; write the field in encoding raw, gzip, bzip2, ascii or hex");
@@ -209,8 +209,9 @@ class Axes {
     choose(values);
     for (std::size_t i = 0; i < kept_.size(); ++i) header_.sizes[i] = static_cast<int>(sizes_[kept_[i]]);
     header_.dimension = kept_.size();
-    header_.units.values = quoted_words(fields_, "sample units").empty() ? trimmed(fields_.text("sample units"))
-                                                                         : quoted_words(fields_, "sample units").front();
+    header_.units.values = quoted_words(fields_, "sample units").empty()
+                               ? trimmed(fields_.text("sample units"))
+                               : quoted_words(fields_, "sample units").front();
     if (directions_.empty()) {
       place_along_axes();
     } else {
@@ -343,7 +344,8 @@ class Axes {
       header_.axes[i].step = step;
       unit_of_[i] = along < units.size() ? units[along] : "";
       if (origins.empty()) continue;
-      if (origins[0].size() != direction.size()) fields_.refuse("space origin", "must have as many numbers as a direction");
+      if (origins[0].size() != direction.size())
+        fields_.refuse("space origin", "must have as many numbers as a direction");
       if (!std::isfinite(origins[0][along])) fields_.refuse("space origin", "must be finite");
       header_.axes[i].first = origins[0][along];
     }

@@ -133,7 +133,8 @@ class LegacyReader {
     }
     LegacyArray const& chosen = fitting.front();
     VtkField field{chosen.name, chosen.place, chosen.number.significant_bits, grid_, {}, {}};
-    if (fitting.size() > 1) field.notes.push_back(fmt::format("\"{}\" is there twice; the first is taken", chosen.name));
+    if (fitting.size() > 1)
+      field.notes.push_back(fmt::format("\"{}\" is there twice; the first is taken", chosen.name));
     field.load = [file = file_, chosen, text = text_] { return load(*file, chosen, text); };
     return field;
   }
@@ -154,8 +155,9 @@ class LegacyReader {
 
   VtkNumber number_type(std::string const& name) const {
     std::string const type = lower(name);
-    auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
-                                           [&type](VtkNumber const& one) { return lower(std::string(one.legacy)) == type; });
+    auto const* const found = std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [&type](VtkNumber const& one) {
+      return lower(std::string(one.legacy)) == type;
+    });
     if (found == vtk_numbers.end()) refuse(fmt::format("has data of type \"{}\", which is no number", excerpt(name)));
     return *found;
   }
@@ -165,9 +167,10 @@ class LegacyReader {
     std::string const kind = lower(cursor_.word());
     bool const image = kind == "structured_points";
     if (!image && kind != "rectilinear_grid") {
-      refuse(fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, STRUCTURED_POINTS and "
-                         "RECTILINEAR_GRID); resample it to an image",
-                         excerpt(kind)));
+      refuse(
+          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, STRUCTURED_POINTS and "
+                      "RECTILINEAR_GRID); resample it to an image",
+                      excerpt(kind)));
     }
     for (std::string key = lower(cursor_.word());; key = lower(cursor_.word())) {
       if (key == "dimensions") {
@@ -193,7 +196,8 @@ class LegacyReader {
       }
     }
     check_grid(grid_, wish_.values, file_->path());
-    if (!image && std::any_of(grid_.coordinates.begin(), grid_.coordinates.end(), [](auto const& x) { return x.empty(); })) {
+    if (!image &&
+        std::any_of(grid_.coordinates.begin(), grid_.coordinates.end(), [](auto const& x) { return x.empty(); })) {
       refuse("has no coordinates of its RECTILINEAR_GRID; copy it again");
     }
   }
@@ -259,7 +263,8 @@ class LegacyReader {
     if (key == "scalars") {
       array.number = number_type(cursor_.word());
       std::string const rest = trimmed(cursor_.line());
-      if (!rest.empty() && std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
+      if (!rest.empty() &&
+          std::from_chars(rest.data(), rest.data() + rest.size(), array.components).ec != std::errc()) {
         refuse(fmt::format("SCALARS {}: \"{}\" is no number of components", excerpt(array.name), excerpt(rest)));
       }
       std::string next(12, ' ');

@@ -55,8 +55,9 @@ class ByteStream {
 
  private:
   [[noreturn]] void cut_short() const {
-    throw DataError(file_.path(), fmt::format("is cut short: data array \"{}\" ends before its values do; copy it again",
-                                              excerpt(name_)));
+    throw DataError(
+        file_.path(),
+        fmt::format("is cut short: data array \"{}\" ends before its values do; copy it again", excerpt(name_)));
   }
 
   char next_decoded() {
@@ -160,9 +161,9 @@ std::optional<std::uint64_t> decompress(VtkEncoding::Compressor compressor, std:
     case VtkEncoding::Compressor::lzma: {
       std::uint64_t memory = std::uint64_t{1} << 30;
       std::size_t in = 0, written = 0;
-      lzma_ret const result = lzma_stream_buffer_decode(
-          &memory, 0, nullptr, reinterpret_cast<std::uint8_t const*>(packed.data()), &in, packed.size(),
-          reinterpret_cast<std::uint8_t*>(out.data()), &written, out.size());
+      lzma_ret const result =
+          lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<std::uint8_t const*>(packed.data()), &in,
+                                    packed.size(), reinterpret_cast<std::uint8_t*>(out.data()), &written, out.size());
       if (result != LZMA_OK) return std::nullopt;
       return written;
     }

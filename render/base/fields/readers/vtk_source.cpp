@@ -70,7 +70,10 @@ class VtkSource final : public CheckedSource {
     for (std::size_t i = 0; i < 3; ++i) nodes[i] = VtkGrid::count(grid.extent, i, field_.place);
     name_axes(axes_, wish.axes, 3, path);
     bool const turned = grid.direction != VtkGrid{}.direction;
-    describe(nodes, 3, !wish.axes.empty() ? "axes = \"" + wish.axes + '"' : turned ? "by its Direction" : "as VTK has it");
+    describe(nodes, 3,
+             !wish.axes.empty() ? "axes = \"" + wish.axes + '"'
+             : turned           ? "by its Direction"
+                                : "as VTK has it");
     units_.spaced = true;
     notes_ = field_.notes;
     if (field_.place == VtkPlace::cells) reading_.by += "; data of cells, at their centres";
@@ -83,7 +86,8 @@ class VtkSource final : public CheckedSource {
     if (values_in_file_.size() == 0) values_in_file_ = field_.load();
     std::size_t const first = row_values() * (static_cast<std::size_t>(plane) * static_cast<std::size_t>(nodes_[1]) +
                                               static_cast<std::size_t>(first_row));
-    for (std::size_t i = 0; i < row_values() * static_cast<std::size_t>(count); ++i) out[i] = values_in_file_[first + i];
+    for (std::size_t i = 0; i < row_values() * static_cast<std::size_t>(count); ++i)
+      out[i] = values_in_file_[first + i];
   }
 
   VtkField field_;
@@ -105,8 +109,9 @@ void check_grid(VtkGrid const& grid, int values, std::string const& path) {
     bool const usable = points >= 1 && points <= std::numeric_limits<int>::max() && std::isfinite(grid.origin[axis]) &&
                         std::isfinite(spacing) && (spacing != 0 || points == 1);
     if (!usable) {
-      throw DataError(path, "has no usable grid (its extent must ascend, Origin and Spacing must be finite, and Spacing "
-                            "other than 0); write it anew");
+      throw DataError(path,
+                      "has no usable grid (its extent must ascend, Origin and Spacing must be finite, and Spacing "
+                      "other than 0); write it anew");
     }
     all *= points;
   }

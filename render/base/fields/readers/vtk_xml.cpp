@@ -92,9 +92,9 @@ ValueStore load_pieces(VtkArrays const& arrays) {
     bool const text = piece.payload.format == VtkPayload::Format::ascii;
     bool const swap = arrays.encoding.big_endian != (std::endian::native == std::endian::big);
     auto const numbers = text ? decode_text(piece.payload, arrays.file, arrays.name, count) : std::vector<double>{};
-    auto const bytes = text ? std::vector<char>{}
-                            : decode_bytes(piece.payload, arrays.encoding, arrays.file, arrays.name,
-                                           count * piece.number.bytes);
+    auto const bytes =
+        text ? std::vector<char>{}
+             : decode_bytes(piece.payload, arrays.encoding, arrays.file, arrays.name, count * piece.number.bytes);
     std::size_t next = 0;
     for (std::size_t z = 0; z < size[2]; ++z) {
       for (std::size_t y = 0; y < size[1]; ++y) {
@@ -103,7 +103,8 @@ ValueStore load_pieces(VtkArrays const& arrays) {
           if (!filled[row + x]) --missing;
           filled[row + x] = true;
           for (std::size_t k = 0; k < arrays.values; ++k, ++next) {
-            double const value = text ? numbers[next] : piece.number.read(bytes.data() + next * piece.number.bytes, swap);
+            double const value =
+                text ? numbers[next] : piece.number.read(bytes.data() + next * piece.number.bytes, swap);
             store.set((row + x) * arrays.values + k, value);
           }
         }
@@ -178,9 +179,10 @@ class VtkXmlReader {
   void read_kind(pugi::xml_node root) {
     kind_ = root.attribute("type").as_string();
     if (kind_ != "ImageData" && kind_ != "RectilinearGrid") {
-      refuse(fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, \"ImageData\" and \"RectilinearGrid\"); "
-                         "resample it to an image",
-                         excerpt(kind_)));
+      refuse(
+          fmt::format("holds VTK's \"{}\" (fields on a regular grid are read, \"ImageData\" and \"RectilinearGrid\"); "
+                      "resample it to an image",
+                      excerpt(kind_)));
     }
     VtkEncoding& encoding = arrays_->encoding;
     encoding.big_endian = root.attribute("byte_order").as_string() == std::string_view("BigEndian");
@@ -286,8 +288,8 @@ class VtkXmlReader {
   void read_array(pugi::xml_node tag, Piece& piece) {
     std::string_view const type = tag.attribute("type").as_string();
     std::string const name = tag.attribute("Name").as_string();
-    auto const* const number = std::find_if(vtk_numbers.begin(), vtk_numbers.end(),
-                                            [type](VtkNumber const& one) { return one.xml == type; });
+    auto const* const number =
+        std::find_if(vtk_numbers.begin(), vtk_numbers.end(), [type](VtkNumber const& one) { return one.xml == type; });
     if (number == vtk_numbers.end()) {
       refuse(fmt::format("data array \"{}\" is of type \"{}\", which is no number", excerpt(name), excerpt(type)));
     }
@@ -321,8 +323,7 @@ class VtkXmlReader {
       if (text) {
         places = decode_text(one.payload, arrays_->file, name, count);
       } else {
-        auto const bytes =
-            decode_bytes(one.payload, arrays_->encoding, arrays_->file, name, count * one.number.bytes);
+        auto const bytes = decode_bytes(one.payload, arrays_->encoding, arrays_->file, name, count * one.number.bytes);
         for (std::size_t i = 0; i < count; ++i) places.push_back(one.number.read(&bytes[i * one.number.bytes], swap));
       }
       std::copy(places.begin(), places.end(),
