@@ -109,6 +109,16 @@ void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
   }
 }
 
+/// Warns of a field whose size or place does not fit the view, or that ends in it without fading into the ambient.
+void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
+  if (scene.setup.medium.field.kind == FieldKind::none || scene.setup.piv) return;
+  Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
+  for (std::string const& text :
+       {field_coverage(box, scene.setup).warning(), side_face_warning(scene.medium, scene.setup)}) {
+    if (!text.empty()) warn(warnings, text);
+  }
+}
+
 /// Warns where ideal images leave out a blur that would be seen.
 void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
   if (!scene.setup.piv || method_of(scene) != RenderMethod::formula) return;
@@ -179,6 +189,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   if (scene.second_medium) {
     for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
   }
+  warn_of_field(scene, prepared.warnings);  // before rays are traced through it
   if (known.step) {
     prepared.step = *known.step;
     use_step(scene, prepared.step);
@@ -204,9 +215,6 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   if (loaded.setup.medium.field.kind != FieldKind::none && !loaded.setup.piv) {
     prepared.strain = known.strain ? *known.strain : strain_of(scene);
-    Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
-    std::string const coverage = field_coverage(box, loaded.setup).warning();
-    if (!coverage.empty()) warn(prepared.warnings, coverage);
     if (prepared.strain.largest_px < least_displacement_px) {
       warn(prepared.warnings,
            fmt::format("nothing moves: by Eq. 9 the field displaces no place of the view by more than {:.2g} px; check "

@@ -14,13 +14,14 @@ nlohmann::json named(std::string const& unit) { return unit.empty() ? nlohmann::
 
 /// The setup with this field instead of its own.
 Setup with_field(std::string const& setup, FieldSource const& source, std::string const& path,
-                 std::string const& dataset) {
+                 std::string const& dataset, std::string const& axes) {
   Setup whole = load_case_setup(setup, {}).setup;
   FieldSetup& field = whole.medium.field;
   if (field.kind != FieldKind::file) field = {};
   field.kind = FieldKind::file;
   field.file = path;
   field.dataset = dataset;
+  field.axes = axes;
   field.extrude = source.grid().nodes[2] == 1;
   return whole;
 }
@@ -28,7 +29,7 @@ Setup with_field(std::string const& setup, FieldSource const& source, std::strin
 }  // namespace
 
 FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
-                       std::string const& setup) {
+                       std::string const& axes, std::string const& setup) {
   FieldUnits const& units = source.units();
   RegularGrid const& grid = source.grid();
   double const mm = unit::millimetre, length = units.metres();
@@ -37,6 +38,7 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.units = {{"length", named(units.length)},
                  {"length_m", length},
                  {"assumed", named(assumed)},
+                 {"unknown", named(units.unknown)},
                  {"values", named(units.values)}};
   Vec3d extent{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -46,9 +48,10 @@ FieldPlace field_place(FieldSource const& source, std::string const& path, std::
   place.text = fmt::format("{}, so the field is {:.6g} x {:.6g} x {:.6g} mm wide unless spacing_mm is given; values {}",
                            assumed.empty() ? "lengths are in " + units.length : assumed, extent.x, extent.y, extent.z,
                            units.values.empty() ? "name no unit" : "are in " + units.values);
+  if (!units.unknown.empty()) place.text = units.unknown + "; give medium.field.spacing_mm; " + place.text;
   if (setup.empty()) return place;
 
-  Setup const whole = with_field(setup, source, path, dataset);
+  Setup const whole = with_field(setup, source, path, dataset, axes);
   FieldCoverage const seen = field_coverage(file_bounds(whole.medium), whole);
   place.coverage = {{"share", seen.share}, {"view_mm", {seen.view.x / mm, seen.view.y / mm}}, {"setup", setup}};
   place.text += fmt::format("; it fills {:.3g} % of the {:.4g} x {:.4g} mm that {} sees there", 100 * seen.share,

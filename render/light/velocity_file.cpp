@@ -6,6 +6,7 @@
 
 #include "render/base/available_memory.h"
 #include "render/base/error.h"
+#include "render/base/fields/field_axes.h"
 #include "render/base/fields/spline_prefilter.h"
 #include "render/base/parallel.h"
 #include "render/base/setup_table.h"
@@ -79,6 +80,11 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
   file.file = existing_file(table);
   file.where = table.where("file");
   file.dataset = table.text("dataset", "");
+  file.axes = table.text("axes", "");
+  if (!file.axes.empty() && !is_axis_order(file.axes)) {
+    table.problem("axes",
+                  "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
+  }
   file.scale = table.number("scale", 1.0, {-1e12, 1e12});
   if (table.has("spacing_mm")) file.spacing = table.quantities("spacing_mm", {mm, mm, mm}, mm, Range::positive(1e9));
   file.center = table.quantities("center_mm", file.center, mm, {-1e9, 1e9});
@@ -90,7 +96,7 @@ FileFlow FileFlow::read(SetupTable& table, FlowSetup& setup) {
 }
 
 RegularGrid velocity_grid(VelocityFile const& setup) {
-  auto const source = open_field(setup.file, setup.dataset, components);
+  auto const source = open_field(setup.file, setup.dataset, components, setup.axes);
   RegularGrid grid = source->grid();
   auto const refuse = [&](std::string const& why) { throw DataError(setup.file, source->name() + ' ' + why); };
   if (setup.extrude && grid.nodes[2] != 1) {
@@ -102,6 +108,9 @@ RegularGrid velocity_grid(VelocityFile const& setup) {
   }
   if (grid.nodes[0] < 2 || grid.nodes[1] < 2) {
     refuse(fmt::format("has {} x {} nodes (at least 2 x 2 are needed)", grid.nodes[0], grid.nodes[1]));
+  }
+  if (!setup.spacing && !source->units().unknown.empty()) {
+    throw DataError(setup.file, source->units().unknown + "; give flow.spacing_mm");
   }
   grid.spacing = setup.spacing ? *setup.spacing : grid.spacing * source->units().metres();
   grid.periodic = setup.periodic;
@@ -119,7 +128,7 @@ double velocity_bytes(VelocityFile const& setup) {
 
 LoadedVelocity load_velocity(VelocityFile const& setup) {
   RegularGrid const grid = velocity_grid(setup);
-  auto const source = open_field(setup.file, setup.dataset, components);
+  auto const source = open_field(setup.file, setup.dataset, components, setup.axes);
   Padded const padded(grid);
   require_memory(setup.file, source->name(), static_cast<double>(padded.size()) * sizeof(float));
   std::vector<float> values(padded.size());
@@ -151,6 +160,9 @@ LoadedVelocity load_velocity(VelocityFile const& setup) {
         "flow.file: of {} in {} {} (the field is {:.4g} x {:.4g} mm wide); if that is wrong, give flow.spacing_mm",
         source->name(), setup.file, assumed, grid.spacing.x * (grid.nodes[0] - 1) / mm,
         grid.spacing.y * (grid.nodes[1] - 1) / mm);
+  }
+  for (std::string const& note : source->notes()) {
+    loaded.warning += fmt::format("{}flow.file: {}: {}", loaded.warning.empty() ? "" : "; ", setup.file, note);
   }
   return loaded;
 }

@@ -14,6 +14,7 @@ namespace gladstone {
 /// What [flow] with kind = "file" says, in SI.
 struct VelocityFile {
   std::string file, dataset;
+  std::string axes;              ///< world axes in the file's order, the slowest first; empty: as the file has them
   std::string where;             ///< of the key `file`, for messages
   double scale = 1;              ///< file value times scale = m/s
   std::optional<Vec3d> spacing;  ///< of nodes, in place of the file's own [m]
@@ -33,7 +34,7 @@ double velocity_bytes(VelocityFile const& setup);
 struct LoadedVelocity {
   std::shared_ptr<std::vector<float> const> coefficients;
   FileFlow flow;        ///< sees them
-  std::string warning;  ///< what had to be assumed of the file's lengths; empty: nothing
+  std::string warning;  ///< what had to be assumed or ignored of the file; empty: nothing
 };
 
 /// Reads a velocity and turns it into the coefficients of cubic B-splines, not-a-knot at open ends (as media have it):

@@ -102,10 +102,11 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
     return {};
   }
   if (likely.empty()) likely = "check medium.field.quantity, scale and medium.ambient_density_kg_m3";
-  return fmt::format("medium.field.quantity: the values of {} in {} reach from {:.6g} to {:.6g}{}, where the ambient has "
-                     "{:.4g}{}; {}",
-                     name, field.file, low / unit, high / unit, density ? " kg/m^3" : " (n - 1)", ambient / unit,
-                     density ? " kg/m^3" : "", likely);
+  return fmt::format(
+      "medium.field.quantity: the values of {} in {} reach from {:.6g} to {:.6g}{}, where the ambient has "
+      "{:.4g}{}; {}",
+      name, field.file, low / unit, high / unit, density ? " kg/m^3" : " (n - 1)", ambient / unit,
+      density ? " kg/m^3" : "", likely);
 }
 
 double finest_cell(FieldSetup const& field, RegularGrid const& grid) {

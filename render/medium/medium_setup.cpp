@@ -38,7 +38,8 @@ void read_file_field(SetupTable& table, FieldSetup& field) {
   field.dataset = table.text("dataset", "");
   field.axes = table.text("axes", "");
   if (!field.axes.empty() && !is_axis_order(field.axes)) {
-    table.problem("axes", "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
+    table.problem("axes",
+                  "is no order of axes; name those of the file, the slowest first: \"zyx\", or \"yx\" of a plane");
   }
   field.quantity = table.choice("quantity", field.quantity,
                                 {{"density", FieldQuantity::density},

@@ -15,6 +15,30 @@ constexpr double least_share = 0.1;
 // that than to a field that fits the view within a factor of ten.
 constexpr double another_unit = 300;
 
+constexpr double noticeable_jump = 0.2;  // at a side face, as a share of the field's range
+
+/// Root mean square of n - 1 less the ambient's over a face across an axis.
+double face_difference(BuiltMedium const& medium, Bounds<double> const& box, int axis, bool high, double ambient) {
+  constexpr int samples = 16;
+  int const a = (axis + 1) % 3, b = (axis + 2) % 3;
+  auto const between = [&box](int along, double share) {
+    return box.low[along] + share * (box.high[along] - box.low[along]);
+  };
+  double squares = 0;
+  for (int i = 0; i < samples; ++i) {
+    for (int j = 0; j < samples; ++j) {
+      Vec3d place{};
+      place[axis] = between(axis, high ? 1 - 1e-9 : 1e-9);  // within the field, whatever the rounding
+      place[a] = between(a, (i + 0.5) / samples);
+      place[b] = between(b, (j + 0.5) / samples);
+      double const seen =
+          std::visit([&place](auto const& view) { return view.sample(place).refractivity; }, medium.view);
+      squares += (seen - ambient) * (seen - ambient);
+    }
+  }
+  return std::sqrt(squares) / samples;
+}
+
 double overlap(double low, double high, double half_view) {
   return std::max(0.0, std::min(high, half_view) - std::max(low, -half_view));
 }
@@ -50,6 +74,35 @@ std::string FieldCoverage::warning() const {
                         field.y / mm * 1e3);
   }
   return text + "; check medium.field.spacing_mm and center_mm";
+}
+
+std::string side_face_warning(BuiltMedium const& medium, Setup const& setup) {
+  if (setup.medium.field.kind != FieldKind::file) return {};
+  Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, medium.view);
+  double const ambient = setup.medium.ambient_refractivity();
+  double const range = std::max(medium.highest, ambient) - std::min(medium.lowest, ambient);
+  if (!(range > 0)) return {};
+  Vec2d const view = field_coverage(box, setup).view;
+  std::string faces;
+  double largest = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    double const half = (axis == 0 ? view.x : view.y) / 2;
+    bool const endless = !(box.high[axis] - box.low[axis] < unbounded);
+    for (bool const high : {false, true}) {
+      double const face = high ? box.high[axis] : box.low[axis];
+      if (endless || !(std::abs(face) < half)) continue;
+      double const jump = face_difference(medium, box, axis, high, ambient) / range;
+      if (jump <= noticeable_jump) continue;
+      largest = std::max(largest, jump);
+      faces += fmt::format("{}{} = {:.4g} mm", faces.empty() ? "" : ", ", "xy"[axis], face / unit::millimetre);
+    }
+  }
+  if (faces.empty()) return {};
+  return fmt::format(
+      "medium.field: at its faces {} the field differs from the ambient by up to {:.2g} % of its range (rms), and rays "
+      "that pass it by see a jump there; if it should fade into the ambient, check medium.field.axes (gladstone info "
+      "field reports how axes are read) and medium.ambient_density_kg_m3",
+      faces, 100 * largest);
 }
 
 }  // namespace gladstone

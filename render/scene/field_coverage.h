@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "render/medium/field_volume.h"
 #include "render/medium/index_sample.h"
 #include "render/scene/setup.h"
 
@@ -21,5 +22,10 @@ struct FieldCoverage {
 
 /// @param box where the field is [m]
 FieldCoverage field_coverage(Bounds<double> const& box, Setup const& setup);
+
+/// Warning if the view shows side faces of a file's field where n differs from the ambient by more than a fifth of its
+/// range (rms over a face): rays that pass the field by see a jump there. Exchanged axes are a likely cause. Empty for
+/// other fields.
+std::string side_face_warning(BuiltMedium const& medium, Setup const& setup);
 
 }  // namespace gladstone

@@ -22,28 +22,35 @@
 namespace gladstone {
 namespace {
 
-int describe_field(std::string const& path, std::string const& dataset, std::string const& setup,
-                   GlobalOptions const& options) {
-  auto const source = open_field(path, dataset);
+int describe_field(std::string const& path, std::string const& dataset, std::string const& axes,
+                   std::string const& setup, GlobalOptions const& options) {
+  auto const source = open_field(path, dataset, 1, axes);
   RegularGrid const& grid = source->grid();
   FieldStatistics const seen = field_statistics(*source);
-  FieldPlace const place = field_place(*source, path, dataset, setup);
-  nlohmann::json const json{{"dataset", source->name()},
-                            {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
-                            {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
-                            {"minimum", seen.minimum},
-                            {"maximum", seen.maximum},
-                            {"steepest_gradient", {seen.steepest.x, seen.steepest.y, seen.steepest.z}},
-                            {"units", place.units},
-                            {"extent_mm", place.extent_mm},
-                            {"coverage", place.coverage}};
+  FieldPlace const place = field_place(*source, path, dataset, axes, setup);
+  FieldReading const& reading = source->reading();
+  std::vector<std::string> const notes = source->notes();
+  for (std::string const& note : notes) spdlog::warn("{}: {}", path, note);
+  nlohmann::json const json{
+      {"dataset", source->name()},
+      {"nodes", {grid.nodes[0], grid.nodes[1], grid.nodes[2]}},
+      {"spacing", {grid.spacing.x, grid.spacing.y, grid.spacing.z}},
+      {"minimum", seen.minimum},
+      {"maximum", seen.maximum},
+      {"steepest_gradient", {seen.steepest.x, seen.steepest.y, seen.steepest.z}},
+      {"axes",
+       {{"order", reading.axes}, {"by", reading.by}, {"shape", reading.shape}, {"turned_round", reading.turned_round}}},
+      {"notes", notes},
+      {"units", place.units},
+      {"extent_mm", place.extent_mm},
+      {"coverage", place.coverage}};
   print_result(
       options, json_text(json),
       fmt::format(
           "{}: {} x {} x {} nodes, spacing {:.6g} x {:.6g} x {:.6g}, values {:.6g} to {:.6g}, steepest difference "
-          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z; {}",
+          "between neighbours {:.4g}, {:.4g}, {:.4g} per unit length along x, y, z; {}; {}",
           source->name(), grid.nodes[0], grid.nodes[1], grid.nodes[2], grid.spacing.x, grid.spacing.y, grid.spacing.z,
-          seen.minimum, seen.maximum, seen.steepest.x, seen.steepest.y, seen.steepest.z, place.text));
+          seen.minimum, seen.maximum, seen.steepest.x, seen.steepest.y, seen.steepest.z, reading.text(), place.text));
   return ok;
 }
 
@@ -99,7 +106,7 @@ int describe_image(std::string const& path, GlobalOptions const& options) {
 
 CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
   struct Arguments {
-    std::string kind, file, dataset, setup, figure;
+    std::string kind, file, dataset, axes, setup, figure;
     LensQuestion lens;
     MieQuestion mie;
   };
@@ -109,6 +116,8 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       ->check(one_of({"field", "image", "lens", "mie", "particles"}));
   app.add_option("file", arguments->file, "The file; a setup for particles, none for mie");
   app.add_option("--dataset", arguments->dataset, "Dataset inside the file");
+  app.add_option("--axes", arguments->axes,
+                 "World axes in the order of the field's file, the slowest first (\"zxy\"), as medium.field.axes");
   app.add_option("--setup", arguments->setup, "Setup (TOML) of whose view a field's share is to be told");
   app.add_option("--glass", arguments->lens.glasses, "Glass catalogue (AGF) of info lens beside the shipped ones");
   app.add_option("--wavelength-nm", arguments->lens.wavelength_nm, "Wavelength of info lens")
@@ -132,8 +141,9 @@ CommandBody attach_info(CLI::App& app, GlobalOptions const& options) {
       return describe_lens(arguments->lens, options);
     }
     if (arguments->kind == "particles") return describe_particles(arguments->file, options);
-    return arguments->kind == "field" ? describe_field(arguments->file, arguments->dataset, arguments->setup, options)
-                                      : describe_image(arguments->file, options);
+    return arguments->kind == "field"
+               ? describe_field(arguments->file, arguments->dataset, arguments->axes, arguments->setup, options)
+               : describe_image(arguments->file, options);
   };
 }
 
