@@ -175,7 +175,60 @@ TEST_F(FieldVolume, RefractiveIndexInFloatIsWarnedOf) {
                                               "1.2e-07 only, 4 % of its range"));
   EXPECT_THAT(warnings[0], testing::HasSubstr("write the file as refractivity (n - 1) or density"));
   setup.field.quantity = FieldQuantity::density;
+  setup.field.scale = 1.2;  // as it is, a density of 1.00027 would be asked about: see below
   EXPECT_TRUE(build_medium(setup).warnings.empty()) << "floats are enough for a density";
+}
+
+// Values that are plausible in another quantity or unit than the one they are read in; the ambient has 1.225 kg/m^3.
+TEST_F(FieldVolume, ValuesOfAnotherQuantityAreAskedAbout) {
+  auto const warnings = [this](double value, FieldQuantity quantity, double scale = 1) {
+    auto setup = file_setup(4, 4, 4, [value](int i, int j, int) { return value * (1 + 0.01 * i - 0.01 * j); });
+    setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
+    setup.field.quantity = quantity;
+    setup.field.scale = scale;
+    return build_medium(setup).warnings;
+  };
+  using testing::Contains, testing::HasSubstr, testing::IsEmpty;
+  EXPECT_THAT(warnings(2.7e-4, FieldQuantity::density), Contains(HasSubstr("set quantity = \"refractivity\"")));
+  EXPECT_THAT(warnings(1.2e-3, FieldQuantity::density), Contains(HasSubstr("set scale = 1000")));
+  EXPECT_THAT(warnings(1.2e-3, FieldQuantity::density, 1000), IsEmpty());
+  EXPECT_THAT(warnings(1.2, FieldQuantity::refractivity), Contains(HasSubstr("set quantity = \"density\"")));
+  EXPECT_THAT(warnings(2.7e-4, FieldQuantity::refractivity), IsEmpty());
+  EXPECT_THAT(warnings(1.2, FieldQuantity::density), IsEmpty());
+  EXPECT_THAT(warnings(0.2, FieldQuantity::density), IsEmpty()) << "a hot gas";
+  auto index = file_setup(4, 4, 4, [](int i, int, int) { return 1.00027 + 1e-6 * i; });
+  index.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
+  EXPECT_THAT(build_medium(index).warnings, Contains(HasSubstr("set quantity = \"refractive_index\"")));
+}
+
+TEST_F(FieldVolume, AxesAreThoseOfTheKey) {
+  auto setup = file_setup(5, 4, 3, ramp);  // the file is [3, 4, 5]
+  setup.field.spacing = Vec3d{1e-3, 1e-3, 1e-3};
+  setup.field.scale = 0.01;
+  setup.field.axes = "xyz";
+  BuiltMedium const built = build_medium(setup);
+  EXPECT_NEAR(bounds(built).high.x, 1e-3, 1e-15);
+  EXPECT_NEAR(bounds(built).high.z, 2e-3, 1e-15);
+  // float volume: 1e-7 of the largest value
+  EXPECT_NEAR(refractivity(built, {-1e-3, -1.5e-3, 2e-3}), 0.01 * 2.26e-4 * ramp(4, 0, 0), 1e-10);
+}
+
+TEST_F(FieldVolume, UnknownSpacingIsAskedForAndNotesAreWarnings) {
+  std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/";
+  MediumSetup setup;
+  setup.field.kind = FieldKind::file;
+  setup.field.file = folder + "n_nan_spacing.nrrd";
+  EXPECT_THAT([&] { build_medium(setup); },
+              testing::ThrowsMessage<DataError>(testing::HasSubstr("is unknown in the header; give "
+                                                                   "medium.field.spacing_mm")));
+  setup.field.spacing = Vec3d{1e-3, 1.2e-3, 1.5e-3};
+  BuiltMedium const built = build_medium(setup);
+  EXPECT_NEAR(refractivity(built, {2e-3, 3e-3, 4e-3}), 2.26e-4 * (1.2 + 0.04 + 0.15 + 0.004), 1e-10);
+  setup.field = {};
+  setup.field.kind = FieldKind::file;
+  setup.field.file = folder + "h_stretch.h5";
+  EXPECT_THAT(build_medium(setup).warnings,
+              testing::Contains(testing::HasSubstr("axes that are not uniform were resampled: y")));
 }
 
 TEST_F(FieldVolume, ExtrudedPlaneFillsTheThickness) {
