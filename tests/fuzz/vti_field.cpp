@@ -3,7 +3,7 @@
 
 using namespace gladstone;
 
-// A VTK image: as a velocity, and as a density.
+// A VTK image or rectilinear grid in XML: as a velocity, and as a density.
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
   std::string_view const input = fuzz::text_of(data, size);
   std::string const path = fuzz::file_of(input, "field.vti");
