@@ -26,6 +26,14 @@ using Encoding = NrrdHeader::Encoding;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
+/// The value of a hexadecimal digit; -1 for other characters.
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
 /// The data section as a stream of bytes: raw through pread, gzip through zlib, the other encodings decoded into memory
 /// when the first byte is asked for; text becomes doubles.
 class NrrdBytes {
@@ -176,8 +184,8 @@ class NrrdBytes {
     std::size_t digits = 0;
     for (char const c : text) {
       if (is_blank(c)) continue;
-      int digit = 0;
-      if (std::from_chars(&c, &c + 1, digit, 16).ec != std::errc()) {
+      int const digit = hex_digit(c);
+      if (digit < 0) {
         throw DataError(header_.data_path,
                         fmt::format("is damaged: digit {} of its hex is no digit; copy it again", digits + 1));
       }
