@@ -89,11 +89,17 @@ std::string unlikely_range(MediumSetup const& setup, std::string const& name, do
   if (index) {
     likely = "these would be refractive indices of a gas; if they are, set quantity = \"refractive_index\"";
   } else if (high < ambient / factor) {
-    auto const near = [&](double ratio) { return high * ratio > ambient / 10 && low * ratio < ambient * 10; };
-    if (density && near(1 / unit)) {
+    // the nearer of two readings that come within a factor of ten of the ambient
+    auto const decades_off = [&](double ratio) {
+      bool const fits = high * ratio > ambient / 10 && low * ratio < ambient * 10;
+      return fits ? std::abs(std::log10(0.5 * (low + high) * ratio / ambient)) : HUGE_VAL;
+    };
+    double const as_refractivity = density ? decades_off(1 / unit) : HUGE_VAL, in_grams = decades_off(1e3);
+    if (as_refractivity < in_grams) {
       likely = "as refractivities n - 1 they would fit; if they are, set quantity = \"refractivity\"";
-    } else if (near(1e3)) {
-      likely = "in g/cm^3 they would fit; if they are, set scale = 1000";
+    } else if (in_grams < HUGE_VAL) {
+      likely = density ? "in g/cm^3 they would fit; if they are, set scale = 1000"
+                       : "a thousand times as large they would fit; if their unit is 1e-3, set scale = 1000";
     }
   } else if (low > factor * ambient) {
     bool const as_density = !density && low * setup.gladstone_dale < 10 * ambient;
