@@ -129,5 +129,25 @@ TEST_F(SilentMistakes, InfoTellsUnitsExtentAndWhatOfAViewIsFilled) {
                     HasSubstr("were its lengths in metres"), HasSubstr("values are in kg m-3")));
 }
 
+// A MATLAB array of meshgrid, [nz, nx, ny], and a header that leaves a spacing open.
+TEST_F(SilentMistakes, InfoReportsWhichAxisIsTakenForWhich) {
+  std::string const folder = std::string(GLADSTONE_DATA_DIR) + "/../tests/cases/fields/";
+  auto json = json_of({"info", "field", folder + "h_matlab_mesh.h5"});
+  EXPECT_EQ(json["axes"]["order"], "zxy");
+  EXPECT_EQ(json["axes"]["by"], "by the lengths of its coordinates");
+  EXPECT_EQ(json["axes"]["shape"], (std::vector<int>{16, 24, 20}));
+  EXPECT_EQ(json["nodes"], (std::vector<int>{24, 20, 16}));
+  json = json_of({"info", "field", folder + "n_tabs.nrrd", "--axes", "xyz"});
+  EXPECT_EQ(json["axes"]["order"], "xyz");
+  EXPECT_EQ(json["nodes"], (std::vector<int>{16, 20, 24}));
+  EXPECT_EQ(json_of({"info", "field", folder + "v_dir_neg.vti"})["axes"]["turned_round"], "xy");
+  EXPECT_THAT(json_of({"info", "field", folder + "n_nan_spacing.nrrd"})["units"]["unknown"].get<std::string>(),
+              HasSubstr("the spacing of axis 3 (16 nodes, taken as z) is unknown in the header"));
+  EXPECT_THAT(json_of({"info", "field", folder + "h_stretch.h5"})["notes"][0].get<std::string>(),
+              HasSubstr("axes that are not uniform were resampled: y"));
+  EXPECT_THAT(succeed({"info", "field", folder + "h_descx.h5"}),
+              HasSubstr("[16, 20, 24] is read as z, y, x (by the lengths of its coordinates); x runs backwards"));
+}
+
 }  // namespace
 }  // namespace gladstone::end_to_end
