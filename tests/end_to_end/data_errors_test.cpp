@@ -50,8 +50,10 @@ TEST_F(DataErrors, MissingDatasetListsThoseThatExist) {
 }
 
 TEST_F(DataErrors, WrongRank) {
+  write_field("field.h5", {64}, ramp(64));
+  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"field.h5: ", "\"density\"", "has rank 1"});
   write_field("field.h5", {8, 8}, ramp(64));
-  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"field.h5: ", "\"density\"", "has rank 2"});
+  expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"field.h5: ", "is a single plane", "extrude"});
   write_field("field.h5", {4, 4, 2, 2}, ramp(64));
   expect_setup_refused(file_setup("field.h5", "dataset = \"density\""), {"holds 2 values a point"});
 }
@@ -93,8 +95,10 @@ TEST_F(DataErrors, TruncatedNrrd) {
 }
 
 TEST_F(DataErrors, FieldOfUnknownFormat) {
+  write("field.npy", "NUMPY");
+  expect_setup_refused(file_setup("field.npy"), {"field.npy: ", "known are .h5"});
   write("field.vtk", "# vtk DataFile");
-  expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "known are .h5"});
+  expect_setup_refused(file_setup("field.vtk"), {"field.vtk: ", "neither ASCII nor BINARY"});
 }
 
 TEST_F(DataErrors, DotsInsideAVolume) {
