@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tests/end_to_end/support/workplace.h"
 
 namespace gladstone::end_to_end {
@@ -104,7 +106,14 @@ TEST_F(CommandLine, ValidateMeetsEveryOracle) {
   for (auto const& oracle : json["oracles"]) EXPECT_TRUE(oracle["passed"]) << oracle;
 }
 
-// A field that moves no dot makes the case meaningless, whoever listens.
+/// Number of warnings that contain a text; each warning is listed once, beside any others of the run.
+int count_containing(nlohmann::json const& warnings, std::string const& text) {
+  return static_cast<int>(std::count_if(warnings.begin(), warnings.end(), [&text](nlohmann::json const& warning) {
+    return warning.get<std::string>().find(text) != std::string::npos;
+  }));
+}
+
+// A field that moves no dot makes the case meaningless, also for callers that asked for silence.
 TEST_F(CommandLine, QuietSilencesInformationAndNoWarning) {
   std::vector<std::string> const still{"render", "setup.toml", "-o",
                                        "case",   "--set",      "medium.field.gradient_kg_m4=[1e-6, 0.0, 0.0]"};
@@ -122,8 +131,7 @@ TEST_F(CommandLine, QuietSilencesInformationAndNoWarning) {
   EXPECT_THAT(quiet.err, testing::Not(HasSubstr("info: ")));
   EXPECT_THAT(loud.err, HasSubstr("info: "));
   auto const warnings = nlohmann::json::parse(json.out)["warnings"];
-  ASSERT_EQ(warnings.size(), 1u) << warnings;
-  EXPECT_THAT(warnings[0].get<std::string>(), HasSubstr("nothing moves"));
+  EXPECT_EQ(count_containing(warnings, "nothing moves"), 1) << warnings;
 }
 
 TEST_F(CommandLine, TheJsonOfEveryCommandHasTheWarningsOfTheRun) {
@@ -151,8 +159,7 @@ TEST_F(CommandLine, TheJsonOfEveryCommandHasTheWarningsOfTheRun) {
   // what is only on the log, as it is only found while the file is read
   succeed({"correlate", "case", "-o", "v.csv"});
   auto const warnings = json_of({"compare", "case", "--vectors", "v.csv", "--no-figures", "--quiet"})["warnings"];
-  ASSERT_EQ(warnings.size(), 1u) << warnings;
-  EXPECT_THAT(warnings[0].get<std::string>(), HasSubstr("unverified: v.csv"));
+  EXPECT_EQ(count_containing(warnings, "unverified: v.csv"), 1) << warnings;
 }
 
 TEST_F(CommandLine, QuietSaysNothingAboutSuccess) {
