@@ -313,8 +313,8 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
            {"channels_seven.tif", "has 7 values a pixel that are no colours"},
            {"pages_3.tif", "has 3 pages"},
        }) {
-    EXPECT_THAT([&, file = name] { read_image(case_path(file)); },
-                ThrowsMessage<DataError>(AllOf(HasSubstr(name), HasSubstr(reason))))
+    std::string const path = case_path(name);
+    EXPECT_THAT([&path] { read_image(path); }, ThrowsMessage<DataError>(AllOf(HasSubstr(name), HasSubstr(reason))))
         << name;
   }
 }
