@@ -67,6 +67,30 @@ TEST(VelocityFile, ReproducesACubicBetweenItsNodes) {
   EXPECT_LT(length(loaded.flow(Vec3d{9, 0.4, 0} * node_step) - cubic(Vec3d{3, 0.4, 0} * node_step)), 1e-5);
 }
 
+// The file is [5, 6, 7, 3]; with its axes exchanged its slowest is X. Components stay those along X, Y and Z.
+TEST(VelocityFile, TakesAxesInTheOrderOfTheKey) {
+  VelocityFile setup = a_millimetre_apart(cutout("exchanged", {7, 6, 5}, cubic));
+  setup.axes = "xyz";
+  EXPECT_THAT(velocity_grid(setup).nodes, testing::ElementsAre(5, 6, 7));
+  LoadedVelocity const loaded = load_velocity(setup);
+  Vec3d const p = Vec3d{1.4, -0.7, 2.2} * node_step;
+  EXPECT_LT(length(loaded.flow(p) - cubic(Vec3d{p.z, p.y, p.x})), 1e-5);
+}
+
+TEST(VelocityFile, PassesOnWhatItsReaderHadToAssume) {
+  std::string const path = testing::TempDir() + "/velocity_stretched.h5";
+  std::vector<double> const values(2 * 3 * 4 * 3, 1.5), y{0, 1, 3};
+  Hdf5Writer file(path, {"test", 1, "", 0, "cpu"});
+  file.write("Velocity_0001", values, {2, 3, 4, 3}, "m/s", "test", "z, y, x, component");
+  file.write("ycoor", y, {3}, "mm", "test", "node");
+  file.close();
+  VelocityFile setup;
+  setup.file = path;
+  LoadedVelocity const loaded = load_velocity(setup);
+  EXPECT_THAT(loaded.warning, testing::HasSubstr("axes that are not uniform were resampled: y"));
+  EXPECT_LT(length(loaded.flow(Vec3d{}) - Vec3d{1.5, 1.5, 1.5}), 1e-6);
+}
+
 // A wave over the period of 16 nodes, sampled at 16: a cubic spline's error is (2 pi / 16)^4 / 384 of it at most, and
 // it goes on beyond the nodes.
 TEST(VelocityFile, RepeatsWhatIsPeriodic) {
