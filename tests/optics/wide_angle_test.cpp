@@ -6,6 +6,8 @@
 #include "render/optics/aim_disc.h"
 #include "render/optics/field_analysis.h"
 #include "render/optics/paraxial.h"
+#include "render/optics/trace_back.h"
+#include "tests/optics/lens_fixtures.h"
 
 namespace gladstone {
 namespace {
@@ -54,6 +56,33 @@ TEST(WideAngleLens, ChiefRaysToEightyFiveDegreesFollowAnIndependentTracer) {
     ASSERT_EQ(lens.view().carry(ray, account), RayStatus::alive) << degrees;
     double const y = ray.position.y + (z - ray.position.z) * ray.direction.y / ray.direction.z;
     EXPECT_NEAR(y * 1e3, image, 1e-9) << degrees;
+  }
+}
+
+// A chief ray traced back from the stop's centre runs along the ray that came: through glass, and through an ideal lens
+// before the stop, which is exact in slopes of one sense alone.
+TEST(TraceBack, RunsAlongTheRayThatCame) {
+  Prescription prescription =
+      lens_of({{50, 5, 1.5}, {-80, 20, 1}, {HUGE_VAL, 10, 1}, {HUGE_VAL, 10, 1, true}}, 5).prescription;
+  prescription.surfaces[2].shape = PrescribedSurface::Shape::ideal_lens;
+  prescription.surfaces[2].focal_length = 90 * unit::millimetre;
+  for (Lens const& lens : {wide_lens(), build_lens(prescription, GlassCatalogue::shipped(), spectral_line::d)}) {
+    RayOrigin const origin = RayOrigin::direction(normalized(Vec3d{0.1, -0.25, 1}));
+    auto const disc = find_aim_disc(lens, origin);
+    ASSERT_TRUE(disc);
+    Ray<double> const sent = origin.ray_through(disc->centre);
+    Ray<double> arrived = sent;
+    RayAccount<double> account;
+    int failed_at;
+    ASSERT_EQ(lens.view().carry(arrived, account, 0, lens.stop, failed_at), RayStatus::alive);
+    auto const back =
+        trace_back_from_stop(lens.surfaces, lens.stop,
+                             {arrived.direction.x / arrived.direction.z, arrived.direction.y / arrived.direction.z});
+    ASSERT_TRUE(back);
+    EXPECT_NEAR(length(back->direction + sent.direction), 0, 1e-9);
+    // distance of the ray's line from the one that came: 1e-10 of the stop's radius, some times magnified
+    Vec3d const apart = back->position - sent.position;
+    EXPECT_NEAR(length(apart - dot(apart, sent.direction) * sent.direction), 0, 1e-11);
   }
 }
 
