@@ -21,12 +21,12 @@ TEST(FieldUnits, AreKnownByTheirUsualNames) {
 }
 
 TEST(FieldUnits, SayWhatHadToBeAssumed) {
-  EXPECT_THAT((FieldUnits{false, "", ""}.assumed()), HasSubstr("1 mm apart"));
-  EXPECT_THAT((FieldUnits{true, "", ""}.assumed()), HasSubstr("no unit and are taken as mm"));
-  EXPECT_THAT((FieldUnits{true, "ell", ""}.assumed()), HasSubstr("\"ell\""));
-  EXPECT_THAT((FieldUnits{true, "m", ""}.assumed()), IsEmpty());
-  EXPECT_EQ((FieldUnits{true, "m", ""}.metres()), 1.0);
-  EXPECT_EQ((FieldUnits{true, "ell", ""}.metres()), 1e-3);
+  EXPECT_THAT((FieldUnits{false, "", "", ""}.assumed()), HasSubstr("1 mm apart"));
+  EXPECT_THAT((FieldUnits{true, "", "", ""}.assumed()), HasSubstr("no unit and are taken as mm"));
+  EXPECT_THAT((FieldUnits{true, "ell", "", ""}.assumed()), HasSubstr("\"ell\""));
+  EXPECT_THAT((FieldUnits{true, "m", "", ""}.assumed()), IsEmpty());
+  EXPECT_EQ((FieldUnits{true, "m", "", ""}.metres()), 1.0);
+  EXPECT_EQ((FieldUnits{true, "ell", "", ""}.metres()), 1e-3);
 }
 
 }  // namespace

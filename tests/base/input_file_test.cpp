@@ -106,7 +106,9 @@ TEST_F(InputFiles, LinesComeWithoutTheirEnds) {
 // Lines of 0 to 999 characters lie in every way across the ends of what is read at once.
 // Spreadsheets put U+FEFF in front of a text in UTF-8. Offsets count it, and only the first line may have it.
 TEST_F(InputFiles, AByteOrderMarkBelongsToNoLine) {
-  LineReader lines(write("marked.csv", "\xEF\xBB\xBFx_mm,y_mm\n\xEF\xBB\xBF1,2\n"));
+  LineReader lines(write("marked.csv",
+                         "\xEF\xBB\xBFx_mm,y_mm\n\xEF\xBB\xBF"
+                         "1,2\n"));
   EXPECT_EQ(lines.next(), "x_mm,y_mm");
   EXPECT_EQ(lines.offset(), 13u);
   EXPECT_EQ(lines.next(),
