@@ -20,6 +20,12 @@ nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
   return {{"least", numbers.front()}, {"median", numbers[numbers.size() / 2]}, {"most", numbers.back()}};
 }
 
+/// Numbers of rays without those of particles that were not traced.
+std::vector<std::int64_t> traced_only(std::vector<std::int64_t> rays) {
+  std::erase(rays, 0);
+  return rays;
+}
+
 nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   nlohmann::json json;
   for (std::size_t status = 0; status < ray_status_count; ++status) {
@@ -94,7 +100,7 @@ nlohmann::json case_summary(CaseSetup& loaded, PreparedCase const& prepared, Ren
       {"step_mm", prepared.step.step_mm},
       {"step", {{"change_px", prepared.step.change_px}, {"limiting_dot", prepared.step.limiting_dot}}},
       {"rays_per_dot", formula ? nlohmann::json(nullptr) : nlohmann::json(plan.rays)},
-      {"rays_planned", spread_of(rendering.truth.rays_planned)},
+      {"rays_planned", spread_of(traced_only(rendering.truth.rays_planned))},
       {"exposure", rendered.exposure_e},
       {"gladstone_dale", scene.setup.medium.gladstone_dale},
       {"spot",

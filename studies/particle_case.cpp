@@ -89,7 +89,8 @@ void write_particle_truth(std::string const& path, Scene const& scene, GroundTru
   file.write("/particles/rays", std::span<std::int64_t const>(rays), {count, 2}, "1", "rays counted at either pulse",
              "particle, pulse");
   file.write("/particles/rays_planned", std::span<std::int64_t const>(truth.rays_planned), {count}, "1",
-             "rays that the particle was to have at either pulse", "particle");
+             "rays that the particle was to have at either pulse; 0: not traced, its light cannot reach the sensor",
+             "particle");
   std::vector<std::int64_t> counts;
   for (auto const& frame : statuses) counts.insert(counts.end(), frame.begin(), frame.end());
   file.write("/rays/status", std::span<std::int64_t const>(counts), {2, ray_status_count}, "1",
@@ -149,6 +150,7 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
   double const pixels = static_cast<double>(camera.columns) * camera.rows;
   double const px = camera.pixel_pitch / scene.imaging.magnification;
   PathPlan const& path = scene.particles.path;
+  bool const by_formula = method_of(scene) == RenderMethod::formula;
   nlohmann::json particles{
       {"seeded", truth.size()},
       {"lit", {{"first", census.lit[0]}, {"second", census.lit[1]}}},
@@ -157,6 +159,7 @@ nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, do
       {"paired_fraction", census.in_view > 0
                               ? nlohmann::json(static_cast<double>(census.paired) / static_cast<double>(census.in_view))
                               : nlohmann::json(nullptr)},
+      {"not_traced", by_formula ? 0 : std::count(truth.rays_planned.begin(), truth.rays_planned.end(), 0)},
       {"photons", spread_of_light(photons)},
       {"electrons_per_photon", exposure_e / scene.photon_unit},
       {"path", {{"steps", path.steps}, {"error_px", path.error / px}, {"lag_error_px", path.lag_error / px}}}};

@@ -104,7 +104,8 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
   Rendering const& rendering = *finished.rendered.rendering;
   told.sources = rendering.truth.size();
   told.particles = camera.loaded.setup.piv.has_value();
-  std::vector<std::int64_t> const& planned = rendering.truth.rays_planned;
+  std::vector<std::int64_t> planned = rendering.truth.rays_planned;
+  std::erase(planned, 0);  // of particles out of view
   if (!planned.empty()) {
     auto const [least, most] = std::minmax_element(planned.begin(), planned.end());
     told.rays = static_cast<std::uint64_t>(*least);

@@ -11,6 +11,7 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/focused_dots/table_error.h"
 #include "render/ideal_images/ideal_images.h"
+#include "render/rays/particles_in_view.h"
 #include "render/rays/ray_planning.h"
 #include "render/rays/ray_theory.h"
 #include "render/scene/side_faces.h"
@@ -116,8 +117,28 @@ Rendering SceneRenderer::render_particles(Scene& scene, Particles const& particl
     rendering.device = "cpu";
     return rendering;
   }
-  Rendering rendering = rays_->render_particles(scene, particles, light, images);
+  bool const as_lit = light == ParticleLight::scattered && images != RenderImages::no;
+  Rendering rendering =
+      as_lit ? render_near_view(scene, particles, images) : rays_->render_particles(scene, particles, light, images);
   rendering.device = device();
+  return rendering;
+}
+
+Rendering SceneRenderer::render_near_view(Scene& scene, Particles const& particles, RenderImages images) {
+  std::vector<char> const near = particles_near_view(scene, particles);
+  if (std::find(near.begin(), near.end(), 0) == near.end()) {
+    return rays_->render_particles(scene, particles, ParticleLight::scattered, images);
+  }
+  Particles lit = particles;  // a particle without light takes no rays
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (near[i] == 0) lit.photons[0][i] = lit.photons[1][i] = 0;
+  }
+  Rendering rendering = rays_->render_particles(scene, lit, ParticleLight::scattered, images);
+  std::vector<std::int64_t>& planned = rendering.truth.rays_planned;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (near[i] == 0) planned[i] = 0;
+  }
+  rendering.rays = frame_count * std::accumulate(planned.begin(), planned.end(), std::int64_t{0});
   return rendering;
 }
 
@@ -198,6 +219,22 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   plan.seconds += at_side_faces.seconds;
 }
 
+/// The plan of few dots that are cheaper by rays than the table, which takes as long for any number; nothing where they
+/// are not, or where the rays that "auto" allows are too few.
+std::optional<RaysPlan> plan_cheaper_rays(Scene const& scene) {
+  constexpr double long_s = 5, much_cheaper = 60;
+  if (scene.setup.render.method != RenderMethod::automatic) return std::nullopt;
+  double const by_table = table_seconds(enter(scene));
+  auto const given = given_rays(scene.setup);
+  double const rays = static_cast<double>(given ? given->rays : most_rays_of_source(scene));
+  if (by_table < long_s || much_cheaper * rays * rays_seconds(scene) > by_table) return std::nullopt;
+  Scene searched = scene;
+  RaysPlan plan = plan_rays_by_rays(searched);
+  if (!given && plan.excess() > 1) return std::nullopt;
+  plan.method = RenderMethod::rays;
+  return plan;
+}
+
 }  // namespace
 
 RaysPlan plan_rays_of(Scene& scene) {
@@ -215,6 +252,11 @@ RaysPlan plan_rays_of(Scene& scene) {
     return plan;
   }
   if (method_of(scene) == RenderMethod::rays) return plan_rays_by_rays(scene);
+  if (auto const cheaper = plan_cheaper_rays(scene)) {
+    scene.setup.render.method = RenderMethod::rays;
+    use_rays(scene, *cheaper);
+    return *cheaper;
+  }
   constexpr std::uint64_t rivals = 4096;  // of a dot: fewer scatter by more than tables leave
   RaysPlan plan = plan_rays(enter(scene));
   auto const given = given_rays(scene.setup);
@@ -242,6 +284,14 @@ RaysPlan plan_rays_of(Scene& scene) {
   if (plan.method != RenderMethod::rays) plan_rays_at_side_faces(scene, plan);
   use_rays(scene, plan);
   return plan;
+}
+
+double render_seconds(Scene const& scene, RaysPlan const& plan) {
+  RenderMethod const method = method_of(scene);
+  if (method == RenderMethod::formula) return 0;
+  if (method == RenderMethod::focused_dots) return table_seconds(enter(scene));
+  double const media = scene.second_medium ? 2 : 1;
+  return media * (std::isfinite(plan.seconds) ? plan.seconds : static_cast<double>(plan.rays) * rays_seconds(scene));
 }
 
 FieldMap field_of(Scene const& scene, int spacing_px) {

@@ -28,6 +28,8 @@ class SceneRenderer : public Renderer {
                              RenderImages images) override;
 
  private:
+  /// Renders particles whose light can reach the sensor; the others have no truth and no planned rays.
+  Rendering render_near_view(Scene& scene, Particles const& particles, RenderImages images);
   Rendering render_focused(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
 
   std::unique_ptr<Renderer> focused_dots_, rays_;
@@ -36,8 +38,12 @@ class SceneRenderer : public Renderer {
 /// What plans a scene and maps its field, by its method.
 StepPlan plan_step_of(Scene& scene);
 /// With "auto" the method, too: the fast renderer where what its table leaves is within what "auto" asks of truth and
-/// images, or less than what the general renderer's rays would scatter by. Sets scene.setup.render.method then.
+/// images, or less than what the general renderer's rays would scatter by; but rays where a table takes 60 times
+/// their processor time and more than 5 s of it, and they are given, or good enough. Sets scene.setup.render.method
+/// then.
 RaysPlan plan_rays_of(Scene& scene);
+/// Processor time that rendering a planned scene takes [s], as ray_seconds() counts it.
+double render_seconds(Scene const& scene, RaysPlan const& plan);
 FieldMap field_of(Scene const& scene, int spacing_px);
 StrainMap strain_of(Scene const& scene);
 

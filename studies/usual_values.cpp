@@ -22,7 +22,7 @@ constexpr std::array of_mm{OtherUnit{"m", 1e3}, OtherUnit{"um", 1e-3}, OtherUnit
                            OtherUnit{"inches", 25.4}};
 constexpr std::array of_um{OtherUnit{"mm", 1e3}, OtherUnit{"m", 1e6}, OtherUnit{"nm", 1e-3}};
 constexpr std::array of_nm{OtherUnit{"um", 1e3}, OtherUnit{"mm", 1e6}, OtherUnit{"m", 1e9}};
-constexpr std::array of_us{OtherUnit{"ms", 1e3}, OtherUnit{"s", 1e6}, OtherUnit{"ns", 1e-3}};
+constexpr std::array of_us{OtherUnit{"s", 1e6}, OtherUnit{"ms", 1e3}, OtherUnit{"ns", 1e-3}};
 constexpr std::array of_mj{OtherUnit{"J", 1e3}, OtherUnit{"uJ", 1e-3}};
 constexpr std::array of_gladstone_dale{OtherUnit{"cm^3/g", 1e-3}};
 constexpr std::array of_density{OtherUnit{"g/cm^3", 1e3}};

@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include "render/base/image_file.h"
 #include "render/base/output_file.h"
 #include "render/base/output_folder.h"
+#include "render/base/parallel.h"
 #include "render/base/stop_point.h"
 #include "render/focused_dots/table_error.h"
 #include "render/scene/particle_scene.h"
@@ -57,7 +60,24 @@ double exposure_of(Scene const& scene, RenderedLight const& light) {
   return std::min(Detector::auto_exposure(camera, light.brightest()), photon_limited_exposure(scene));
 }
 
+namespace {
+
+/// Says how long a long rendering will take.
+void announce_rendering(PreparedCase const& prepared) {
+  constexpr double worth_a_word_s = 20;
+  Scene const& scene = prepared.scene;
+  double const expected_s = render_seconds(scene, prepared.rays) / thread_count();
+  if (!(expected_s > worth_a_word_s)) return;
+  spdlog::info(
+      "rendering {} {} will take some {:.0f} s on {} threads; a smaller render.rays_per_dot or a larger "
+      "medium.step_mm takes less",
+      scene.source_count(), scene.setup.piv ? "particles" : "dots", expected_s, thread_count());
+}
+
+}  // namespace
+
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory) {
+  announce_rendering(prepared);
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
   Scene scene = prepared.scene;  // a copy: tracing may widen its pupil

@@ -9,15 +9,18 @@ namespace {
 
 bool enabled = true;
 
+constexpr long long line_interval_ms = 30'000;  // of lines in a log
+
+bool on_terminal() { return isatty(STDERR_FILENO) == 1; }
+
 }  // namespace
 
 void Progress::enable(bool on) { enabled = on; }
 
 Progress::Progress(std::string label, std::size_t total)
-    : label_(std::move(label)),
-      total_(total),
-      start_(std::chrono::steady_clock::now()),
-      shown_(enabled && total > 0 && isatty(STDERR_FILENO) == 1) {}
+    : label_(std::move(label)), total_(total), start_(std::chrono::steady_clock::now()), shown_(enabled && total > 0) {
+  if (!on_terminal()) next_draw_ms_ = line_interval_ms;
+}
 
 Progress::~Progress() {
   if (drawn_) {
@@ -32,7 +35,7 @@ void Progress::advance(std::size_t done) {
   auto const elapsed = std::chrono::steady_clock::now() - start_;
   long long const ms = std::chrono::duration_cast<std::chrono::milliseconds>(elapsed).count();
   long long due = next_draw_ms_.load(std::memory_order_relaxed);
-  if (ms < due || !next_draw_ms_.compare_exchange_strong(due, ms + 100)) return;
+  if (ms < due || !next_draw_ms_.compare_exchange_strong(due, ms + (on_terminal() ? 100 : line_interval_ms))) return;
   draw(now_done, false);
 }
 
@@ -44,7 +47,14 @@ void Progress::draw(std::size_t done, bool last) {
   int const filled = static_cast<int>(fraction * width);
   std::string bar(static_cast<std::size_t>(filled), '#');
   bar.resize(width, '.');
-  double const seconds = last ? elapsed : (fraction > 0 ? elapsed * (1 - fraction) / fraction : 0);
+  double const left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
+  if (!on_terminal()) {
+    std::fprintf(stderr, "%s: %d %% after %.0f s, some %.0f s left\n", label_.c_str(), static_cast<int>(100 * fraction),
+                 elapsed, left);
+    std::fflush(stderr);
+    return;
+  }
+  double const seconds = last ? elapsed : left;
   std::fprintf(stderr, "\r%-24s [%s] %3d %%  %4.0f s %s ", label_.c_str(), bar.c_str(),
                static_cast<int>(100 * fraction), seconds, last ? "in all" : "left  ");
   std::fflush(stderr);

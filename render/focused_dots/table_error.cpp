@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "render/base/parallel.h"
+#include "render/base/progress.h"
 #include "render/base/random.h"
 #include "render/focused_dots/deflection_map.h"
 #include "render/focused_dots/dot_integrator.h"
@@ -169,7 +170,11 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
       2 * GaussianSpot<double>{scene.spot_sigma_px()}.half_width() + 49 + static_cast<int>(std::min(pitch_px, 100.0));
   std::vector<Vec2d> const in_view = measured_places(scene).centre;
   std::vector<std::unique_ptr<LoneDot>> lone(in_view.size());
-  parallel_for(lone.size(), [&](std::size_t i) { lone[i] = std::make_unique<LoneDot>(scene, in_view[i], side); });
+  Progress progress("measuring the table", lone.size());
+  parallel_for(lone.size(), [&](std::size_t i) {
+    lone[i] = std::make_unique<LoneDot>(scene, in_view[i], side);
+    progress.advance();
+  });
   std::erase_if(lone, [](auto const& dot) { return dot->left(); });
   if (lone.empty()) return plan;
   std::vector<std::size_t> places(lone.size());
@@ -196,6 +201,15 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   plan.truth_error_px = std::sqrt(less(mean_variance(off.displacements), chance));
   plan.image_error_levels = levels.error(off);
   return plan;
+}
+
+double table_seconds(FocusedDots const& dots) {
+  Scene const& scene = dots.scene();
+  DeflectionPlan const plan(dots, scene.dots, DeflectionPlan::usual_aim * scene.imaging.entrance_pupil / 2);
+  if (!plan.wanted()) return 0;
+  double const of_table = 4.0 * static_cast<double>(plan.table.fours());
+  double const measured = static_cast<double>(place_count) * plan_scramblings * traced_rays;
+  return (of_table + measured) * ray_seconds(scene);
 }
 
 RaysPlan plan_rays(FocusedDots const& dots) {

@@ -24,4 +24,8 @@ RaysPlan measure_table_error(FocusedDots const& dots);
 /// (DotModel). Says what it is off by then, and whether that is enough (`converged`).
 RaysPlan plan_rays(FocusedDots const& dots);
 
+/// Processor time that the deflection table of a scene's dots and the measurement of its error take [s], as
+/// ray_seconds() counts it. A table takes the same rays for a hundred dots as for thousands.
+double table_seconds(FocusedDots const& dots);
+
 }  // namespace gladstone

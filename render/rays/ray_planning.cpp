@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "render/base/parallel.h"
+#include "render/base/progress.h"
 #include "render/rays/trace_particles.h"
 #include "render/scene/ray_scatter.h"
 #include "render/scene/spot.h"
@@ -30,6 +31,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
   CameraView<double> const camera = scene.camera.view();
   TracingOptions<double> options{step, scene.setup.medium.ambient_refractivity(), scene.setup.medium.integrator,
                                  scene.setup.medium.faces};
+  Progress progress("choosing the step", dots.size());
   std::visit(
       [&](auto const& medium) {
         parallel_chunks(dots.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -52,6 +54,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
               ++seen;
             }
             probe.displacement_px[i] = seen > 0 ? sum / static_cast<double>(seen) : Vec2d{};
+            progress.advance();
           }
         });
       },

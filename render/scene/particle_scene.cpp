@@ -113,7 +113,9 @@ std::string warning_of_small_volume(Scene const& scene) {
   Pose<double> const plane = scene.sheet_plane();
   CameraSetup const& camera = scene.setup.camera;
   double const thickness = scene.setup.piv->laser.thickness;
-  Vec3d const half = 0.5 * *particles.volume + Vec3d{thickness, thickness, thickness};
+  // places of the sheet's middle plane count as within the volume where it ends inside the sheet
+  Vec3d const half =
+      0.5 * *particles.volume + thickness * Vec3d{std::abs(plane.z.x), std::abs(plane.z.y), std::abs(plane.z.z)};
   std::vector<char> outside(static_cast<std::size_t>(along) * along);
   std::atomic<int> seen = 0;
   parallel_for(outside.size(), [&](std::size_t i) {

@@ -95,7 +95,7 @@ PreparedCase prepare_again(CaseWithImages const& one) {
   require_unchanged_inputs(one.folder);
   QuietLog const quiet;  // what there is to warn of stands in its summary.json
   CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
-  StrainMap const unused;
+  StrainMap const unused{};
   KnownParts known;
   known.strain = &unused;
   return prepare_case(loaded, known);

@@ -10,6 +10,7 @@
 #include "render/focused_dots/focused_dots_renderer.h"
 #include "render/rays/rays_renderer.h"
 #include "render/scene/side_faces.h"
+#include "tests/scene/piv_setups.h"
 #include "tests/scene/small_scenes.h"
 
 namespace gladstone {
@@ -214,6 +215,46 @@ TEST(SideFaces, ImagesAreOffByWhatThePlanSays) {
   double const found = std::sqrt(square / lit);
   EXPECT_GT(plan.side_faces->image_error_levels, found / 2);
   EXPECT_LT(plan.side_faces->image_error_levels, found * 2);
+}
+
+// Particles far beside the view are not traced: frames and the truth of all others are the same to the last bit. A
+// plume of light gas bends rays by some pixels.
+TEST(ParticlesNearView, AreAllThatFramesShow) {
+  gladstone::Setup setup = piv_setup(2e-3, 1e-3);
+  setup.camera.columns = setup.camera.rows = 64;
+  setup.lens.f_number = 4;
+  setup.view_margin_px = 16;
+  setup.piv->particles.amount = 400;
+  setup.piv->particles.volume = Vec3d{24e-3, 24e-3, 1e-3};
+  setup.render.rays_per_dot = 16;
+  GaussianBlob<double> plume;
+  plume.amplitude = -0.6;
+  plume.radius = 4e-3;
+  setup.medium.field = plume;
+  setup.medium.thickness = 20e-3;
+  Scene scene = build_scene(setup);
+  plan_step_of(scene);
+  plan_rays_of(scene);
+  Scene all = scene;
+  Rendering const near = on_cpu().render_particles(scene, scene.particles, ParticleLight::scattered, RenderImages::yes);
+  Rendering const every =
+      RaysRenderer().render_particles(all, all.particles, ParticleLight::scattered, RenderImages::yes);
+  EXPECT_TRUE(std::equal(near.light.reference.begin(), near.light.reference.end(), every.light.reference.begin()));
+  EXPECT_TRUE(std::equal(near.light.flow.begin(), near.light.flow.end(), every.light.flow.begin()));
+  std::size_t skipped = 0;
+  for (std::size_t i = 0; i < near.truth.size(); ++i) {
+    if (near.truth.rays_planned[i] == 0) {
+      ++skipped;
+      Vec2d const at = every.truth.reference_px[i];
+      EXPECT_FALSE(at.x > -16 && at.x < 79 && at.y > -16 && at.y < 79) << i;
+      continue;
+    }
+    if (std::isnan(every.truth.displacement_px[i].x)) continue;
+    EXPECT_EQ(near.truth.displacement_px[i], every.truth.displacement_px[i]);
+    EXPECT_EQ(near.truth.flux[i], every.truth.flux[i]);
+  }
+  EXPECT_GT(skipped, near.truth.size() / 2);  // the volume is six times as wide as the view
+  EXPECT_LT(near.rays, every.rays / 2);
 }
 
 }  // namespace

@@ -1,0 +1,163 @@
+#include <cmath>
+
+#include "render/base/vec.h"
+#include "tests/end_to_end/support/workplace.h"
+
+namespace gladstone::end_to_end {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// White spheres in a sheet, seen by a camera with noise.
+constexpr char const* piv_setup = R"(schema = 1
+experiment = "piv"
+
+[camera]
+pixels = [96, 96]
+pixel_pitch_um = 10.0
+bit_depth = 12
+
+[camera.noise]
+full_well_e = 10000
+quantum_efficiency = 0.5
+
+[lens]
+focal_length_mm = 105.0
+f_number = 16.0
+
+[geometry]
+z_a_mm = 750.0
+
+[particles]
+per_pixel = 0.03
+volume_mm = [9.0, 9.0, 1.5]
+scattering = "lambert"
+
+[laser]
+thickness_mm = 1.0
+pulse_energy_mj = 50.0
+
+[flow]
+kind = "rotation"
+rate_rad_s = 3000.0
+dt_us = 10.0
+
+[correlate]
+window_px = [32, 32]
+
+[render]
+rays_per_dot = 8
+)";
+
+class SilentPhysics : public Workplace {
+ protected:
+  nlohmann::json summary_of(std::string const& setup, std::vector<std::string> const& assignments = {}) const {
+    write("setup.toml", setup);
+    std::vector<std::string> arguments{"render", "setup.toml", "-o", "case", "--quiet"};
+    for (std::string const& one : assignments) arguments.insert(arguments.end(), {"--set", one});
+    return json_of(arguments);
+  }
+  std::string warnings_of(std::vector<std::string> const& assignments = {}) const {
+    return summary_of(piv_setup, assignments)["warnings"].dump();
+  }
+};
+
+// A photon sets free quantum_efficiency electrons, never more. With light to spare the exposure fills 90 % of the well.
+TEST_F(SilentPhysics, AutoExposureCountsNoMoreElectronsThanPhotonsSetFree) {
+  auto const bright = summary_of(piv_setup, {"laser.pulse_energy_mj=5000"});
+  EXPECT_LT(bright["particles"]["electrons_per_photon"].get<double>(), 0.5);
+  EXPECT_THAT(bright["warnings"].dump(), Not(HasSubstr("limited by the light")));
+  auto const dim = summary_of(piv_setup, {"laser.pulse_energy_mj=0.05"});
+  EXPECT_NEAR(dim["particles"]["electrons_per_photon"].get<double>(), 0.5, 1e-9);
+  EXPECT_THAT(dim["warnings"].dump(), HasSubstr("limited by the light"));
+  EXPECT_NEAR(dim["exposure"].get<double>(), 0.5 * dim["particles"]["photons"]["most"].get<double>(),
+              0.01 * dim["exposure"].get<double>());
+  // electrons are a scale of grey levels where there is no noise
+  auto const ideal = summary_of(with(piv_setup, "[camera.noise]\nfull_well_e = 10000\nquantum_efficiency = 0.5\n", ""),
+                                {"laser.pulse_energy_mj=0.05"});
+  EXPECT_GT(ideal["particles"]["electrons_per_photon"].get<double>(), 0.6);
+}
+
+TEST_F(SilentPhysics, WarnsOfParticlesThatSendNoPhoton) {
+  EXPECT_THAT(warnings_of({"laser.pulse_energy_mj=1e-6"}), HasSubstr("photons through the lens at a pulse"));
+  std::string const tiny = warnings_of({"particles.diameter_um=1e-7"});
+  EXPECT_THAT(tiny, HasSubstr("photons through the lens at a pulse"));
+  EXPECT_THAT(tiny, HasSubstr("is it in m? 1e-07 m are 0.1 um"));
+}
+
+// The view is 96 * 10 um / 0.1628 = 5.9 mm wide, and the sheet's light ends at 1.5 of its thickness. A rotation by
+// 3e-8 rad moves places 48 px off its axis by 1.4e-6 px.
+TEST_F(SilentPhysics, WarnsOfVolumesSheetsAndTimesThatDoNotFit) {
+  std::string const fine = warnings_of({"laser.pulse_energy_mj=5000"});
+  for (char const* text : {"smaller than the view", "outside the laser sheet", "too small to measure"}) {
+    EXPECT_THAT(fine, Not(HasSubstr(text)));
+  }
+  EXPECT_THAT(warnings_of({"particles.volume_mm=[4, 9, 1.5]"}), HasSubstr("smaller than the view: 3"));
+  EXPECT_THAT(warnings_of({"particles.volume_mm=[9, 9, 12]"}), HasSubstr("outside the laser sheet"));
+  EXPECT_THAT(warnings_of({"flow.dt_us=1e-5"}), HasSubstr("too small to measure"));
+}
+
+TEST_F(SilentPhysics, SaysThatAFormulaDrewThePicture) {
+  auto const summary = summary_of(with(piv_setup, "\"lambert\"", "\"gaussian\""));
+  EXPECT_EQ(summary["method"], "formula");
+  EXPECT_EQ(summary["estimator"]["dots_by_rays"], 0);
+  EXPECT_EQ(summary["estimator"]["dots_by_formula"], summary["dots"]);
+  EXPECT_THAT(summary["estimator"]["no_table_since"].get<std::string>(), HasSubstr("formula"));
+  EXPECT_TRUE(summary["rays_per_dot"].is_null());
+}
+
+// A setup that is refused for what a wrong unit made of it names the unit as well.
+TEST_F(SilentPhysics, AsksForTheUnitOfImplausibleNumbers) {
+  write("setup.toml", small_setup);
+  Outcome const short_wave = gladstone({"render", "setup.toml", "-o", "case", "--set", "medium.wavelength_nm=0.532"});
+  EXPECT_EQ(short_wave.exit_code, 2);
+  EXPECT_THAT(short_wave.err, HasSubstr("is it in um? 0.532 um are 532 nm"));
+  EXPECT_THAT(gladstone({"render", "setup.toml", "-o", "case", "--set", "lens.focal_length_mm=0.105"}).err,
+              HasSubstr("lens.focal_length_mm = 0.105 mm is outside the usual range"));
+  EXPECT_THAT(
+      json_of({"render", "setup.toml", "-o", "case", "--set", "medium.gladstone_dale=2.26e-4"})["warnings"].dump(),
+      Not(HasSubstr("usual range")));
+}
+
+// 192 dots of 32 rays are 6144 rays, a hundredth of those that a deflection table and its measurement take.
+TEST_F(SilentPhysics, AutoTakesRaysForFewDotsWhereATableIsLong) {
+  std::string const shock = with(with(small_setup, "kind = \"uniform_gradient\"\ngradient_kg_m4 = [20.0, 10.0, 0.0]",
+                                      "kind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1.225\n"
+                                      "shock_thickness_mm = 0.5\ntilt_deg = 0.0\nposition_mm = 0.0"),
+                                 "dots_per_32px_window = 10.0", "dots_per_32px_window = 12.0");
+  EXPECT_EQ(summary_of(shock, {"medium.ambient_density_kg_m3=1.225", "medium.thickness_mm=10"})["method"], "rays");
+  EXPECT_EQ(summary_of(small_setup)["method"], "focused_dots");
+}
+
+// A solid body turns by t = 0.03 rad between the pulses. Pixels count from the axis, Y down: a place P of frame A moves
+// by (cos t - 1) P + sin t (Y, -X); one midway between both images by 2 tan(t/2) (Y, -X). Paths are integrated to 1e-5
+// px.
+TEST_F(SilentPhysics, ADatasetHoldsTheExactDisplacementOfEveryPixel) {
+  write("setup.toml", piv_setup);
+  write("study.toml", "base = \"setup.toml\"\n[axes]\n\"flow.rate_rad_s\" = [3000.0]\n");
+  succeed({"sweep", "plan", "study.toml", "-o", "run", "--device", "cpu"});
+  succeed({"sweep", "run", "run", "--quiet", "--keep-images"});
+  succeed({"sweep", "collect", "run", "--no-figures", "--quiet", "--dataset", "set.h5"});
+  Hdf5Reader const set(in("set.h5").string());
+  double const t = 0.03;
+  for (std::string const name : {"/displacement_px", "/displacement_mid_px"}) {
+    bool const mid = name == "/displacement_mid_px";
+    ASSERT_EQ(set.shape(name), (std::vector<std::size_t>{1, 96, 96, 2}));
+    EXPECT_EQ(std::stod(set.attribute_of(name, "spacing_px")), 1);
+    EXPECT_THAT(set.attribute_of(name, "place"), HasSubstr(mid ? "mid-time" : "frame A"));
+    std::vector<double> const map = set.read(name);
+    double worst = 0;
+    for (std::size_t i = 0; i < 96 * 96; ++i) {
+      double const x = static_cast<double>(i % 96) - 47.5, y = static_cast<double>(i / 96) - 47.5;
+      Vec2d const turned{y, -x};
+      Vec2d const exact = mid ? 2 * std::tan(t / 2) * turned : (std::cos(t) - 1) * Vec2d{x, y} + std::sin(t) * turned;
+      double const off = length(Vec2d{map[2 * i], map[2 * i + 1]} - exact);
+      worst = off <= worst ? worst : off;  // NaN counts
+    }
+    EXPECT_LT(worst, 1e-4) << name;
+  }
+}
+
+}  // namespace
+}  // namespace gladstone::end_to_end
