@@ -104,12 +104,12 @@ std::string warning_of_wide_particles(Scene const& scene) {
       widest / unit::micrometre, px, point_px);
 }
 
-/// Of a volume that ends within the view. Empty: it fills the view, or is not given.
-std::string warning_of_small_volume(Scene const& scene) {
+/// Of a volume that ends within the view. Empty: it fills the view, is not given, or no particle is in view at all.
+std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
   constexpr int along = 16;            // places of the view, along either side
   constexpr double negligible = 0.01;  // share of them
   ParticleSetup const& particles = scene.setup.piv->particles;
-  if (!particles.volume) return {};
+  if (!particles.volume || census.in_view == 0) return {};
   Pose<double> const plane = scene.sheet_plane();
   CameraSetup const& camera = scene.setup.camera;
   double const thickness = scene.setup.piv->laser.thickness;
@@ -259,8 +259,8 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
   for (std::string const& text :
-       {warning_of_wide_particles(scene), warning_of_small_volume(scene), warning_of_dark_particles(scene, census),
-        warning_of_small_displacements(scene, census)}) {
+       {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
+        warning_of_dark_particles(scene, census), warning_of_small_displacements(scene, census)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
