@@ -26,7 +26,7 @@ JOBS ?= $(shell cores=$$(nproc 2>/dev/null || echo 2); \
 # All from Debian bookworm. OpenCV's three small packages instead of libopencv-dev, which draws in two hundred others.
 PACKAGES := g++ cmake ninja-build pkg-config libeigen3-dev libtbb-dev libfmt-dev libspdlog-dev nlohmann-json3-dev \
 	libcli11-dev libtomlplusplus-dev libhdf5-dev libopenimageio-dev libopencv-core-dev libopencv-imgproc-dev \
-	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
+	libopencv-video-dev libceres-dev libnlopt-cxx-dev zlib1g-dev libbz2-dev libpugixml-dev liblz4-dev liblzma-dev libssl-dev gnuplot-nox fonts-dejavu-core node-d3 libgtest-dev libgmock-dev libbenchmark-dev
 LINT_PACKAGES := clang-format python3-venv
 # from PyPI: unlike Debian's clang-tidy 14 it skips the system's headers, and so takes a third of the time
 CLANG_TIDY := clang-tidy==23.1.4

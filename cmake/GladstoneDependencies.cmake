@@ -14,7 +14,8 @@ pkg_check_modules(NLopt REQUIRED IMPORTED_TARGET nlopt_cxx)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(TomlPlusPlus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_search_module(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
-# VTK's XML files and what they are compressed by
+# what NRRD's data, and VTK's XML files, are compressed by
+find_package(BZip2 REQUIRED)
 pkg_check_modules(PugiXml REQUIRED IMPORTED_TARGET pugixml)
 pkg_check_modules(Lz4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(Lzma REQUIRED IMPORTED_TARGET liblzma)
