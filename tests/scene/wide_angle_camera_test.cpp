@@ -58,7 +58,7 @@ Vec3d point_at(double degrees, double turn = 0) {
 // Heights on the sensor, which stands in best focus a known way behind the last vertex: chief rays meet the stop's
 // centre to 1e-10 of its radius (0.16 mm), 1e-7 px of 1 um.
 TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
-  Setup const setup = wide_setup(513, 1e-6);
+  auto const setup = wide_setup(513, 1e-6);
   Camera const camera = build_camera(setup);
   Vec3d const last = camera.elements.back().visit([](auto const& held) { return held.pose.origin; });
   double const behind = dot(camera.sensor.pose.origin - last, camera.pose.z);
@@ -75,7 +75,7 @@ TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
 
 // unproject() undoes project(), and its derivatives are those of project().
 TEST(WideAngleCamera, UnprojectsWhatItProjects) {
-  Setup const setup = wide_setup(513, 1e-6);
+  auto const setup = wide_setup(513, 1e-6);
   Camera const camera = build_camera(setup);
   Pose<double> const plane{{0, 0, -0.05}};
   for (ChiefRay const& row : listing) {
@@ -122,7 +122,7 @@ TEST(WideAngleCamera, SourcesSeeTheWholeStop) {
 // The renderer lights dots at 0, 40 and 60 degrees where project() has them: the centroid departs from the chief ray by
 // the lens' coma alone, below a tenth of its spot, which is some pixels of 8 um at most.
 TEST(WideAngleRendering, ShowsDotsAtTheRimOfTheField) {
-  Setup setup = wide_setup(36, 8e-6);  // corners at 0.204 mm, 63 degrees
+  auto setup = wide_setup(36, 8e-6);  // corners at 0.204 mm, 63 degrees
   setup.target.dots_per_32px_window = 1;
   Scene scene = build_scene(setup);
   scene.dots.centre.clear();
