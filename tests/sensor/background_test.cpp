@@ -157,7 +157,7 @@ TEST(CameraSetup, RefusesABackgroundThatHidesAll) {
       read("background.level_e = 300\nbackground.gradient_e = [50, -70]\nnoise.prnu_percent = 1.5");
   EXPECT_EQ(good.background.most_e(), 360);
   EXPECT_DOUBLE_EQ(good.noise.prnu, 0.015);
-  EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("little else")));
+  EXPECT_THAT([&] { read("background.level_e = 29000"); }, ThrowsMessage<SetupError>(HasSubstr("the limit is 24000")));
   EXPECT_THAT([&] { read("background.glare_e = 5"); }, ThrowsMessage<SetupError>(HasSubstr("glare_file")));
   EXPECT_THAT([&] { read("background.glare_file = \"absent.png\""); },
               ThrowsMessage<SetupError>(HasSubstr("there is no file")));
