@@ -125,8 +125,10 @@ TEST(DotDetection, WhatIsNoDotIsLeftOut) {
 
 // Light B that falls off by a quarter, B (1 - c) in dots of contrast c. Over the plane through its ring and as a share
 // of that a dot is c B / P + (P - B) / P: of the curvature of B, 1.5e-5 / px^2, there remain terms that are even about
-// the dot, and an offset of 1.5e-5 (12^2 - 6^2) = 2e-3 over the window's 227 px, 0.4 where the dot is 23. The window's
-// pixels miss its middle by at most 0.2 px: 4e-3 px. Light taken as level would move dots by 0.1 px.
+// the dot, and an offset of 1.5e-5 (12^2 - 6^2) = 2e-3 over the window's 227 px, 0.4 where the dot is 23. Each of the
+// 53 pixels on the window's rim moves its middle by 8.5/227 = 0.04 px, and is inside or out by chance: 0.04 sqrt(53)/2
+// = 0.14 px rms in length, three times which and 0.4/23 of the dot's light are 7e-3 px. Light taken as level would move
+// dots by 0.1 px.
 TEST(DotDetection, DarkDotsUnderLightThatFallsOffAreFoundWhereTheyAre) {
   Scenery scenery(3, 0.7, -0.8);
   Image<double>& picture = scenery.picture;
@@ -140,7 +142,7 @@ TEST(DotDetection, DarkDotsUnderLightThatFallsOffAreFoundWhereTheyAre) {
   auto const errors = scenery.errors();
   ASSERT_EQ(errors.size(), scenery.centres.size());
   EXPECT_EQ(detect_dots(picture).dots.size(), scenery.centres.size());
-  for (Vec2d const error : errors) EXPECT_LT(length(error), 4e-3);
+  for (Vec2d const error : errors) EXPECT_LT(length(error), 7e-3);
 }
 
 // Letters about as large as dots, between them: bars, rings and angles are no filled ellipses of the dots' shape.

@@ -216,7 +216,7 @@ double word_level(int i, int j) { return 1000 + 7000 * i + 1500 * j; }
 /// - JPEG, whose discrete cosine transform rounds each of 64 coefficients by half a level, seldom all to one side,
 /// - a TIFF's palette of 16 bits, of which the library keeps 8: one level.
 TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
-  constexpr double rounding = 1e-9, jpeg = 2, palette = 1;
+  constexpr double rounding = 1e-9, jpeg = 2, palette = 1 + rounding;
   Levels const first_bits[] = {[](int i, int j) { return std::floor(byte_level(i, j) / 64); },
                                [](int i, int j) { return std::floor(byte_level(i, j) / 16); },
                                [](int i, int j) { return std::floor(word_level(i, j) / 64); },
@@ -248,6 +248,7 @@ TEST(ImageFile, EveryKindOfPictureReadsAsItsLevels) {
            {"compression_zstd.tif", byte_level, 0},
            {"compression_lzma.tif", byte_level, 0},
            {"compression_packbits.tif", byte_level, 0},
+           {"compression_webp.tif", byte_level, rounding},
            {"bits_2.tif", first_bits[0], 0},
            {"bits_4.tif", first_bits[1], 0},
            {"bits_10.tif", first_bits[2], 0},
@@ -308,7 +309,6 @@ TEST(ImageFile, PicturesThatHaveNoGreyLevelsAreRefusedWithTheReason) {
            {"uint_64.tif", "unsigned integers of 64 bits"},
            {"complex.tif", "complex floating-point numbers of 64 bits"},
            {"compression_jpeg2000.tif", "compressed by an unknown method"},
-           {"compression_webp.tif", "compression 50001"},
            {"inks_five_tiled.tif", "is of 5 printing inks"},
            {"channels_seven.tif", "has 7 values a pixel that are no colours"},
            {"pages_3.tif", "has 3 pages"},
