@@ -17,7 +17,7 @@ namespace {
 constexpr double path_tolerance_px = 1e-5;
 constexpr double bending_margin = 0.02;       // by which media may turn light on its way to the lens [rad]
 constexpr double scattering_contrast = 1e-3;  // of the index: what seeds a gas has 0.3 and more
-constexpr double lit_share = 0.5;             // of the particles: fewer are worth a word
+constexpr double lit_share = 0.5;             // of the volume: less is worth a word
 constexpr double kept_pairs = 0.75;           // that lose little: Keane & Adrian's rule of a quarter
 
 /// Share of the particles' volume that the camera sees: of places that an additive recurrence spreads evenly over X and
@@ -134,16 +134,28 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
       100 * share, camera.columns * scene.setup.pixel_size() * 1e3, camera.rows * scene.setup.pixel_size() * 1e3);
 }
 
-/// Of particles that are seeded where the sheet does not light them. Empty: most are lit.
-std::string warning_of_dark_particles(Scene const& scene, ParticleCensus const& census) {
-  std::size_t const count = scene.particles.size();
-  double const share = static_cast<double>(std::max(census.lit[0], census.lit[1])) / static_cast<double>(count);
-  if (count == 0 || !(share < lit_share)) return {};
+/// Of a volume that is mostly outside the light: less than a thousandth of that in the sheet's middle. Empty: it is
+/// not.
+std::string warning_of_dark_volume(Scene const& scene) {
+  PivSetup const& piv = *scene.setup.piv;
+  if (!piv.particles.volume) return {};
+  Pose<double> const sheet = laser_sheet<double>(piv.laser).pose[0];
+  Vec3d const half = 0.5 * *piv.particles.volume, n = sheet.z;
+  double half_depth = HUGE_VAL;  // of the volume along the sheet's normal, through its centre
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(n[axis]) > 1e-9) half_depth = std::min(half_depth, half[axis] / std::abs(n[axis]));
+  }
+  // exp(-8 z^2 / w^2) is a thousandth at z = 0.93 w
+  double const reach = (piv.laser.profile == SheetProfile::gaussian ? 0.93 : 0.5) * piv.laser.thickness;
+  double const offset = dot(sheet.origin - piv.particles.center, n);
+  double const lit = std::max(0.0, std::min(half_depth, offset + reach) - std::max(-half_depth, offset - reach));
+  double const share = lit / (2 * half_depth);
+  if (!(share < lit_share)) return {};
   return fmt::format(
-      "particles: {:.0f} % of {} lie outside the laser sheet at either pulse and are not seen (their number, "
-      "particles.per_pixel included, counts them); make particles.volume_mm as thin as the sheet, {:.4g} mm and its "
-      "wings, or check laser.offset_mm and tilt_deg",
-      100 * (1 - share), count, scene.setup.piv->laser.thickness / unit::millimetre);
+      "particles.volume_mm: {:.0f} % of the volume lies outside the laser sheet, whose particles are counted "
+      "(particles.per_pixel, number) but not seen; make the volume as thin as the sheet, {:.4g} mm with its wings, or "
+      "check laser.offset_mm",
+      100 * (1 - share), 2 * reach / unit::millimetre);
 }
 
 /// Of a flow that moves no image by as much as correlation resolves, though it does move. Empty: there is none.
@@ -258,9 +270,8 @@ std::vector<std::string> warnings_of_particles(Scene const& scene) {
         "thicker volume",
         100 - 100.0 * static_cast<double>(census.paired) / static_cast<double>(census.in_view)));
   }
-  for (std::string const& text :
-       {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
-        warning_of_dark_particles(scene, census), warning_of_small_displacements(scene, census)}) {
+  for (std::string const& text : {warning_of_wide_particles(scene), warning_of_small_volume(scene, census),
+                                  warning_of_dark_volume(scene), warning_of_small_displacements(scene, census)}) {
     if (!text.empty()) warnings.push_back(text);
   }
   if (!scene.flow_warning.empty()) warnings.push_back(scene.flow_warning);
