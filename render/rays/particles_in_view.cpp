@@ -12,7 +12,21 @@ namespace gladstone {
 namespace {
 
 constexpr double spare_px = 16;
-constexpr double blur_factor = 1.5, shift_factor = 2;
+constexpr double blur_factor = 1.5, shift_factor = 2, lever_factor = 4;
+
+/// Largest displacement of an image over the displacement of its rays on the lens plane, in the object plane [1]: a
+/// turn at z counts by its way back to the particle there, by that on to the lens here; four times as much.
+double image_shift_per_lens_shift(Scene const& scene, Particles const& particles) {
+  if (scene.setup.pose || particles.size() == 0) return shift_factor;
+  Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
+  double deepest = particles.place[0][0].z;
+  for (auto const& places : particles.place) {
+    for (Vec3d const& place : places) deepest = std::min(deepest, place.z);
+  }
+  double const back = box.high.z - deepest, onward = scene.camera.aim_plane.origin.z - box.high.z;
+  if (!(back >= 0) || !(onward > 0)) return shift_factor;
+  return std::min(shift_factor, lever_factor * back / onward);
+}
 
 /// Whether the image of a point reaches a sensor that is larger by a margin all around. True where its chief ray is not
 /// known.
@@ -44,7 +58,7 @@ std::vector<char> particles_near_view(Scene const& scene, Particles const& parti
   std::optional<AiryTable> airy;
   double const px_per_metre = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
   double const margin_px = scene.setup.view_margin_px + make_spot(scene, airy).half_width() + spare_px +
-                           shift_factor * scene.pupil_margin * px_per_metre;
+                           image_shift_per_lens_shift(scene, particles) * scene.pupil_margin * px_per_metre;
   parallel_chunks(particles.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       bool found = false;

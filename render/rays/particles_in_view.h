@@ -11,9 +11,9 @@ namespace gladstone {
 /// only if its image, at both pulses, lies farther from the sensor than the sum of
 /// - the first interrogation window, whose truth may be asked for (Setup::view_margin_px),
 /// - its disc of confusion, by rays to the rim of the stop without the medium, half as wide again, and the spot,
-/// - the medium's displacement: twice what moves a point of the object plane as far as the medium moves the probing
-///   rays on the lens plane (Scene::pupil_margin). A ray that the medium turns by an angle moves by that angle times
-///   the way to the lens there, but by the angle times the shorter way back to the particle in the image,
+/// - the medium's displacement: that of the probing rays on the lens plane (Scene::pupil_margin) times four times the
+///   ratio of the longest way back to a particle and the shortest way on to the lens, from any place in the medium, and
+///   twice at most. A turn by an angle moves the image by the former way and the ray at the lens by the latter,
 /// - 16 px.
 /// Through lenslets all count.
 /// @param scene planned: step and pupil margin are known
