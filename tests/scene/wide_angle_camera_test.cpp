@@ -73,7 +73,9 @@ TEST(WideAngleCamera, ProjectsToEightyDegreesAsAnIndependentTracer) {
   }
 }
 
-// unproject() undoes project(), and its derivatives are those of project().
+// unproject() undoes project(), and its derivatives are those of project(): they are central differences over a pixel
+// of the axis, 0.5 mm here, whose rays pass the pupil (0.03 mm) 5 um beside its middle: (5/30)^2 of a tenth, the share
+// that aberrations have in it, is 3e-3.
 TEST(WideAngleCamera, UnprojectsWhatItProjects) {
   auto const setup = wide_setup(513, 1e-6);
   Camera const camera = build_camera(setup);
@@ -90,7 +92,7 @@ TEST(WideAngleCamera, UnprojectsWhatItProjects) {
     auto const right = camera.project(point + Vec3d{h, 0, 0}), left = camera.project(point - Vec3d{h, 0, 0});
     ASSERT_TRUE(right && left) << row.degrees;
     Vec2d const slope = (*right - *left) / (2 * h);
-    EXPECT_NEAR(length(seen->by_x - slope), 0, 1e-3 * length(slope)) << row.degrees;
+    EXPECT_NEAR(length(seen->by_x - slope), 0, 5e-3 * length(slope)) << row.degrees;
   }
 }
 
