@@ -11,11 +11,11 @@
 namespace gladstone {
 namespace {
 
-constexpr double spare_px = 16;
-constexpr double blur_factor = 1.5, shift_factor = 2, lever_factor = 4;
+constexpr double spare_px = 8;
+constexpr double blur_factor = 1.5, shift_factor = 2, lever_factor = 2;
 
 /// Largest displacement of an image over the displacement of its rays on the lens plane, in the object plane [1]: a
-/// turn at z counts by its way back to the particle there, by that on to the lens here; four times as much.
+/// turn at z counts by its way back to the particle there, by that on to the lens here; twice as much.
 double image_shift_per_lens_shift(Scene const& scene, Particles const& particles) {
   if (scene.setup.pose || particles.size() == 0) return shift_factor;
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
