@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "analysis/errors/scattered_grid.h"
 #include "render/base/error.h"
@@ -84,6 +85,17 @@ void check_preparation(Hdf5Reader const& measured, std::string const& path, Corr
   }
 }
 
+/// Whether the truth cannot tell two readings of the format's own apart, of which one had to be taken.
+bool has_rival_of_its_own(VectorFile const& file, DetectedConventions const& detected) {
+  VectorConventions const& taken = detected.conventions;
+  auto const axes = [](VectorConventions const& c) { return std::tuple(c.y_up, c.v_up, c.swapped, c.exchange); };
+  return std::any_of(detected.tried.begin(), detected.tried.end(), [&](ConventionFit const& fit) {
+    auto const is_it = [&](VectorConventions const& own) { return axes(own) == axes(fit.conventions); };
+    bool const own = is_it(file.conventions) || std::any_of(file.also.begin(), file.also.end(), is_it);
+    return own && axes(fit.conventions) != axes(taken) && !(detected.fit.rms_px < 0.9 * fit.rms_px);
+  });
+}
+
 /// How the vectors are read: as the format says, with what they may have wrong. @throws DataError where nothing fits
 DetectedConventions detect(VectorFile const& file, std::string const& path, GroundTruth const& truth,
                            CameraSetup const& camera) {
@@ -97,7 +109,7 @@ DetectedConventions detect(VectorFile const& file, std::string const& path, Grou
   }
   if (detected.mistake.found()) {
     spdlog::warn("{}: likely mistake: {}", path, detected.mistake.warning());
-  } else if (detected.verdict == Verdict::cannot_be_told || (detected.ambiguous && !file.also.empty())) {
+  } else if (detected.verdict == Verdict::cannot_be_told || has_rival_of_its_own(file, detected)) {
     spdlog::warn("{}: {}; say which with --conventions", path, detected.report);
   }
   return detected;

@@ -149,16 +149,17 @@ std::string ForeignCode::mistake() const {
   auto best =
       std::max_element(all.begin(), all.end(), [](Evidence const& a, Evidence const& b) { return a.sum < b.sum; });
   if (best != all.end() && best->sum > 16.0 && best->rms_px < 0.9 * best->rms_as_read) {
-    // of those that fit as well, but for chance, the likeliest
-    double const most = best->sum;
+    // of those that fit as well the likeliest; a tenth of the evidence is what an estimator's own errors make of a
+    // flow that looks the same
+    double const most = best->sum, alike = std::max(9.0, 0.1 * most);
     for (auto one = all.begin(); one != all.end(); ++one) {
-      if (most - one->sum <= 9.0 && unlikelihood(one->reading, own) < unlikelihood(best->reading, own)) best = one;
+      if (most - one->sum <= alike && unlikelihood(one->reading, own) < unlikelihood(best->reading, own)) best = one;
     }
     std::string text = difference_of(best->reading, own);
     bool alone = true;
     for (Evidence const& other : all) {
       bool const as_likely = unlikelihood(other.reading, own) < unlikelihood(best->reading, own) + 0.5;
-      if (&other == &*best || most - other.sum > 9.0 || !as_likely) continue;
+      if (&other == &*best || most - other.sum > alike || !as_likely) continue;
       text += ", or " + difference_of(other.reading, own);
       alone = false;
     }

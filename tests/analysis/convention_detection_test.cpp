@@ -205,7 +205,35 @@ TEST(DetectConventions, NamesEveryMistakeThatLooksTheSame) {
   DetectedConventions const found = detect_conventions(file, vortex, 200);
   EXPECT_THAT(found.mistake.text, testing::StartsWith("the frames were exchanged, or "));
   EXPECT_THAT(found.mistake.text, HasSubstr("y and v point up"));
-  EXPECT_NEAR(found.fit.rms_px, 2.0 * found.fit.signal_px, 1e-9) << "they are not forgiven";
+  EXPECT_GT(found.fit.rms_px, 1.9 * found.fit.signal_px) << "twice, but for what counts as three times";
+}
+
+// The same with errors that differ by 2 % between readings, as an estimator's do that pulls its vectors to the right:
+// the likeliest is still named first, and a shift is no exchange of axes though one takes a part of it away.
+TEST(DetectConventions, NamesTheLikeliestOfReadingsThatFitAlmostAlike) {
+  VectorFile file;
+  file.format = "test";
+  auto const vortex = [](Vec2d p) {
+    Vec2d const r{p.x - 99.5, p.y - 99.5};
+    double const swirl = 4.0 * std::exp(-dot(r, r) / 3600.0) / 60.0;
+    return Vec2d{-swirl * r.y, swirl * r.x};
+  };
+  for (int row = 0; row < 23; ++row) {
+    for (int column = 0; column < 23; ++column) {
+      Vec2d const p{11.5 + 8.0 * column, 11.5 + 8.0 * row};
+      file.field.position_px.push_back(p);
+      file.field.displacement_px.push_back(vortex(p) + Vec2d{0.01 + 0.03 * noise(file.field.size()).x, 0.004});
+    }
+  }
+  VectorFile exchanged = file;
+  for (Vec2d& d : exchanged.field.displacement_px) d = -d;
+  EXPECT_THAT(detect_conventions(exchanged, vortex, 200).mistake.text,
+              testing::StartsWith("the frames were exchanged, or y and v point up"));
+  VectorFile shifted = file;
+  for (Vec2d& p : shifted.field.position_px) p.x += 16.0;
+  EXPECT_THAT(detect_conventions(shifted, vortex, 200).mistake.text,
+              testing::StartsWith("places are shifted by (16, 0)"));
+  EXPECT_FALSE(detect_conventions(file, vortex, 200).mistake.found());
 }
 
 // No displacement at all, noise, and places in mm of the dots, all within 16 px, follow the truth in no reading.

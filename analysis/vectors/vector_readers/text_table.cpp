@@ -23,9 +23,9 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-/// The separator of a line: the first of comma, semicolon, tab that it holds, else blank.
+/// The separator of a line: the first of semicolon, tab, comma (which may be decimal ones) that it holds, else blank.
 char separator_of(std::string_view line) {
-  for (char const candidate : {',', ';', '\t'}) {
+  for (char const candidate : {';', '\t', ','}) {
     if (line.find(candidate) != std::string_view::npos) return candidate;
   }
   return ' ';
@@ -275,7 +275,7 @@ TextTable read_text_table(std::string const& path) {
     if (text.empty()) continue;
 
     // Lines before the first row of numbers: the last of them is the header.
-    if (format.separator == 0 && !number(split(text, separator_of(text)).front())) {
+    if (format.separator == 0 && !number(split(text, separator_of(text)).front(), ',')) {
       if (at > most_lines_before_numbers) {
         fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));
       }
