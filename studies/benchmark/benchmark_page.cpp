@@ -159,9 +159,12 @@ std::vector<std::string> findings_of(BenchmarkResult const& result) {
   for (std::string const& code : codes_of(result)) {
     std::string text;
     auto const tell = [&](char const* of_case, char const* in_words) {
-      if (BenchmarkRow const* const row = find_row(result, code, of_case))
-        text +=
-            fmt::format("{}{:.4f} px {}", text.empty() ? "" : ", ", row->score.errors.rms_without_gross_px, in_words);
+      BenchmarkRow const* const row = find_row(result, code, of_case);
+      if (!row) return;
+      text += fmt::format("{}{:.4f} px {}", text.empty() ? "" : ", ", row->score.errors.rms_without_gross_px, in_words);
+      // The rms without gross errors hides their number.
+      double const gross = static_cast<double>(row->score.gross) / static_cast<double>(row->score.errors.count);
+      if (gross > 0.01) text += fmt::format(" ({:.0f} % of the vectors are gross errors)", 100.0 * gross);
     };
     tell("vortex", "in the vortex");
     tell(noise_case, "at 5 % noise");
