@@ -12,6 +12,7 @@ namespace gladstone {
 namespace {
 
 constexpr double spare_px = 8;
+constexpr double within_rim = 0.9;  // of what a particle sees of the stop: rays that pass it
 constexpr double blur_factor = 1.5, shift_factor = 2, lever_factor = 2;
 
 /// Largest displacement of an image over the displacement of its rays on the lens plane, in the object plane [1]: a
@@ -42,12 +43,15 @@ bool reaches(Camera const& camera, Vec3d place, double margin_px) {
   if (!disc) return true;
   CameraView<double> const view = camera.view();
   double blur_px = 0;
+  int passing = 0;
   for (Vec3d const rim : {disc->a, disc->b, -disc->a, -disc->b}) {
-    Ray<double> const ray{place, normalized(disc->centre + rim - place)};
+    Ray<double> const ray{place, normalized(disc->centre + within_rim * rim - place)};
     RayHit<double> const hit = trace_ray(view, NoMedium<double>{}, TracingOptions<double>{}, ray, 1.0);
-    if (hit.status <= RayStatus::vignetted) blur_px = std::max(blur_px, length(hit.pixel - *chief));
+    if (!reaches_sensor_plane(hit.status)) continue;
+    ++passing;
+    blur_px = std::max(blur_px, length(hit.pixel - *chief) / within_rim);
   }
-  return !(apart > margin_px + blur_factor * blur_px);
+  return passing == 0 || !(apart > margin_px + blur_factor * blur_px);
 }
 
 }  // namespace

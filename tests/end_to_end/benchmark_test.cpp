@@ -148,6 +148,7 @@ TEST_F(Benchmark, ForgivesNoWrongSigns) {
   Outcome const alone = score({"--cases", "vortex", "--vectors", "m=negative"});
   EXPECT_EQ(alone.exit_code, 1) << alone.err;
   EXPECT_THAT(alone.err, testing::HasSubstr("cannot tell apart"));
+  EXPECT_THAT(read("b/benchmark.md"), testing::HasSubstr("% of the vectors are gross errors"));
 
   Outcome const turned = score({"--cases", "vortex", "uniform", "--vectors", "m=turned"});
   EXPECT_EQ(turned.exit_code, 1) << turned.err;
