@@ -27,7 +27,9 @@ std::string cures(Setup const& setup, SmallImages const& images) {
   if (double const factor = images.f_number_factor(least_image_px); std::isfinite(factor * setup.lens.f_number)) {
     add(fmt::format("lens.f_number = {:.3g}", factor * setup.lens.f_number));
   }
-  if (double const focus = defocus_distance(setup, least_image_px); std::isfinite(focus)) {
+  // Ideal images assume particles in focus.
+  bool const ideal = setup.piv && setup.piv->particles.scattering == ParticleScattering::gaussian;
+  if (double const focus = defocus_distance(setup, least_image_px); !ideal && std::isfinite(focus)) {
     add(fmt::format("lens.focus_distance_mm = {:.6g}", focus / unit::millimetre));
   }
   if (!setup.piv) {

@@ -68,7 +68,10 @@ TEST_F(Cameras, EachGivesACaseOfItsOwn) {
   std::vector<std::string> const files{"flow.tif", "reference.tif", "setup.toml", "summary.json", "truth.h5"};
   EXPECT_EQ(names("case/left"), files);
   EXPECT_EQ(names("case/right"), files);
-  EXPECT_EQ(json, nlohmann::json::parse(read("case/summary.json")));
+  auto summary = json;
+  EXPECT_TRUE(summary["warnings"].is_array());
+  summary.erase("warnings");  // of the run
+  EXPECT_EQ(summary, nlohmann::json::parse(read("case/summary.json")));
   EXPECT_EQ(json["cameras"]["left"], nlohmann::json::parse(read("case/left/summary.json")));
   // the longer lens sees the dots larger: M = f / (Z_B - f) with Z_B = 1015.4 mm
   double const z_b = 1000 / std::cos(std::atan(132.3 / 750));

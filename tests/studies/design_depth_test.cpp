@@ -72,7 +72,7 @@ TEST_F(DepthOfTheMedium, DesignEqualsRenderForEveryKindOfField) {
                     plane = "kind = \"file\"\nfile = \"plane.h5\"\nspacing_mm = [2.0, 2.0, 5.0]\nextrude = true",
                     plume = "kind = \"gaussian_plume\"\namplitude_kg_m3 = -0.1\nradius_mm = ",
                     blob = "kind = \"gaussian_blob\"\namplitude_kg_m3 = -0.1\nradius_mm = ",
-                    wave = "kind = \"sinusoid\"\namplitude_kg_m3 = 0.02\ndirection = [0.6, 0.8]\nwavelength_mm = ",
+                    wave = "kind = \"sinusoid\"\namplitude_kg_m3 = 0.1\ndirection = [0.6, 0.8]\nwavelength_mm = ",
                     shock = "kind = \"normal_shock\"\nmach = 1.2\nupstream_density_kg_m3 = 1.0\nshock_thickness_mm = 3";
   struct Field {
     std::string text;

@@ -155,7 +155,7 @@ DrawnQuestion drawn_question(BenchGiven const& given, unsigned seed) {
   question.objective = static_cast<Objective>(seed % 4);
   Bench<double> middle{&given, 0.105, 11, uniform(0.5, 1.5), uniform(0.2, 1.0), 0};
   middle.dot_diameter = uniform(1.5, 3.5) * middle.pixel_at_dots();
-  auto const loose = [&] { return std::exp(uniform(-0.25, 0.6)); };
+  auto const loose = [&] { return std::exp(uniform(-0.4, 0.6)); };
   if (question.objective != Objective::gradient_min) {
     question.required.push_back({Bound::gradient_min, middle.smallest_gradient() * loose()});
   }

@@ -15,14 +15,18 @@
 namespace gladstone {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Particles of 1 um through a lens of 105 mm at 0.75 m: M = 105 / 645, an e^-2 diameter of 1.682 N (1 + M) lambda.
-std::string piv_setup(std::string const& lens, double pitch_um) {
+std::string piv_setup(std::string const& lens, double pitch_um, std::string const& scattering = "lambert") {
   return "schema = 1\nexperiment = \"piv\"\n[camera]\npixels = [64, 64]\npixel_pitch_um = " + std::to_string(pitch_um) +
          "\n[lens]\nfocal_length_mm = 105.0\n" + lens +
          "\n[geometry]\nz_a_mm = 750.0\n[medium.field]\nkind = \"none\"\n[particles]\nnumber = 100\nvolume_mm = [10.0, "
-         "10.0, 1.0]\ndiameter_um = 1.0\nscattering = \"gaussian\"\n[laser]\nthickness_mm = 1.0\n[flow]\nkind = "
+         "10.0, 1.0]\ndiameter_um = 1.0\nscattering = \"" +
+         scattering +
+         "\"\n[laser]\nthickness_mm = 1.0\n[flow]\nkind = "
          "\"uniform\"\nvelocity_m_s = [1.0, 0.0, "
          "0.0]\ndt_us = 10.0\n";
 }
@@ -60,6 +64,9 @@ TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
   gladstone::Setup const cured = setup_of(piv_setup("f_number = 8.0\nfocus_distance_mm = " + focus, 5.742));
   EXPECT_NEAR(expected_images(cured).diameter_px(), 2, 0.02);
   EXPECT_EQ(locking_advice(setup_of(piv_setup("f_number = 16.0", 5.742))), "");
+  // ideal images are those of particles in focus: there the stop alone cures
+  std::string const ideal = locking_advice(setup_of(piv_setup("f_number = 8.0", 5.742, "gaussian")));
+  EXPECT_THAT(ideal, AllOf(HasSubstr("lens.f_number"), Not(HasSubstr("focus_distance_mm"))));
 }
 
 // BOS: g = 1 px under a spot of 1.100 px (Table 1) is 1.487 px wide; a dot of sqrt(4 - 1.1^2) = 1.670 px cures it. On a

@@ -24,14 +24,15 @@ std::map<std::string, std::string> shipped_studies() {
   return found;
 }
 
-// Small enough for two cores: fewer than 100 cases each. Planning loads the setup of every value of every axis.
+// Small enough for two cores: fewer than 150 cases each; random_error, the largest, has 144 of small images, two
+// minutes on one core. Planning loads the setup of every value of every axis.
 TEST(ShippedStudies, CanBePlannedAndAreSmall) {
   auto const studies = shipped_studies();
   EXPECT_GE(studies.size(), 10u);
   for (auto const& [name, path] : studies) {
     StudyPlan const cases = plan_study(read_study(path), "cpu");
     EXPECT_GT(cases.size(), 1u) << name;
-    EXPECT_LT(cases.size(), 100u) << name;
+    EXPECT_LT(cases.size(), 150u) << name;
   }
 }
 
