@@ -138,16 +138,15 @@ std::string SourceFiles::sha256(std::string const& name) const {
 void SourceFiles::check() const {
   for (Source const& source : sources_) {
     if (source.path.empty()) continue;
-    std::string now;
+    std::string what = "another SHA-256 of what it holds";
     try {
-      now = hash_of(source.path, source.holds);
-    } catch (DataError const&) {  // gone, or half of another: not what was read
+      if (hash_of(source.path, source.holds) == source.sha256) continue;
+    } catch (MemoryError const&) {
+      throw;
+    } catch (DataError const& error) {  // gone, or half of another
+      what = "it cannot be read any more: " + error.message();
     }
-    if (now == source.sha256) continue;
-    throw DataError(source.path,
-                    "has changed since it was read (" +
-                        (now.empty() ? std::string("it cannot be read any more") : "another SHA-256 of what it holds") +
-                        "), and nothing was written; " + advice_);
+    throw DataError(source.path, "has changed since it was read (" + what + "), and nothing was written; " + advice_);
   }
 }
 
