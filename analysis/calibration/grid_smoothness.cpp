@@ -105,7 +105,8 @@ SmoothGrid remove_strangers(std::vector<GridDot> dots) {
   if (grid.dots.size() < least_dots) return grid;
   int const order = order_of(grid.dots.size());
   Eigen::MatrixXd const residuals = residuals_of(grid.dots, places_of(grid.dots), order);
-  auto const freedom = static_cast<double>(2 * (residuals.rows() - (order + 1) * (order + 2) / 2));
+  Eigen::Index const coefficients = (order + 1) * (order + 2) / 2;
+  auto const freedom = static_cast<double>(2 * (residuals.rows() - coefficients));
   grid.rms_px = std::sqrt(residuals.squaredNorm() / freedom);
   return grid;
 }

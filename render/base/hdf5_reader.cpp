@@ -68,11 +68,11 @@ std::string filter_name(H5Z_filter_t filter, std::string const& written) {
     int filter;
     char const* name;
   };
-  constexpr std::array known{Known{H5Z_FILTER_SZIP, "szip"}, Known{305, "lzo"},          Known{307, "bzip2"},
-                             Known{32000, "lzf"},            Known{32001, "blosc"},      Known{32004, "lz4"},
-                             Known{32008, "bitshuffle"},     Known{32013, "zfp"},        Known{32015, "zstd"},
-                             Known{32017, "sz"},             Known{32018, "fcidecomp"},  Known{32024, "sz3"},
-                             Known{32026, "blosc2"}};
+  constexpr std::array known{
+      Known{H5Z_FILTER_SZIP, "szip"}, Known{305, "lzo"},   Known{307, "bzip2"},        Known{32000, "lzf"},
+      Known{32001, "blosc"},          Known{32004, "lz4"}, Known{32008, "bitshuffle"}, Known{32013, "zfp"},
+      Known{32015, "zstd"},           Known{32017, "sz"},  Known{32018, "fcidecomp"},  Known{32024, "sz3"},
+      Known{32026, "blosc2"}};
   auto const* const found =
       std::find_if(known.begin(), known.end(), [filter](Known const& one) { return one.filter == filter; });
   std::string const name = found != known.end() ? found->name : written.substr(0, written.find(' '));
@@ -327,8 +327,8 @@ std::vector<std::string> Hdf5Reader::dimension_scales(std::string const& dataset
   Id const attribute(H5Aopen(opened, name, H5P_DEFAULT), H5Aclose);
   Id const stored(H5Aget_type(attribute), H5Tclose);
   Id const space(H5Aget_space(attribute), H5Sclose);
-  bool const fits = H5Tget_class(stored) == H5T_VLEN &&
-                    H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(scales.size());
+  bool const fits =
+      H5Tget_class(stored) == H5T_VLEN && H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(scales.size());
   if (!fits) return scales;
   Id const element(H5Tget_super(stored), H5Tclose);
   if (H5Tequal(element, H5T_STD_REF_OBJ) <= 0) return scales;

@@ -48,7 +48,7 @@ bool parse_description(std::string const& text, ImageMetadata& metadata) {
   std::from_chars(begin + signature.size(), begin + pitch, found.bit_depth);
   std::from_chars(begin + pitch + pitch_label.size(), begin + line_end, found.pixel_pitch_m);
   found.description = line_end < text.size() ? text.substr(line_end + 1) : std::string();
-  metadata = found;
+  metadata = std::move(found);
   return true;
 }
 

@@ -123,14 +123,14 @@ std::string writer_text(fs::path const& path) {
 
 }  // namespace
 
-Partial::Partial(std::string parent, std::string const& stem, Kind kind) : kind_(kind) {
+Partial::Partial(std::string const& parent, std::string const& stem, Kind kind) {
   struct stat disk {};
   if (::stat(parent.c_str(), &disk) != 0) throw std::system_error(errno, std::generic_category());
   bool locked = true;
   // until nobody else has the name, nor takes what is not locked yet for a leftover
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::string const writer = new_writer(disk.st_dev, locked);
-    path_ = (fs::path(parent) / (stem + std::string(label) + writer)).string();
+    path_ = (fs::path(parent) / std::string(stem).append(label).append(writer)).string();
     std::string lock = path_;
     if (kind == Kind::folder) {
       if (::mkdir(path_.c_str(), 0777) != 0) {

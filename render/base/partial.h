@@ -15,7 +15,7 @@ class Partial {
 
   /// Makes PARENT/STEMpartial-WRITER; ".case." as stem gives ".case.partial-WRITER".
   /// @throws std::system_error where it cannot be made
-  Partial(std::string parent, std::string const& stem, Kind kind);
+  Partial(std::string const& parent, std::string const& stem, Kind kind);
   /// Removes what still stands there.
   ~Partial();
   Partial(Partial const&) = delete;
@@ -31,7 +31,6 @@ class Partial {
 
  private:
   std::string path_;
-  Kind kind_;
   int descriptor_ = -1;
 };
 

@@ -19,7 +19,7 @@ WantedStop wanted_stop() {
   std::string const text = given ? given : "";
   std::size_t const colon = text.find(':');
   if (colon == std::string::npos) return {text, 1};
-  return {text.substr(0, colon), std::atoi(text.c_str() + colon + 1)};
+  return {text.substr(0, colon), static_cast<int>(std::strtol(text.c_str() + colon + 1, nullptr, 10))};
 }
 
 }  // namespace

@@ -38,7 +38,10 @@ struct MomentLattice {
     return rest < 0 ? rest + per_pixel : rest;
   }
   /// From the pixel's middle to the square's [px].
-  GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
+  GLADSTONE_HD double offset(int phase) const {
+    int const from_middle = phase - per_pixel / 2;
+    return static_cast<double>(from_middle) / per_pixel + aside;
+  }
 };
 
 /// A dot's squares of displacement, counted from the one at its middle: those of the sensor or, where they would be too

@@ -79,7 +79,8 @@ class LoneDot {
   /// Sees the dot anew, pixels counted from the corner of a window about so far from its place, and takes one frame.
   void take_frame(std::size_t frame, int side, Vec2d moved) {
     Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
-    owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - side / 2, std::floor(at.y) - side / 2};
+    int const half = side / 2;
+    owned_->model.axis_px = owned_->model.axis_px - Vec2d{std::floor(at.x) - half, std::floor(at.y) - half};
     integrator_ = std::make_unique<DotIntegrator>(owned_->model);
     std::visit([&](auto const& medium) { seen_ = integrator_->see(medium, centre, 1); }, scene_.medium.view);
     if (left()) return;

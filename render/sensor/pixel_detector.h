@@ -49,8 +49,9 @@ struct PixelDetector {
   GLADSTONE_HD double background(std::uint64_t pixel) const {
     if (columns == 0) return 0;
     auto const width = static_cast<std::uint64_t>(columns);
-    double const u = columns > 1 ? static_cast<double>(pixel % width) / (columns - 1) - 0.5 : 0;
-    double const v = rows > 1 ? static_cast<double>(pixel / width) / (rows - 1) - 0.5 : 0;
+    std::uint64_t const column = pixel % width, row = pixel / width;
+    double const u = columns > 1 ? static_cast<double>(column) / (columns - 1) - 0.5 : 0;
+    double const v = rows > 1 ? static_cast<double>(row) / (rows - 1) - 0.5 : 0;
     double const even = background_e + across_e * u + down_e * v;
     return (even > 0 ? even : 0) + (glare_e ? glare_e[pixel] : 0);
   }

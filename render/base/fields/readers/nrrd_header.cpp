@@ -69,7 +69,7 @@ class Fields {
     constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
     while (auto const text = file.next()) {
       if (file.offset() > most_bytes) throw DataError(path_, "has a header of more than 16 MiB, as no NRRD file has");
-      std::string const line = trimmed(std::string(*text));
+      std::string const line = trimmed(*text);
       if (line.empty()) return true;
       if (line.front() == '#' || line.find(":=") != std::string::npos) continue;
       auto const colon = line.find(':');
@@ -199,7 +199,10 @@ std::vector<std::string> quoted_words(Fields const& fields, std::string const& k
 /// The axes of a header, of which those in space are kept.
 class Axes {
  public:
-  Axes(Fields const& fields, int values, NrrdHeader& header) : fields_(fields), header_(header) {
+  Axes(Fields const& fields, NrrdHeader& header) : fields_(fields), header_(header) {}
+
+  /// Fills in what the header says of axes.
+  void read(int values) {
     header_.values = values;
     read_sizes();
     if (fields_.has("space directions")) {
@@ -417,7 +420,7 @@ NrrdHeader read_nrrd_header(std::string const& path, int values) {
   NrrdHeader header;
   read_type(fields, header);
   read_encoding(fields, header);
-  Axes(fields, values, header);
+  Axes(fields, header).read(values);
   header.content = fields.text("content");
   header.line_skip = fields.number<long>("line skip", 0, 0);
   header.byte_skip = fields.number<long long>("byte skip", 0, -1);
