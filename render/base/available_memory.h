@@ -4,13 +4,14 @@
 
 namespace gladstone {
 
-/// Memory that can be had without swapping [bytes]: what the system has left, or the control group's limit where that
-/// is less.
+/// Returns the memory that can be allocated without swapping [bytes]: MemAvailable of the system, or the remaining
+/// memory of the control group (cgroup v2) if that is smaller. Infinite if neither is reported.
 double available_memory();
 
-/// Refuses what would not fit: what a header says of a file is no proof that its data are there.
-/// @param what needs them, "dataset \"density\" of 2000 x 1000 x 1000 values"
-/// @throws MemoryError where `bytes` are not available
+/// Throws unless `bytes` of memory are available; requests up to 64 MB always pass. To be called before an allocation
+/// whose size comes from a file header, since a damaged header can declare any size.
+/// @param what  object that needs the memory, for the message: "dataset \"density\" of 2000 x 1000 x 1000 values"
+/// @throws MemoryError if fewer than `bytes` are available
 void require_memory(std::string const& path, std::string const& what, double bytes);
 
 }  // namespace gladstone

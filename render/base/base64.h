@@ -5,7 +5,7 @@
 
 namespace gladstone {
 
-/// RFC 4648, with padding.
+/// Encodes bytes in Base64 with padding (RFC 4648, section 4).
 std::string base64(std::string_view bytes);
 
 }  // namespace gladstone

@@ -6,12 +6,13 @@
 
 namespace gladstone {
 
-/// Tells contents apart: XXH64 (Collet) of the bytes, 16 hexadecimal digits. It finds what was changed, cut short or
-/// damaged by accident; it is no protection against forgery.
+/// Computes the XXH64 hash (Collet) of the bytes as 16 hexadecimal digits. It detects accidental changes, truncation
+/// and damage, but gives no protection against forgery.
 std::string content_hash(std::string_view bytes);
 
-/// The same of a file, chained over pieces of 16 MiB, so that files larger than memory can be hashed.
-/// @throws DataError where it cannot be read
+/// Computes the XXH64 hash of a file in blocks of 16 MiB, so that files larger than memory can be hashed. The hash of
+/// each block is the seed of the next one.
+/// @throws DataError if the file cannot be read
 std::string file_hash(std::string const& path);
 
 }  // namespace gladstone

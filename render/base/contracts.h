@@ -7,7 +7,8 @@
 
 namespace gladstone::detail {
 
-/// Ends the program (host) or the kernel (device): a contract is our own promise, never a user's mistake.
+/// Aborts the program (host) or traps the kernel (device). A violated contract is a bug of gladstone, never an error of
+/// the user.
 GLADSTONE_HD inline void contract_violated(char const* kind, char const* condition, char const* file, int line) {
 #if defined(__CUDA_ARCH__)
   printf("%s violated: %s at %s:%d\n", kind, condition, file, line);
@@ -20,10 +21,11 @@ GLADSTONE_HD inline void contract_violated(char const* kind, char const* conditi
 
 }  // namespace gladstone::detail
 
-/// Precondition of a function; checked in every build, on host and device. Keep it out of per-step code.
+/// Checks a precondition of a function, in every build, on host and device. Not for code that runs once per integration
+/// step.
 #define GLADSTONE_EXPECTS(condition) \
   ((condition) ? (void)0 : ::gladstone::detail::contract_violated("precondition", #condition, __FILE__, __LINE__))
 
-/// Postcondition of a function.
+/// Checks a postcondition of a function, in every build, on host and device.
 #define GLADSTONE_ENSURES(condition) \
   ((condition) ? (void)0 : ::gladstone::detail::contract_violated("postcondition", #condition, __FILE__, __LINE__))

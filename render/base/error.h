@@ -7,26 +7,26 @@
 
 namespace gladstone {
 
-/// One thing wrong with a setup: where it stands and what to do about it.
+/// One problem in a setup: its location and how to correct it.
 struct SetupProblem {
   std::string where;    ///< "file:line:column", or "--set key=value"
   std::string message;  ///< "key = value: problem (why); suggestion"
 };
 
-/// What is told in our own words, for the user to read; see message_of().
+/// Base class of errors whose text was written for the user; see message_of().
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Most problems of a setup that are told; the others are counted.
+/// Maximum number of problems that a SetupError describes; further ones are counted.
 inline constexpr std::size_t most_problems_told = 20;
 
-/// Everything wrong with a user's setup, reported together: the first most_problems_told, a line each, and how many
-/// more there are. Exit code 2.
+/// All problems of a user's setup. The message has one line for each of the first most_problems_told problems, then the
+/// number of further ones. Exit code 2.
 class SetupError : public Error {
  public:
-  /// @param more problems beside these that nobody put into words
+  /// @param more  number of further problems, without a description
   explicit SetupError(std::vector<SetupProblem> problems, std::size_t more = 0);
   std::vector<SetupProblem> const& problems() const { return problems_; }
   std::size_t more() const { return more_; }
@@ -36,12 +36,13 @@ class SetupError : public Error {
   std::size_t more_;
 };
 
-/// A data file that is missing, broken or not what it should be; names the file and the dataset. Exit code 2.
+/// A data file that is missing, damaged or of unexpected content; the message contains the file and the dataset. Exit
+/// code 2.
 class DataError : public Error {
  public:
   DataError(std::string const& file, std::string const& message)
       : Error(file + ": " + message), file_(file), message_(message) {}
-  /// The file, or the key of a setup, that is at fault, and what is wrong with it.
+  /// File, or key of a setup, in which the problem is.
   std::string const& file() const { return file_; }
   std::string const& message() const { return message_; }
 
@@ -49,19 +50,19 @@ class DataError : public Error {
   std::string file_, message_;
 };
 
-/// Vectors none of which is valid. Exit code 1.
+/// A vector field without a single valid vector. Exit code 1.
 class NoValidVector : public DataError {
  public:
   using DataError::DataError;
 };
 
-/// A file that takes more memory than there is: another moment or machine has more. Exit code 2.
+/// A file that needs more memory than is available, now or on this machine. Exit code 2.
 class MemoryError : public DataError {
  public:
   using DataError::DataError;
 };
 
-/// An output that cannot be written (read-only folder, full disk). Exit code 2.
+/// An output that cannot be written (read-only directory, full disk). Exit code 2.
 class OutputError : public Error {
  public:
   OutputError(std::string const& path, std::string const& message)
@@ -85,12 +86,12 @@ class Interrupted : public Error {
   explicit Interrupted(std::string const& message = "interrupted; nothing was left behind") : Error(message) {}
 };
 
-/// Whether an error is the lack of memory: the standard library's, also where it refuses a size before it asks, a
-/// MemoryError, or OpenCV's.
+/// Returns true if an error means that memory is exhausted: std::bad_alloc, std::length_error (a size refused before
+/// its allocation), MemoryError, or an OpenCV error of code -4.
 bool lacks_memory(std::exception const& error);
 
-/// What the user is told of an error: our own words. Of a library's error they stand around its text, which alone says
-/// neither what failed nor what to do.
+/// Returns the text that is shown to the user for an error. The text of an Error is returned as it is; errors of
+/// libraries are put into a sentence that says what failed and what to do.
 std::string message_of(std::exception const& error);
 
 }  // namespace gladstone

@@ -4,17 +4,19 @@
 
 namespace gladstone {
 
-/// Locks on bytes of an open file (fcntl, F_OFD_SETLK). They belong to the open file: they go with the process, however
-/// it ends, and leave nothing behind that could grow stale. NFS and Lustre pass them on between machines; those of
-/// flock() stay on one machine there, or need a file that is open for writing, which a folder cannot be.
-/// @param count of bytes; 0: to the end, however long
-/// @return 0; EAGAIN where another open file holds a lock there; another errno where the file system has no locks
+/// Locks a byte range of an open file exclusively, without waiting (fcntl, F_OFD_SETLK). The lock belongs to the open
+/// file description: the system releases it when the process ends for whatever reason, so that no stale locks remain.
+/// NFS and Lustre pass such locks on to other machines; locks of flock() are local to one machine there, or require a
+/// file that is open for writing, which a directory cannot be.
+/// @param count  number of bytes; 0: to the end of the file, also if it grows
+/// @return 0; EAGAIN if another open file holds a lock in the range; another errno if the file system has no locks
 int lock_bytes(int file, std::size_t first, std::size_t count);
 
-/// Gives such a lock back.
+/// Releases a lock of lock_bytes().
 void unlock_bytes(int file, std::size_t first, std::size_t count);
 
-/// Looks without locking. @return as lock_bytes()
+/// Tests whether lock_bytes() would succeed, without locking.
+/// @return as lock_bytes()
 int find_lock(int file, std::size_t first, std::size_t count);
 
 }  // namespace gladstone

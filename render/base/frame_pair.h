@@ -6,16 +6,17 @@
 
 namespace gladstone {
 
-/// Grey levels of two frames of one size, wherever they are kept: what a correlator takes.
+/// Pair of frames of equal size, in host or device memory: the input of a correlator. Grey levels are real numbers.
 class FramePair {
  public:
   virtual ~FramePair() = default;
-  /// In the host's memory; frames that are kept elsewhere are copied when they are first asked for, by one thread.
+  /// Returns frame A (BOS: the reference image) in host memory. Frames in device memory are copied by the first call,
+  /// which must not run concurrently with another.
   virtual Image<double> const& reference() const = 0;
   virtual Image<double> const& flow() const = 0;
 };
 
-/// Frames in the host's memory.
+/// Pair of frames in host memory.
 class HostFrames final : public FramePair {
  public:
   HostFrames(Image<double> reference, Image<double> flow) : reference_(std::move(reference)), flow_(std::move(flow)) {}

@@ -2,8 +2,8 @@
 
 namespace gladstone {
 
-/// Asks the C library to keep what is freed, up to half a gigabyte, instead of giving it back to the system: who makes
-/// images again and again then does not wait for their pages. Nothing happens where the library cannot.
+/// Makes the C library retain up to 512 MiB of freed memory instead of returning it to the system, so that repeated
+/// allocations of images do not cause page faults. Has no effect with C libraries other than glibc.
 void keep_freed_memory();
 
 }  // namespace gladstone

@@ -9,11 +9,12 @@
 
 namespace gladstone {
 
-/// Gauss-Legendre quadrature on [-1, 1]: exact for polynomials of degree 2 n - 1 (Abramowitz & Stegun 25.4.29), nodes
-/// by Newton's method from Chebyshev's guess.
+/// Nodes and weights of n-point Gauss-Legendre quadrature on [-1, 1], exact for polynomials of degree 2 n - 1
+/// (Abramowitz & Stegun 25.4.29). The nodes are computed by Newton's method from the start values cos(pi (i + 3/4) / (n
+/// + 1/2)).
 struct GaussLegendre {
-  std::vector<double> node;    ///< ascending
-  std::vector<double> weight;  ///< sum 2
+  std::vector<double> node;    ///< nodes, ascending
+  std::vector<double> weight;  ///< weights, of sum 2
 
   explicit GaussLegendre(int n) : node(static_cast<std::size_t>(n)), weight(static_cast<std::size_t>(n)) {
     GLADSTONE_EXPECTS(n > 0);

@@ -10,17 +10,18 @@
 #include <utility>
 #include <vector>
 
-/// What the two files that call the HDF5 C library share (hdf5_reader.cpp, hdf5_writer.cpp); nothing else includes it.
+/// Helpers shared by the two files that call the HDF5 C library, hdf5_reader.cpp and hdf5_writer.cpp; not for other
+/// files.
 namespace gladstone::hdf5 {
 
-/// Debian's HDF5 is not thread-safe: one call at a time in the whole program.
+/// Global lock around all HDF5 calls, since Debian's HDF5 library is not thread-safe.
 inline std::recursive_mutex& library_lock() {
   static std::recursive_mutex lock;
   return lock;
 }
 using Lock = std::lock_guard<std::recursive_mutex>;
 
-/// An HDF5 identifier (hid_t) that closes itself.
+/// RAII owner of an HDF5 identifier (hid_t).
 class Id {
  public:
   Id(std::int64_t id, int (*close)(std::int64_t)) : id_(id), close_(close) {}
@@ -49,7 +50,7 @@ inline std::size_t product(std::vector<std::size_t> const& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-/// "/a/b/c" to {"a", "b", "c"}
+/// Splits a path: "/a/b/c" gives {"a", "b", "c"}.
 inline std::vector<std::string> steps(std::string const& path) {
   std::vector<std::string> parts;
   for (auto const& part : std::filesystem::path(path)) {

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// A row-major picture: column x to the right, row y downwards, pixel centres at whole numbers from 0.
+/// Row-major image: column x to the right, row y downwards, pixel centres at integer coordinates from 0.
 template <class T>
 class Image {
  public:

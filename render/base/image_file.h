@@ -9,35 +9,37 @@
 
 namespace gladstone {
 
-/// What a TIFF of ours says about itself.
+/// Metadata of an image file.
 struct ImageMetadata {
-  int bit_depth = 16;          ///< significant bits; values are stored unshifted in 16
-  double pixel_pitch_m = 0.0;  ///< also as X/YResolution
-  std::string description;     ///< e.g. the resolved setup, as ImageDescription
-  int channels = 1;            ///< as read: of three or more read_image made grey values
-  int sample_bits = 16;        ///< as read: of a sample in the file, significant or not
-  int orientation = 1;         ///< as read: TIFF's and EXIF's number, 1 to 8; read_image turned the picture upright
+  int bit_depth = 16;          ///< significant bits per pixel; values are stored unshifted in 16 bits
+  double pixel_pitch_m = 0.0;  ///< pixel pitch [m], also stored as X/YResolution; 0: unknown
+  std::string description;     ///< text of the entry ImageDescription, e.g. the resolved setup
+  int channels = 1;            ///< channels in the file, before conversion to grey (only set by reading)
+  int sample_bits = 16;        ///< bits per sample in the file, significant or not (only set by reading)
+  int orientation = 1;         ///< orientation in the file, 1 to 8 (TIFF, EXIF), before it is corrected (only set by
+                               ///< reading)
 };
 
-/// Reads any picture that OpenImageIO knows (TIFF, PNG, JPEG, EXR; 1 to 16 bits, float) as raw values in double:
-/// 0..255, 0..65535 or as stored.
-/// - Colours, printing inks and palettes become luminance (Rec. 709); an alpha channel is ignored.
-/// - The entry Orientation (TIFF 6.0, section 8; EXIF) is applied: pixel (0, 0) is the upper left one as seen.
-/// - White is the larger value where a TIFF has it as zero (WhiteIsZero).
-/// @throws DataError, also for a file of several pages, and for channels that are neither grey nor colours
+/// Reads an image of any format that OpenImageIO supports (TIFF, PNG, JPEG, EXR; integers of 1 to 16 or 32 bits, float)
+/// as unscaled grey levels: 0..255, 0..65535 or as stored.
+/// - Colours, CMYK and palettes are converted to luminance (Rec. 709); an alpha channel is ignored.
+/// - The entry Orientation (TIFF 6.0, section 8; EXIF) is applied: pixel (0, 0) is the upper left one as displayed.
+/// - TIFFs whose zero is white (WhiteIsZero) are inverted, so that white is the larger value.
+/// @throws DataError, also if the file has several pages, or channels that are neither grey levels nor colours
 Image<double> read_image(std::string const& path, ImageMetadata* metadata = nullptr);
 
-/// The pages of a file that holds two frames of one size, as cameras for PIV write them: reference and flow.
-/// @throws DataError for another number of pages
+/// Reads a file of two pages, as written by PIV cameras: frame A and frame B. Pages smaller than the first in both
+/// directions are previews and do not count.
+/// @throws DataError if the number of pages is not two
 std::array<Image<double>, 2> read_frame_pair(std::string const& path, ImageMetadata* metadata = nullptr);
 
-/// Pixels that are nan or infinite, as pictures of floating-point numbers may have.
+/// Counts the pixels that are NaN or infinite, which floating-point images can contain.
 std::size_t count_not_finite(Image<double> const& image);
 
-/// Writes a 16-bit grey TIFF as one whole file. @throws OutputError
+/// Writes a 16-bit grey TIFF; the file appears under its name when complete. @throws OutputError
 void write_tiff(std::string const& path, Image<std::uint16_t> const& image, ImageMetadata const& metadata);
 
-/// The bytes of a PNG of 8 bits. @throws DataError
+/// Encodes an image as an 8-bit grey PNG. @throws DataError
 std::string encode_png(Image<std::uint8_t> const& image);
 
 }  // namespace gladstone

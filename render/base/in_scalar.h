@@ -4,7 +4,8 @@
 
 namespace gladstone {
 
-/// The same thing in another scalar U: in ceres::Jets, what is computed from it carries its derivatives. For hosts.
+/// Converts a vector, ray or pose to another scalar type U. With U = ceres::Jet, results computed from it carry their
+/// derivatives. Host code only.
 template <class U, class T>
 Vec3<U> in_scalar(Vec3<T> const& a) {
   return {U(a.x), U(a.y), U(a.z)};

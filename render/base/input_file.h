@@ -6,24 +6,26 @@
 
 namespace gladstone {
 
-/// A regular file open for reading: the one way in which files of the user are opened. A folder, a pipe, a device or a
-/// socket is refused by name before it is opened, so that nothing waits for a writer or reads without end.
+/// Regular file open for reading; all files named by the user are opened by this class. Directories, pipes, devices and
+/// sockets are refused before they are opened, so that no read blocks or never ends.
 class InputFile {
  public:
-  /// @param wanted what to name instead, "a setup file"
-  /// @throws DataError where it is missing, may not be read or is no regular file
+  /// @param wanted  kind of file expected, for the message: "a setup file"
+  /// @throws DataError if the file does not exist, may not be read or is not a regular file
   explicit InputFile(std::string const& path, std::string const& wanted = "a file");
   ~InputFile();
   InputFile(InputFile&& other) noexcept;
   InputFile& operator=(InputFile&& other) noexcept;
 
   std::string const& path() const { return path_; }
-  /// Bytes when it was opened.
+  /// Size of the file when it was opened [bytes].
   std::uint64_t size() const { return size_; }
-  /// For libraries that read by descriptor; it stays this object's.
+  /// File descriptor, for libraries that read from one; this object remains its owner.
   int descriptor() const { return descriptor_; }
 
-  /// Reads up to `size` bytes from `offset` on; fewer only where the file ends. @throws DataError, Interrupted
+  /// Reads up to `size` bytes from `offset`; fewer only at the end of the file.
+  /// @return number of bytes read
+  /// @throws DataError if reading fails, Interrupted
   std::size_t read(std::uint64_t offset, void* to, std::size_t size) const;
 
  private:
@@ -32,7 +34,7 @@ class InputFile {
   std::uint64_t size_ = 0;
 };
 
-/// Refuses what InputFile refuses: for libraries that open files by name.
+/// Throws DataError if InputFile cannot open the file; to be called before a library opens a file by name.
 inline void require_input_file(std::string const& path, std::string const& wanted) { InputFile(path, wanted); }
 
 }  // namespace gladstone

@@ -6,9 +6,9 @@ struct stat;
 
 namespace gladstone {
 
-/// Protects the input files of a command: while an object of this class exists, the process records every file that it
-/// opens for reading (InputFile), and OutputFile and OutputFolder refuse to replace any of them. Files that the process
-/// itself has written are no inputs. Made once, by main; without it nothing is recorded.
+/// Protects the input files of a command from being overwritten. While an object of this class exists, the process
+/// records every file that it opens for reading (InputFile), and OutputFile and OutputFolder refuse to replace any of
+/// them. Files written by the process itself are not inputs. Created once, by main(); without it, no file is recorded.
 class InputGuard {
  public:
   InputGuard();
@@ -17,7 +17,8 @@ class InputGuard {
   InputGuard& operator=(InputGuard const&) = delete;
 };
 
-/// RAII: files that this thread opens are not recorded, because the command reads them in order to replace them.
+/// RAII guard: files that this thread opens are not recorded as inputs. For files that are read in order to be
+/// replaced.
 class UnguardedReading {
  public:
   UnguardedReading();
@@ -32,9 +33,10 @@ void record_input(std::string const& path, struct stat const& file);
 /// Records a file that the process has written.
 void record_output(int descriptor);
 
-/// @param path   file that an output is about to replace or remove
-/// @param asked  its name for messages
-/// @throws OutputError where it is a recorded input, under whatever name, also through links or as another hard link
+/// Throws if a file to be replaced is a recorded input, under any name: also through links or as another hard link.
+/// @param path   file that an output would replace or remove
+/// @param asked  name of the output for messages
+/// @throws OutputError if the file is a recorded input
 void refuse_recorded_input(std::string const& path, std::string const& asked);
 
 }  // namespace gladstone

@@ -2,12 +2,12 @@
 
 namespace gladstone {
 
-/// Makes SIGINT (Ctrl-C), SIGTERM and SIGHUP (a terminal that is closed; not under nohup) set a flag that long work
-/// polls. A second Ctrl-C ends the process at once, whatever blocks; what it leaves, the next run clears away. Called
-/// once, by main.
+/// Installs handlers for SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal; ignored under nohup) that set a flag for
+/// throw_if_interrupted(). A second Ctrl-C ends the process immediately; the next run removes its temporary files. Also
+/// ignores SIGXFSZ, so that exceeding the limit on file sizes is a write error. Called once, by main().
 void catch_interrupts();
 
-/// Throws Interrupted when the user has asked to stop. Cheap: an atomic load.
+/// Throws Interrupted if the user has asked to stop. The cost is one atomic load.
 void throw_if_interrupted();
 
 }  // namespace gladstone

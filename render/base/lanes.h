@@ -9,8 +9,9 @@
 
 namespace gladstone {
 
-/// N numbers side by side, for sums of products over the rows of a stencil. Plain loops everywhere; four doubles on a
-/// CPU are one vector register (GCC's and clang's vector type), with the same operations in the same order.
+/// SIMD vector of N numbers, for sums of products over the rows of an interpolation stencil. The general version is
+/// plain loops; with AVX2, four doubles are one vector register (vector type of GCC and clang), with the same
+/// operations in the same order.
 template <class T, int N>
 struct Lanes {
   T v[N];
@@ -26,7 +27,7 @@ struct Lanes {
     for (int i = 0; i < N; ++i) a.v[i] = static_cast<T>(from[i]);
     return a;
   }
-  /// The same from memory that nobody writes while a device runs.
+  /// Loads N numbers from memory that is constant while the kernel runs (read-only cache on a device).
   template <class Stored>
   GLADSTONE_HD static Lanes fetch(Stored const* from) {
 #if defined(__CUDA_ARCH__)
@@ -37,7 +38,8 @@ struct Lanes {
     return load(from);
 #endif
   }
-  /// The same for even N from memory aligned to N numbers or 16 bytes, by as few loads as there can be.
+  /// Loads an even number N of values with the fewest instructions.
+  /// @pre `from` is aligned to N sizeof(T) or 16 bytes, whichever is smaller, and constant while the kernel runs
   GLADSTONE_HD static Lanes fetch_aligned(T const* from) {
     static_assert(N % 2 == 0);
 #if defined(__CUDA_ARCH__)
@@ -69,7 +71,7 @@ struct Lanes {
 #endif
   }
   GLADSTONE_HD T lane(int i) const { return v[i]; }
-  /// Every lane equal to lane `i`.
+  /// Returns a vector with every lane equal to lane `i`.
   GLADSTONE_HD Lanes spread(int i) const { return all(v[i]); }
 
   GLADSTONE_HD friend Lanes operator+(Lanes a, Lanes const& b) {
@@ -80,7 +82,7 @@ struct Lanes {
     for (int i = 0; i < N; ++i) a.v[i] *= b.v[i];
     return a;
   }
-  /// Every lane moved into [low, high].
+  /// Clamps every lane to [low, high].
   GLADSTONE_HD Lanes clamped(T low, T high) const {
     Lanes a = *this;
     for (int i = 0; i < N; ++i) a.v[i] = a.v[i] < low ? low : (a.v[i] > high ? high : a.v[i]);
@@ -96,7 +98,7 @@ struct Lanes<double, 4> {
 
   static Lanes all(double s) { return {Register{s, s, s, s}}; }
   static Lanes load(double const* from) { return {_mm256_loadu_pd(from)}; }
-  // the compiler's own conversion of four floats takes three times as long
+  // GCC's conversion of four floats takes three times as long
   static Lanes load(float const* from) { return {_mm256_cvtps_pd(_mm_loadu_ps(from))}; }
   template <class Stored>
   static Lanes fetch(Stored const* from) {
@@ -112,7 +114,7 @@ struct Lanes<double, 4> {
 };
 #endif
 
-/// The scalar products of four rows with weights: out[i] = sum of row i times weights i over the lanes.
+/// Computes four dot products over the lanes: out[i] = sum over k of row[i][k] weights[i][k].
 template <class T, int N>
 GLADSTONE_HD void scalar_products(Lanes<T, N> const (&row)[4], Lanes<T, N> const (&weights)[4], T (&out)[4]) {
 #ifdef GLADSTONE_AVX2_LANES

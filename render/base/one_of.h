@@ -8,9 +8,9 @@
 
 namespace gladstone {
 
-/// A closed set of types, one of them held at a time: what a list of optical elements is made of. Trivially copyable
-/// ones, unlike those of a std::variant, can be handed to a device, and visiting is a chain of comparisons that a
-/// compiler sees through.
+/// Variant over a closed set of types, for lists of optical elements. If all types are trivially copyable, so is OneOf
+/// (unlike std::variant), which allows copies to a device; a visit is a chain of comparisons that the compiler can
+/// inline.
 template <class First, class... Rest>
 class OneOf {
  public:
@@ -21,7 +21,7 @@ class OneOf {
     new (&storage_) Held(held);
   }
 
-  /// Calls visitor(held) and returns what it returns; all alternatives give the same type.
+  /// Calls visitor(held) and returns its result, whose type must be the same for all alternatives.
   template <class Visitor>
   GLADSTONE_HD auto visit(Visitor&& visitor) const {
     return visit_from<0, First, Rest...>(visitor);
@@ -54,7 +54,7 @@ class OneOf {
   int which_ = 0;
 };
 
-/// The same for types of a host's scalar, such as a ceres::Jet, which no device takes.
+/// Host-only specialisation for types that are not trivially copyable, e.g. those of scalar type ceres::Jet.
 template <class First, class... Rest>
 requires(!(std::is_trivially_copyable_v<First> && (std::is_trivially_copyable_v<Rest> && ...)))  //
     class OneOf<First, Rest...> {

@@ -9,30 +9,30 @@
 
 namespace gladstone {
 
-/// A file written beside its place (as a Partial) and renamed when it is whole, so that what exists is whole and an
-/// interrupted overwrite leaves the old one. The destructor removes what was not committed; what a killed run left
-/// behind is removed when the same file is written again.
+/// Output file that is written under a temporary name (Partial) and renamed when complete: no incomplete file is ever
+/// visible, and an interrupted write preserves the old file. The destructor removes an uncommitted file; temporary
+/// files of killed processes are removed when the same output is written again.
 class OutputFile {
  public:
-  /// Makes the folder where it is missing, and an empty temporary file, so that what cannot be written is known before
-  /// anything is computed. A link is followed.
-  /// @param kind of what will be written, as file_kind() names it; empty: commit() looks
-  /// @throws OutputError where the folder cannot be written; where `path` is a folder, a device, a mount of its own, an
-  ///         input of the command (InputGuard), or holds a file of another kind that file_kind() knows
+  /// Creates missing parent directories and an empty temporary file, so that an output that cannot be written is
+  /// reported before any computation. Symbolic links are followed.
+  /// @param kind  kind of the new content, as file_kind() returns it; if empty, only commit() compares the kinds
+  /// @throws OutputError if the directory is not writable; if `path` is a directory, a device, a mount point or an
+  ///         input of the command (InputGuard); if `path` contains data of another known kind
   explicit OutputFile(std::string const& path, std::string const& kind = "");
   ~OutputFile();
   OutputFile(OutputFile const&) = delete;
   OutputFile& operator=(OutputFile const&) = delete;
 
-  /// Where to write until commit().
+  /// Path of the temporary file, to be written before commit().
   std::string const& temporary_path() const { return partial_->path(); }
-  /// Writes the whole content at once; alternatively write to temporary_path(). @throws OutputError
+  /// Writes the whole content at once, in place of writing to temporary_path(). @throws OutputError
   void write(void const* data, std::size_t size);
-  /// Flushes to disk (fsync) and renames; the rights of a file that it replaces stay.
-  /// @throws OutputError (full disk; the file to be replaced has been read since, or is of another kind)
+  /// Flushes the file to disk (fsync) and renames it; a replaced file's permissions are retained.
+  /// @throws OutputError if the disk is full, or the file to be replaced has been read meanwhile or is of another kind
   void commit();
 
-  /// Writes text as one whole file.
+  /// Writes a text file; it appears under its name when complete.
   static void write_text(std::string const& path, std::string const& text);
 
  private:
@@ -43,7 +43,7 @@ class OutputFile {
   bool committed_ = false;
 };
 
-/// Flushes a file, or a folder's entries, to disk. @return 0 or errno
+/// Flushes a file, or a directory's entries, to disk. @return 0 or errno
 int flush_to_disk(std::string const& path);
 
 }  // namespace gladstone
