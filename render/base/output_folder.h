@@ -10,26 +10,27 @@
 
 namespace gladstone {
 
-/// A folder of files that belong together, which exist all or not at all. Where no folder stands, it is built beside
-/// its place and renamed when whole. A folder that is there stays itself (it may be where a shell stands, a mount, or
-/// shared with other rights): new files are made in a partial folder inside it and replace the old ones at commit(), as
-/// replace_files() does. What a user put there stays: everything but the files that are written anew and those derived
-/// from them.
+/// Output directory of files that belong together: either all of them exist or none. A new directory is built under a
+/// temporary name next to its final place and renamed when complete. An existing directory is retained (it may be a
+/// working directory, a mount point, or have its own permissions): new files are written to a partial directory inside
+/// it and moved by replace_files() in commit(). Of the existing files only those that are written again, and those
+/// derived from them, are replaced or removed.
 class OutputFolder {
  public:
-  /// Tries the place before anything is computed, and completes a replacement that was broken off there.
-  /// @throws OutputError where it cannot be written, is a file, or holds data that gladstone did not write (has files,
-  ///         but none with the marker's name)
+  /// Creates the temporary directory, so that an unusable output is reported before any computation, and completes an
+  /// interrupted replacement in the directory.
+  /// @throws OutputError if it is not writable, is a file, or contains files that gladstone did not write (no marker
+  ///         file)
   OutputFolder(std::string const& path, FolderContent content);
   ~OutputFolder();
   OutputFolder(OutputFolder const&) = delete;
   OutputFolder& operator=(OutputFolder const&) = delete;
 
-  /// The folder to write into until commit().
+  /// Path of the temporary directory, to be filled before commit().
   std::string const& temporary_path() const { return staged_; }
-  /// Calls `write` with it; what cannot be written is named by its final place.
+  /// Calls `write` with the temporary directory; an OutputError names the final path instead of the temporary one.
   void fill(std::function<void(std::string const& folder)> const& write) const;
-  /// @throws OutputError with the old files in their places
+  /// Moves the files to their final place. @throws OutputError with the old files restored
   void commit();
 
  private:

@@ -5,25 +5,27 @@
 
 namespace gladstone {
 
-/// Where output is to go, as an absolute path through all links, and the folders above it that had to be made.
+/// Destination of an output: its absolute path with all links resolved, and the parent directories created for it.
 class OutputPlace {
  public:
-  /// Makes nothing. @throws OutputError where nothing can stand there: a name of a process's open file (/dev/stdout,
-  /// /proc/self/fd/1), an empty name, a link that leads nowhere
+  /// Resolves the path; creates nothing.
+  /// @throws OutputError if the path is empty, names an open file of a process (/dev/stdout, /proc/self/fd/1), or its
+  ///         links form a circle
   explicit OutputPlace(std::string path);
 
-  /// As the user gave it, for messages.
+  /// Path as the user wrote it, for messages.
   std::string const& asked() const { return asked_; }
   std::string const& path() const { return path_; }
   std::string folder() const;
   std::string name() const;
 
-  /// Makes the missing folders above. @throws OutputError
+  /// Creates the missing parent directories. @throws OutputError
   void make_parents();
-  /// Removes those again, where they are empty.
+  /// Removes the parent directories created by make_parents() that are empty.
   void remove_made_parents() const;
 
-  /// @throws OutputError "PATH: WHAT (why); what to do about it" @param error errno
+  /// Throws OutputError "PATH: WHAT (reason); remedy".
+  /// @param error  errno, from which the reason and the remedy are derived
   [[noreturn]] void fail(std::string const& what, int error) const;
 
  private:
@@ -31,11 +33,12 @@ class OutputPlace {
   std::vector<std::string> made_;
 };
 
-/// What stands at a path that is neither a file nor a folder: "a device"; empty for those and for nothing.
+/// Returns "a pipe", "a socket" or "a device" for such a path; empty for files, directories and missing paths.
 std::string special_file(std::string const& path);
 
-/// Makes sure that no output is an input: the same file or folder, under whatever name, through links or as another
-/// hard link. @throws OutputError naming both
+/// Checks that no output is the same file or directory as an input, under any name: also through links or as another
+/// hard link.
+/// @throws OutputError naming both
 void refuse_inputs_as_outputs(std::vector<std::string> const& outputs, std::vector<std::string> const& inputs);
 
 }  // namespace gladstone

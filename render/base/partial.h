@@ -6,27 +6,27 @@
 
 namespace gladstone {
 
-/// Where output stands until it is whole: a hidden file or folder named after who writes it (host, boot of its system,
-/// disk, process, and a random number), and locked (file_lock.h) as long as the writer lives. A folder holds the lock
-/// in a file of its own, "lock-" and the writer. Two writers never share one.
+/// Incomplete output: a hidden file or directory whose name identifies the writing process (host, boot, disk, process
+/// id and a random number), locked (file_lock.h) while the process runs. A directory contains the lock in a file
+/// "lock-WRITER". Two writers never share one.
 class Partial {
  public:
   enum class Kind { file, folder };
 
-  /// Makes PARENT/STEMpartial-WRITER; ".case." as stem gives ".case.partial-WRITER".
-  /// @throws std::system_error where it cannot be made
+  /// Creates and locks PARENT/STEMpartial-WRITER; the stem ".case." gives ".case.partial-WRITER".
+  /// @throws std::system_error if it cannot be created
   Partial(std::string const& parent, std::string const& stem, Kind kind);
-  /// Removes what still stands there.
+  /// Removes the file or directory unless keep() was called.
   ~Partial();
   Partial(Partial const&) = delete;
   Partial& operator=(Partial const&) = delete;
 
   std::string const& path() const { return path_; }
-  /// Of Kind::file, open for reading and writing; of a folder its lock.
+  /// File descriptor: of the file, open for reading and writing, or of a directory's lock file.
   int descriptor() const { return descriptor_; }
-  /// Renames it over what may stand at a path. @return 0 or errno, with nothing changed
+  /// Renames the file or directory, replacing what exists at the path. @return 0, or errno with nothing changed
   int move_to(std::string const& path);
-  /// It has become what it was to be: the lock is given back and nothing is removed.
+  /// Completes the output: releases the lock and disables the removal on destruction.
   void keep();
 
  private:
@@ -34,18 +34,19 @@ class Partial {
   int descriptor_ = -1;
 };
 
-/// A partial file or folder that a dead writer left, locked for who completes it or clears it away.
+/// Incomplete output of a process that ended, locked by this process for completion or removal.
 class Leftover {
  public:
-  /// Nothing where its writer lives, or where that cannot be told: locks tell it for writers of this very system and
-  /// disk. Whoever wrote before this host's system was started is dead too; other hosts' partials are left alone.
-  /// @param path of a partial, or of a folder that Partial::move_to has moved
+  /// Locks an incomplete output if its writer has ended, else returns nullopt. The lock shows whether a writer of this
+  /// boot and disk is running. A writer of an earlier boot of this host has ended. For other hosts, and for writers
+  /// without locks, this cannot be determined, and nullopt is returned.
+  /// @param path  path of a partial output, or of a directory renamed by Partial::move_to()
   static std::optional<Leftover> take(std::string const& path);
   ~Leftover();
   Leftover(Leftover&& other) noexcept;
   Leftover& operator=(Leftover&&) = delete;
 
-  /// The name that its writer gave it, with another stem.
+  /// Returns the name that its writer would give it for another stem.
   std::string name(std::string const& stem) const;
 
  private:
@@ -54,23 +55,23 @@ class Leftover {
   std::string writer_;
 };
 
-/// Who writes, or wrote, into a partial folder: "process 4711 on host lab3".
+/// Describes the writer of a partial directory: "process 4711 on host lab3".
 std::string writer_of(std::string const& folder);
 
-/// Removes the partials with this stem in a folder whose writers are dead.
+/// Removes the partial outputs of a stem in a directory whose writers have ended.
 void remove_leftovers(std::string const& parent, std::string const& stem);
 
-/// The same of every stem; for folders that are gladstone's own.
+/// Removes the partial outputs of all stems in a directory that belongs to gladstone, if their writers have ended.
 void remove_leftovers(std::string const& folder);
 
-/// The stem of what belongs to a name beside it: ".NAME.", shortened where the file system's limit on names would be
-/// exceeded.
+/// Returns the stem of temporary names next to a file or directory: ".NAME.", shortened (with a hash of the name) if
+/// the file system's limit of 255 bytes would be exceeded.
 std::string stem_beside(std::string const& name);
 
-/// Whether a name in a folder is that of a partial of ours with this stem, whoever writes it.
+/// Returns true if a directory entry's name is that of a partial output with this stem, of any writer.
 bool is_partial(std::string const& name, std::string const& stem);
 
-/// Calls `write`; where it throws an OutputError about something in `staged`, throws it about the same in `place`.
+/// Calls `write`; an OutputError about a path below `staged` is rethrown about the same path below `place`.
 void name_final_place(std::string const& staged, std::string const& place, std::function<void()> const& write);
 
 }  // namespace gladstone

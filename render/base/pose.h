@@ -6,11 +6,11 @@
 
 namespace gladstone {
 
-/// Where something stands in an outer frame, and how it is turned there: its origin and its own right-handed axes.
+/// Position and orientation of an object in an outer frame, as the origin and axes of its right-handed local frame.
 template <class T>
 struct Pose {
-  Vec3<T> origin{};             ///< in the outer frame [m]
-  Vec3<T> x{T(1), T(0), T(0)};  ///< own axes in the outer frame, unit length
+  Vec3<T> origin{};             ///< origin of the local frame in the outer frame [m]
+  Vec3<T> x{T(1), T(0), T(0)};  ///< unit vectors of the local axes in the outer frame
   Vec3<T> y{T(0), T(1), T(0)};
   Vec3<T> z{T(0), T(0), T(1)};
 
@@ -24,8 +24,10 @@ struct Pose {
   GLADSTONE_HD Ray<T> outwards(Ray<T> const& ray) const {
     return {point_outwards(ray.position), direction_outwards(ray.direction)};
   }
-  /// Where a ray, or what goes on from it either way, meets the plane of x and y, in the pose's own frame. @return
-  /// false where it runs along the plane
+  /// Intersects the infinite line of a ray with the local plane z = 0.
+  /// @param ray    ray in the outer frame
+  /// @param place  receives the local coordinates (x, y) of the intersection [m]
+  /// @return false if the ray is parallel to the plane
   GLADSTONE_HD bool meet(Ray<T> const& ray, Vec2<T>& place) const {
     Ray<T> const local = inwards(ray);
     if (local.direction.z == T(0)) return false;
@@ -34,19 +36,20 @@ struct Pose {
     return true;
   }
 
-  /// The same place in the frame that `outer` is given in, where this one is given in outer's.
+  /// Returns this pose, given in the frame `outer`, as a pose in the frame in which `outer` is given.
   Pose within(Pose const& outer) const {
     return {outer.point_outwards(origin), outer.direction_outwards(x), outer.direction_outwards(y),
             outer.direction_outwards(z)};
   }
-  /// Moved by a vector given in its own axes.
+  /// Returns the pose translated by a vector in local coordinates [m].
   Pose moved(Vec3<T> by) const { return {point_outwards(by), x, y, z}; }
-  /// Turned about its own axes, right-handed: about x, then about the turned y, then about the turned z.
-  /// @param angles [rad]
+  /// Returns the pose after right-handed rotations about its local x axis, the rotated y axis and then the rotated z
+  /// axis.
+  /// @param angles  rotation angles about x, y and z [rad]
   Pose turned(Vec3<T> angles) const;
 };
 
-/// Vector product.
+/// Cross product.
 template <class T>
 GLADSTONE_HD constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -57,7 +60,7 @@ Pose<T> Pose<T>::turned(Vec3<T> angles) const {
   using std::cos;
   using std::sin;
   Pose pose = *this;
-  // turning about an axis mixes the other two
+  // A rotation about one axis mixes the other two.
   auto const turn = [](Vec3<T>& a, Vec3<T>& b, T const& angle) {
     Vec3<T> const first = cos(angle) * a + sin(angle) * b;
     b = cos(angle) * b - sin(angle) * a;

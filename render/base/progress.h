@@ -8,8 +8,8 @@
 
 namespace gladstone {
 
-/// A progress bar with the remaining time on stderr: drawn on a terminal only, at most ten times a second.
-/// Thread-safe. Ends its line on destruction.
+/// Progress report on stderr with the remaining time. On a terminal it is a bar, redrawn at most ten times a second,
+/// whose line ends on destruction; otherwise it is a line of text every 30 s. Thread-safe.
 class Progress {
  public:
   Progress(std::string label, std::size_t total);
@@ -19,7 +19,7 @@ class Progress {
 
   void advance(std::size_t done = 1);
 
-  /// --quiet and --json switch all bars off.
+  /// Enables or disables all progress reports (--quiet and --json disable them).
   static void enable(bool on);
 
  private:

@@ -6,8 +6,8 @@
 
 namespace gladstone {
 
-/// Independent random streams of a case. Numbers are keyed by (seed, stream, source, ray), never drawn in sequence, so
-/// that runs repeat on any number of threads and on either device.
+/// Independent random streams of a case. Each random number is a function of its key (seed, stream, source, ray), not
+/// of the order of calls, so that runs repeat on any number of threads and on either device.
 enum class RandomStream : std::uint64_t {
   target = 1,
   pupil = 2,
@@ -17,7 +17,8 @@ enum class RandomStream : std::uint64_t {
   sensor = 6
 };
 
-/// A bijective 64-bit mixer (Steele, Lea & Flood 2014, SplitMix64; constants of Stafford's variant 13).
+/// Bijective 64-bit mixing function (Steele, Lea & Flood 2014, SplitMix64, with the constants of Stafford's variant
+/// 13).
 GLADSTONE_HD constexpr std::uint64_t mix64(std::uint64_t x) {
   x ^= x >> 30;
   x *= 0xbf58476d1ce4e5b9ULL;
@@ -26,7 +27,7 @@ GLADSTONE_HD constexpr std::uint64_t mix64(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// 64 random bits that belong to a key of up to four numbers.
+/// Returns the 64 random bits of a key of up to four numbers.
 GLADSTONE_HD constexpr std::uint64_t random_bits(std::uint64_t seed, RandomStream stream, std::uint64_t a,
                                                  std::uint64_t b = 0) {
   std::uint64_t h = mix64(seed + 0x9e3779b97f4a7c15ULL);
@@ -35,15 +36,17 @@ GLADSTONE_HD constexpr std::uint64_t random_bits(std::uint64_t seed, RandomStrea
   return mix64(h ^ (b * 0xda942042e4dd58b5ULL + 0x2545f4914f6cdd1dULL));
 }
 
-/// The seed of a repeat of a case: independent of the seed's other repeats.
+/// Returns the seed of repetition `repeat` of a case, statistically independent of its other repetitions; repetition 0
+/// has the case's own seed.
 constexpr std::uint64_t repeat_seed(std::uint64_t seed, std::uint64_t repeat) {
   return repeat == 0 ? seed : mix64(mix64(seed + 0x632be59bd9b4e019ULL) + repeat * 0x9e3779b97f4a7c15ULL);
 }
 
-/// Uniform in [0, 1) with 53 bits.
+/// Converts random bits to a uniform number in [0, 1) with 53 bits of precision.
 GLADSTONE_HD constexpr double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// A generator of random bits, keyed like everything else: one per pixel or item.
+/// Random bit generator (C++ UniformRandomBitGenerator) of one pixel or item, started from the key (seed, stream,
+/// item).
 class KeyedEngine {
  public:
   using result_type = std::uint64_t;

@@ -4,11 +4,10 @@
 
 #include "render/base/random.h"
 
-/// Random numbers of given distributions from a KeyedEngine, the same on every device but for the last digit of its
-/// logarithms.
+/// Random variates from a KeyedEngine; host and device results differ at most by the rounding of log, exp and cos.
 namespace gladstone {
 
-/// ln k! by Stirling's series about k + 1, to 1e-9; k a whole number.
+/// Computes ln k! for an integer k, as a product for k < 7, else by Stirling's series about k + 1; error below 1e-9.
 GLADSTONE_HD inline double log_factorial(double k) {
   using std::log;
   if (k < 7) {
@@ -22,7 +21,7 @@ GLADSTONE_HD inline double log_factorial(double k) {
          inverse * (1.0 / 12 - square * (1.0 / 360 - square * (1.0 / 1260 - square / 1680)));
 }
 
-/// Mean 0, standard deviation 1 (Box & Muller 1958).
+/// Returns a normal variate of mean 0 and standard deviation 1 (Box & Muller 1958).
 GLADSTONE_HD inline double normal_variate(KeyedEngine& engine) {
   using std::cos;
   using std::log;
@@ -32,9 +31,9 @@ GLADSTONE_HD inline double normal_variate(KeyedEngine& engine) {
   return radius * cos(two_pi * to_unit(engine()));
 }
 
-/// A Poisson number: up to a mean of 10 by multiplying uniform numbers (Knuth), beyond by transformed rejection with a
-/// squeeze (Hoermann, Insurance: Mathematics and Economics 12 (1993) 39, algorithm PTRS).
-/// @param mean from 0 to 1e12
+/// Returns a Poisson variate: for means below 10 by multiplying uniform numbers (Knuth), else by transformed rejection
+/// with a squeeze (Hoermann, Insurance: Mathematics and Economics 12 (1993) 39, algorithm PTRS).
+/// @param mean  expected value, 0 to 1e12 [1]
 GLADSTONE_HD inline double poisson_variate(KeyedEngine& engine, double mean) {
   using std::abs;
   using std::exp;

@@ -9,36 +9,36 @@
 
 namespace gladstone {
 
-/// A file that a value of a setup came from, where that is not the setup's own.
+/// Origin of setup values that were included from a file other than the setup itself.
 struct SetupSource {
-  std::string name;    ///< for messages
-  std::string folder;  ///< that relative file names in it refer to
+  std::string name;    ///< file name for messages
+  std::string folder;  ///< directory to which relative file names in this file refer
 };
 
-/// Where a value of a setup stands: a line and column of the file, or a --set assignment.
+/// Location of a setup value: line and column of a file, or a --set assignment.
 struct SetupPlace {
-  int line = 0;  ///< from 1; 0: nowhere
+  int line = 0;  ///< line, from 1; 0: no location
   int column = 0;
-  std::string assignment;                               ///< "key.path=value" of --set, or empty
-  std::shared_ptr<SetupSource const> source = nullptr;  ///< null: the setup's own file
+  std::string assignment;                               ///< "key.path=value" of --set; empty: from a file
+  std::shared_ptr<SetupSource const> source = nullptr;  ///< file of the value; null: the setup file itself
 
   bool known() const { return line > 0 || !assignment.empty(); }
 };
 
 struct SetupMember;
 
-/// One value of a parsed setup. The only file that knows the TOML library is setup_node.cpp.
+/// One value of a parsed setup, independent of the TOML library, which only setup_node.cpp uses.
 struct SetupNode {
   enum class Kind { text, integer, number, boolean, date, array, table };
 
   Kind kind = Kind::table;
-  std::string text;  ///< of a text, and of a date as written in TOML
+  std::string text;  ///< value of a text; of a date as written in TOML
   long long integer = 0;
   double number = 0.0;
   bool boolean = false;
-  std::vector<SetupNode> elements;   ///< of an array
-  std::vector<SetupMember> members;  ///< of a table
-  SetupPlace place;                  ///< of the key, where there is one
+  std::vector<SetupNode> elements;   ///< elements of an array
+  std::vector<SetupMember> members;  ///< keys and values of a table
+  SetupPlace place;                  ///< location of the key if the value has one, else of the value
 
   SetupNode const* find(std::string const& key) const;
   SetupNode* find(std::string const& key);
@@ -46,42 +46,44 @@ struct SetupNode {
   double as_double() const { return kind == Kind::integer ? static_cast<double>(integer) : number; }
 };
 
-/// A key of a table and its value.
+/// Key of a table with its value.
 struct SetupMember {
   std::string key;
   SetupNode value;
 };
 
-/// Values made by the program, which stand nowhere.
+/// Values created by the program, without a location.
 SetupNode setup_text(std::string text);
 SetupNode setup_number(double number);
 SetupNode setup_integer(long long integer);
 SetupNode setup_array(std::vector<SetupNode> elements);
 
-/// Says of a value and of all below it that they came from another file.
+/// Sets the source file of a value and of all values below it.
 void set_source(SetupNode& node, std::shared_ptr<SetupSource const> const& source);
 
-/// Most parts of a dotted key or of a table's name, and most brackets within one another: a hundred times what setups
-/// have, and far from what a stack holds.
+/// Maximum nesting depth: parts of a dotted key or table name, and nested brackets. Far more than any setup has and far
+/// less than would exhaust the stack.
 inline constexpr std::size_t most_setup_depth = 32;
 
-/// Parses TOML 1.0. @throws SetupError with the parser's own description at name:line:column
+/// Parses TOML 1.0.
+/// @throws SetupError at name:line:column with the parser's description of the error
 SetupNode parse_toml(std::string_view text, std::string const& name);
 
-/// Parses the right side of an assignment; nothing where it is not TOML, or deeper than most_setup_depth.
+/// Parses the right-hand side of an assignment; nullopt if it is not TOML or nested deeper than most_setup_depth.
 std::optional<SetupNode> parse_toml_value(std::string_view text);
 
-/// Text as TOML, on one line.
+/// Formats a value as TOML on one line.
 std::string toml_text(SetupNode const& node);
-std::string toml_text(std::string_view text);  ///< quoted and escaped
-/// Shortest form that reads back to the same double, always with a point, an exponent, or as inf or nan.
+std::string toml_text(std::string_view text);  ///< a TOML string, quoted and escaped
+/// Formats a number in the shortest form that reads back to the same double; always with a decimal point or exponent,
+/// or as inf or nan, so that it remains a float in TOML.
 std::string toml_text(double value);
-/// A table as a TOML document, its own values before its tables. @pre node is a table
+/// Formats a table as a TOML document, its values before its sub-tables. @pre node is a table
 std::string toml_document(SetupNode const& node);
-/// A key, quoted where it must be.
+/// Formats a key, quoted if necessary.
 std::string toml_key(std::string const& key);
 
-/// "a text", "an array" ..., for messages.
+/// Name of a value's kind for messages: "a text", "an array" ...
 std::string kind_name(SetupNode const& node);
 
 }  // namespace gladstone

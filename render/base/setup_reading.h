@@ -5,7 +5,7 @@
 
 #include "render/base/setup_state.h"
 
-/// What the readers of a SetupTable's keys share; nothing else includes it.
+/// Helpers shared by the source files of SetupTable; not for other files.
 namespace gladstone::setup_reading {
 
 inline std::vector<std::string> below(std::vector<std::string> path, std::string const& key) {
@@ -13,27 +13,27 @@ inline std::vector<std::string> below(std::vector<std::string> path, std::string
   return path;
 }
 
-/// Marks a key as known to its table.
+/// Returns the record of a key of a table, creating it: the key is known from now on.
 inline SetupRecord::Entry& known(SetupDocument::State& state, std::vector<std::string> const& table,
                                  std::string const& key) {
   return state.record_of(table).entry(key);
 }
 
-/// The value of a key being read; null where it is absent.
+/// Marks a key as read and returns its value; null if it is absent.
 inline SetupNode const* read(SetupDocument::State& state, std::vector<std::string> const& table,
                              std::string const& key) {
   known(state, table, key).read = true;
   return state.find(below(table, key));
 }
 
-/// Remembers what a key came to.
+/// Records the value used for a key, unless settle() has set the final one.
 inline void use(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key,
                 std::string const& value) {
   auto& entry = known(state, table, key);
   if (!entry.resolved) entry.value = value;
 }
 
-/// What a key came to in the end.
+/// Records the final value of a key.
 inline void settle(SetupDocument::State& state, std::vector<std::string> const& table, std::string const& key,
                    std::string const& value) {
   auto& entry = known(state, table, key);
@@ -41,17 +41,19 @@ inline void settle(SetupDocument::State& state, std::vector<std::string> const& 
   entry.resolved = true;
 }
 
-/// A default in SI as a setup writes it: to 12 digits, without what products with a unit leave of rounding.
+/// Converts a default from SI to the unit of its key, rounded to 12 significant digits to remove rounding errors of the
+/// conversion.
 double in_unit(double si, double unit);
 
-/// What a number breaks of its range, with the rule; empty where it keeps it.
+/// Checks a number against a range. @return the violated rule ("must be at least 1"); empty if the number is allowed
 std::string broken_rule(double value, Range const& range);
-/// Some number that the range allows.
+/// Returns a number within a range, to continue reading after an error.
 double harmless(Range const& range);
-/// "must be a number (it is a text)", with a hint where quotes are the mistake.
+/// Message about a value of the wrong kind: "must be a number (it is a text)", with a hint if only the quotes are
+/// wrong.
 std::string wrong_kind(std::string const& wanted, SetupNode const& node);
 std::string wrong_integer(SetupNode const& node);
-/// "must be at least 1 and at most 9"
+/// Message about an integer out of range: "must be at least 1 and at most 9".
 std::string between(long long low, long long high);
 std::string wrong_word(std::string const& text, std::vector<std::string> const& words);
 

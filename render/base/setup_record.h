@@ -6,31 +6,32 @@
 
 namespace gladstone {
 
-/// What the readers of a setup asked of one table, in the order of asking: the keys it has, which of them were read,
-/// and what each came to. It is the schema seen at work, from which unread keys are found and the resolved setup is
-/// written.
+/// Record of all keys that were requested from one table of a setup, in the order of the requests: which were read, and
+/// the value used for each. Keys of the setup that are missing here are unknown; the record is also the source of the
+/// resolved setup.
 struct SetupRecord {
   struct Entry {
     std::string key;
-    bool read = false;               ///< asked for its value, not only for its presence
-    bool resolved = false;           ///< `value` is final: what an "auto" came to
-    std::string value;               ///< TOML text of the value used; empty for a table and for an absent optional key
-    std::deque<SetupRecord> tables;  ///< one for a table, several for an array of tables
-    bool array = false;              ///< `tables` were written as an array of tables
+    bool read = false;               ///< value requested, not only its presence
+    bool resolved = false;           ///< `value` is final, e.g. the value computed for "auto"
+    std::string value;               ///< TOML text of the value used; empty for tables and absent optional keys
+    std::deque<SetupRecord> tables;  ///< records of sub-tables: one for a table, several for an array of tables
+    bool array = false;              ///< `tables` is an array of tables
   };
 
-  std::deque<Entry> entries;  ///< a deque, so that records keep their place
-  bool present = false;       ///< the table is written in the setup
-  bool excused = false;       ///< keys that nobody read are no mistakes here
+  std::deque<Entry> entries;  ///< a deque, so that references to entries remain valid
+  bool present = false;       ///< the table exists in the setup
+  bool excused = false;       ///< unread keys of this table are not reported
 
   Entry& entry(std::string const& key);
   Entry const* find(std::string const& key) const;
   std::vector<std::string> keys() const;
-  /// The path ("lens", "medium.field", "" for this table) of a table below here that knows `key`; nothing found: "?".
+  /// Returns the path ("lens", "medium.field", or "" for this table) of the first table here or below that has the key;
+  /// "?" if there is none.
   std::string table_with(std::string const& key) const;
 };
 
-/// The record as TOML: the keys of a table before its sub-tables, each in the order of reading.
+/// Formats a record as TOML: the keys of a table before its sub-tables, each in the order of reading.
 std::string resolved_toml(SetupRecord const& root);
 
 }  // namespace gladstone

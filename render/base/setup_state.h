@@ -9,36 +9,37 @@
 
 namespace gladstone {
 
-/// A key, or an element of its array, whose value is the name of a file.
+/// Location and absolute path of a value that is a file name.
 struct SetupFileName {
   std::vector<std::string> path;
   std::string absolute;
 };
 
-/// What a SetupDocument and its SetupTables share. Paths: keys from the root; "[2]" for an element of an array.
+/// State shared by a SetupDocument and its SetupTables. Paths are the keys from the root, with "[2]" for an element of
+/// an array.
 struct SetupDocument::State {
-  std::string name;    ///< of the file, for messages
-  std::string folder;  ///< relative file names refer to it
+  std::string name;    ///< file name for messages
+  std::string folder;  ///< directory to which relative file names refer
   SetupNode root;
   SetupRecord record;
   std::vector<SetupProblem> problems;
-  std::vector<SetupFileName> files;  ///< that readers asked for
+  std::vector<SetupFileName> files;  ///< file names that were read
 
-  /// The value at a path; null where there is none.
+  /// Returns the value at a path; null if there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
   SetupNode* find(std::vector<std::string> const& path) {
     return const_cast<SetupNode*>(std::as_const(*this).find(path));
   }
-  /// The record of the table at a path, made where it is new.
+  /// Returns the record of the table at a path, creating it if necessary.
   SetupRecord& record_of(std::vector<std::string> const& path);
   std::string where(SetupPlace const& place) const;
-  /// Where the value at the path stands; where it is absent, the nearest table above it.
+  /// Location of the value at a path, or of the nearest existing table above it, for messages.
   std::string where(std::vector<std::string> const& path) const;
-  /// The file that a text of the setup names: relative to the folder of the file that it stands in.
+  /// Resolves a file name relative to the directory of the file in which it is written.
   std::string absolute_name(SetupNode const& text) const;
 };
 
-/// "medium.field[0].kind"
+/// Formats a path: "medium.field[0].kind".
 std::string dotted_path(std::vector<std::string> const& path);
 
 }  // namespace gladstone

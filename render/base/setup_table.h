@@ -18,59 +18,63 @@ namespace gladstone {
 class SetupTable;
 struct SetupNode;
 
-/// A setup file (TOML) being read: it collects every problem, remembers which keys were read and what each
-/// key, given or default, came to. Rooms read their own tables through SetupTable.
+/// Setup file (TOML) during reading. It collects all problems, and records which keys were read and the value used for
+/// each, given or default. The modules read their own tables through SetupTable.
 class SetupDocument {
  public:
-  /// Parses a file; a syntax error, a missing or an unreadable file is a SetupError.
+  /// Parses a setup file. @throws SetupError if it does not exist, is unreadable, empty or not TOML
   static SetupDocument from_file(std::string const& path);
-  /// Parses text; `name` stands for the file in messages; relative file names are relative to `folder`.
+  /// Parses text.
+  /// @param name    name of the text in messages
+  /// @param folder  directory to which relative file names refer
+  /// @throws SetupError if it is not TOML
   static SetupDocument from_text(std::string_view text, std::string const& name, std::string const& folder = ".");
   SetupDocument(SetupDocument&&) noexcept;
   SetupDocument& operator=(SetupDocument&&) noexcept;
   ~SetupDocument();
 
-  /// Applies one `--set key.path=value`; the value is TOML, or a bare string where TOML finds none
-  /// (`--set lens.focus=medium`). Problems with the key are reported at "--set key.path=value".
+  /// Applies one `--set key.path=value`. The value is TOML, or plain text if it cannot be parsed as TOML (`--set
+  /// lens.focus=medium`). Problems with the key are reported at "--set key.path=value".
   void override_key(std::string const& assignment);
 
-  /// Puts a value at a path of keys in place of what is there; tables on the way are made. In messages it stands where
-  /// its own place says, and file names in it are relative to the folder of its own source.
+  /// Sets the value at a path of keys, creating missing tables. Messages refer to the value's own location, and file
+  /// names in it are relative to the directory of its own source.
   void set(std::vector<std::string> const& path, SetupNode const& value);
-  /// The value at a path of keys; null where there is none.
+  /// Returns the value at a path of keys; null if there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
 
-  /// The root table. Tables are views: the document must outlive them.
+  /// Returns the root table. Tables are views: the document must outlive them.
   SetupTable root();
 
   void add_problem(std::string where, std::string message);
   bool has_problems() const;
-  /// Whether no key at all is set.
+  /// Returns true if no key is set.
   bool empty() const;
 
-  /// Throws SetupError with all problems found so far, among them every key that nobody read, each with the nearest
-  /// known key of that table.
+  /// Completes reading: adds a problem for every key that was not read, with the most similar known key, and throws if
+  /// there are any problems.
+  /// @throws SetupError with all problems, in the order of their location
   void finish();
 
-  /// The setup as understood: every key that was read, with the value used, defaults written out, "auto" replaced by
-  /// what SetupTable::resolve gave, file names absolute. Reads back to the same setup.
+  /// Returns the resolved setup as TOML: every key that was read with the value used, including defaults, values
+  /// computed for "auto" (SetupTable::resolve()), and absolute file names. It reads back to the same setup.
   std::string resolved() const;
 
-  /// The setup as it is written, as one TOML document without defaults; file names that were read are absolute.
+  /// Returns the setup as written, as one TOML document without defaults; file names that were read are absolute.
   std::string written() const;
 
-  /// Absolute names of the files that were asked for by required_path and path_list.
+  /// Returns the absolute names of the files read by required_path() and path_list().
   std::vector<std::string> file_names() const;
-  /// Their keys, paths from the root; "[2]" for an element of an array.
+  /// Returns the keys of these files as paths from the root; "[2]" for an element of an array.
   std::vector<std::vector<std::string>> file_keys() const;
-  /// Takes the texts at these keys as the names of files, as reading the setup would find them, and makes them
-  /// absolute; others are none.
+  /// Declares the texts at these keys to be file names and makes them absolute, as reading the setup would. Replaces
+  /// the list of file_names(); keys that are absent or not texts are skipped.
   void name_files(std::vector<std::vector<std::string>> const& keys);
 
-  /// The same document once more, with all that was read of it.
+  /// Returns a copy of the document, including the record of the keys read.
   SetupDocument copy() const;
 
-  /// The folder that relative file names refer to.
+  /// Directory to which relative file names refer.
   std::string const& folder() const;
 
   struct State;
@@ -80,12 +84,12 @@ class SetupDocument {
   std::unique_ptr<State> state_;
 };
 
-/// Allowed interval of a number, in the unit of the key as written. Ends are included unless said otherwise.
+/// Allowed interval of a number, in the unit of its key. Both ends are included unless stated otherwise.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;   ///< low itself is refused
-  bool allow_inf = false;  ///< TOML's inf is a value, not a mistake
+  bool low_open = false;   ///< `low` itself is excluded
+  bool allow_inf = false;  ///< infinity is allowed
 
   static Range positive(double high = std::numeric_limits<double>::infinity()) { return {0.0, high, true, false}; }
   static Range at_least(double low, double high = std::numeric_limits<double>::infinity()) {
@@ -94,38 +98,41 @@ struct Range {
   static Range any() { return {}; }
 };
 
-/// One table of a setup. Every reader returns the value as written in the key's own unit (mm, um, deg ...), records
-/// the key as known and read, and on any mistake adds a problem to the document and returns the fallback, so that
-/// reading goes on and all problems appear together. NaN is refused everywhere, inf unless the Range allows it.
-/// A reader without fallback requires the key; where it is missing a problem is added and a harmless value returned.
-/// An integer is accepted where a number is asked for; nothing else is converted.
+/// One table of a setup. Every reading function returns the value in the unit of its key (mm, um, deg ...) and records
+/// the key as known and read. If the value is wrong, it adds a problem to the document and returns the fallback, so
+/// that all problems are reported together. Functions without a fallback require the key; if it is missing, they add a
+/// problem and return an allowed value. NaN is always refused, infinity unless the Range allows it. An integer is
+/// accepted as a number; there are no other conversions.
 class SetupTable {
  public:
   SetupTable(SetupDocument::State* state, std::vector<std::string> path);
 
-  /// The table of that name; where it is absent an empty one, so that defaults apply.
+  /// Returns the sub-table of that name; an empty one if it is absent, so that defaults apply.
   SetupTable table(std::string const& key);
-  /// An array of tables, or a single table as an array of one, or nothing.
+  /// Returns the elements of an array of tables; a single table is an array of one, an absent key an empty array.
   std::vector<SetupTable> tables(std::string const& key);
 
   bool has(std::string const& key) const;
   bool is_string(std::string const& key) const;
   bool is_array(std::string const& key) const;
   bool is_table(std::string const& key) const;
-  /// True where the table itself is written in the file (or by --set).
+  /// Returns true if the table exists in the file or is created by --set.
   bool present() const;
 
   double number(std::string const& key, double fallback, Range range = Range::any());
   double required_number(std::string const& key, Range range = Range::any());
-  /// The same in SI. @param fallback in SI, too; written out in the key's own unit @param unit the size of that in SI
-  /// @param range in the key's own unit
+  /// Reads a number and converts it to SI.
+  /// @param fallback  default in SI; recorded in the key's own unit
+  /// @param unit      size of the key's unit in SI
+  /// @param range     allowed range in the key's own unit
   double quantity(std::string const& key, double fallback, double unit, Range range = Range::any());
   Vec2d quantities(std::string const& key, Vec2d fallback, double unit, Range range = Range::any());
   Vec3d quantities(std::string const& key, Vec3d fallback, double unit, Range range = Range::any());
   std::optional<double> optional_number(std::string const& key, Range range = Range::any());
-  /// A number or the word "auto" (nothing is returned for "auto", which is also the default). Use resolve() later.
+  /// Reads a number or the word "auto", which is also the default and returned as nullopt. The value computed for
+  /// "auto" is recorded by resolve().
   std::optional<double> number_or_auto(std::string const& key, Range range = Range::any());
-  /// A number or one of some words; gives exactly one of the two.
+  /// Reads a number or one of several words; the result has exactly one of the two.
   struct NumberOrWord {
     std::optional<double> number;
     std::string word;
@@ -137,9 +144,9 @@ class SetupTable {
   bool boolean(std::string const& key, bool fallback);
   std::string text(std::string const& key, std::string const& fallback);
   std::string required_text(std::string const& key);
-  /// One of a closed set of words; the problem lists them and names the nearest.
+  /// Reads one of a closed set of words; the problem lists them and the most similar one.
   std::string word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
-  /// The same for what the words stand for.
+  /// Reads one of a closed set of words and returns the value assigned to it.
   template <class Choice>
   Choice choice(std::string const& key, Choice fallback, std::vector<std::pair<std::string, Choice>> const& choices) {
     std::vector<std::string> words;
@@ -155,40 +162,41 @@ class SetupTable {
     return fallback;
   }
   std::string required_word(std::string const& key, std::vector<std::string> const& words);
-  /// A file name, made absolute against the setup's folder.
+  /// Reads a file name and makes it absolute, relative to the directory of the file in which it is written.
   std::string required_path(std::string const& key);
-  /// File names, made absolute likewise; none where the key is absent.
+  /// Reads an array of file names, likewise made absolute; empty if the key is absent.
   std::vector<std::string> path_list(std::string const& key);
 
   std::vector<double> numbers(std::string const& key, std::vector<double> const& fallback, std::size_t count,
                               Range range = Range::any());
-  /// Any count of numbers from `at_least` to `at_most`.
+  /// Reads an array of `at_least` to `at_most` numbers.
   std::vector<double> number_list(std::string const& key, std::vector<double> const& fallback, std::size_t at_least,
                                   std::size_t at_most, Range range = Range::any());
   std::vector<long long> integers(std::string const& key, std::vector<long long> const& fallback, std::size_t at_least,
                                   std::size_t at_most, long long low, long long high);
   std::vector<bool> booleans(std::string const& key, std::vector<bool> const& fallback, std::size_t count);
 
-  /// Writes what an "auto", or a default that hangs on other keys, came to into the resolved setup.
+  /// Records the final value of a key in the resolved setup, for "auto" or a default that depends on other keys.
   void resolve(std::string const& key, double value);
   void resolve(std::string const& key, long long value);
   void resolve(std::string const& key, std::vector<double> const& values);
   void resolve(std::string const& key, std::string const& word);
 
-  /// As word(), for the key that says which others the table has: where it is wrong, they are excused.
+  /// Reads a word, as word(), that determines which other keys the table has. If it is wrong, the table's other keys
+  /// are excused.
   std::string kind_word(std::string const& key, std::string const& fallback, std::vector<std::string> const& words);
-  /// Takes every key of the table as read: what they mean hangs on one that was refused.
+  /// Suppresses the problems about unread keys of this table, since their meaning depends on a key that was wrong.
   void excuse();
 
-  /// Takes the key, or the whole table of that name, as read: it is somebody else's business.
+  /// Marks a key, or the whole table of that name, as read, because it is read elsewhere.
   void pass_over(std::string const& key);
 
-  /// Refuses the key if it is there: `reason` says why, e.g. "is not available yet: thin lenses only".
+  /// Adds a problem if the key is present. @param reason  text of the problem, "is not available yet: thin lenses only"
   void refuse(std::string const& key, std::string const& reason);
 
-  /// Adds a problem at this key (or at the table where the key is absent).
+  /// Adds a problem at this key, or at the table if the key is empty or absent.
   void problem(std::string const& key, std::string const& message);
-  /// "file:line:column" of the key, of the table where it is absent, or "--set ...".
+  /// Location of the key, or of the table if it is absent: "file:line:column" or "--set ...".
   std::string where(std::string const& key) const;
 
  private:

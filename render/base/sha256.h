@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// SHA-256 (FIPS 180-4) of bytes given piece by piece: what results name the files by that they were made from. Where
-/// telling contents apart is enough, content_hash() is faster and shorter.
+/// Incremental SHA-256 hash (FIPS 180-4). Results identify their input files by it; where detecting changes is
+/// sufficient, content_hash() is faster and shorter.
 class Sha256 {
  public:
   Sha256();
@@ -18,7 +18,7 @@ class Sha256 {
 
   void add(void const* bytes, std::size_t size);
   void add(std::string_view bytes) { add(bytes.data(), bytes.size()); }
-  /// Of everything so far, 64 hexadecimal digits; nothing may be added after it.
+  /// Returns the hash of all bytes added, as 64 hexadecimal digits; nothing may be added afterwards.
   std::string finish();
 
  private:

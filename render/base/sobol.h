@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// Largest number of points of a sequence of ours.
+/// Number of points of the Sobol sequence, limited by the 32-bit index.
 inline constexpr std::uint64_t sobol_points = std::uint64_t{1} << 32;
 inline constexpr int sobol_dimensions = 4;
 
@@ -24,8 +24,9 @@ GLADSTONE_HD inline std::uint32_t reverse_bits(std::uint32_t x) {
 #endif
 }
 
-/// Direction numbers m_k of the first four dimensions (Joe & Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, new-joe-kuo-6):
-/// primitive polynomials 1 (van der Corput), x + 1, x^2 + x + 1, x^3 + x + 1.
+/// Direction numbers of the first four dimensions, shifted to 32-bit binary fractions, v_k = m_k 2^(31-k) (Joe & Kuo,
+/// SIAM J. Sci. Comput. 30 (2008) 2635, new-joe-kuo-6). Primitive polynomials: 1 (van der Corput), x + 1, x^2 + x + 1,
+/// x^3 + x + 1.
 struct SobolDirections {
   std::uint32_t v[sobol_dimensions][32];
 };
@@ -52,7 +53,7 @@ constexpr SobolDirections make_sobol_directions() {
 
 }  // namespace detail
 
-/// Coordinate of point `index` of the Sobol sequence, as 32 bits of a binary fraction.
+/// Returns the coordinate of point `index` of the Sobol sequence as a 32-bit binary fraction.
 GLADSTONE_HD inline std::uint32_t sobol_bits(std::uint32_t index, int dimension) {
   constexpr detail::SobolDirections directions = detail::make_sobol_directions();
   std::uint32_t x = 0;
@@ -62,10 +63,10 @@ GLADSTONE_HD inline std::uint32_t sobol_bits(std::uint32_t index, int dimension)
   return x;
 }
 
-/// sobol_bits of point `index` in all dimensions, without a branch a bit.
+/// Computes sobol_bits() of point `index` for all dimensions, without a branch per bit.
 GLADSTONE_HD inline void sobol_point(std::uint32_t index, std::uint32_t (&x)[sobol_dimensions]) {
   constexpr detail::SobolDirections directions = detail::make_sobol_directions();
-  x[0] = detail::reverse_bits(index);  // van der Corput's sequence
+  x[0] = detail::reverse_bits(index);  // Dimension 0 is the van der Corput sequence.
   for (int dimension = 1; dimension < sobol_dimensions; ++dimension) x[dimension] = 0;
   for (int k = 0; k < 32; ++k) {
     if (k % 8 == 0 && index >> k == 0) return;
@@ -74,8 +75,8 @@ GLADSTONE_HD inline void sobol_point(std::uint32_t index, std::uint32_t (&x)[sob
   }
 }
 
-/// Owen's nested uniform scrambling by hashing (Laine & Karras 2011 as improved by Vegdahl; Burley, JCGT 9(4) (2020)):
-/// every bit is flipped by a hash of the bits above it. Equal seeds give equal scramblings.
+/// Scrambles a coordinate by hash-based Owen scrambling (Laine & Karras 2011 with Vegdahl's constants; Burley, JCGT
+/// 9(4) (2020)): each bit is flipped depending on a hash of the higher bits. Equal seeds give equal scramblings.
 GLADSTONE_HD inline std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
   x = detail::reverse_bits(x);
   x ^= x * 0x3d20adeau;

@@ -8,50 +8,51 @@
 
 namespace gladstone {
 
-/// SHA-256 of what a picture holds: columns, rows, bits of a stored sample and grey values as read_image() gives them;
-/// of no date, name or other text. Whole numbers up to 65535 are hashed as 16-bit numbers, little-endian, row by row;
-/// pictures with any other value as 64-bit floats.
-/// @param sample_bits of the file, as in ImageMetadata
+/// Computes the SHA-256 hash of an image's content: columns, rows, bits per stored sample and the grey levels as
+/// returned by read_image(); dates, names and other metadata are excluded. If all grey levels are integers from 0 to
+/// 65535, they are hashed as little-endian 16-bit integers, row by row, else as 64-bit floats.
+/// @param sample_bits  bits per sample in the file, as ImageMetadata::sample_bits
 std::string pixel_sha256(Image<double> const& picture, int sample_bits);
-/// Of a picture as write_tiff() writes it.
+/// Computes the hash of an image as read back from a file of write_tiff().
 std::string pixel_sha256(Image<std::uint16_t> const& picture);
-/// Of a picture in a file. @throws DataError
+/// Computes the hash of an image file. @throws DataError
 std::string pixel_sha256(std::string const& path);
 
-/// SHA-256 of what an HDF5 file holds: path, shape and values of every dataset of numbers, in the order of their paths;
-/// of no attribute (dates, versions, device), nor of datasets whose name starts with "seconds_" or is "device".
+/// Computes the SHA-256 hash of an HDF5 file's content: path, shape and values of every numeric dataset, in the order
+/// of their paths. Attributes (dates, versions, device) and datasets named "seconds_*" or "device" are excluded.
 /// @throws DataError
 std::string dataset_sha256(std::string const& path);
 
-/// SHA-256 of a file's bytes. @throws DataError
+/// Computes the SHA-256 hash of a file's bytes. @throws DataError
 std::string byte_sha256(std::string const& path);
 
-/// The files that a result is made from, by what they held when they were read. A result carries their hashes and is
-/// put in its place only if they hold the same then.
+/// Input files of a result with the hashes of their content when they were read. The result stores the hashes, and is
+/// only written if the files have not changed since.
 class SourceFiles {
  public:
   enum class Holds { pixels, datasets, bytes };
 
-  /// Hashes a file that is about to be read. @throws DataError
+  /// Adds a file that is about to be read, and hashes it. @throws DataError
   void add(std::string name, std::string path, Holds holds);
-  /// A file that has been read, hashed as it was read.
+  /// Adds a file that was hashed when it was read.
   void add(std::string name, std::string path, Holds holds, std::string sha256);
-  /// A file that is written together with the result, or that cannot change under it.
+  /// Adds an input that check() skips, since it is written together with the result or cannot change.
   void add_known(std::string name, std::string sha256);
-  /// What to do where a file has changed: "run gladstone correlate CASE again".
+  /// Sets the remedy in the message about a changed file: "run gladstone correlate CASE again".
   void on_change(std::string advice) { advice_ = std::move(advice); }
 
   struct Source {
-    std::string name;  ///< "reference", "flow", "vectors", "truth"; empty: looked at again, but not told
-    std::string path;  ///< empty: not looked at again
+    std::string name;  ///< "reference", "flow", "vectors", "truth"; empty: checked, but not stored in the result
+    std::string path;  ///< path of the file; empty: not checked
     Holds holds = Holds::bytes;
     std::string sha256;
   };
   std::vector<Source> const& all() const { return sources_; }
-  /// The hash of a source; empty where there is none of this name.
+  /// Returns the hash of the source of this name; empty if there is none.
   std::string sha256(std::string const& name) const;
 
-  /// Hashes every file again. @throws DataError naming the first that holds something else, or cannot be read any more
+  /// Hashes every file again.
+  /// @throws DataError naming the first file whose content has changed or that cannot be read; MemoryError
   void check() const;
 
  private:

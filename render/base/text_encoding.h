@@ -5,14 +5,14 @@
 
 namespace gladstone {
 
-/// Whether bytes are well-formed UTF-8 (RFC 3629: no surrogates, no longer forms than needed): JSON and TOML hold no
-/// other.
+/// Returns true if the bytes are well-formed UTF-8, as JSON and TOML require (RFC 3629: no surrogates, no overlong
+/// forms).
 bool is_utf8(std::string_view bytes);
 
-/// The bytes of a text file as UTF-8, whatever they were: UTF-16 with a byte order mark, UTF-8 with or without one,
-/// else ISO-8859-1. Line ends become "\n".
-/// @param name of the file, for messages. @throws DataError for UTF-16 that is broken or cut short, and for text that
-/// holds NUL characters, which no text does
+/// Converts the bytes of a text file to UTF-8. They are taken as UTF-16 if they begin with its byte order mark, as
+/// UTF-8 if well-formed (a byte order mark is removed), else as ISO-8859-1. Line ends become "\n".
+/// @param name  file name for messages
+/// @throws DataError for malformed or truncated UTF-16, and for text with NUL characters
 std::string decoded_text(std::string_view bytes, std::string const& name);
 
 }  // namespace gladstone

@@ -10,7 +10,7 @@
 
 namespace gladstone {
 
-/// Tags of TIFF 6.0 (Adobe 1992, section 8).
+/// Tags of TIFF 6.0 (Adobe 1992, section 8) that are evaluated.
 enum class TiffTag : std::uint16_t {
   width = 256,
   height = 257,
@@ -25,16 +25,16 @@ enum class TiffTag : std::uint16_t {
   sample_format = 339,
 };
 
-/// The integer entries of one page of a TIFF.
+/// Integer entries of one page (image file directory) of a TIFF.
 class TiffDirectory {
  public:
   using Entries = std::map<std::uint16_t, std::vector<std::uint64_t>>;
   explicit TiffDirectory(Entries entries) : entries_(std::move(entries)) {}
 
   bool has(TiffTag tag) const { return entries_.contains(static_cast<std::uint16_t>(tag)); }
-  /// All values of an entry; empty where it is missing.
+  /// Returns all values of an entry; empty if it is missing.
   std::vector<std::uint64_t> values(TiffTag tag) const;
-  /// The first value of an entry.
+  /// Returns the first value of an entry, or `otherwise` if it is missing.
   std::uint64_t value(TiffTag tag, std::uint64_t otherwise) const;
 
  private:
@@ -42,11 +42,11 @@ class TiffDirectory {
 };
 
 /// Reads the directories of a TIFF or BigTIFF of either byte order.
-/// @return one a page, up to the first that is damaged; empty: not a TIFF
+/// @return one directory per page, up to the first damaged one or max_pages; empty if the file is not a TIFF
 std::vector<TiffDirectory> read_tiff_directories(InputFile const& file, std::size_t max_pages);
 
-/// Reads a page of one bit a pixel that is stored without compression, as zeros (black) and ones (white).
-/// @throws DataError where it is compressed or cut short
+/// Reads an uncompressed page of one bit per pixel as 0 (black) and 1 (white).
+/// @throws DataError if it is compressed or truncated
 Image<double> read_bilevel_page(InputFile const& file, TiffDirectory const& page);
 
 }  // namespace gladstone

@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// Leaves new numbers as the memory has them.
+/// Allocator that default-initialises new elements, so that numbers are left uninitialised.
 template <class T>
 struct UnsetAllocator : std::allocator<T> {
   template <class Other>
@@ -23,7 +23,7 @@ struct UnsetAllocator : std::allocator<T> {
   }
 };
 
-/// A vector whose resize() sets nothing: for many numbers that threads write right afterwards.
+/// Vector whose resize() does not initialise numbers: for large arrays that threads fill right afterwards.
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 

@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// Two components; units are the holder's. Trivially copyable, so that device code can hold it.
+/// Vector of two components, in the units of its user. Trivially copyable for use in device code.
 template <class T>
 struct Vec2 {
   T x{};
@@ -24,7 +24,7 @@ struct Vec2 {
   GLADSTONE_HD constexpr Vec2& operator*=(T s) { return *this = s * *this; }
 };
 
-/// Three components in the world frame: X right and Y up as the camera sees them, Z towards the camera.
+/// Vector of three components in the world frame: X right and Y up as seen by the camera, Z towards the camera.
 template <class T>
 struct Vec3 {
   T x{};
