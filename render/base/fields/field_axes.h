@@ -7,47 +7,49 @@
 
 namespace gladstone {
 
-/// One spatial axis of an array as its file stores it.
+/// Spatial axis of an array as stored in its file.
 struct StoredAxis {
-  char world = 'x';                 ///< world axis it is taken for: 'x', 'y' or 'z'
-  double first = 0;                 ///< coordinate of its first node [the file's unit of length]
-  double step = 1;                  ///< from one node to the next; negative: the axis runs backwards
-  std::vector<double> coordinates;  ///< of every node, where they are not uniform; empty: first + i step
+  char world = 'x';                 ///< world axis assigned to it: 'x', 'y' or 'z'
+  double first = 0;                 ///< coordinate of the first node [length unit of the file]
+  double step = 1;                  ///< distance between nodes [length unit of the file]; negative if the axis is
+                                    ///< stored in descending order
+  std::vector<double> coordinates;  ///< coordinates of all nodes if they are not uniform; empty: first + i step
 };
 
-/// The three axes of a stored array, the fastest first.
+/// The three axes of a stored array, fastest-varying first.
 using StoredAxes = std::array<StoredAxis, 3>;
 
-/// x fastest, z slowest.
+/// Returns the default order of axes: x fastest, z slowest.
 inline StoredAxes default_axes() {
   StoredAxes axes;
   for (std::size_t axis = 0; axis < 3; ++axis) axes[axis].world = "xyz"[axis];
   return axes;
 }
 
-/// Which axis of the stored array is taken for which world axis, and why.
+/// Assignment of an array's axes to world axes, and its reason.
 struct FieldReading {
-  std::string axes = "zyx";              ///< world axes in the order of the file, the slowest first
-  std::string by = "the default order";  ///< what determined the order
-  std::vector<std::size_t> shape;        ///< nodes in the same order
-  std::string turned_round;              ///< world axes that run backwards in the file: "xy"
+  std::string axes = "zyx";              ///< world axes in the order of the file, slowest first
+  std::string by = "the default order";  ///< source of the order
+  std::vector<std::size_t> shape;        ///< number of nodes along each, in the same order
+  std::string turned_round;              ///< world axes stored in descending order: "xy"
 
-  /// "[16, 20, 24] is read as z, y, x (by its coordinates); y runs backwards and is turned round"
+  /// Describes the assignment: "[16, 20, 24] is read as z, y, x (by its coordinates); y runs backwards in the file and
+  /// is turned round".
   std::string text() const;
 };
 
-/// Whether a text names two or three different axes of x, y and z.
+/// Returns true if a text consists of two or three different letters of x, y and z.
 bool is_axis_order(std::string_view axes);
 
-/// Takes the stored axes for those that the user names, the slowest first.
-/// @param axes  names of the stored axes, "zxy"; empty: changes nothing
-/// @param rank  axes of the array as stored, 2 or 3
-/// @throws DataError if the names do not fit the number of axes
+/// Assigns world axes to the stored axes in the order given by the user.
+/// @param axes  world axes, slowest first, "zxy"; empty: no change
+/// @param rank  number of axes of the stored array, 2 or 3
+/// @throws DataError if `axes` is not an order of `rank` axes
 void name_axes(StoredAxes& stored, std::string const& axes, std::size_t rank, std::string const& path);
 
-/// An axis from the coordinates of its nodes: uniform to 1e-4 of a step beyond what float coordinates resolve, or with
-/// all of them. They may descend.
-/// @throws DataError naming `what`, where they are not finite, or neither ascend nor descend
+/// Builds an axis from the ascending or descending coordinates of its nodes. It is uniform if the coordinates deviate
+/// by less than 1e-4 of a step plus two units in the last place of a float; otherwise the coordinates are stored.
+/// @throws DataError naming `what` if the coordinates are not finite or not monotonic
 StoredAxis axis_from_coordinates(std::vector<double> coordinates, std::string const& path, std::string const& what);
 
 }  // namespace gladstone

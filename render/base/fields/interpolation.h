@@ -5,20 +5,20 @@
 
 namespace gladstone {
 
-/// Uniform cubic B-spline: four coefficients a cell, C2, exact for every cubic polynomial.
-/// Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821.
+/// Uniform cubic B-spline: four coefficients per cell and axis, C2, exact for cubic polynomials. Unser, Aldroubi &
+/// Eden, IEEE Trans. Signal Process. 41 (1993) 821.
 struct CubicBspline {
   static constexpr int support = 4;
-  static constexpr int first = -1;  ///< first coefficient, counted from the cell's lower node
+  static constexpr int first = -1;  ///< first coefficient relative to the lower node of the cell
 
-  /// The factor of u^power in the weight of a cell's coefficient number `node`.
+  /// Coefficient of u^power in the weight polynomial of coefficient `node` of a cell.
   GLADSTONE_HD static constexpr double power_in_weight(int power, int node) {
     constexpr double s = 1.0 / 6.0, t = 2.0 / 3.0, h = 0.5;
     constexpr double factor[4][4] = {{s, t, s, 0}, {-h, 0, h, 0}, {h, -1, h, 0}, {-s, h, -h, s}};
     return factor[power][node];
   }
 
-  /// Weights w and derivatives d (per cell width) at fraction u in [0, 1] of the cell, as polynomials of u.
+  /// Computes the weights w and their derivatives d (per cell width) at position u in [0, 1] within the cell.
   template <class T>
   GLADSTONE_HD static void weigh(T u, Lanes<T, 4>& w, Lanes<T, 4>& d) {
     constexpr T s = T(1.0 / 6.0), t = T(2.0 / 3.0), h = T(0.5);
@@ -26,7 +26,7 @@ struct CubicBspline {
     constexpr T slope[3][4] = {{-h, T(0), h, T(0)}, {T(1), T(-2), T(1), T(0)}, {-h, T(1.5), T(-1.5), h}};
     using Four = Lanes<T, 4>;
 #if defined(__CUDA_ARCH__)
-    // the same polynomials with the fewest operations, where lanes are not side by side
+    // On a device, without SIMD lanes: the same polynomials with the fewest operations.
     T const v = T(1) - u, uu = u * u, vv = v * v;
     w.v[0] = s * v * vv;
     w.v[1] = t + uu * (h * u - T(1));
@@ -54,7 +54,7 @@ struct CubicBspline {
   }
 };
 
-/// Piecewise linear: two nodes a cell, continuous, with a gradient that jumps between cells.
+/// Piecewise linear interpolation: two nodes per cell and axis, continuous, with a discontinuous gradient.
 struct Linear {
   static constexpr int support = 2;
   static constexpr int first = 0;

@@ -8,8 +8,8 @@
 
 namespace gladstone {
 
-/// A stored field turned to world axes: exchanged axes are put in order and axes that run backwards are turned round.
-/// Exchanged axes need the whole field in memory, turned ones do not. Nodes need not be uniform: see coordinates().
+/// Stored field in world orientation: axes are permuted to x, y, z and reversed where they descend. A permutation
+/// requires the whole field in memory, a reversal does not. The spacing may be non-uniform, see coordinates().
 class OrientedField final : public FieldSource {
  public:
   explicit OrientedField(std::unique_ptr<CheckedSource> stored);
@@ -24,7 +24,7 @@ class OrientedField final : public FieldSource {
   void read_planes(int first_plane, int count, std::span<double> out) override;
   void read_rows(int plane, int first_row, int count, std::span<double> out) override;
 
-  /// Ascending coordinates of the nodes along a world axis that is not uniform; empty for a uniform one.
+  /// Returns the ascending coordinates of the nodes along a non-uniform world axis; empty for a uniform one.
   std::vector<double> const& coordinates(std::size_t axis) const { return coordinates_[axis]; }
   bool uniform() const;
 
@@ -34,10 +34,10 @@ class OrientedField final : public FieldSource {
 
   std::unique_ptr<CheckedSource> stored_;
   RegularGrid grid_;
-  std::array<std::size_t, 3> stored_axis_{};  ///< of a world axis: its number in the file, the fastest first
-  std::array<bool, 3> backwards_{};           ///< of a world axis
+  std::array<std::size_t, 3> stored_axis_{};  ///< stored axis of each world axis, 0 = fastest
+  std::array<bool, 3> backwards_{};           ///< true for world axes that are stored in descending order
   std::array<std::vector<double>, 3> coordinates_;
-  ValueStore all_;  ///< of a field whose axes are exchanged, in the file's order, once it is read
+  ValueStore all_;  ///< all values in the order of the file if axes are permuted, once loaded
 };
 
 }  // namespace gladstone

@@ -7,12 +7,12 @@
 
 namespace gladstone {
 
-/// A field on a rectilinear grid, resampled to the finest spacing of every axis that is not uniform, by the cubic
-/// through the four nearest nodes (exact for cubics). The whole field is held in memory.
+/// Field on a rectilinear grid, resampled along each non-uniform axis to a uniform axis of its finest spacing, by the
+/// cubic through the four nearest nodes (exact for cubics). The whole field is held in memory.
 ///
-/// The error is bounded by leaving nodes out: each is predicted by the cubic through the two nodes on either side, and
-/// the largest difference is stated. For spacings h that change slowly the prediction is off by 4/24 h^4 f'''' and the
-/// resampled value by at most 0.94/24 h^4 f'''' (in the first and last cell; 0.56/24 elsewhere), a quarter of it.
+/// The error is bounded by omitting nodes: each node is predicted by the cubic through two nodes on either side, and
+/// the largest difference is reported. If the spacing h varies slowly, the prediction error is 4/24 h^4 f'''', the
+/// resampling error at most a quarter of it: 0.94/24 h^4 f'''' in the first and last cell, 0.56/24 h^4 f'''' elsewhere.
 class ResampledField final : public FieldSource {
  public:
   explicit ResampledField(std::unique_ptr<OrientedField> source);
@@ -26,7 +26,7 @@ class ResampledField final : public FieldSource {
   void read_planes(int first_plane, int count, std::span<double> out) override;
   void read_rows(int plane, int first_row, int count, std::span<double> out) override;
 
-  /// Largest difference between a node's value and its prediction from its neighbours.
+  /// Returns the largest difference between a node's value and its prediction from its neighbours, in units().values.
   double error_bound();
 
  private:
@@ -34,7 +34,7 @@ class ResampledField final : public FieldSource {
 
   std::unique_ptr<OrientedField> source_;
   RegularGrid grid_;
-  std::vector<double> values_;  ///< once it is read
+  std::vector<double> values_;  ///< resampled values, once loaded
   double error_ = 0, range_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-/// Values of a field in memory: as float where that holds all their digits, else as double.
+/// Values of a field in memory, stored as float if that preserves all significant bits, else as double.
 class ValueStore {
  public:
   /// Allocates `count` values. @throws MemoryError naming the file and `what`

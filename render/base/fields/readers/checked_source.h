@@ -10,16 +10,16 @@
 
 namespace gladstone {
 
-/// The field that a user asks a reader for.
+/// Selection of a field in a file.
 struct FieldWish {
-  std::string dataset;  ///< its name in the file; empty: the only suitable one
-  int values = 1;       ///< numbers at every node: 1, or 3 of a velocity
-  std::string axes;     ///< world axes in the file's order, the slowest first; empty: as the file has them
+  std::string dataset;  ///< name of the array in the file; empty: the only suitable one
+  int values = 1;       ///< number of values per node: 1, or 3 for a velocity
+  std::string axes;     ///< world axes in the order of the file, slowest first; empty: determined from the file
 };
 
-/// A field as its file stores it: axes in the file's order and direction, three of them, a plane's slowest of one node.
-/// Refuses values no field has: JHTDB's -999.9 where it has no data, nan and inf. Readers give the raw values; where
-/// one is bad the whole field is read once more, to say how many there are.
+/// Field with axes in the order and direction of its file; a two-dimensional field has a third, slowest axis of one
+/// node. Refuses missing values (-999.9 in JHTDB), NaN and values beyond the range of float. If a bad value is found,
+/// the whole field is read once more to count them.
 class CheckedSource {
  public:
   CheckedSource(std::string path, std::string name, int values)
@@ -29,22 +29,24 @@ class CheckedSource {
   std::string const& path() const { return path_; }
   std::string const& name() const { return name_; }
   int values() const { return values_; }
-  std::array<int, 3> const& nodes() const { return nodes_; }  ///< the fastest axis first
+  std::array<int, 3> const& nodes() const { return nodes_; }  ///< nodes along each axis, fastest first
   StoredAxes const& axes() const { return axes_; }
   FieldUnits const& units() const { return units_; }
   FieldReading const& reading() const { return reading_; }
   std::vector<std::string> const& notes() const { return notes_; }
   virtual int significant_bits() const = 0;
 
-  /// Rows [first_row, first_row + count) of a plane of the slowest axis. @throws DataError as FieldSource::read_planes
+  /// Reads rows [first_row, first_row + count) of a plane of the slowest axis.
+  /// @throws DataError as FieldSource::read_planes()
   void read_rows(int plane, int first_row, int count, std::span<double> out);
-  /// Numbers in a row of the fastest axis.
+  /// Number of values in a row of the fastest axis: nodes x values per node.
   std::size_t row_values() const { return static_cast<std::size_t>(nodes_[0]) * static_cast<std::size_t>(values_); }
 
  protected:
   virtual void read_raw_rows(int plane, int first_row, int count, std::span<double> out) = 0;
-  /// Sets nodes, and of reading() the shape and the names of the axes.
-  /// @param rank axes that the file has, 2 or 3
+  /// Sets the nodes, and the shape and axis names of reading(), from axes_.
+  /// @param rank  number of axes in the file, 2 or 3
+  /// @param by    source of the assignment of axes
   void describe(std::array<int, 3> const& nodes, std::size_t rank, std::string by);
 
   std::string path_, name_;
@@ -56,7 +58,7 @@ class CheckedSource {
   std::vector<std::string> notes_;
 
  private:
-  /// Where one of the values is bad, reads the field once more, to say how many are.
+  /// Throws DataError if one of the values is bad, after counting the bad values of the whole field.
   void refuse_bad_values(std::span<double const> read);
 };
 

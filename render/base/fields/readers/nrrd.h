@@ -6,14 +6,16 @@
 
 namespace gladstone {
 
-/// Opens a NRRD field, attached (.nrrd) or detached (.nhdr with "data file"), in any encoding (raw, gzip, bzip2, ascii,
-/// hex), of any type of numbers and either byte order, of two or three dimensions; further axes of length one are left
-/// out. The first axis is x, the second y, unless "space directions" or the caller name them otherwise. Spacing and
-/// origin come from "spacings", "axis mins" and "axis maxs", or "space directions" and "space origin", in the unit of
-/// "units" or "space units". The components of a velocity are the first axis. Raw data are read in place, gzip is
-/// streamed (planes read in ascending order are decompressed once), other encodings are held in memory.
-/// @throws DataError for what is not read here (several data files, oblique axes), and for data that are cut short or
-///         longer than the header says, with the bytes there and the bytes needed
+/// Opens a NRRD field, attached (.nrrd) or detached (.nhdr with "data file"), of two or three dimensions and any
+/// additional axes of length one, in any encoding (raw, gzip, bzip2, ascii, hex), numeric type and byte order.
+/// - The first axis is x, the second y, unless "space directions" or the caller name them otherwise; the components of
+///   a velocity are the first axis.
+/// - Spacing and origin are read from "spacings", "axis mins" and "axis maxs", or "space directions" and "space
+///   origin", in the unit of "units" or "space units".
+/// - Raw data are read from the file as needed; gzip is streamed (ascending planes are decompressed once); data in
+///   other encodings are held in memory.
+/// @throws DataError for unsupported features (several data files, oblique axes), and for data shorter or longer than
+///         the header declares, with the present and required number of bytes
 std::unique_ptr<CheckedSource> open_nrrd(std::string const& path, FieldWish const& wish);
 
 }  // namespace gladstone

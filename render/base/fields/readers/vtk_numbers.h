@@ -10,17 +10,17 @@
 
 namespace gladstone {
 
-/// A type of numbers in VTK's files.
+/// Numeric type in VTK files.
 struct VtkNumber {
-  std::string_view xml;     ///< its name in XML files
-  std::string_view legacy;  ///< and in legacy files
+  std::string_view xml;     ///< name in XML files
+  std::string_view legacy;  ///< name in legacy files
   std::size_t bytes;
   int significant_bits;
   double (*read)(char const* bytes, bool swap);
 };
 
-/// A number at a place in memory.
-/// @param swap whether its bytes are in the order that is not the machine's
+/// Reads a number from memory.
+/// @param swap  true if its byte order is not that of the machine
 template <class Stored>
 double read_number(char const* bytes, bool swap) {
   std::array<char, sizeof(Stored)> value;

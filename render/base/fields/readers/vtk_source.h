@@ -10,38 +10,39 @@
 
 namespace gladstone {
 
-/// Data of a VTK file belong to the points of its grid, or to the cells between them.
+/// Location of the data of a VTK file: at the points of the grid, or in the cells between them.
 enum class VtkPlace { points, cells };
 
 /// The grid of a VTK file.
 struct VtkGrid {
-  std::array<int, 6> extent{};                       ///< first and last point along i, j, k
-  std::array<double, 3> origin{}, spacing{1, 1, 1};  ///< of an image
+  std::array<int, 6> extent{};                       ///< index of the first and last point along i, j and k
+  std::array<double, 3> origin{}, spacing{1, 1, 1};  ///< origin and spacing of an image
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  std::array<std::vector<double>, 3> coordinates;  ///< of the points of a rectilinear grid
+  std::array<std::vector<double>, 3> coordinates;  ///< coordinates of the points of a rectilinear grid, along x, y and
+                                                   ///< z
 
-  /// Points, or cells, along an axis of an extent.
+  /// Returns the number of points or cells of an extent along an axis; a single point counts as one cell.
   static int count(std::array<int, 6> const& extent, std::size_t axis, VtkPlace place);
 };
 
-/// An array of a VTK file.
+/// Array of a VTK file, and the function that loads it.
 struct VtkField {
   std::string name;
   VtkPlace place = VtkPlace::points;
   int significant_bits = 24;
   VtkGrid grid;
   std::vector<std::string> notes;
-  std::function<ValueStore()> load;  ///< reads all values, x fastest but for the components of a node
+  std::function<ValueStore()> load;  ///< reads all values in the order [k][j][i][component]
 };
 
-/// Checks extent and spacing of a grid of so many values a node.
-/// @throws DataError for extents that do not ascend, spacings of zero and grids that are larger than any field
+/// Checks the extent, origin and spacing of a grid with `values` numbers per node.
+/// @throws DataError for a descending extent, a spacing of zero, or a size above 1e15 bytes
 void check_grid(VtkGrid const& grid, int values, std::string const& path);
 
-/// The field of an array. @throws DataError for turned axes (Direction) that are not along X, Y and Z
+/// Creates the field of an array. @throws DataError if its axes (Direction) are not parallel to X, Y and Z
 std::unique_ptr<CheckedSource> make_vtk_source(std::string const& path, VtkField field, FieldWish const& wish);
 
-/// A message that no array is the one wanted. @param names of the arrays that are there
+/// Returns the message that no array fits the selection. @param names  names of the existing arrays
 std::string no_such_array(FieldWish const& wish, std::vector<std::string> const& names);
 
 }  // namespace gladstone
