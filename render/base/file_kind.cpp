@@ -33,7 +33,7 @@ std::string kind_of_hdf5(std::string const& path) {
     std::string const filetype = Hdf5Reader(path).attribute("filetype");
     return filetype.empty() ? "HDF5" : filetype;
   } catch (DataError const&) {
-    return "";  // damaged: nothing that could be lost
+    return "";  // damaged: no data that could be lost
   }
 }
 
@@ -42,7 +42,7 @@ bool is_name(char c) {
          c == '.' || c == '"';
 }
 
-/// Whether the first line that is no comment is a table's head or "key = ...".
+/// Returns true if the first line that is neither empty nor a comment is a table header or "key = ...".
 bool reads_as_toml(std::string_view text) {
   while (!text.empty()) {
     std::size_t const end = std::min(text.find('\n'), text.size());

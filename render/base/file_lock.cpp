@@ -17,10 +17,10 @@ struct flock range_of(std::size_t first, std::size_t count, short type) {
   return range;
 }
 
-/// @return 0 or errno
+/// Calls fcntl() for a lock, repeating interrupted calls. @return 0 or errno
 int control(int file, int command, struct flock& range) {
   while (::fcntl(file, command, &range) != 0) {
-    if (errno == EACCES) return EAGAIN;  // POSIX allows either
+    if (errno == EACCES) return EAGAIN;  // POSIX allows EACCES or EAGAIN for a held lock
     if (errno != EINTR) return errno;
   }
   return 0;

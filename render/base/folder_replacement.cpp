@@ -28,7 +28,7 @@ constexpr char const* replacing = ".replacing";
 constexpr char const* old_files = "old";
 constexpr char const* retired_files = "retired";
 
-/// A file that could not be moved.
+/// Exception: a file could not be moved.
 struct MoveError {
   fs::path path;
   int error;
@@ -39,16 +39,16 @@ bool is_there(fs::path const& path) {
   return ::lstat(path.c_str(), &found) == 0;
 }
 
-/// Renames, making the folders above the new place. @return false where there is nothing to move
+/// Renames a file, creating the parent directories of the new path. @return false if the file does not exist
 bool move_file(fs::path const& from, fs::path const& to) {
   if (!is_there(from)) return false;
-  std::error_code ignored;  // where no folder can be made, the rename says why
+  std::error_code ignored;  // if it fails, rename() reports the error
   fs::create_directories(to.parent_path(), ignored);
   if (::rename(from.c_str(), to.c_str()) == 0) return true;
   throw MoveError{from, errno};
 }
 
-/// Files below a folder, relative to it, the marker at the end.
+/// Returns the files below a directory, as relative paths, the marker last.
 std::vector<fs::path> files_below(fs::path const& folder, std::string const& marker) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -61,8 +61,8 @@ std::vector<fs::path> files_below(fs::path const& folder, std::string const& mar
   return files;
 }
 
-/// The files of a folder that a replacement takes away, the marker first: those that are written anew, and what is
-/// derived in the folders that they stand in.
+/// Returns the files of a directory that a replacement removes, the marker first: the files that are written again, and
+/// the derived files in the same subdirectories.
 std::vector<fs::path> files_to_retire(fs::path const& staged, fs::path const& folder, FolderContent const& content) {
   std::vector<fs::path> files = files_below(staged, content.marker);
   std::set<fs::path> const anew(files.begin(), files.end());
@@ -94,7 +94,7 @@ void install(fs::path const& folder, FolderContent const& content) {
   for (fs::path const& file : files_below(staged, content.marker)) move_file(staged / file, folder / file);
 }
 
-/// Undoes retire() and install() as far as they came. @param files that were staged
+/// Undoes retire() and install() as far as they were completed. @param files  new files, as relative paths
 void go_back(fs::path const& folder, FolderContent const& content, std::vector<fs::path> const& files) {
   fs::path const work = folder / replacing;
   try {
@@ -113,8 +113,8 @@ void go_back(fs::path const& folder, FolderContent const& content, std::vector<f
   }
 }
 
-/// A folder where a file belongs, or the other way round, and an input of the command are found before anything is
-/// moved.
+/// Throws OutputError before anything is moved if a directory exists where a file is to be written, or a file where a
+/// directory is needed, or if a file to be replaced is an input of the command.
 void refuse_what_is_in_the_way(fs::path const& staged, fs::path const& folder, std::string const& asked,
                                FolderContent const& content) {
   for (fs::path const& file : files_to_retire(staged, folder, content)) {
@@ -155,7 +155,7 @@ bool is_complete(std::string const& folder, FolderContent const& content) {
   do {
     finish_replacement(folder, content);
     if (is_there(marker)) return true;
-  } while (is_there(work));  // begun between the two looks
+  } while (is_there(work));  // another replacement began after finish_replacement()
   return is_there(marker);
 }
 
@@ -171,7 +171,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
     throw OutputError(asked, what + " (" + std::strerror(error) + "); the old files are in their places");
   };
   if (::mkdir((fs::path(name) / old_files).c_str(), 0777) != 0) fail("cannot be written", errno);
-  // A folder that is not empty is never renamed over: whose .replacing is there goes first.
+  // rename() does not replace a directory that is not empty: an existing .replacing is completed first.
   while (int const error = partial.move_to(work.string())) {
     if (error != ENOTEMPTY && error != EEXIST) fail("its files cannot be replaced", error);
     finish_replacement(folder, content);
@@ -193,7 +193,7 @@ void replace_files(Partial& partial, std::string const& folder, std::string cons
     partial.move_to(name);
     fail(stuck.path.filename().string() + " cannot be replaced", stuck.error);
   } catch (...) {
-    partial.keep();  // the next one completes it
+    partial.keep();  // the next writer completes the replacement
     throw;
   }
   partial.move_to(name);
@@ -220,7 +220,7 @@ void finish_replacement(std::string const& folder, FolderContent const& content)
       flush_to_disk(folder);
       return;
     }
-    if (::rmdir(work.c_str()) == 0) return;  // a disk that lost what it held
+    if (::rmdir(work.c_str()) == 0) return;  // empty: its content was lost in a crash of the system
     throw_if_interrupted();
     if (std::chrono::steady_clock::now() > end) {
       throw OutputError(folder, "is being replaced by " + writer_of(work.string()) +

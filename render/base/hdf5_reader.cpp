@@ -19,7 +19,7 @@ namespace gladstone {
 using namespace hdf5;
 namespace {
 
-/// "2000 x 1000 x 1000"
+/// Formats a shape: "2000 x 1000 x 1000".
 std::string sizes_text(std::vector<std::size_t> const& shape) {
   std::string text;
   for (std::size_t const size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
@@ -54,7 +54,8 @@ std::vector<std::string> all_datasets(hid_t file) {
   return names;
 }
 
-/// Every link of a group and of those below it; links into other groups are not followed.
+/// H5Lvisit callback that collects the names of all links below a group: hard links in list 0, soft and external ones
+/// in list 1. Linked groups are not entered.
 herr_t collect_link(hid_t, char const* name, H5L_info_t const* info, void* names) {
   bool const direct = info->type == H5L_TYPE_HARD;
   auto& lists = *static_cast<std::array<std::vector<std::string>, 2>*>(names);
@@ -62,7 +63,8 @@ herr_t collect_link(hid_t, char const* name, H5L_info_t const* info, void* names
   return 0;
 }
 
-/// The names of HDF5's registered filters (portal.hdfgroup.org, "Registered Filter Plugins") that are met most.
+/// Returns the name of a compression filter, from the most common registered filters of HDF5 (portal.hdfgroup.org,
+/// "Registered Filter Plugins") or else from the file.
 std::string filter_name(H5Z_filter_t filter, std::string const& written) {
   struct Known {
     int filter;
@@ -79,7 +81,7 @@ std::string filter_name(H5Z_filter_t filter, std::string const& written) {
   return name.empty() ? "number " + std::to_string(filter) : name + " (number " + std::to_string(filter) + ')';
 }
 
-/// Reports why a dataset could not be read: filters that are not installed, else damage.
+/// Throws DataError with the reason why a dataset cannot be read: filters that are not installed, else damage.
 [[noreturn]] void throw_unreadable(hid_t dataset, std::string const& path, std::string const& name) {
   std::string missing;
   Id const created(H5Dget_create_plist(dataset), H5Pclose);
@@ -104,16 +106,16 @@ std::string filter_name(H5Z_filter_t filter, std::string const& written) {
 
 struct Hdf5Reader::Handle {
   Id file;
-  std::uint64_t bytes = 0;  ///< size of the file
-  std::string rows_name;    ///< the dataset that read_rows last read from, kept open for its cache
+  std::uint64_t bytes = 0;  ///< size of the file [bytes]
+  std::string rows_name;    ///< dataset of the last read_rows(), kept open for its chunk cache
   Id rows{H5I_INVALID_HID, H5Dclose};
 
-  /// Opens a dataset of numbers. @throws DataError
+  /// Opens a numeric dataset. @throws DataError
   Id open(std::string const& path, std::string const& dataset, bool integers_only = false) const;
-  /// Opens a dataset to be read row by row: with a cache for the chunks that share its rows, so that each chunk is
-  /// decompressed once, whatever the count of rows asked for (as long as they fit into 128 MiB).
+  /// Opens a dataset for reading by rows. Its cache holds all chunks that intersect a row, up to 128 MiB, so that each
+  /// chunk is decompressed once whatever the number of rows per call.
   hid_t open_rows(std::string const& path, std::string const& dataset);
-  /// Reads a box of the dataset that open_rows has opened; `out` has exactly its size. @throws DataError
+  /// Reads a box of the dataset opened by open_rows(); `out` has exactly its size. @throws DataError
   void read(std::string const& path, std::string const& dataset, std::vector<hsize_t> const& start,
             std::vector<hsize_t> const& size, std::span<double> out) const;
 };
@@ -128,11 +130,11 @@ std::vector<std::size_t> shape_of(hid_t dataset) {
   return {sizes.begin(), sizes.end()};
 }
 
-/// What is believed without proof [bytes]: parts of a dataset that nobody wrote are not stored.
+/// Size up to which a dataset is read without checking the file's size [bytes], since unwritten parts are not stored.
 constexpr double always_believed = 64e6;
 
-/// The largest number of bytes that the filters of a dataset pack into one byte of its file: 1032 in deflate, which
-/// szip does not reach; infinite for filters that pack constant data into nothing.
+/// Returns the largest possible compression ratio of a dataset's filters: 1032 for deflate, which szip does not reach;
+/// infinite for filters that can reduce constant data to nothing.
 double largest_packing(hid_t created) {
   double packing = 1;
   for (int i = 0; i < H5Pget_nfilters(created); ++i) {
@@ -147,8 +149,8 @@ double largest_packing(hid_t created) {
   return packing;
 }
 
-/// Refuses what the header of a dataset says where the file is too short to hold it.
-/// @param file_bytes size of the file
+/// Throws DataError if the file is too short to contain the dataset that its header declares.
+/// @param file_bytes  size of the file
 void require_stored(hid_t dataset, double file_bytes, std::string const& path, std::string const& name) {
   Id const type(H5Dget_type(dataset), H5Tclose), created(H5Dget_create_plist(dataset), H5Pclose);
   auto const shape = shape_of(dataset);
@@ -172,7 +174,7 @@ void require_stored(hid_t dataset, double file_bytes, std::string const& path, s
 template <class Value>
 std::vector<Value> read_whole(hid_t dataset, hid_t type, std::string const& path, std::string const& name) {
   auto const shape = shape_of(dataset);
-  // what the header says may be far from what the file holds
+  // A damaged header can declare any size.
   std::string const what = "dataset \"" + name + "\" of " + sizes_text(shape) + " values";
   require_memory(path, what, std::accumulate(shape.begin(), shape.end(), 1.0 * sizeof(Value), std::multiplies<>()));
   std::vector<Value> values(product(shape));
@@ -253,7 +255,7 @@ Hdf5Reader::Hdf5Reader(std::string const& path) : path_(path) {
     throw DataError(path, "is not an HDF5 file; check the name, or make or fetch it again");
   Id const access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
-  H5Pset_file_locking(access, false, true);  // we only read, perhaps from a file system without locks
+  H5Pset_file_locking(access, false, true);  // read-only access needs no lock, and some file systems have none
 #endif
   Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose);
   if (!file.valid()) throw DataError(path, "cannot be opened as HDF5 (it is damaged or cut short); copy it again");
@@ -362,7 +364,7 @@ int Hdf5Reader::significant_bits(std::string const& dataset) const {
   if (H5Tget_class(type) == H5T_FLOAT) {
     std::size_t sign = 0, exponent = 0, exponent_size = 0, at = 0;
     H5Tget_fields(type, &sign, &exponent, &exponent_size, &at, &mantissa);
-    ++mantissa;  // the leading one is not stored
+    ++mantissa;  // the leading 1 of the mantissa is implicit
   }
   return static_cast<int>(mantissa);
 }
@@ -399,7 +401,8 @@ void Hdf5Reader::read_box(std::string const& dataset, std::vector<std::size_t> c
 
 namespace {
 
-/// @param most bytes that a text can have
+/// Returns a scalar attribute as text; empty if it does not exist or is neither text nor a number.
+/// @param most  upper limit on the length of a text [bytes], since a damaged header can declare any length
 std::string attribute_text(hid_t object, std::string const& name, std::uint64_t most) {
   if (H5Aexists(object, name.c_str()) <= 0) return {};
   Id const opened(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
@@ -417,7 +420,7 @@ std::string attribute_text(hid_t object, std::string const& name, std::uint64_t 
     return value;
   }
   if (kind == H5T_STRING) {
-    if (H5Tget_size(type) > most) return {};  // damaged
+    if (H5Tget_size(type) > most) return {};  // damaged file
     std::string value(H5Tget_size(type), '\0');
     if (H5Aread(opened, type, value.data()) < 0) return {};
     value = value.substr(0, value.find('\0'));

@@ -15,9 +15,9 @@
 namespace gladstone {
 using namespace hdf5;
 
-/// A file that grows in memory goes to disk in close(), by calls whose errors we see: HDF5 itself cannot get out of a
-/// full disk (it tries again to flush whenever it is asked to close, and at exit). One that grows on disk looks for
-/// room before it writes.
+/// State of a file being written. An in-memory file is written to disk by close(), with calls whose errors are checked:
+/// HDF5 itself does not recover from a full disk (it tries to flush again on every attempt to close, and at exit). For
+/// an on-disk file the free space is checked before each write.
 struct Hdf5Writer::Handle {
   OutputFile output;
   Id file;
@@ -31,7 +31,8 @@ void check(bool good, std::string const& path, std::string const& what) {
   if (!good) throw OutputError(path, what + " cannot be written to the file (out of memory?)");
 }
 
-/// Deflate from this size on; below, chunks cost more than they save.
+/// Size above which a dataset is compressed [bytes]; for smaller ones the chunk tables cost more than compression
+/// saves.
 constexpr std::size_t compressed_from_bytes = 64 * 1024;
 constexpr std::size_t chunk_bytes = 1024 * 1024;
 
@@ -61,13 +62,13 @@ void write_attribute(hid_t object, std::string const& path, std::string const& n
 
 void write_attribute(hid_t object, std::string const& path, std::string const& name, std::string const& value) {
   Id const type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);  // kept outside the object's header, where 64 KiB would be the limit
+  H5Tset_size(type, H5T_VARIABLE);  // stored outside the object header, which is limited to 64 KiB
   H5Tset_cset(type, H5T_CSET_UTF8);
   char const* const text = value.c_str();
   write_attribute(object, path, name, type, &text);
 }
 
-/// Makes the groups above a dataset, without the time of day, so that equal input gives equal files.
+/// Creates the groups above a dataset, without modification times, so that equal input gives equal files.
 void make_groups(hid_t file, std::string const& path, std::string const& dataset) {
   auto parts = steps(dataset);
   parts.pop_back();
@@ -105,7 +106,7 @@ hid_t hdf5_type() {
   return std::is_same_v<Value, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_UINT16;
 }
 
-/// What HDF5 may need beside the data, its tables included.
+/// Free space required in addition to the data, for HDF5's tables [bytes].
 constexpr std::uintmax_t spare_bytes = 8 * 1024 * 1024;
 
 void require_space(std::string const& path, std::string const& temporary, std::size_t bytes) {
@@ -116,7 +117,7 @@ void require_space(std::string const& path, std::string const& temporary, std::s
                               " MiB are left on the disk); make room, or write to another disk");
 }
 
-/// The time now, ISO 8601, UTC.
+/// Returns the current time in UTC as ISO 8601 text.
 std::string date_and_time() {
   std::time_t const now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm parts{};
@@ -139,7 +140,7 @@ Hdf5Writer::Hdf5Writer(std::string const& path, FileOrigin const& origin, Hdf5Gr
   } else {
     require_space(path, temporary, 0);
 #if H5_VERSION_GE(1, 10, 7)
-    H5Pset_file_locking(access, false, true);  // a partial file has a lock of its own
+    H5Pset_file_locking(access, false, true);  // a Partial has its own lock
 #endif
   }
   Id const properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);

@@ -16,11 +16,11 @@ namespace {
 
 constexpr char const* library_name = "libgladstone_image_codecs.so";
 
-/// Address space that the library and the 250 others that it brings take on Debian 12, with a reserve [bytes]: 330 MB
-/// are mapped, and from 365 MB on all of them start.
+/// Address space required to load the library and its 250 dependencies on Debian 12 [bytes]. 330 MB are mapped; all of
+/// them start from 365 MB on.
 constexpr std::size_t library_space = std::size_t{400} << 20;
 
-/// Stacks of the threads that they start, one per core [bytes].
+/// Returns the address space for the threads that these libraries start, one per core [bytes].
 std::size_t thread_space() {
   pthread_attr_t attributes;
   std::size_t stack = std::size_t{8} << 20;
@@ -31,8 +31,8 @@ std::size_t thread_space() {
   return std::thread::hardware_concurrency() * (stack + (std::size_t{1} << 20));
 }
 
-/// Refuses to load where the limit on memory (ulimit -v) is near: libraries that meet it while they start abort, or
-/// wait for ever.
+/// Throws MemoryError if the limit on address space (ulimit -v) is too low: libraries that reach it during their
+/// initialisation abort or hang.
 void require_address_space(std::string const& path) {
   std::size_t const needed = library_space + thread_space();
   void* const probe = ::mmap(nullptr, needed, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

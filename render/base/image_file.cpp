@@ -26,18 +26,18 @@
 namespace gladstone {
 namespace {
 
-/// First line of our ImageDescription, a TOML comment, so that a setup below it stays a setup:
-/// "# gladstone image, bit_depth = 12, pixel_pitch_m = 1e-05"
+/// First line of the ImageDescription written by gladstone, "# gladstone image, bit_depth = 12, pixel_pitch_m = 1e-05".
+/// It is a TOML comment, so that a setup below it remains valid TOML.
 constexpr std::string_view signature = "# gladstone image, bit_depth = ";
 constexpr std::string_view pitch_label = ", pixel_pitch_m = ";
 
 std::string described(ImageMetadata const& metadata) {
   return std::string(signature) + std::to_string(metadata.bit_depth) + std::string(pitch_label) +
          fmt::format("{:.15g}", metadata.pixel_pitch_m) + '\n' +
-         metadata.description;  // of 10 um: 1e-05, no 9.99..e-06
+         metadata.description;  // 15 digits, so that 10 um is written as 1e-05, not as 9.99..e-06
 }
 
-/// The metadata from a description of ours; false for somebody else's.
+/// Parses the metadata of an ImageDescription; false if it was not written by gladstone.
 bool parse_description(std::string const& text, ImageMetadata& metadata) {
   if (!text.starts_with(signature)) return false;
   std::size_t const line_end = std::min(text.find('\n'), text.size());
@@ -57,27 +57,27 @@ ImageMetadata metadata_of(PageHeader const& header) {
   if (parse_description(header.description, metadata)) return metadata;
   metadata.description = header.description;
   metadata.bit_depth = header.bits;
-  // A resolution without a unit, or in inches as printers' settings, says nothing about a sensor.
+  // A resolution without a unit, or in inches (a printer setting), does not describe the sensor.
   bool const in_centimetres = header.resolution_unit == "cm";
   if (in_centimetres && header.resolution > 0.0f)
     metadata.pixel_pitch_m = 0.01 / static_cast<double>(header.resolution);
   return metadata;
 }
 
-/// More values than any compression packs into a byte of a file: 1032 in deflate (a run of 258 bytes takes two bits),
-/// 1365 in LZW (twelve bits for 4 kB at the most), more only in what pictures are not written in.
+/// Upper limit on the compression ratio of an image: above 1032 for deflate (2 bits for a run of 258 bytes) and 1365
+/// for LZW (12 bits for at most 4 kB). Higher ratios only occur in formats that are not used for images.
 constexpr double most_packed = 2048;
-constexpr double always_believed = 16e6;  // bytes: nothing is lost by asking for them
+constexpr double always_believed = 16e6;  // decoded size up to which a compressed image's header is trusted [bytes]
 constexpr int most_pages_counted = 1000;
 
-/// A header is believed where the file is long enough for its pixels, and memory for them.
+/// Throws unless the file is long enough for the pixels that its header declares, and memory is available for them.
 void check_size(PageHeader const& spec, std::string const& path, std::uint64_t file_bytes) {
   double const pixels = static_cast<double>(spec.width) * spec.height * spec.depth;
   double const samples = pixels * spec.channels;
   std::string const sizes = fmt::format("{} x {} px of {} {}", spec.width, spec.height, spec.channels,
                                         spec.channels == 1 ? "value" : "values");
   double const stored = samples * std::max(spec.bits, 1) / 8;
-  // without compression, one byte of a palette's indices gives three of colours
+  // uncompressed palette images: one index byte is expanded to three colour values
   bool const packed = spec.compression != "none";
   double const most = static_cast<double>(file_bytes) * (packed ? most_packed : 4.0);
   if (stored > std::max(most, packed ? always_believed : 0.0) || spec.width <= 0 || spec.height <= 0) {
@@ -86,14 +86,15 @@ void check_size(PageHeader const& spec, std::string const& path, std::uint64_t f
                                       sizes, stored / 1e6, static_cast<double>(file_bytes) / 1e6));
   }
   if (spec.depth > 1) throw DataError(path, fmt::format("is a volume of {} slices; give one picture", spec.depth));
-  // the library's tile or strip, the samples as stored and as numbers, and the picture
+  // Memory: tile or strip of the codec library, samples as stored, samples as double, and the image.
   double const tile = spec.tile_px[0] * spec.tile_px[1] * std::max(spec.tile_px[2], 1.0);
   double const tile_bytes = tile * spec.channels * static_cast<double>(spec.sample_bytes);
   double const sample_bytes = static_cast<double>(spec.sample_bytes) + sizeof(double);
   require_memory(path, "a picture of " + sizes, tile_bytes + samples * sample_bytes + pixels * sizeof(double));
 }
 
-/// All samples as stored. OpenImageIO widens 10, 12 and other odd depths to 8 or 16 bits by scaling; `shift` undoes it.
+/// Reads all samples with their stored values. OpenImageIO scales 10, 12 and other bit depths up to 8 or 16 bits;
+/// `shift` [bits] undoes this.
 template <class Stored>
 std::vector<double> read_samples(PageReader& input, std::string const& path, int shift) {
   PageHeader const spec = input.header();
@@ -144,7 +145,7 @@ constexpr std::size_t ink_count = 4;
 /// Weights of red, green and blue in the luminance (Rec. ITU-R BT.709, section 3.2).
 constexpr std::array<double, 3> luminance_weights{0.2126, 0.7152, 0.0722};
 
-/// Refuses channels that have no meaning as grey levels or colours.
+/// Throws DataError if the channels are neither grey levels nor colours.
 void check_channels(PageHeader const& spec, std::string const& path) {
   bool const grey = spec.colours == Colours::grey || spec.colours == Colours::inverted;
   if (grey && spec.channels > 2) {
@@ -159,16 +160,16 @@ void check_channels(PageHeader const& spec, std::string const& path) {
   }
 }
 
-/// The largest value of a sample as stored.
+/// Returns the largest possible stored value of a sample; 1 for floating-point samples.
 double full_scale(PageHeader const& spec) {
   bool const floating = spec.type == SampleType::float32 || spec.type == SampleType::float64;
   return floating ? 1.0 : std::pow(2.0, spec.bits) - 1;
 }
 
-/// The grey level of a pixel.
+/// Computes the grey level of a pixel.
 double grey_level(PageHeader const& spec, double const* sample) {
   double level = 0;
-  if (spec.colours == Colours::inks) {  // what an ink leaves of the light, and black of that
+  if (spec.colours == Colours::inks) {  // transmittance of the complementary ink times that of black
     double const full = full_scale(spec), black = sample[ink_count - 1];
     for (std::size_t i = 0; i < luminance_weights.size(); ++i) {
       level += luminance_weights[i] * (full - sample[i]) * (full - black) / full;
@@ -180,7 +181,8 @@ double grey_level(PageHeader const& spec, double const* sample) {
   return level;
 }
 
-/// White is zero, and the library has not inverted the samples: it does so where it reads them as single bytes.
+/// Returns true if the samples must be inverted: zero is white, and OpenImageIO has not inverted them, as it does with
+/// 8-bit samples.
 bool is_inverted(PageHeader const& spec) {
   return spec.colours == Colours::inverted && (spec.type == SampleType::uint16 || spec.type == SampleType::uint32);
 }
@@ -196,8 +198,9 @@ Image<double> grey_image(PageHeader const& spec, std::vector<double> const& samp
   return image;
 }
 
-/// Turns a picture upright. By TIFF 6.0, section 8, the stored row 0 is the visual top (1, 2), bottom (3, 4), left
-/// (5, 8) or right side (6, 7), the stored column 0 the left (1, 4), right (2, 3), top (5, 6) or bottom side (7, 8).
+/// Corrects the orientation of an image. TIFF 6.0, section 8: stored row 0 is the visual top (1, 2), bottom (3, 4),
+/// left (5, 8) or right side (6, 7); stored column 0 is the left (1, 4), right (2, 3), top (5, 6) or bottom side (7,
+/// 8).
 Image<double> turn_upright(Image<double> stored, int orientation) {
   if (orientation <= 1 || orientation > 8) return stored;
   bool const transposed = orientation >= 5;
@@ -215,7 +218,7 @@ Image<double> turn_upright(Image<double> stored, int orientation) {
   return upright;
 }
 
-/// A picture file, open at its first page.
+/// Image file opened for reading.
 class Picture {
  public:
   explicit Picture(std::string const& path)
@@ -229,7 +232,7 @@ class Picture {
     count_pages();
   }
 
-  /// Without the smaller ones that are previews of the first.
+  /// Number of pages, without the previews of the first one, which are smaller in both directions.
   std::size_t pages() const { return pages_.size(); }
 
   Image<double> read(std::size_t page, ImageMetadata* metadata) {
@@ -252,7 +255,7 @@ class Picture {
   }
 
  private:
-  /// What the header of a TIFF that cannot be opened says of its samples.
+  /// Describes the samples of a TIFF that cannot be opened, for the message.
   std::string unreadable_samples() const {
     if (directories_.empty()) return "";
     constexpr std::array<char const*, 7> formats{"unknown numbers",
@@ -268,7 +271,7 @@ class Picture {
                        directories_[0].value(TiffTag::compression, 1));
   }
 
-  /// TIFF's default is one bit a sample, where OpenImageIO 2.4 takes eight.
+  /// Returns true if BitsPerSample is missing: the default of TIFF is 1, but OpenImageIO 2.4 assumes 8.
   static bool is_bilevel_by_default(TiffDirectory const& page) {
     return page.has(TiffTag::width) && !page.has(TiffTag::bits_per_sample);
   }
@@ -293,12 +296,12 @@ class Picture {
 
   std::string path_;
   InputFile file_;
-  std::vector<TiffDirectory> directories_;  ///< of a TIFF, one a page
+  std::vector<TiffDirectory> directories_;  ///< directories of a TIFF, one per page
   std::unique_ptr<PageReader> input_;
   std::vector<int> pages_{0};
 };
 
-/// What goes wrong for want of memory names the file.
+/// Calls `read`, and converts a failed allocation into a MemoryError that names the file.
 template <class Read>
 auto named(std::string const& path, Read const& read) {
   try {
@@ -350,7 +353,7 @@ void write_tiff(std::string const& path, Image<std::uint16_t> const& image, Imag
   GreyPage page{image.columns(), image.rows(), image.data(), described(metadata), "gladstone " + std::string(version)};
   if (metadata.pixel_pitch_m > 0.0) page.pixels_per_centimetre = 0.01 / metadata.pixel_pitch_m;
 
-  // Into memory first: libtiff does not say when a disk is full.
+  // Encode in memory first, since libtiff does not report a full disk.
   std::vector<unsigned char> bytes;
   if (std::string const why = image_codecs().encode_tiff(path, page, bytes); !why.empty()) fail(why);
 

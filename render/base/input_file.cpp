@@ -37,7 +37,7 @@ InputFile::InputFile(std::string const& path, std::string const& wanted) : path_
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) not_opened(path, errno);
   refuse_what_is_no_file(path, status.st_mode, wanted);
-  // what has taken its place since then must not block either
+  // O_NONBLOCK: a pipe that has replaced the file since stat() must not block.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor_ < 0) not_opened(path, errno);
   try {

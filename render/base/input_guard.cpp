@@ -17,7 +17,7 @@ using FileId = std::pair<dev_t, ino_t>;
 struct Record {
   std::mutex mutex;
   int guards = 0;
-  std::map<FileId, std::string> inputs;  ///< with the name that each was opened by
+  std::map<FileId, std::string> inputs;  ///< name by which each input was opened
   std::set<FileId> outputs;
 };
 
@@ -59,7 +59,7 @@ void record_output(int descriptor) {
   if (::fstat(descriptor, &file) != 0) return;
   std::lock_guard const lock(record().mutex);
   if (record().guards == 0) return;
-  record().inputs.erase(id_of(file));  // a number of a removed file, used again
+  record().inputs.erase(id_of(file));  // the inode number of a removed input may be reused
   record().outputs.insert(id_of(file));
 }
 

@@ -13,13 +13,13 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-std::atomic<bool> pressed{false};  // Ctrl-C
+std::atomic<bool> pressed{false};  // true after the first Ctrl-C
 
 constexpr int exit_code = 130;
 
 extern "C" void remember_interrupt(int signal) {
-  // A worker gets Ctrl-C from the terminal and SIGTERM from its parent, and others send SIGTERM twice: only the user
-  // who presses again wants no more waiting.
+  // Only a second Ctrl-C exits immediately: a worker may get Ctrl-C from the terminal and SIGTERM from its parent, and
+  // SIGTERM may be sent twice.
   if (signal == SIGINT && pressed.exchange(true, std::memory_order_relaxed)) ::_exit(exit_code);
   interrupted.store(true, std::memory_order_relaxed);
 }
@@ -29,9 +29,9 @@ extern "C" void remember_interrupt(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, remember_interrupt);
   std::signal(SIGTERM, remember_interrupt);
-  // nohup has it ignored, and so it stays
+  // remain ignoring SIGHUP under nohup
   if (std::signal(SIGHUP, remember_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file over the user's limit is a failed write, reported like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the file size limit then fails with EFBIG, like a full disk
 }
 
 void throw_if_interrupted() {

@@ -6,7 +6,7 @@
 namespace gladstone {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows of the distance table for the prefixes of a that end two before, one before and at the current character.
+  // Rows of the distance table for the prefixes of `a` of length i - 2, i - 1 and i.
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), current(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -25,14 +25,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 namespace {
 
-/// By how many edits a candidate is off; nothing where that is too many.
+/// Returns the edit distance of a candidate; nullopt if it exceeds the limit.
 std::optional<std::size_t> edits_to(std::string_view word, std::string const& candidate, std::size_t share) {
-  // a name without its unit means the one with it
+  // A name without its unit suffix has distance 1 from the complete name.
   bool const without_unit =
       !word.empty() && candidate.size() > word.size() && candidate.starts_with(word) && candidate[word.size()] == '_';
   if (without_unit) return 1;
   std::size_t const allowed = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / share);
-  // no fewer edits than the lengths differ by: a word as long as a book is compared with nothing
+  // The difference in length is a lower bound of the distance; it avoids the comparison of very long words.
   std::size_t const least = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
   if (least > allowed) return std::nullopt;
   std::size_t const distance = edit_distance(word, candidate);

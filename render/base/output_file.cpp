@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A single file that is mounted (a container's volume) can be written into, but nothing can take its place.
+/// Returns true if a single file is mounted at the path (a container volume): it can be written to, but not replaced.
 bool is_mount(std::string const& path) {
   struct statx found {};
   return ::statx(AT_FDCWD, path.c_str(), 0, 0, &found) == 0 && (found.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) &&

@@ -17,18 +17,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char const* inside = ".";  // stem of partial folders that stand in the folder itself
+constexpr char const* inside = ".";  // stem of partial directories inside the output directory itself
 
-/// Renames onto nothing. @return 0; EEXIST or ENOTEMPTY where something is there; another errno
+/// Renames without replacing an existing path. @return 0; EEXIST or ENOTEMPTY if the new path exists; another errno
 int rename_new(std::string const& from, std::string const& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  struct stat there {};  // a file system that cannot exclude it: NFS
+  struct stat there {};  // file systems without RENAME_NOREPLACE, such as NFS
   if (::lstat(to.c_str(), &there) == 0) return EEXIST;
   return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-/// Whether a folder has nothing of anybody's: a disk's own folder, and what writers have just begun, do not count.
+/// Returns true if a directory is empty except for lost+found and partial directories of running writers.
 bool is_vacant(std::string const& folder) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -103,7 +103,7 @@ void OutputFolder::commit() {
       return;
     }
     if (error != EEXIST && error != ENOTEMPTY) place_.fail("cannot be put in its place", error);
-    // somebody else has made the folder meanwhile
+    // another process has created the directory meanwhile
     if (::stat(place_.path().c_str(), &there) != 0 || !S_ISDIR(there.st_mode)) {
       throw OutputError(place_.asked(), "is a file; name a folder");
     }

@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Follows links, also where the last one leads to nothing yet.
-/// @param asked for messages
+/// Resolves all symbolic links of a path, including a last one whose target does not exist yet.
+/// @param asked  path for messages
 fs::path resolved(fs::path place, std::string const& asked) {
   std::error_code error;
   for (int links = 0; links < 40; ++links) {
     fs::path const folder = fs::weakly_canonical(place.parent_path(), error);
     if (!error && place.has_filename()) place = folder / place.filename();
-    // names of open files, whatever is behind them: who opened them does not see what takes their place
+    // A process that has the file open would not see its replacement.
     if (place.string().starts_with("/proc/") && place.string().find("/fd/") != std::string::npos) {
       throw OutputError(asked, "is a file or pipe that a process has open; name a file of its own");
     }

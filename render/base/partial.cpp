@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view label = "partial-";
 constexpr std::string_view lock_label = "lock-";
-constexpr char const* without_lock = "unlocked";  // as boot: nobody can tell whether the writer lives
+constexpr char const* without_lock = "unlocked";  // boot id of writers without a lock: their end cannot be detected
 
 std::string hexadecimal(std::uint64_t number) {
   char text[17];
@@ -47,7 +47,7 @@ std::string this_host() {
   return host.substr(0, 64);
 }
 
-/// Tells starts of systems apart, the same in every container of one; empty where the system does not say.
+/// Returns a hash of the system's boot id, which is the same in all containers of a host; empty if the system has none.
 std::string const& this_boot() {
   static std::string const boot = [] {
     std::string id;
@@ -57,7 +57,7 @@ std::string const& this_boot() {
   return boot;
 }
 
-/// When this system was started [s since 1970].
+/// Returns the time of the system start [s since 1970].
 time_t boot_time() {
   timespec now{}, since_boot{};
   ::clock_gettime(CLOCK_REALTIME, &now);
@@ -65,7 +65,7 @@ time_t boot_time() {
   return now.tv_sec - since_boot.tv_sec;
 }
 
-/// "HOST-BOOT-DEVICE-PROCESS-RANDOM"
+/// Identification of a writer, "HOST-BOOT-DEVICE-PROCESS-RANDOM".
 struct Writer {
   std::string host, boot, device, process;
 
@@ -83,8 +83,9 @@ struct Writer {
     return Writer{parts[0], parts[1], parts[2], parts[3]};
   }
 
-  /// Whether a lock that nobody holds tells that the writer is dead.
-  /// @param touched when its partial was changed last
+  /// Returns true if a released lock proves that the writer has ended.
+  /// @param disk     device number of the file system
+  /// @param touched  time of the last change of its partial output
   bool can_be_judged(dev_t disk, time_t touched) const {
     std::string const& now = this_boot();
     if (now.empty() || boot == without_lock) return false;
@@ -101,7 +102,7 @@ std::string new_writer(dev_t disk, bool locked) {
          std::to_string(::getpid()) + '-' + hexadecimal(number);
 }
 
-/// Whether a path still leads to this open file.
+/// Returns true if a path still refers to this open file.
 bool leads_to(std::string const& path, int file) {
   struct stat there {};
   struct stat mine {};
@@ -109,7 +110,7 @@ bool leads_to(std::string const& path, int file) {
          there.st_ino == mine.st_ino;
 }
 
-/// What follows the label in a partial's name, or in the name of the lock that a folder holds.
+/// Returns the writer part of a partial output's name, or of the name of the lock file in a directory.
 std::string writer_text(fs::path const& path) {
   std::error_code error;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
@@ -127,7 +128,7 @@ Partial::Partial(std::string const& parent, std::string const& stem, Kind kind) 
   struct stat disk {};
   if (::stat(parent.c_str(), &disk) != 0) throw std::system_error(errno, std::generic_category());
   bool locked = true;
-  // until nobody else has the name, nor takes what is not locked yet for a leftover
+  // Repeat until the name is unused and no other process has removed the output before it was locked.
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::string const writer = new_writer(disk.st_dev, locked);
     path_ = (fs::path(parent) / std::string(stem).append(label).append(writer)).string();
@@ -149,7 +150,7 @@ Partial::Partial(std::string const& parent, std::string const& stem, Kind kind) 
     int const error = locked ? lock_bytes(descriptor_, 0, 0) : 0;
     if (error == 0 && leads_to(lock, descriptor_)) return;
     ::close(std::exchange(descriptor_, -1));
-    if (error == EAGAIN || error == 0) continue;  // it has been taken for a leftover
+    if (error == EAGAIN || error == 0) continue;  // another process has taken it for a leftover
     locked = false;
     std::error_code ignored;
     fs::remove_all(path_, ignored);
@@ -209,7 +210,7 @@ std::string writer_of(std::string const& folder) {
 
 namespace {
 
-/// @param chosen tells by a name
+/// Removes the entries of a directory that `chosen` selects by their name and whose writers have ended.
 template <class Chosen>
 void remove_dead(std::string const& folder, Chosen const& chosen) {
   std::vector<fs::path> found;
@@ -235,10 +236,10 @@ void remove_leftovers(std::string const& folder) {
 }
 
 std::string stem_beside(std::string const& name) {
-  constexpr std::size_t longest = 120;  // of 255, of which a writer takes up to 130
+  constexpr std::size_t longest = 120;  // 255 bytes less up to 130 for the writer
   if (name.size() <= longest) return '.' + name + '.';
   std::size_t cut = longest - 17;
-  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;  // whole letters of UTF-8
+  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;  // not within a UTF-8 character
   return '.' + name.substr(0, cut) + '-' + content_hash(name) + '.';
 }
 

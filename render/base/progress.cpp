@@ -9,7 +9,7 @@ namespace {
 
 bool enabled = true;
 
-constexpr long long line_interval_ms = 30'000;  // of lines in a log
+constexpr long long line_interval_ms = 30'000;  // interval between lines if stderr is not a terminal
 
 bool on_terminal() { return isatty(STDERR_FILENO) == 1; }
 

@@ -3,7 +3,7 @@
 
 #include "render/base/setup_reading.h"
 
-/// The readers of a table's arrays.
+/// Array readers of SetupTable.
 namespace gladstone {
 using namespace setup_reading;
 namespace {
@@ -23,7 +23,8 @@ std::string array_text(std::vector<Value> const& values, Text const& text) {
   return '[' + list + ']';
 }
 
-/// The elements of an array with an allowed count and, each, nothing to object to; null, with problems, otherwise.
+/// Returns an array if its number of elements is allowed and `objection` returns an empty text for each of them; else
+/// adds a problem and returns null.
 template <class Objection>
 SetupNode const* read_array(SetupTable& table, SetupNode const* node, std::string const& key, std::string const& wanted,
                             std::size_t at_least, std::size_t at_most, Objection const& objection) {

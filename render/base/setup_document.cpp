@@ -13,7 +13,7 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t longest_assignment = 200;  // shown of a --set
+constexpr std::size_t longest_assignment = 200;  // characters of a --set shown in messages
 
 bool is_index(std::string const& step) { return step.size() > 2 && step.front() == '[' && step.back() == ']'; }
 
@@ -23,12 +23,12 @@ std::size_t index_of(std::string const& step) {
   return index;
 }
 
-/// "[lens]", or "the setup" for the root.
+/// Name of a table for messages: "[lens]", or "the setup" for the root.
 std::string table_name(std::vector<std::string> const& path) {
   return path.empty() ? "the setup" : '[' + dotted_path(path) + ']';
 }
 
-/// Line and column behind the file's name in "file:line:column"; --set comes after all lines.
+/// Sort key of a location "file:line:column"; --set locations come after all lines.
 std::tuple<int, int, int> sort_key(std::string const& where) {
   if (where.starts_with("--set")) return {2, 0, 0};
   auto const last = where.rfind(':');
@@ -41,7 +41,7 @@ std::tuple<int, int, int> sort_key(std::string const& where) {
   return placed ? std::tuple{0, line, column} : std::tuple{1, 0, 0};
 }
 
-/// What to do about a key that nobody read.
+/// Message about a key that was not read.
 std::string unread_message(SetupDocument::State const& state, std::vector<std::string> const& table,
                            SetupRecord const& record, std::string const& key, SetupNode const& node) {
   bool const is_table = node.kind == SetupNode::Kind::table;
@@ -64,7 +64,7 @@ std::string unread_message(SetupDocument::State const& state, std::vector<std::s
   return message + "; known are " + quoted_list(known);
 }
 
-/// A key of a setup that nobody read.
+/// Key of a setup that was not read.
 struct UnreadKey {
   std::shared_ptr<std::vector<std::string> const> table;
   SetupRecord const* record;
@@ -97,8 +97,8 @@ void collect_unread(SetupNode const& node, SetupRecord const& record, std::vecto
   }
 }
 
-/// Problems with the keys that nobody read, of which no more than are told are put into words.
-/// @return how many there are
+/// Adds problems for the keys that were not read, at most most_problems_told.
+/// @return number of such keys
 std::size_t add_unread(SetupDocument::State& state) {
   std::vector<std::string> path;
   std::vector<UnreadKey> unread;
@@ -254,7 +254,7 @@ void SetupDocument::override_key(std::string const& assignment) {
   }
   set_place(value, {0, 0, assignment});
 
-  // Walk to the table, making those that are absent.
+  // Find the table, creating missing ones.
   SetupNode* table = &state_->root;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     SetupNode* next = table->find(path[i]);
@@ -286,7 +286,7 @@ void SetupDocument::set(std::vector<std::string> const& path, SetupNode const& v
       next = &table->members.emplace_back(SetupMember{path[i], SetupNode{}}).value;
       next->place = value.place;
     }
-    // an array of one table is that table
+    // An array of one table is treated as that table.
     if (next->kind == SetupNode::Kind::array && next->elements.size() == 1) next = &next->elements.front();
     if (next->kind != SetupNode::Kind::table) {
       std::vector<std::string> const here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);

@@ -69,7 +69,7 @@ SetupNode* SetupNode::find(std::string const& key) { return const_cast<SetupNode
 
 namespace {
 
-/// What usually is behind a complaint of the parser; may be empty.
+/// Returns the remedy for the usual cause of a parser error; may be empty.
 std::string cure(std::string_view complaint) {
   auto const says = [&](char const* words) { return complaint.find(words) != std::string_view::npos; };
   if (says("parsing boolean") || says("determine value type")) return "; put texts in quotes";
@@ -79,7 +79,7 @@ std::string cure(std::string_view complaint) {
   return "";
 }
 
-/// Where a text in quotes ends, which begins at `at`: behind its last quote, or at the end of all.
+/// Returns the position after the closing quotes of the string that begins at `at`, or the end of the text.
 std::size_t end_of_quotes(std::string_view text, std::size_t at) {
   char const quote = text[at];
   std::string_view const three = quote == '"' ? "\"\"\"" : "'''";
@@ -88,7 +88,7 @@ std::size_t end_of_quotes(std::string_view text, std::size_t at) {
     if (quote == '"' && text[i] == '\\') {
       ++i;
     } else if (several_lines && text.substr(i).starts_with(three)) {
-      std::size_t end = i + 3;  // one or two quotes more belong to the text
+      std::size_t end = i + 3;  // up to two further quotes belong to the string (TOML 1.0)
       while (end < i + 5 && end < text.size() && text[end] == quote) ++end;
       return end;
     } else if (!several_lines && (text[i] == quote || text[i] == '\n')) {
@@ -98,10 +98,10 @@ std::size_t end_of_quotes(std::string_view text, std::size_t at) {
   return text.size();
 }
 
-/// The first place where a key has more parts, or brackets lie deeper in one another, than most_setup_depth. The
-/// library's parser and the trees made of its result go down one call for each.
+/// Returns the first location where a key has more parts, or brackets are nested deeper, than most_setup_depth. The
+/// TOML library and the code that processes its result recurse once per level.
 std::optional<SetupPlace> too_deep(std::string_view text) {
-  std::size_t dots = 0, brackets = 0;  // dots since the last character that separates keys and values
+  std::size_t dots = 0, brackets = 0;  // dots: since the last separator of keys and values
   std::size_t line = 1, line_start = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     char const c = text[i];

@@ -38,9 +38,9 @@ void add_dataset(Sha256& hash, Hdf5Reader const& file, std::string const& path, 
     hash.add(value.data(), value.size() * sizeof(double));
     return;
   }
-  constexpr std::size_t most = std::size_t{1} << 20;  // values at a time
+  constexpr std::size_t most = std::size_t{1} << 20;  // values per read
   std::size_t const row = count / shape[0], rows = std::max<std::size_t>(1, most / row);
-  // what the header says may be far from what the file holds
+  // A damaged header can declare any size.
   require_memory(path, "a row of dataset \"" + name + '"', 1.0 * sizeof(double) * static_cast<double>(row));
   std::vector<double> values;
   for (std::size_t first = 0; first < shape[0]; first += rows) {
@@ -143,7 +143,7 @@ void SourceFiles::check() const {
       if (hash_of(source.path, source.holds) == source.sha256) continue;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const& error) {  // gone, or half of another
+    } catch (DataError const& error) {  // removed, or partly overwritten
       what = "it cannot be read any more: " + error.message();
     }
     throw DataError(source.path, "has changed since it was read (" + what + "), and nothing was written; " + advice_);

@@ -15,7 +15,7 @@ std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) 
 
 std::string read_text_file(std::string const& path, std::string const& wanted, std::uint64_t most_bytes) {
   InputFile const file(path, wanted);
-  constexpr std::size_t piece = std::size_t{1} << 20;  // of what says no size: /proc
+  constexpr std::size_t piece = std::size_t{1} << 20;  // block size if the size is unknown (/proc)
   std::string text;
   try {
     while (true) {
@@ -50,7 +50,7 @@ std::optional<std::string_view> LineReader::next() {
       offset_ += size + (stop ? 1 : 0);
       ++number_;
       if (line.ends_with('\r')) line.remove_suffix(1);
-      if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // byte-order mark of UTF-8
+      if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // UTF-8 byte order mark
       return line;
     }
     if (ended_) return std::nullopt;

@@ -12,12 +12,12 @@
 namespace gladstone {
 namespace {
 
-constexpr std::uint64_t max_values = 1u << 20;  // of an entry that is read
-constexpr std::uint64_t max_entries = 4096;     // of a directory
+constexpr std::uint64_t max_values = 1u << 20;  // limit on the values of an entry
+constexpr std::uint64_t max_entries = 4096;     // limit on the entries of a directory
 constexpr int uncompressed = 1;
 constexpr std::size_t bits_in_byte = 8;
 
-/// Reads numbers of a file in its byte order; zeros beyond its end.
+/// Reads integers in the byte order of the file; 0 beyond its end.
 struct NumberReader {
   InputFile const& file;
   bool big_endian = false;
@@ -34,7 +34,7 @@ struct NumberReader {
   }
 };
 
-/// Sizes of the parts of a directory, which differ between TIFF and BigTIFF.
+/// Sizes of the parts of a directory in TIFF and BigTIFF [bytes].
 struct Layout {
   std::size_t count_bytes, entry_bytes, offset_bytes;
 };
@@ -48,7 +48,7 @@ bool is_read(std::uint16_t tag) {
   return std::find(read.begin(), read.end(), static_cast<TiffTag>(tag)) != read.end();
 }
 
-/// Bytes of an entry's integer type (TIFF 6.0, section 2); 0 for other types.
+/// Returns the size of an integer type of TIFF [bytes] (TIFF 6.0, section 2); 0 for other types.
 std::size_t integer_bytes(std::uint64_t type) {
   switch (type) {
     case 1:
@@ -77,7 +77,7 @@ std::vector<std::uint64_t> entry_values(NumberReader const& reader, Layout const
   return values;
 }
 
-/// Bit `column` of a packed row. @param reversed: FillOrder 2, the least significant bit first
+/// Returns bit `column` of a packed row. @param reversed  FillOrder 2: least significant bit first
 bool bit_of(unsigned char const* row, std::size_t column, bool reversed) {
   std::size_t const within = column % bits_in_byte, shift = reversed ? within : bits_in_byte - 1 - within;
   return (row[column / bits_in_byte] >> shift & 1) != 0;

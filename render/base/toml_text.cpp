@@ -4,7 +4,7 @@
 
 #include "render/base/setup_node.h"
 
-/// Values of a setup as TOML has them.
+/// Formatting of setup values as TOML.
 namespace gladstone {
 namespace {
 
