@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// "z, y, x"
+/// Formats axes as a list: "z, y, x".
 std::string listed(std::string_view axes) {
   std::string text;
   for (char const axis : axes) text += (text.empty() ? "" : ", ") + std::string(1, axis);
@@ -75,7 +75,7 @@ StoredAxis axis_from_coordinates(std::vector<double> x, std::string const& path,
                     x[i - 1], i - 1, x[i]));
   }
   axis.step = step;
-  // Coordinates are floats, and rounded to decimals by the client: two units in the last place of the largest.
+  // Coordinates are stored as float or rounded to decimals: two units in the last place of the largest one.
   double const tolerance = 1e-4 * std::abs(step) + 2.0 * std::numeric_limits<float>::epsilon() * largest;
   bool uniform = true;
   for (std::size_t i = 0; i < x.size() && uniform; ++i) {

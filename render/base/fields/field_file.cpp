@@ -21,7 +21,7 @@ struct FieldFormat {
   std::unique_ptr<CheckedSource> (*open)(std::string const& path, FieldWish const& wish);
 };
 
-/// One row per format: its reader and how its files are called.
+/// Table of formats: file name extension and reader.
 constexpr std::array field_formats{
     FieldFormat{".h5", open_hdf5},     FieldFormat{".hdf5", open_hdf5},      FieldFormat{".he5", open_hdf5},
     FieldFormat{".nc", open_hdf5},     FieldFormat{".mat", open_hdf5},       FieldFormat{".vti", open_vtk_xml},

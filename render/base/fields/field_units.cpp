@@ -27,8 +27,8 @@ constexpr std::array lengths{
     LengthName{"millimetre", unit::millimetre},
     LengthName{"millimeter", unit::millimetre},
     LengthName{"um", unit::micrometre},
-    LengthName{"\u00b5m", unit::micrometre},  // the micro sign
-    LengthName{"\u03bcm", unit::micrometre},  // the Greek letter
+    LengthName{"\u00b5m", unit::micrometre},  // U+00B5, micro sign
+    LengthName{"\u03bcm", unit::micrometre},  // U+03BC, Greek letter mu
     LengthName{"micrometre", unit::micrometre},
     LengthName{"micrometer", unit::micrometre},
     LengthName{"micron", unit::micrometre},

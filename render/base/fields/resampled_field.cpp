@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-/// The polynomial through nodes at `x`, as weights of their values at a place.
+/// Computes the weights of the values at nodes `x` in their interpolation polynomial at `place` (Lagrange).
 std::vector<double> lagrange_weights(std::span<double const> x, double place) {
   std::vector<double> weights(x.size(), 1.0);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -25,13 +25,16 @@ std::vector<double> lagrange_weights(std::span<double const> x, double place) {
   return weights;
 }
 
-/// Values of a node as a sum over nodes of the file.
+/// Value of a resampled node, as a weighted sum of consecutive nodes of the file.
 struct Sum {
-  std::size_t first;  ///< of the nodes that are summed
+  std::size_t first;  ///< index of the first node in the sum
   std::vector<double> weights;
 };
 
-/// The cubic through the four nodes about each place; fewer nodes than four: the polynomial through all.
+/// Computes the interpolation sums of uniform nodes: the cubic through the four nearest nodes of the file, or the
+/// polynomial through all nodes if there are fewer than four.
+/// @param x      coordinates of the nodes in the file, ascending
+/// @param nodes  number of uniform nodes, `step` apart, from the first to the last coordinate
 std::vector<Sum> interpolate_to(std::vector<double> const& x, std::size_t nodes, double step) {
   std::vector<Sum> sums;
   std::size_t const support = std::min<std::size_t>(4, x.size());
@@ -57,12 +60,13 @@ double coarsest_spacing(std::vector<double> const& x) {
   return coarsest;
 }
 
-/// Values of a field as lines along one axis: `outer` blocks of `nodes` layers of `inner` numbers.
+/// Memory layout of lines along one axis: `outer` blocks of `nodes` layers of `inner` numbers.
 struct Lines {
   std::size_t outer, nodes, inner;
 };
 
-/// Largest difference between a node and its prediction from two nodes on either side, one where there are fewer.
+/// Returns the largest difference between a node's value and its prediction from two nodes on either side (one node if
+/// the axis has fewer than five).
 double largest_misprediction(std::vector<double> const& values, Lines const& lines, std::vector<double> const& x) {
   std::size_t const reach = x.size() >= 5 ? 2 : 1;
   double largest = 0;

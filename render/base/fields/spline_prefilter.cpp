@@ -7,7 +7,7 @@ namespace gladstone {
 
 void prefilter_open(std::span<double> line, std::span<double> scratch) {
   std::size_t const n = line.size() - 2;
-  double* const c = line.data() + 1;  // c[0..n-1] nodes, c[-1] and c[n] ghosts
+  double* const c = line.data() + 1;  // c[0..n-1]: nodes, c[-1] and c[n]: ghosts
   if (n == 1) {
     c[-1] = c[1] = c[0];
     return;
@@ -52,7 +52,7 @@ void prefilter_periodic(std::span<double> line) {
   std::size_t const n = line.size();
   double const z = std::sqrt(3.0) - 2;
   double const closure = 1 / (1 - std::pow(z, static_cast<double>(n)));
-  // causal: y_i = f_i + z y_{i-1}; y_{-1} sums the period
+  // Causal pass: y_i = f_i + z y_{i-1}, with y_{-1} from the sum over one period.
   double power = 1, sum = 0;
   for (std::size_t i = n; i-- > 0;) {
     sum += power * line[i];
@@ -61,7 +61,7 @@ void prefilter_periodic(std::span<double> line) {
   }
   double y = sum * closure;
   for (std::size_t i = 0; i < n; ++i) y = line[i] += z * y;
-  // anticausal: c_i = z (c_{i+1} - y_i), started from c_n = -z sum z^k y_k over the period; then the gain 6
+  // Anticausal pass: c_i = z (c_{i+1} - y_i), started from c_n = -z sum z^k y_k over one period; then the gain 6.
   power = z, sum = 0;
   for (std::size_t i = 0; i < n; ++i) {
     sum += power * line[i];

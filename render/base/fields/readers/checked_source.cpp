@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// The database's mark of a point without data; stored as float, so known to 3e-5.
+/// Value that marks missing data in the Johns Hopkins Turbulence Databases; as a float it is exact to 3e-5.
 constexpr double hole = -999.9;
 constexpr double hole_tolerance = 1e-3;
 
@@ -19,7 +19,7 @@ constexpr std::size_t values_at_once = std::size_t{1} << 22;
 
 bool is_hole(double value) { return std::abs(value - hole) < hole_tolerance; }
 
-/// A number that a volume of floats can hold.
+/// Returns true for numbers within the range of float; false for NaN.
 bool is_usable(double value) { return std::abs(value) <= std::numeric_limits<float>::max(); }
 
 bool is_bad(double value) { return !is_usable(value) || is_hole(value); }

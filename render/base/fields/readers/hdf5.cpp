@@ -20,16 +20,16 @@ using Shape = std::vector<std::size_t>;
 
 std::string shape_text(Shape const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
-/// The part that each axis of an array has.
+/// Roles of the axes of an array.
 struct ArrayAxes {
-  Shape spatial;                         ///< numbers of the two or three axes in space, the slowest first
-  std::optional<std::size_t> component;  ///< number of the axis of a velocity's components
+  Shape spatial;                         ///< indices of the two or three spatial axes, slowest first
+  std::optional<std::size_t> component;  ///< index of the axis of velocity components
 };
 
-/// Whether an axis is as long as the vectors of a plane or of space.
+/// Returns true if an axis has the length of two- or three-component vectors.
 bool may_be_components(std::size_t size) { return size == 2 || size == 3; }
 
-/// The axes of an array that has so many values at every node; nullopt if it is no such field.
+/// Determines the axes of an array with `values` numbers per node; nullopt if the shape is not a field.
 std::optional<ArrayAxes> find_axes(Shape const& shape, int values) {
   ArrayAxes axes;
   for (std::size_t axis = 0; axis < shape.size(); ++axis) axes.spatial.push_back(axis);
@@ -40,9 +40,9 @@ std::optional<ArrayAxes> find_axes(Shape const& shape, int values) {
     std::erase(axes.spatial, *axes.component);
   } else if (shape.size() > 3 &&
              (may_be_components(shape.back()) || (may_be_components(shape.front()) && shape.back() != 1))) {
-    return std::nullopt;  // a vector at every node, not an axis of two or three nodes
+    return std::nullopt;  // components of a vector, not an axis of two or three nodes
   }
-  // of too many axes those of length one are left out: the last (one value a node), the first (one time), any other
+  // Drop axes of length one until three remain: the last (one value per node) first, then from the front (one time).
   while (axes.spatial.size() > 3) {
     auto const single = [&shape](std::size_t axis) { return shape[axis] == 1; };
     auto const found = single(axes.spatial.back()) ? axes.spatial.end() - 1
@@ -54,7 +54,7 @@ std::optional<ArrayAxes> find_axes(Shape const& shape, int values) {
   return axes;
 }
 
-/// Unit of length in the name of a dataset of coordinates ("x_mm"), or "" where its attribute names it.
+/// Suffix of the name of a coordinate dataset ("x_mm") and its unit; "" if the unit is an attribute.
 struct CoordinateName {
   char const* suffix;
   char const* unit;
@@ -65,7 +65,7 @@ constexpr std::array coordinate_names{
 
 std::string last_step(std::string const& path) { return path.substr(path.rfind('/') + 1); }
 
-/// The unit that the name of a dataset of coordinates along x, y or z contains; nullopt for other names.
+/// Returns the axis and unit of a coordinate dataset from its name; nullopt for other names.
 struct NamedCoordinate {
   char axis;
   std::string unit;
@@ -81,7 +81,8 @@ std::optional<NamedCoordinate> coordinate_name(std::string const& path) {
   return std::nullopt;
 }
 
-/// The dataset that an empty name stands for.
+/// Returns the only dataset that can be the field, if the user names none.
+/// @throws DataError if there is none, or several
 std::string only_field(Hdf5Reader const& file, std::string const& path, int values) {
   std::vector<std::string> volumes, planes;
   std::string others;
@@ -106,7 +107,7 @@ std::string only_field(Hdf5Reader const& file, std::string const& path, int valu
   throw DataError(path, "has several fields; say which with dataset = " + quoted_list(fields));
 }
 
-/// Coordinates of one axis of an array.
+/// Coordinates of the nodes along one axis of an array.
 struct Coordinates {
   std::string dataset;
   std::vector<double> places;
@@ -138,12 +139,12 @@ class Hdf5Source final : public CheckedSource {
     std::string const by = place_axes(wish.axes);
     describe(nodes, rank(), by);
     std::vector<double> first(1);
-    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);  // a missing filter is reported now
+    file_.read_box(name_, Shape(shape_.size(), 0), Shape(shape_.size(), 1), first);  // reports a missing filter
   }
 
  private:
   std::size_t rank() const { return array_.spatial.size(); }
-  /// Number in the array of a spatial axis, counted from the fastest.
+  /// Index in the array of a spatial axis, which is counted from the fastest.
   std::size_t number(std::size_t axis) const { return array_.spatial[rank() - 1 - axis]; }
   std::size_t length(std::size_t axis) const { return shape_[number(axis)]; }
 
@@ -157,9 +158,9 @@ class Hdf5Source final : public CheckedSource {
     throw DataError(path_, fmt::format("dataset \"{}\" of shape {} {}; {}", name_, shape_text(shape_), why, wanted));
   }
 
-  /// Finds out which axis is which, and where its nodes lie. @return what determined it
+  /// Assigns world axes and coordinates to the stored axes. @return source of the assignment
   std::string place_axes(std::string const& wanted) {
-    std::array<std::optional<Coordinates>, 3> of_axis;  // of a stored axis, the fastest first
+    std::array<std::optional<Coordinates>, 3> of_axis;  // by stored axis, fastest first
     std::array<std::optional<Coordinates>, 3> of_letter;
     std::string order;
     auto const scales = file_.dimension_scales(name_);
@@ -185,14 +186,14 @@ class Hdf5Source final : public CheckedSource {
       if (!own) own = of_letter[static_cast<std::size_t>(axes_[i].world - 'x')];
       if (own && i < rank()) place(i, *own);
     }
-    // a plane, and an axis of one node, has the spacing of the next faster axis
+    // A missing or single-node axis gets the spacing of the next faster axis.
     for (std::size_t i = 1; i < 3; ++i) {
       if (i >= rank() || length(i) == 1) axes_[i].step = std::abs(axes_[i - 1].step);
     }
     return by;
   }
 
-  /// Takes over the coordinates of a stored axis, in the unit of the first one.
+  /// Sets the coordinates of a stored axis, converted to the unit of the first axis.
   void place(std::size_t i, Coordinates const& own) {
     std::string const what = "dataset \"" + own.dataset + '"';
     if (own.places.size() != length(i)) {
@@ -203,7 +204,7 @@ class Hdf5Source final : public CheckedSource {
     char const world = axes_[i].world;
     axes_[i] = axis_from_coordinates(own.places, path_, what);
     axes_[i].world = world;
-    if (length(i) == 1) return;  // a plane has no spacing, and its unit says nothing
+    if (length(i) == 1) return;  // a single node has no spacing, and its unit is irrelevant
     double ratio = 1;
     if (units_.spaced) {
       auto const known = unit_ratio(own.unit, units_.length);
@@ -226,7 +227,7 @@ class Hdf5Source final : public CheckedSource {
     try {
       Shape const shape = file_.shape(dataset);
       auto const wide = std::count_if(shape.begin(), shape.end(), [](std::size_t size) { return size != 1; });
-      // netCDF-4 marks dimensions that have a length and no coordinates
+      // netCDF-4 marks dimensions without coordinates by this attribute
       bool const length_alone = file_.attribute_of(dataset, "NAME").starts_with("This is a netCDF dimension but not");
       if (shape.empty() || wide > 1 || length_alone) return std::nullopt;
       Coordinates found{last_step(dataset), file_.read(dataset), unit};
@@ -235,12 +236,12 @@ class Hdf5Source final : public CheckedSource {
       return found;
     } catch (MemoryError const&) {
       throw;
-    } catch (DataError const&) {  // a text, or records
+    } catch (DataError const&) {  // not numeric
       return std::nullopt;
     }
   }
 
-  /// The coordinates along an axis: in the array's group, else in the nearest group above it.
+  /// Finds the coordinates along an axis: in the group of the array, else in the nearest group above it.
   std::optional<Coordinates> find_coordinates(char axis) const {
     for (std::size_t end = name_.rfind('/');; end = end == 0 ? std::string::npos : name_.rfind('/', end - 1)) {
       std::string const group = end == std::string::npos ? "" : name_.substr(0, end + 1);
@@ -255,7 +256,10 @@ class Hdf5Source final : public CheckedSource {
     }
   }
 
-  /// z, y, x if the lengths of the coordinates allow it, else the only order that they allow, the slowest first.
+  /// Determines the order of the axes, slowest first, by the lengths of the coordinates: z, y, x if they allow it, else
+  /// the only order that they allow.
+  /// @param by  receives the source of the order
+  /// @throws DataError if several other orders are possible
   std::string order_by_lengths(std::array<std::optional<Coordinates>, 3> const& of_letter, std::string& by) {
     auto const fits = [&](std::string const& order) {
       for (std::size_t i = 0; i < rank(); ++i) {

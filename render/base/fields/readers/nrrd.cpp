@@ -26,7 +26,7 @@ using Encoding = NrrdHeader::Encoding;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
 
-/// The value of a hexadecimal digit; -1 for other characters.
+/// Returns the value of a hexadecimal digit; -1 for other characters.
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -34,8 +34,8 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// The data section as a stream of bytes: raw through pread, gzip through zlib, the other encodings decoded into memory
-/// when the first byte is asked for; text becomes doubles.
+/// Random access to the bytes of the data section: raw data by pread, gzip data by zlib; other encodings are decoded
+/// into memory at the first access, text as doubles.
 class NrrdBytes {
  public:
   explicit NrrdBytes(NrrdHeader const& header) : header_(header), file_(header.data_path, "the data of a field") {
@@ -53,7 +53,7 @@ class NrrdBytes {
   NrrdBytes(NrrdBytes const&) = delete;
   NrrdBytes& operator=(NrrdBytes const&) = delete;
 
-  /// Bytes [first, first + size) of the field.
+  /// Reads bytes [first, first + size) of the decoded field.
   void read(std::size_t first, void* out, std::size_t size) {
     if (header_.encoding == Encoding::raw) {
       std::size_t const got = file_.read(offset_ + first, out, size);
@@ -99,11 +99,11 @@ class NrrdBytes {
     std::size_t const there = size > offset_ ? size - offset_ : 0;
     if (there < needed) cut_short(there);
     if (header_.byte_skip == -1) offset_ = size - needed;
-    bool const placed = header_.byte_skip != 0 || header_.line_skip != 0;  // where the data begin is certain
+    bool const placed = header_.byte_skip != 0 || header_.line_skip != 0;  // the start of the data is unambiguous
     if (there > needed && !placed && !only_line_ends(offset_ + needed, there - needed)) too_long(there);
   }
 
-  /// Whether there is nothing in a part of the file but the line end that an editor has added.
+  /// Returns true if a part of the file contains only line ends, as added by an editor.
   bool only_line_ends(std::size_t offset, std::size_t size) const {
     std::array<char, 4> rest{};
     if (size > rest.size()) return false;
@@ -112,7 +112,7 @@ class NrrdBytes {
                        [](char c) { return c == '\n' || c == '\r'; });
   }
 
-  /// The data section as it is stored, without the bytes to be skipped.
+  /// Returns the encoded data section, without the bytes to be skipped (bzip2: skipped after decompression).
   std::string stored() const {
     std::size_t const size = file_.size() > offset_ ? file_.size() - offset_ : 0;
     require_memory(header_.data_path, "its data", static_cast<double>(size) + static_cast<double>(decoded_bytes()));
@@ -131,7 +131,7 @@ class NrrdBytes {
 
   void decode() {
     std::string const bytes = stored();
-    // what the header says may be far from what the file holds: a digit or two a byte, 1 MB a bit at the very best
+    // Plausibility of the header: at most 8 values per encoded byte as text or hex, 8e6 per byte of bzip2.
     double const most = header_.encoding == Encoding::bzip2 ? 1e6 : 1;
     if (static_cast<double>(values()) > most * 8 * static_cast<double>(bytes.size())) cut_short(0);
     decoded_.resize(decoded_bytes());
@@ -215,7 +215,7 @@ class NrrdBytes {
     while (!ended) {
       throw_if_interrupted();
       if (stream.avail_in == 0) {
-        stream.next_in = const_cast<char*>(packed.data() + in);  // bzlib does not write there
+        stream.next_in = const_cast<char*>(packed.data() + in);  // bzlib does not modify its input
         stream.avail_in = static_cast<unsigned>(std::min(most, packed.size() - in));
         in += stream.avail_in;
       }
@@ -243,7 +243,7 @@ class NrrdBytes {
   }
 
   void prepare_gzip() {
-    int const descriptor = ::dup(file_.descriptor());  // gzclose closes its own
+    int const descriptor = ::dup(file_.descriptor());  // gzclose() closes its descriptor
     ::lseek(descriptor, static_cast<off_t>(offset_), SEEK_SET);
     stream_ = gzdopen(descriptor, "rb");
     if (!stream_) {
@@ -288,7 +288,7 @@ class NrrdBytes {
     }
   }
 
-  /// Beyond the last value zlib compares its checksum.
+  /// Reads past the last value, which makes zlib verify its checksum, and checks that no further data follow.
   void check_end() {
     std::array<char, 4096> beyond{};
     int const got = gzread(stream_, beyond.data(), static_cast<unsigned>(beyond.size()));
@@ -296,7 +296,7 @@ class NrrdBytes {
     auto const end = beyond.begin() + std::max(got, 0);
     bool const line_end = got <= 4 && std::all_of(beyond.begin(), end, [](char c) { return c == '\n' || c == '\r'; });
     if (got > 0 && header_.byte_skip == 0 && !line_end) too_long(header_.data_bytes() + static_cast<std::size_t>(got));
-    position_ = std::numeric_limits<std::size_t>::max();  // any further reading starts again
+    position_ = std::numeric_limits<std::size_t>::max();  // later reads restart from the beginning
   }
 
   [[noreturn]] void damaged() const {
@@ -323,10 +323,10 @@ class NrrdBytes {
   NrrdHeader const& header_;
   InputFile file_;
   gzFile stream_ = nullptr;
-  std::size_t offset_ = 0;     ///< of the first value, in the stored file
+  std::size_t offset_ = 0;     ///< offset of the first value in the stored file [bytes]
   std::size_t skipped_ = 0;    ///< decompressed bytes before the first value
-  std::size_t position_ = 0;   ///< of the stream, in decompressed bytes from the first value
-  std::vector<char> decoded_;  ///< all bytes, of encodings that are held in memory
+  std::size_t position_ = 0;   ///< position of the gzip stream after the first value [decompressed bytes]
+  std::vector<char> decoded_;  ///< all decoded bytes, for encodings held in memory
 };
 
 template <class Stored>
@@ -386,7 +386,7 @@ class NrrdSource final : public CheckedSource {
   int significant_bits() const override { return header_.significant_bits(); }
 
   void read_raw_rows(int plane, int first_row, int count, std::span<double> out) override {
-    bool const text = header_.encoding == Encoding::ascii;  // whose numbers are doubles
+    bool const text = header_.encoding == Encoding::ascii;  // text is decoded to doubles
     std::size_t const bytes = text ? sizeof(double) : header_.value_bytes();
     std::size_t const row = row_values() * bytes;
     std::size_t const first = row * (static_cast<std::size_t>(plane) * static_cast<std::size_t>(nodes_[1]) +
@@ -399,7 +399,7 @@ class NrrdSource final : public CheckedSource {
 
   NrrdHeader header_;
   NrrdBytes bytes_;
-  std::vector<char> stored_;  ///< kept, so that its memory is asked for once
+  std::vector<char> stored_;  ///< bytes of rows before conversion to double, reused between calls
 };
 
 }  // namespace

@@ -58,13 +58,13 @@ std::optional<Number> parsed(std::string const& word) {
   return value;
 }
 
-/// The fields of a header, and the refusals that name them.
+/// Fields of a header by name, with errors that name the field.
 class Fields {
  public:
   explicit Fields(std::string path) : path_(std::move(path)) {}
 
-  /// Reads up to the empty line that ends an attached header, or the end of a detached one.
-  /// @return whether the empty line was there
+  /// Reads up to the empty line that ends an attached header, or to the end of a detached one.
+  /// @return true if there was an empty line
   bool read(LineReader& file) {
     constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
     while (auto const text = file.next()) {
@@ -117,7 +117,7 @@ class Fields {
     return values;
   }
 
-  /// "(1,0,0) none (0,1,0)" as vectors; empty ones of "none".
+  /// Parses vectors, "(1,0,0) none (0,1,0)"; "none" gives an empty vector.
   std::vector<std::vector<double>> vectors(std::string const& key) const {
     std::vector<std::vector<double>> result;
     std::string const text = required(key);
@@ -146,7 +146,7 @@ class Fields {
   }
 
  private:
-  /// Two spellings exist of some fields.
+  /// Returns the standard spelling of a field name that has two.
   static std::string canonical(std::string const& key) {
     if (key == "datafile") return "data file";
     if (key == "lineskip") return "line skip";
@@ -186,7 +186,7 @@ void read_encoding(Fields const& fields, NrrdHeader& header) {
   header.big_endian = endian == "big";
 }
 
-/// The words of a field in quotes, one an axis: "mm" "mm" "???".
+/// Parses the quoted words of a field, one per axis: "mm" "mm" "???"; "???" gives an empty text.
 std::vector<std::string> quoted_words(Fields const& fields, std::string const& key) {
   std::vector<std::string> words;
   std::istringstream text(fields.text(key));
@@ -196,7 +196,7 @@ std::vector<std::string> quoted_words(Fields const& fields, std::string const& k
   return words;
 }
 
-/// The axes of a header, of which those in space are kept.
+/// Reads the axes of a header and selects the spatial ones.
 class Axes {
  public:
   Axes(Fields const& fields, NrrdHeader& header) : fields_(fields), header_(header) {}
@@ -238,7 +238,8 @@ class Axes {
     if (all > 1e15) fields_.refuse("sizes", "is larger than any field");
   }
 
-  /// Chooses the axes in space: not the components, and of more than three not those of length one.
+  /// Selects the spatial axes: drops the axis of components, axes of length one without a direction ("none") and, while
+  /// more than three remain, the last axis of length one.
   void choose(int values) {
     for (std::size_t axis = 0; axis < sizes_.size(); ++axis) kept_.push_back(axis);
     if (values > 1) {
@@ -261,7 +262,7 @@ class Axes {
                                             values == 1 ? "one number" : fmt::format("{} numbers", values)));
   }
 
-  /// Spacings along the axes, or the ends of each.
+  /// Sets the axes from "spacings", or else from "axis mins" and "axis maxs".
   void place_along_axes() {
     auto const all = sizes_.size();
     auto const units = quoted_words(fields_, "units");
@@ -312,7 +313,7 @@ class Axes {
     return word == "node" ? Centre::node : word == "cell" ? Centre::cell : Centre::unknown;
   }
 
-  /// Vectors along the axes of space, in any order and direction.
+  /// Sets the axes from "space directions", vectors parallel to x, y and z in any order and direction.
   void place_by_directions() {
     std::string const key = "space directions";
     auto const units = quoted_words(fields_, "space units");
@@ -335,7 +336,7 @@ class Axes {
       double const step = direction[along];
       if (step == 0) fields_.refuse(key, "gives an axis no length");
       for (std::size_t k = 0; k < direction.size(); ++k) {
-        constexpr double rounding = 1e-6;  // of angles, in rad: a millionth of the field's width
+        constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
         if (k != along && std::abs(direction[k]) > rounding * std::abs(step)) {
           fields_.refuse(key, "is oblique; resample the field along x, y, z");
         }
@@ -359,7 +360,7 @@ class Axes {
     }
   }
 
-  /// Lengths of all axes in the unit of the first that names one.
+  /// Converts all lengths to the unit of the first axis that has one.
   void convert_units() {
     std::string& common = header_.units.length;
     for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -377,10 +378,10 @@ class Axes {
 
   Fields const& fields_;
   NrrdHeader& header_;
-  std::vector<long long> sizes_;                 ///< of all axes
-  std::vector<std::size_t> kept_;                ///< numbers of the axes in space, the fastest first
-  std::vector<std::vector<double>> directions_;  ///< of all axes; empty: none are given
-  std::array<std::string, 3> unit_of_;           ///< of the axes in space
+  std::vector<long long> sizes_;                 ///< number of nodes of all axes
+  std::vector<std::size_t> kept_;                ///< indices of the spatial axes, fastest first
+  std::vector<std::vector<double>> directions_;  ///< direction vectors of all axes; empty: none in the header
+  std::array<std::string, 3> unit_of_;           ///< units of the spatial axes
 };
 
 }  // namespace

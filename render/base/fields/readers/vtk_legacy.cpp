@@ -24,7 +24,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// A file as words, lines and bytes, read forwards.
+/// Sequential reader of words, lines and bytes of a file.
 class Cursor {
  public:
   explicit Cursor(InputFile const& file) : file_(file) {}
@@ -51,7 +51,7 @@ class Cursor {
     if (c >= 0) ++at_;
     return c;
   }
-  /// The next word; empty at the end of the file.
+  /// Returns the next word; empty at the end of the file. @throws DataError for a word longer than 4096 bytes
   std::string word() {
     while (peek() >= 0 && std::isspace(peek()) != 0) take();
     std::string text;
@@ -62,7 +62,7 @@ class Cursor {
     }
     return text;
   }
-  /// The rest of the line, without its end.
+  /// Returns the rest of the line without its end. @throws DataError for a line longer than 64 KiB
   std::string line() {
     std::string text;
     constexpr std::size_t most = 65536;
@@ -81,7 +81,7 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-/// An array of a legacy file, and where its numbers begin.
+/// Array of a legacy file, with the offset of its numbers in the file [bytes].
 struct LegacyArray {
   std::string name;
   VtkPlace place = VtkPlace::points;
@@ -89,7 +89,7 @@ struct LegacyArray {
   std::uint64_t components = 1, tuples = 0, begin = 0;
 };
 
-/// Names are written with %20 for blanks.
+/// Decodes a name, in which blanks and other characters are written as %20.
 std::string decoded_name(std::string const& name) {
   std::string text;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -107,7 +107,7 @@ class LegacyReader {
   LegacyReader(std::string const& path, FieldWish const& wish)
       : file_(std::make_shared<InputFile>(path, "a field file")), cursor_(*file_), wish_(wish) {
     if (!cursor_.line().starts_with("# vtk DataFile")) refuse("is no legacy VTK file (it does not begin with # vtk)");
-    cursor_.line();  // a title
+    cursor_.line();  // title
     std::string const encoding = lower(cursor_.word());
     if (encoding != "ascii" && encoding != "binary") refuse("is said to be neither ASCII nor BINARY; copy it again");
     text_ = encoding == "ascii";
@@ -220,7 +220,7 @@ class LegacyReader {
     return all;
   }
 
-  /// Attributes of points and cells, one after the other.
+  /// Reads the attributes of points and cells in sequence.
   void read_arrays() {
     std::optional<VtkPlace> place;
     for (std::string key = next_key_; !key.empty(); key = lower(cursor_.word())) {
@@ -236,12 +236,12 @@ class LegacyReader {
       } else if (!place) {
         refuse(fmt::format("has \"{}\" where POINT_DATA or CELL_DATA is expected; copy it again", excerpt(key)));
       } else if (!read_attribute(key, *place)) {
-        return;  // behind what is not known here nothing can be found
+        return;  // the length of an unknown attribute is not defined, so that reading must stop here
       }
     }
   }
 
-  /// @return whether what follows can be found
+  /// Reads one attribute. @return false if it is unknown, so that the next one cannot be found
   bool read_attribute(std::string const& key, VtkPlace place) {
     if (key == "field") {
       read_field(place, true);
@@ -250,7 +250,7 @@ class LegacyReader {
     LegacyArray array;
     array.place = place;
     array.tuples = nodes(place);
-    if (key == "lookup_table") {  // colours, four bytes each, or numbers in text
+    if (key == "lookup_table") {  // RGBA colours: four bytes each, or numbers in text
       cursor_.word();
       array.tuples = number<std::uint64_t>(key);
       array.components = 4;
@@ -273,7 +273,7 @@ class LegacyReader {
         cursor_.word();
         cursor_.word();
       } else {
-        cursor_.go_to(cursor_.place() - 1);  // the end of the line before
+        cursor_.go_to(cursor_.place() - 1);  // to the preceding line end
       }
     } else if (key == "vectors" || key == "normals") {
       array.number = number_type(cursor_.word());
@@ -297,7 +297,7 @@ class LegacyReader {
   }
 
   void read_field(VtkPlace place, bool kept) {
-    cursor_.word();  // its name
+    cursor_.word();  // name of the FIELD
     std::uint64_t const count = number<std::uint64_t>("FIELD");
     for (std::uint64_t i = 0; i < count; ++i) {
       LegacyArray array;
@@ -319,7 +319,7 @@ class LegacyReader {
     }
   }
 
-  /// METADATA ends with an empty line.
+  /// Skips METADATA, which ends with an empty line.
   void skip_metadata() {
     cursor_.line();
     while (cursor_.peek() >= 0 && !trimmed(cursor_.line()).empty()) {
@@ -369,7 +369,7 @@ class LegacyReader {
       }
       return values;
     }
-    bool const swap = std::endian::native == std::endian::little;  // legacy files are big endian
+    bool const swap = std::endian::native == std::endian::little;  // legacy files are big-endian
     std::vector<char> bytes(std::min<std::size_t>(count, 1 << 16) * array.number.bytes);
     for (std::size_t done = 0; done < count;) {
       throw_if_interrupted();

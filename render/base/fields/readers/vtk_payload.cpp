@@ -25,7 +25,7 @@ namespace {
   throw DataError(file.path(), fmt::format("data array \"{}\" is damaged ({}); copy it again", excerpt(name), why));
 }
 
-/// The stored bytes of an array, one after the other, decoded from base64 where they are in it.
+/// Sequential reader of the stored bytes of an array, decoding base64.
 class ByteStream {
  public:
   ByteStream(VtkPayload const& payload, InputFile const& file, std::string const& name)
@@ -37,7 +37,7 @@ class ByteStream {
     at_ = end_;
   }
 
-  /// The next bytes. @throws DataError where there are fewer
+  /// Returns the next `size` bytes. @throws DataError if there are fewer
   std::vector<char> next(std::uint64_t size) {
     std::uint64_t const left = end_ - at_ + (buffer_.size() - buffered_);
     if (size > (payload_.format == VtkPayload::Format::base64 ? left / 4 * 3 + 6 : left)) cut_short();
@@ -65,7 +65,7 @@ class ByteStream {
     return group_[given_++];
   }
 
-  /// Decodes the next four digits; padding ends a piece, behind which another may begin.
+  /// Decodes the next four base64 digits. Padding ends a block; another block may follow.
   void decode_group() {
     std::uint32_t bits = 0;
     std::size_t digits = 0, padding = 0;
@@ -88,7 +88,7 @@ class ByteStream {
     given_ = 0;
   }
 
-  /// The next character that is no blank; -1 at the end.
+  /// Returns the next character that is not white space; -1 at the end.
   int next_character() {
     while (true) {
       if (buffered_ == buffer_.size()) {
@@ -122,14 +122,14 @@ class ByteStream {
   VtkPayload const& payload_;
   InputFile const& file_;
   std::string const& name_;
-  std::uint64_t at_ = 0, end_;  ///< next byte of the file that is not buffered yet, and their end
-  std::string buffer_;          ///< of base64: of the file, or the whole text of data in place
-  std::size_t buffered_ = 0;    ///< characters of it that are decoded
+  std::uint64_t at_ = 0, end_;  ///< offset of the next byte to buffer, and end of the data
+  std::string buffer_;          ///< base64 characters: part of the file, or all inline text
+  std::size_t buffered_ = 0;    ///< number of characters of buffer_ that are decoded
   std::array<char, 3> group_{};
   std::size_t given_ = 0, decoded_ = 0;
 };
 
-/// One of the integers that say how long data are.
+/// Reads integer `index` of a length header.
 std::uint64_t length_at(std::vector<char> const& bytes, std::size_t index, VtkEncoding const& encoding) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < encoding.length_bytes; ++i) {
@@ -139,7 +139,8 @@ std::uint64_t length_at(std::vector<char> const& bytes, std::size_t index, VtkEn
   return value;
 }
 
-/// Decompresses a block. @return bytes that it holds; nothing where it is damaged or holds more than there is room for
+/// Decompresses a block.
+/// @return number of decompressed bytes; nullopt if the block is damaged or larger than `out`
 std::optional<std::uint64_t> decompress(VtkEncoding::Compressor compressor, std::span<char const> packed,
                                         std::span<char> out) {
   switch (compressor) {
@@ -186,7 +187,7 @@ std::vector<char> decode_bytes(VtkPayload const& payload, VtkEncoding const& enc
     check_length(length_at(stream.next(encoding.length_bytes), 0, encoding));
     return stream.next(size);
   }
-  // number of blocks, their size, the size of a last one that is not whole, then their sizes as compressed
+  // Header: number of blocks, block size, size of a partial last block (or 0), then the compressed size of each block.
   auto const header = stream.next(3 * encoding.length_bytes);
   std::uint64_t const blocks = length_at(header, 0, encoding), block = length_at(header, 1, encoding),
                       partial = length_at(header, 2, encoding);

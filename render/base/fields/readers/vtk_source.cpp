@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// Axes of an image by its Direction matrix, whose columns are the directions of i, j and k.
+/// Returns the axes of an image from its Direction matrix, whose columns are the directions of i, j and k.
 StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& path) {
   StoredAxes axes;
   std::string taken;
@@ -22,7 +22,7 @@ StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& pa
       if (std::abs(along(row)) > std::abs(along(largest))) largest = row;
     }
     for (std::size_t row = 0; row < 3; ++row) {
-      constexpr double rounding = 1e-6;  // of angles, in rad: a millionth of the field's width
+      constexpr double rounding = 1e-6;  // tolerance of angles [rad]: a millionth of the width of the field
       if (std::isfinite(along(row)) && (row == largest || std::abs(along(row)) <= rounding)) continue;
       throw DataError(path, "has turned axes (Direction) that are not along X, Y and Z; resample it along them");
     }
@@ -36,7 +36,7 @@ StoredAxes image_axes(VtkGrid const& grid, VtkPlace place, std::string const& pa
     axis.step = grid.spacing[column] * (along(largest) < 0 ? -1 : 1);
     bool const between = place == VtkPlace::cells && grid.extent[2 * column + 1] > grid.extent[2 * column];
     axis.first = grid.origin[largest] + axis.step * (grid.extent[2 * column] + (between ? 0.5 : 0.0));
-    if (axis.step == 0) axis.step = 1;  // of a single node, as check_grid has made sure
+    if (axis.step == 0) axis.step = 1;  // check_grid() permits this only for a single node
   }
   return axes;
 }

@@ -21,10 +21,10 @@ namespace {
 constexpr std::string_view appended = "<AppendedData";
 constexpr std::size_t read_at_once = std::size_t{1} << 18;
 
-/// The XML of a file, without the bytes that may stand behind <AppendedData>.
+/// XML part of a file, without the binary content of <AppendedData>.
 struct Head {
   std::string xml;
-  std::optional<std::uint64_t> data;  ///< place of the appended data in the file
+  std::optional<std::uint64_t> data;  ///< offset of the appended data in the file [bytes]
 };
 
 Head read_head(InputFile const& file) {
@@ -49,14 +49,14 @@ Head read_head(InputFile const& file) {
   }
 }
 
-/// One <Piece> of a grid, and the array in it.
+/// One <Piece> of a grid, with the selected array.
 struct Piece {
   std::array<int, 6> extent{};
   VtkPayload payload;
   VtkNumber number{};
 };
 
-/// What loads an array: shared with the field that it belongs to.
+/// State needed to load an array later, shared with the loader function of its VtkField.
 struct VtkArrays {
   InputFile file;
   std::string name;
@@ -71,7 +71,8 @@ std::size_t offset_in(std::array<int, 6> const& part, std::array<int, 6> const& 
   return static_cast<std::size_t>(part[2 * axis] - whole[2 * axis]);
 }
 
-/// Puts the values of all pieces into their places on the whole grid.
+/// Loads the values of all pieces and assembles them on the whole grid.
+/// @throws DataError if the pieces do not cover the grid
 ValueStore load_pieces(VtkArrays const& arrays) {
   std::array<std::size_t, 3> all{};
   for (std::size_t i = 0; i < 3; ++i) all[i] = static_cast<std::size_t>(VtkGrid::count(arrays.whole, i, arrays.place));
@@ -119,7 +120,7 @@ ValueStore load_pieces(VtkArrays const& arrays) {
   return store;
 }
 
-/// Reads the tree of a file.
+/// Reader of the XML tree of a file.
 class VtkXmlReader {
  public:
   VtkXmlReader(std::string const& path, FieldWish const& wish)
@@ -209,7 +210,7 @@ class VtkXmlReader {
     arrays_->whole = grid_.extent;
   }
 
-  /// Chooses the array by the first piece that is not empty.
+  /// Selects the array, from the first piece that has data.
   void choose(pugi::xml_node grid) {
     std::vector<std::string> names, fitting;
     std::vector<VtkPlace> places;
@@ -305,10 +306,10 @@ class VtkXmlReader {
       return;
     }
     payload.format = format == "ascii" ? VtkPayload::Format::ascii : VtkPayload::Format::base64;
-    for (pugi::xml_node const text : tag.children()) payload.text += text.value();  // comments divide it
+    for (pugi::xml_node const text : tag.children()) payload.text += text.value();  // comments split it
   }
 
-  /// Takes the coordinates of a piece over into those of the whole grid.
+  /// Copies the coordinates of a piece into those of the whole grid.
   void read_coordinates(pugi::xml_node tag, std::array<int, 6> const& extent) {
     std::size_t axis = 0;
     for (pugi::xml_node const array : tag.children("DataArray")) {
