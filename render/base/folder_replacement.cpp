@@ -79,6 +79,7 @@ std::vector<fs::path> files_to_retire(fs::path const& staged, fs::path const& fo
   return files;
 }
 
+/// Step 2 of replace_files(): moves the files to be replaced to .replacing/old, then renames it to .replacing/retired.
 void retire(fs::path const& folder, FolderContent const& content) {
   fs::path const work = folder / replacing;
   if (is_there(work / retired_files)) return;
@@ -89,6 +90,7 @@ void retire(fs::path const& folder, FolderContent const& content) {
   move_file(work / old_files, work / retired_files);
 }
 
+/// Step 3 of replace_files(): moves the new files to their final places, the marker last.
 void install(fs::path const& folder, FolderContent const& content) {
   fs::path const staged = folder / replacing / staged_files;
   for (fs::path const& file : files_below(staged, content.marker)) move_file(staged / file, folder / file);

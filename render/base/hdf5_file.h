@@ -97,6 +97,7 @@ class Hdf5Writer {
   /// @throws OutputError if the disk is full; the partial file is removed
   template <class Value>
   void write_rows(std::string const& dataset, std::size_t first, std::span<Value const> data);
+  /// Writes an attribute of a group or dataset.
   void attribute(std::string const& object, std::string const& name, std::string const& value);
   void attribute(std::string const& object, std::string const& name, double value);
   void attribute(std::string const& object, std::string const& name, std::int64_t value);

@@ -36,6 +36,7 @@ void check(bool good, std::string const& path, std::string const& what) {
 constexpr std::size_t compressed_from_bytes = 64 * 1024;
 constexpr std::size_t chunk_bytes = 1024 * 1024;
 
+/// Enables chunking, byte shuffling and deflate of level 4. Chunks are halved along the leading axes to at most 1 MiB.
 void compress(hid_t properties, std::vector<hsize_t> const& sizes, std::size_t value_bytes) {
   std::vector<hsize_t> chunk = sizes;
   auto const bytes = [&] {

@@ -43,6 +43,7 @@ struct PageHeader {
 class PageReader {
  public:
   virtual ~PageReader() = default;
+  /// Moves to a page, counted from 0. @return false if it does not exist
   virtual bool seek(int page) = 0;
   virtual PageHeader header() const = 0;
   /// Reads all samples of the page as an array of rows x columns x channels of the header's sample type.

@@ -282,6 +282,7 @@ class Picture {
     return grey_image(spec, read_samples(*input_, path_));
   }
 
+  /// Collects the pages that are not previews of the first one, up to most_pages_counted.
   void count_pages() {
     PageHeader const first = input_->header();
     for (int page = 1; page < most_pages_counted && input_->seek(page); ++page) {

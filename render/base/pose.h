@@ -14,6 +14,7 @@ struct Pose {
   Vec3<T> y{T(0), T(1), T(0)};
   Vec3<T> z{T(0), T(0), T(1)};
 
+  /// Coordinate transforms from the outer to the local frame (inwards) and from the local to the outer one (outwards).
   GLADSTONE_HD Vec3<T> direction_inwards(Vec3<T> d) const { return {dot(d, x), dot(d, y), dot(d, z)}; }
   GLADSTONE_HD Vec3<T> direction_outwards(Vec3<T> d) const { return d.x * x + d.y * y + d.z * z; }
   GLADSTONE_HD Vec3<T> point_inwards(Vec3<T> p) const { return direction_inwards(p - origin); }

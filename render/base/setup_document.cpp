@@ -71,6 +71,7 @@ struct UnreadKey {
   SetupMember const* member;
 };
 
+/// Collects the keys below a table that were not read, except those of excused tables.
 void collect_unread(SetupNode const& node, SetupRecord const& record, std::vector<std::string>& path,
                     std::vector<UnreadKey>& unread) {
   if (record.excused) return;

@@ -37,8 +37,8 @@ class SetupDocument {
   /// lens.focus=medium`). Problems with the key are reported at "--set key.path=value".
   void override_key(std::string const& assignment);
 
-  /// Sets the value at a path of keys, creating missing tables. Messages refer to the value's own location, and file
-  /// names in it are relative to the directory of its own source.
+  /// Sets the value at a path of keys, creating missing tables. Messages refer to the location of the value, and file
+  /// names in it are relative to the directory of its source file.
   void set(std::vector<std::string> const& path, SetupNode const& value);
   /// Returns the value at a path of keys; null if there is none.
   SetupNode const* find(std::vector<std::string> const& path) const;
@@ -126,6 +126,7 @@ class SetupTable {
   /// @param unit      size of the key's unit in SI
   /// @param range     allowed range in the key's own unit
   double quantity(std::string const& key, double fallback, double unit, Range range = Range::any());
+  /// Reads an array of two or three numbers and converts it to SI, as quantity().
   Vec2d quantities(std::string const& key, Vec2d fallback, double unit, Range range = Range::any());
   Vec3d quantities(std::string const& key, Vec3d fallback, double unit, Range range = Range::any());
   std::optional<double> optional_number(std::string const& key, Range range = Range::any());
@@ -167,6 +168,7 @@ class SetupTable {
   /// Reads an array of file names, likewise made absolute; empty if the key is absent.
   std::vector<std::string> path_list(std::string const& key);
 
+  /// Reads an array of exactly `count` numbers.
   std::vector<double> numbers(std::string const& key, std::vector<double> const& fallback, std::size_t count,
                               Range range = Range::any());
   /// Reads an array of `at_least` to `at_most` numbers.

@@ -64,6 +64,7 @@ std::size_t integer_bytes(std::uint64_t type) {
   }
 }
 
+/// Reads the values of an entry at offset `entry`; empty if they are not integers or lie beyond the end of the file.
 std::vector<std::uint64_t> entry_values(NumberReader const& reader, Layout const& layout, std::uint64_t entry) {
   std::size_t const size = integer_bytes(reader.number(entry + 2, 2));
   std::uint64_t const count = reader.number(entry + 4, layout.offset_bytes);

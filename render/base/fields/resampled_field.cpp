@@ -91,6 +91,7 @@ double largest_misprediction(std::vector<double> const& values, Lines const& lin
   return largest;
 }
 
+/// Resamples all lines of a field along one axis, one sum per resampled node.
 std::vector<double> resampled(std::vector<double> const& values, Lines const& lines, std::vector<Sum> const& sums) {
   std::vector<double> result(lines.outer * sums.size() * lines.inner);
   for (std::size_t outer = 0; outer < lines.outer; ++outer) {

@@ -43,6 +43,7 @@ class CheckedSource {
   std::size_t row_values() const { return static_cast<std::size_t>(nodes_[0]) * static_cast<std::size_t>(values_); }
 
  protected:
+  /// Reads rows as read_rows(), without checking the values.
   virtual void read_raw_rows(int plane, int first_row, int count, std::span<double> out) = 0;
   /// Sets the nodes, and the shape and axis names of reading(), from axes_.
   /// @param rank  number of axes in the file, 2 or 3

@@ -92,6 +92,7 @@ class NrrdBytes {
     }
   }
 
+  /// Finds the offset of raw data and checks their length.
   void prepare_raw() {
     std::size_t const size = file_.size();
     std::size_t const needed = header_.data_bytes();
@@ -242,6 +243,7 @@ class NrrdBytes {
     if (out < decoded_.size()) cut_short(out);
   }
 
+  /// Opens the gzip stream and moves to the first value.
   void prepare_gzip() {
     int const descriptor = ::dup(file_.descriptor());  // gzclose() closes its descriptor
     ::lseek(descriptor, static_cast<off_t>(offset_), SEEK_SET);
