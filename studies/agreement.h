@@ -8,39 +8,45 @@
 
 namespace gladstone {
 
-/// Sums over dots that agreement comes from.
+/// Sums over dots from which an Agreement is computed.
 struct AgreementSums {
-  double eq9 = 0, cone = 0, rays = 0, eq9_rays = 0;  ///< of squares and of the product [px^2]
+  /// sums of squares of the small-angle theory (Eq. 9), the aperture-averaged theory and the ray displacements, and of
+  /// the product of Eq. 9 and rays [px^2]
+  double eq9 = 0, cone = 0, rays = 0, eq9_rays = 0;
   std::size_t dots = 0;
 
-  /// Adds a dot that has rays in both frames; leaves out another.
+  /// Adds dot i of `truth`; skips it unless its ray displacement is finite, that is, unless it is seen in both frames.
   void add(GroundTruth const& truth, std::size_t i);
   AgreementSums& operator+=(AgreementSums const& other);
   AgreementSums operator-(AgreementSums const& part) const;
 
-  double eq9_px() const;   ///< rms per component
-  double cone_px() const;  ///< the same of Eq. 9 averaged over the cone
+  double eq9_px() const;   ///< rms per component of the small-angle theory (Eq. 9) [px]
+  double cone_px() const;  ///< rms per component of the aperture-averaged theory [px]
+  /// rms per component of the ray displacements [px]
   double rays_px() const;
   Agreement agreement() const;
 };
 
-/// Agreement over a whole plane.
+/// Agreement of ray displacements with the small-angle theory (Eq. 9) over a whole plane.
 struct PlaneAgreement {
   AgreementSums sums;
-  /// Standard errors: how much a plane of this size would differ from another of the same kind, by leaving out one of
-  /// sixteen square pieces of the plane after the other (jackknife).
+  /// Standard errors: expected difference between planes of this size and kind, estimated by the jackknife over sixteen
+  /// square pieces of the plane.
   Agreement error;
 };
 
-/// The plane's nodes of a setup whose field is one periodic plane in a file.
+/// Reads the values at the nodes of a field that is one periodic plane stored in a file.
 Image<double> field_plane(FieldSetup const& field);
 
-/// Traces dots on one lattice, 96 by 96, over the whole of the setup's periodic square plane, of which the view shows
-/// `nodes` by `nodes` nodes at `spacing` at a time: as many views as the plane holds.
-/// @param setup with rays_per_dot as a number and a target of discs or points; spacing and centre of its field do not
-///              count, nor do the places of its dots
-/// @param spacing of the plane's nodes [m]
-/// @pre the plane holds 1, 2, 3, 4, 6, 8 ... views along an axis, a divisor of 96
+/// Traces a lattice of 96 x 96 dots that covers the setup's whole periodic square plane. The camera sees `nodes` x
+/// `nodes` nodes of the plane at a time, so the plane is shifted and traced once for each of (plane nodes / nodes)^2
+/// views.
+/// @param setup    with render.rays_per_dot as a number and a target of discs or points; spacing and centre of its
+///                 field and the positions of its dots are replaced
+/// @param nodes    number of the plane's nodes across the view
+/// @param spacing  distance between the plane's nodes [m]
+/// @param renderer  traces the rays
+/// @pre the number of views along an axis is an integer and divides 96
 PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Renderer& renderer);
 
 }  // namespace gladstone

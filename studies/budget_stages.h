@@ -6,13 +6,13 @@
 
 namespace gladstone {
 
-/// The displacements of a comparison's chain that are known, for error_budget().
-/// @param window the chain's stage `window`: comparison.window, or comparison.recorded()
+/// Collects the available displacements of a comparison's chain as input of error_budget().
+/// @param window  stage `window`: comparison.window or comparison.recorded()
 std::vector<BudgetStage> budget_stages(Comparison const& comparison, WindowTruth const& window);
 
-/// What each cause adds at the vectors that count (NaN at others), by the names of the terms of shown_budget(): the
-/// difference of a stage and the one before it. Across a stage that is not known it goes to the gap's first term, as in
-/// the budget.
+/// Computes the contribution of each error source at the unmasked vectors (NaN at the others) as the difference of
+/// successive available stages. The terms are named as those of shown_budget(). If stages are missing, the difference
+/// across the gap is assigned to the first term of the gap, as in the budget.
 std::vector<BudgetStage> budget_differences(Comparison const& comparison);
 
 }  // namespace gladstone

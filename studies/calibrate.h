@@ -13,53 +13,58 @@
 
 namespace gladstone {
 
-/// What one plane of a calibration showed.
+/// Results of detecting the dots of one calibration plane.
 struct CalibratedPlane {
   std::string file;
-  double z = 0;                  ///< [m]
-  std::string sha256;            ///< of its pixels
-  std::size_t found = 0;         ///< what looks like a dot
-  std::size_t used = 0;          ///< of these, those with a place on the grid
-  std::size_t not_dots = 0;      ///< what stands out and has neither the size nor the shape of the dots
-  std::vector<Vec2d> strangers;  ///< spots with a place on the grid that do not fit the other dots [px]
+  double z = 0;              ///< [m]
+  std::string sha256;        ///< SHA-256 of the pixels
+  std::size_t found = 0;     ///< number of spots that look like dots
+  std::size_t used = 0;      ///< number of these that were assigned to a node of the grid
+  std::size_t not_dots = 0;  ///< number of detected spots with neither the size nor the shape of the dots
+  /// spots at nodes of the grid that do not fit the other dots, excluded from the fit [px]
+  std::vector<Vec2d> strangers;
   MiddleBy middle_by = MiddleBy::whole_grid;
-  double smoothness_px = 0;  ///< scatter of the dots about a smooth grid, per component
+  double smoothness_px = 0;  ///< rms scatter of the dots about a smooth grid, per component [px]
 };
 
-/// A camera calibrated by pictures of dots.
+/// Camera models fitted to images of a dot grid in several planes.
 struct Calibration {
-  int columns = 0, rows = 0;  ///< of the pictures
+  int columns = 0, rows = 0;  ///< size of the images [px]
   std::vector<CalibratedPlane> planes;
   CalibrationPoints points;
-  std::vector<std::size_t> plane_of;      ///< every point
-  std::vector<std::array<int, 2>> index;  ///< its place on the grid
+  std::vector<std::size_t> plane_of;      ///< plane of each point
+  std::vector<std::array<int, 2>> index;  ///< grid index of each point, from the middle dot
   PinholeFit pinhole;
   SoloffFit soloff;
-  Vec2d drift{};  ///< components along X and Y of the unit direction in which the plate was moved [1]
+  Vec2d drift{};  ///< X and Y components of the unit vector along which the plate was moved [1]
   std::vector<std::string> warnings;
-  std::optional<PinholeCamera> rendered;  ///< that the truth of the case knows, for comparison alone
+  std::optional<PinholeCamera> rendered;  ///< true camera stored in the case's truth.h5, used only for comparison
   SourceFiles sources;
-  std::string setup;  ///< resolved
+  std::string setup;  ///< resolved setup as TOML text
   std::uint64_t seed = 0;
 };
 
-/// Detects the dots of all planes, puts them on the grid and fits both models. @throws DataError where the case is no
-/// calibration, a picture shows too few dots, or the planes are too few
+/// Detects the dots of all planes of a calibration case, assigns them to the grid and fits a pinhole camera and a
+/// polynomial.
+/// @throws DataError if the case is not a calibration, an image shows too few dots, or there are fewer than two planes
 Calibration calibrate_case(std::string const& folder);
 
-/// The same by pictures from anywhere, one for each plane of a setup with experiment = "calibration": its [calibration]
-/// says what they show, its camera and lens about how. @throws DataError also where their number or size is not the
-/// setup's; SetupError
+/// Calibrates from image files, one per plane of a setup with experiment = "calibration". The setup's [calibration]
+/// describes the dot grid; its camera and lens are needed only approximately.
+/// @throws DataError as calibrate_case(), and if number or size of the images differ from the setup
+/// @throws SetupError if the setup is invalid
 Calibration calibrate_pictures(std::string const& setup, std::vector<std::string> const& pictures);
 
 /// Writes calibration.h5 (docs/file-formats.md).
 void write_calibration_file(std::string const& path, Calibration const& calibration);
 
-/// Draws the residuals of both models over the picture. @throws GnuplotMissing
+/// Draws the residuals of both models over the image.
+/// @throws GnuplotMissing if gnuplot is not installed
 void draw_calibration(std::string const& path, Calibration const& calibration);
 
-/// One JSON object, and the same as a table.
+/// Returns the calibration as a JSON object.
 nlohmann::ordered_json calibration_json(Calibration const& calibration);
+/// Formats the calibration as a table of parameters, standard errors and residuals.
 std::string calibration_table(Calibration const& calibration);
 
 }  // namespace gladstone

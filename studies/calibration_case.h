@@ -9,41 +9,42 @@
 
 namespace gladstone {
 
-/// What a finite number of rays leaves in the places of a plane's dots, from some of them traced once more with rays of
-/// other random numbers: two independent places differ by sqrt(2) of what either is off.
+/// Monte Carlo error of the dot images' positions. Some dots are traced twice with independent random numbers; the
+/// difference of two independent positions is sqrt(2) times the error of either.
 struct PlaceError {
-  std::size_t dots = 0;   ///< that were traced again and seen
-  double rms_px = 0;      ///< over them and components; NaN: none was seen
-  double largest_px = 0;  ///< of a component
+  std::size_t dots = 0;   ///< number of dots that were traced twice and seen
+  double rms_px = 0;      ///< rms over dots and components [px]; NaN if none was seen
+  double largest_px = 0;  ///< largest error of a component [px]
 };
 
-/// What a camera sees of one plane of a calibration.
+/// Rendered image and truth of one calibration plane.
 struct RenderedPlane {
   double z = 0;  ///< [m]
   Scene scene;
-  Image<double> light;  ///< in fully lit pixels on the axis
+  Image<double> light;  ///< light per pixel, in fully lit pixels on the axis
   GroundTruth truth;
   StatusCounts statuses{};
   PlaceError place_error;
 };
 
-/// A calibration as far as memory.
+/// A calibration rendered in memory.
 struct RenderedCalibration {
   std::vector<RenderedPlane> planes;
   std::vector<std::string> warnings;
-  double exposure_e = 0;   ///< one for all planes
-  std::uint64_t rays = 0;  ///< a dot
+  double exposure_e = 0;   ///< electrons in a fully lit pixel, equal for all planes [e]
+  std::uint64_t rays = 0;  ///< rays per dot
   std::string device;
   double seconds = 0;
 };
 
-/// Renders the dots on every plane, ray by ray, through one and the same camera.
+/// Renders the dots of every plane by ray tracing through the same camera.
 RenderedCalibration render_planes(CaseSetup& loaded, Renderer& renderer);
 
-/// Writes plane_000.tif, ..., truth.h5, setup.toml and summary.json into a folder. @return what summary.json holds
+/// Writes plane_000.tif, ..., truth.h5, setup.toml and summary.json into a folder.
+/// @return the contents of summary.json
 nlohmann::json write_calibration(CaseSetup& loaded, RenderedCalibration const& rendered, std::string const& folder);
 
-/// Writes truth.h5 of a calibration: /dots, /planes and, for an ideal thin lens, /pinhole (docs/file-formats.md).
+/// Writes truth.h5 of a calibration: /dots, /planes and, if the camera is a pinhole, /pinhole (docs/file-formats.md).
 void write_calibration_truth(std::string const& path, RenderedCalibration const& rendered, FileOrigin const& origin);
 
 }  // namespace gladstone

@@ -5,23 +5,24 @@
 
 namespace gladstone {
 
-/// What the setup says of the camera that was calibrated, as far as it is known.
+/// Expected properties of the calibrated camera, as far as the setup determines them.
 struct ExpectedCamera {
-  std::optional<Vec2d> principal_point_px;  ///< nothing through windows, and where a tilt leaves it open
-  std::optional<double> focal_length_px;    ///< of an ideal thin lens
-  bool is_pinhole = true;                   ///< not so through windows
+  /// empty through windows, or if the sensor is tilted and no pinhole model exists [px]
+  std::optional<Vec2d> principal_point_px;
+  std::optional<double> focal_length_px;  ///< empty unless the lens is an ideal thin lens [px]
+  bool is_pinhole = true;                 ///< false if the camera looks through windows
 };
 
-/// Fits both models to the dots of a calibration, and checks that they belong together:
-/// - dots whose residual exceeds eight robust standard deviations are removed and counted;
-/// - a middle dot that is off by one or two, and a plate that was not moved along its normal, show in residuals or in
-/// the
-///   principal point, and are corrected with a warning (PlatePlacement);
-/// - pictures in another order, planes that show one and the same place, fits without a solution and residuals far
-/// above
-///   the scatter of the dots within their planes are errors that name the likely cause.
-/// @param dots with the places that detection gave them @param name of the case or setup, for messages
-/// @throws DataError
+/// Fits a pinhole camera and a polynomial to the dots of a calibration and checks their consistency.
+/// - Dots whose residual exceeds eight robust standard deviations are removed and counted.
+/// - A middle dot assigned wrongly by one or two spacings, or a plate not moved along its normal, shows in the
+///   residuals or the principal point and is corrected with a warning (PlatePlacement).
+/// - Images in the wrong order, two planes at the same position, fits without a solution, and residuals far above the
+///   scatter of the dots within their planes are errors; the message names the likely cause.
+/// @param dots      detected dots with their grid indices
+/// @param expected  camera according to the setup
+/// @param name      name of the case or setup, for messages
+/// @throws DataError if the dots do not determine a camera
 void fit_calibration(Calibration& calibration, PlateDots dots, ExpectedCamera const& expected, std::string const& name);
 
 }  // namespace gladstone

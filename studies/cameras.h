@@ -7,24 +7,25 @@
 
 namespace gladstone {
 
-/// One camera of a setup: a case of its own.
+/// Setup of one camera of a multi-camera setup, rendered as a case of its own folder.
 struct CameraCase {
-  std::string name;  ///< of the camera and its folder; empty: the setup's only one, whose folder is the CASE itself
-  SetupDocument document;  ///< with this camera alone
+  /// name of the camera and of its folder; empty if the setup has one camera, whose folder is the CASE itself
+  std::string name;
+  SetupDocument document;  ///< setup that contains this camera only
 };
 
-/// Names of the cameras of a setup that has several; empty where it has one.
+/// Returns the camera names of a setup with several cameras; empty for a setup with one camera.
 std::vector<std::string> camera_names(SetupDocument const& setup);
 
-/// Takes a setup apart: for each [[camera]] a setup with that camera alone, its own lens ([camera.lens]) or else the
-/// setup's, the windows that it looks through, and noise of its own. All cameras of a BOS setup see one target: of the
-/// size that their views take together, its middle at target.center_mm (default: the origin), its dots as many and as
-/// large as the keys mean for the first camera.
-/// @throws SetupError with the problems of all cameras: each needs a name, no two the same
+/// Splits a setup into one setup per [[camera]], with the camera's lens ([camera.lens]) or else the setup's, the
+/// windows it looks through, and an independent noise seed. All cameras of a BOS setup share one target: it covers the
+/// views of all cameras and is centred at target.center_mm (default: the origin); number and size of its dots follow
+/// from the keys evaluated for the first camera.
+/// @throws SetupError with the problems of all cameras; each camera requires a unique name
 std::vector<CameraCase> camera_cases(SetupDocument const& setup);
 
-/// A setup of one camera as the readers take it: with the camera's lens and windows in their places. One of several
-/// cameras stays as it is.
+/// Returns a setup of one camera in the form that the readers expect, with the camera's lens and windows in [lens] and
+/// [[window]]. A setup with several cameras is returned unchanged.
 SetupDocument with_own_lens(SetupDocument setup);
 
 }  // namespace gladstone

@@ -17,22 +17,23 @@
 
 namespace gladstone {
 
-/// A setup file read by every room, cross-checked, with nothing left unread.
+/// A setup file read and cross-checked completely.
 struct CaseSetup {
   SetupDocument document;
   Setup setup;
   CorrelationSettings correlate;
   std::vector<std::string> warnings;
-  /// SHA-256 of the files that it names, as they were before the scene was built from them; empty: not hashed yet.
+  /// SHA-256 of each file that the setup names, computed before the scene is built; empty: not computed yet.
   std::map<std::string, std::string> input_hashes = {};
 };
 
-/// Reads and checks a setup. @throws SetupError with all problems together
+/// Reads and checks a setup.
+/// @throws SetupError with all problems
 CaseSetup load_case_setup(std::string const& path, std::vector<std::string> const& overrides);
-/// @param field whether the medium is still to be built, for the check of this machine's memory
+/// @param field  whether the medium has yet to be built, for the check of available memory
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field = FieldMemory::needed);
 
-/// A case ready to render: scene built, step and rays planned, the resolved setup as text.
+/// A case ready to render: scene, integration step, ray budget and strain map.
 struct PreparedCase {
   Scene scene;
   CorrelationSettings correlate;
@@ -42,7 +43,7 @@ struct PreparedCase {
   std::vector<std::string> warnings;
 };
 
-/// What is known of a case already, from another that agrees with it there; null: to be computed.
+/// Parts of a PreparedCase that can be reused from another case with the same values; null: compute.
 struct KnownParts {
   BuiltMedium const* medium = nullptr;
   StepPlan const* step = nullptr;
@@ -50,45 +51,47 @@ struct KnownParts {
   StrainMap const* strain = nullptr;
 };
 
-/// Builds and plans; every "auto" becomes a number here but the exposure and, where dots at side faces have rays of
-/// their own, the rays.
+/// Builds the scene and determines step and rays. Resolves every "auto" value of the setup except the exposure and, if
+/// rays are chosen per dot, render.rays_per_dot.
 PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known = {});
 
 /// A rendered case in memory.
 struct RenderedCase {
   std::shared_ptr<Rendering const> rendering;
-  double pupil_margin = 0;  ///< that the rendering took [m]
-  double exposure_e = 0;    ///< electrons in a fully lit pixel on the axis
-  double seconds = 0;
+  double pupil_margin = 0;  ///< pupil enlargement used by the rendering [m]
+  double exposure_e = 0;    ///< electrons in a fully lit pixel on the axis [e]
+  double seconds = 0;       ///< wall time [s]
 };
 
 RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, RenderTheory theory);
 
-/// The exposure that a camera takes of this light: its own, or by its brightest pixel, but no more electrons than the
-/// particles' photons set free (photon_limited_exposure) [e].
+/// Returns the exposure: the camera's own, or the one chosen from the brightest pixel, but at most the electrons
+/// released by the particles' photons (photon_limited_exposure) [e].
 double exposure_of(Scene const& scene, RenderedLight const& light);
 
-/// What the camera records of a rendering.
+/// Records both frames of a rendering with the camera's noise and quantization.
 RecordedFrames record_frames(PreparedCase const& prepared, RenderedCase const& rendered);
 
-/// A case from its setup to its frames.
+/// All stages of a case, from the scene to the recorded frames.
 struct FinishedCase {
   PreparedCase prepared;
   RenderedCase rendered;
   RecordedFrames frames;
 };
 
-/// Hashes the files that a setup names, before anything is made of them; those of [correlate] belong to the vectors.
+/// Computes the SHA-256 of the files that a setup names before any of them is read. Files of [correlate] are excluded:
+/// they are recorded with the vectors.
 void hash_inputs(CaseSetup& loaded);
 
-/// Renders a case as far as memory.
+/// Renders a case in memory.
 FinishedCase finish_case(CaseSetup& loaded, Renderer& renderer, KnownParts const& known = {});
 
-/// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml, summary.json.
+/// Renders a setup into a CASE folder: reference.tif, flow.tif, truth.h5, setup.toml and summary.json.
 FinishedCase render_to_folder(CaseSetup& loaded, Renderer& renderer, std::string const& folder);
 
-/// Writes these files for a case that is rendered already. @return what summary.json holds
-/// @throws DataError where a file that the setup names no longer holds what was hashed
+/// Writes the files of a rendered case.
+/// @return the contents of summary.json
+/// @throws DataError if a file that the setup names has changed since it was hashed
 nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, RenderedCase const& rendered,
                           RecordedFrames const& frames, Renderer const& renderer, std::string const& folder);
 

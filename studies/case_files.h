@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// The name of every file in a CASE.
+/// File names of a CASE folder.
 namespace case_file {
 inline constexpr char const* reference = "reference.tif";
 inline constexpr char const* flow = "flow.tif";
@@ -19,12 +19,12 @@ inline constexpr char const* vectors = "vectors.h5";
 inline constexpr char const* vectors_text = "vectors.csv";
 inline constexpr char const* errors = "errors.json";
 inline constexpr char const* comparison = "comparison.h5";
-/// Of one plane of a calibration.
+/// Returns the image file name of a calibration plane, e.g. "plane_000.tif".
 std::string plane(std::size_t index);
 inline constexpr char const* any_plane = "plane_*.tif";
 inline constexpr char const* calibration = "calibration.h5";
 inline constexpr char const* calibration_figure = "calibration_residuals.png";
-/// What correlate and compare make of a rendering: it goes when the case is rendered again.
+/// Files written by correlate, compare and report; removed when the case is rendered again.
 inline constexpr std::array derived{vectors,
                                     vectors_text,
                                     errors,
@@ -37,23 +37,25 @@ inline constexpr std::array derived{vectors,
                                     "report.md"};
 }  // namespace case_file
 
-/// What makes a folder a CASE, and what goes when it is rendered again.
+/// Describes the contents of a CASE folder: the file that identifies it and the files removed when it is rendered
+/// again.
 FolderContent case_content();
 
-/// Paths of the files of a CASE of a pair that render writes.
+/// Returns the paths of the files that render writes for a case with an image pair.
 std::vector<std::string> rendered_files(std::string const& folder);
-/// Paths of those derived from them.
+/// Returns the paths of the files derived from the rendered ones.
 std::vector<std::string> derived_files(std::string const& folder);
 
-/// Makes sure that rendering into a CASE replaces or removes nothing that is read for it. @throws OutputError
+/// Checks that rendering into a CASE does not overwrite or remove any of its input files.
+/// @throws OutputError if it would
 void refuse_case_over_inputs(std::string const& folder, std::vector<std::string> const& inputs);
 
-/// Completes a replacement of the case's files that was broken off.
-/// @throws DataError where the folder is no CASE (has no setup.toml)
+/// Completes an interrupted replacement of the case's files.
+/// @throws DataError if the folder is not a CASE (has no setup.toml)
 void require_case(std::string const& folder);
 
-/// "folder/name" of a CASE that holds a pair of frames. @throws DataError where it holds several cameras or a
-/// calibration; as require_case
+/// Returns "folder/name" for a CASE that holds an image pair.
+/// @throws DataError if it holds several cameras or a calibration; as require_case()
 std::string in_case(std::string const& folder, std::string const& name);
 
 }  // namespace gladstone

@@ -17,105 +17,110 @@
 
 namespace gladstone {
 
-/// How a comparison is to be made.
+/// Options of a comparison.
 struct CompareOptions {
-  std::string vectors;  ///< file; empty: CASE/vectors.h5
+  std::string vectors;  ///< path of the vectors; empty: CASE/vectors.h5
   TruthAt truth_at = TruthAt::mid_position;
-  std::optional<std::string> conventions;  ///< as the user tells them; empty: detected for foreign files
+  std::optional<std::string> conventions;  ///< as given by the user; empty: detected for foreign files
   bool figures = true;
-  bool reuse = false;  ///< takes what the last comparison stored in the CASE, where it was made from the same
+  bool reuse = false;  ///< reuse the stored comparison of the CASE if it was computed from the same files
 };
 
-/// Everything that is known at every vector: the chain from Eq. 9 to the measurement.
+/// All quantities at every vector: the chain from the small-angle theory (BOS) or the flow (PIV) to the measurement.
 struct Comparison {
   DisplacementField measured;
   BudgetChain chain = BudgetChain::bos;
-  GroundTruth point;  ///< truth and theory of the virtual dot (particle) whose place the vector is; of PIV no theory
-  std::vector<Vec2d> thin_lens;  ///< of the same virtual dots as an ideal lens focused on the target sees them; not PIV
-  std::vector<Vec2d> flow_px, ambient_px;  ///< of PIV alone: see ParticlePoints
+  GroundTruth point;  ///< truth and theory of the virtual dot (particle) at each vector's position; no theory for PIV
+  /// displacements of the same virtual dots through an ideal lens focused on the target [px]; empty for PIV
+  std::vector<Vec2d> thin_lens;
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
   WindowTruth window, deformed_window;
-  bool frames_deformed = false;   ///< several passes: deformed_window is what they measure, of one pass window is
-  std::vector<Vec2d> noise_free;  ///< measured on noise-free, unquantised images; empty for foreign vectors
+  bool frames_deformed = false;  ///< several passes: the measurement follows deformed_window, else window
+  /// vectors measured on noise-free, unquantised images [px]; empty for foreign vectors
+  std::vector<Vec2d> noise_free;
   VectorMask mask;
-  ErrorBudget budget;               ///< its stage `window` is `window`, of one pass
+  ErrorBudget budget;               ///< its stage `window` is `window`, as measured by a single pass
   ErrorBudget budget_after_passes;  ///< its stage `window` is `deformed_window`; empty unless frames_deformed
-  std::string report;               ///< what was detected about a foreign file; empty for ours
-  LeftOutVectors left_out;          ///< of the file; `measured` holds the others
-  std::optional<DetectedConventions> detected;  ///< of a foreign file
+  std::string report;               ///< conventions detected in a foreign file; empty for our own
+  LeftOutVectors left_out;          ///< vectors of the file that were rejected; `measured` holds the others
+  std::optional<DetectedConventions> detected;  ///< for a foreign file
   bool foreign = false;
-  std::vector<std::string> warnings;  ///< comparison_warnings() of a case
-  SourceFiles sources;      ///< what the files held that were compared; nothing for vectors that never were in files
+  std::vector<std::string> warnings;  ///< comparison_warnings() of the case
+  SourceFiles sources;      ///< contents of the compared files; empty for vectors that were never stored in files
   std::string fingerprint;  ///< comparison_fingerprint() of a CASE
-  bool verified = false;    ///< the vectors were measured on the very frames that the truth belongs to
+  bool verified = false;    ///< true if the vectors were measured on exactly the frames that the truth belongs to
 
-  /// Truth that the correlated frames hold of each window: what errors are measured against where they are the
-  /// estimator's and the noise's alone.
+  /// Returns the window-averaged truth that the correlation is expected to measure. The difference from it contains
+  /// only the errors of the estimator and of noise.
   WindowTruth const& recorded() const { return frames_deformed ? deformed_window : window; }
   char const* recorded_name() const {
     return frames_deformed ? "truth on the window of deformed frames" : "truth on the window";
   }
 
-  /// The budget whose terms are causes: deforming passes win back what a window loses, so that the terms `window` and
-  /// `estimator` of an undeformed window largely cancel.
+  /// Returns the budget whose terms are independent causes. Deforming passes recover part of the amplitude that an
+  /// interrogation window averages out, so in the budget of undeformed windows the terms `window` and `estimator`
+  /// largely cancel.
   ErrorBudget const& shown_budget() const { return frames_deformed ? budget_after_passes : budget; }
 
   std::size_t vectors_in_file() const { return measured.size() + left_out.without_place(); }
 };
 
-/// Virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`: two rounds of
-/// correction with few rays, then the truth and theory there with all of them.
+/// Traces virtual dots of the target's size whose mid-position (or reference position) is each of `centres_px`. Finds
+/// their positions on the target by two corrections with few rays, then computes truth and theory with all rays.
 GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& centres_px, TruthAt at,
                             RenderTheory theory);
 
-/// Displacements of those virtual dots through an ideal thin lens that images the target sharply at the scene's own
-/// magnification, with the same rays and the same stop: where a ray ends is where it seems to come from on the target.
-/// What the actual lens adds, defocus included, is the budget's aberration.
+/// Computes the displacements of the same virtual dots through an ideal thin lens that images the target sharply at the
+/// scene's magnification, with the same rays and aperture stop [px]. The difference from the actual lens, including
+/// defocus, is the budget's aberration.
 std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth const& point);
 
-/// Vectors to be compared, and how they came about.
+/// Vectors to be compared and their origin.
 struct MeasuredVectors {
   DisplacementField field;
-  CorrelationSettings settings;  ///< that gave them, if ours; else the case's own
-  bool foreign = false;          ///< not to be measured again on noise-free images
-  std::string report;            ///< what was detected about a foreign file
-  std::string name;              ///< of the file or the case, for messages
+  CorrelationSettings settings;  ///< settings of our correlation; for foreign vectors those of the case
+  bool foreign = false;          ///< true if the vectors cannot be measured again on noise-free images
+  std::string report;            ///< conventions detected in a foreign file
+  std::string name;              ///< name of the file or the case, for messages
   LeftOutVectors left_out{};
-  std::optional<DetectedConventions> detected{};  ///< of a foreign file
-  int every = 1;                                  ///< of the lattice that the settings give, as every_nth() thins it
+  std::optional<DetectedConventions> detected{};  ///< for a foreign file
+  /// the vectors are every n-th of the lattice defined by the settings, see every_nth()
+  int every = 1;
 };
 
-/// Truth and theory at the places of vectors: all of a comparison that does not depend on what was measured there.
+/// Truth and theory at the vectors' positions, independent of the measured displacements.
 struct PointTruth {
   GroundTruth point;
   std::vector<Vec2d> thin_lens;
-  std::vector<Vec2d> flow_px, ambient_px;  ///< of PIV alone
+  std::vector<Vec2d> flow_px, ambient_px;  ///< PIV only: see ParticlePoints [px]
 };
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at);
 
-/// Compares vectors with the truth and theory of a case in memory; nothing is read, rendered or written.
-/// @param dots     truth of the case's own dots
-/// @param rendered what the vectors were measured on; null for foreign vectors
-/// @param truth    at the vectors
-/// @throws DataError where no vector can be compared
+/// Compares vectors with truth and theory of a case in memory; reads, renders and writes nothing.
+/// @param dots      truth of the case's own dots or particles
+/// @param rendered  images that the vectors were measured on; null for foreign vectors
+/// @param truth     truth and theory at the vectors
+/// @throws DataError if no vector can be compared
 Comparison compare_vectors(PreparedCase const& prepared, GroundTruth const& dots, RenderedCase const* rendered,
                            MeasuredVectors vectors, PointTruth truth, Device const& device,
                            TruthAt at = TruthAt::mid_position);
 
-/// Lets a comparison's errors.json name those files by what they hold.
+/// Stores the compared files and their hashes in a comparison, for errors.json.
 void name_sources(Comparison& comparison, ComparedFiles files);
 
-/// Compares the vectors of a CASE with its truth and theory, rendering again what the comparison needs, unless that is
-/// stored in the CASE and to be reused.
+/// Compares the vectors of a CASE with its truth and theory. Renders again what the comparison needs, unless
+/// options.reuse is set and a stored comparison of the same files exists.
 Comparison compare_case(std::string const& folder, Device const& device, CompareOptions const& options);
 
-/// For each of ray_truth, eq9, eq9_cone and window_truth the measures, and the budget.
+/// Returns error measures against ray_truth, eq9, eq9_cone (PIV: flow, ambient_truth) and window_truth, and the budget.
 nlohmann::ordered_json errors_of(Comparison const& comparison);
-/// The same as the text of errors.json.
+/// Returns errors_of() as the text of errors.json.
 std::string errors_json(Comparison const& comparison);
 
-/// Draws displacement maps, histograms, error against gradient and the budget into a folder.
-/// @param format "png", "svg" or "pdf" @return their paths
+/// Draws displacement maps, error histograms, error against gradient and the budget into a folder.
+/// @param format  "png", "svg" or "pdf"
+/// @return paths of the figures
 std::vector<std::string> draw_comparison(std::string const& folder, Comparison const& comparison,
                                          std::string const& format = "png");
 

@@ -6,18 +6,20 @@
 
 namespace gladstone {
 
-/// The files that a comparison reads: setup, truth and vectors of a CASE, as they are now.
+/// Setup, truth and vectors that a comparison reads, with their hashes at the time of reading.
 struct ComparedFiles {
   std::string setup, truth, vectors;
   SourceFiles sources;
-  std::string unverified;  ///< which of them does not tell its frames; empty: both do, and they are the same
+  std::string unverified;  ///< file without hashes of its frames; empty: both files have hashes, and they agree
 };
-/// @param vectors a file; empty: those of the case
-/// @throws DataError where one is not there, or the vectors were measured on other frames than the truth belongs to
+/// Locates and hashes the files of a comparison.
+/// @param vectors  path; empty: those of the case
+/// @throws DataError if a file is missing, or the vectors were measured on frames other than those of the truth
 ComparedFiles compared_files(std::string const& folder, std::string const& vectors);
 
-/// Requires the files that a case's setup names to be those that it was rendered from; missing ones are left to their
-/// readers. @throws DataError for one that has changed
+/// Checks that the files named in a case's setup are unchanged since it was rendered. Missing files are ignored here;
+/// their readers report them.
+/// @throws DataError for a changed file
 void require_unchanged_inputs(std::string const& folder);
 
 }  // namespace gladstone

@@ -6,10 +6,10 @@
 
 namespace gladstone {
 
-/// Reads a file of vectors, ours or another code's, as its format says or the user tells; what no camera can have seen
-/// is left out. What the case's truth shows to be wrong with them (axes, signs, units, places) is warned of and stands
-/// in `detected`.
-/// @throws DataError where nothing is left, no place is in px, or nothing fits
+/// Reads a file of vectors, our own or another code's, by the conventions of its format or those given by the user.
+/// Rejects vectors that lie or point outside the image. Detects wrong axes, signs, units and positions by comparison
+/// with the case's truth; warns of them and stores them in `detected`.
+/// @throws DataError if no vector remains, no position is in px, or no convention fits the truth
 MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, GroundTruth const& truth,
                              CompareOptions const& options);
 

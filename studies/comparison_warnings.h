@@ -7,11 +7,11 @@
 
 namespace gladstone {
 
-/// Displacement below which a field has no signal that correlation could be expected to show, rms per component [px].
+/// Rms true displacement per component below which correlation cannot be expected to measure a signal [px].
 inline constexpr double least_signal_px = 0.01;
 
-/// What is to be known before the numbers of a comparison are believed: images so small that they lock to the pixels,
-/// and true displacements below least_signal_px or below the vectors' error.
+/// Returns warnings that limit the validity of a comparison: peak locking from small dot images, and true displacements
+/// below least_signal_px or below the vectors' error.
 std::vector<std::string> comparison_warnings(Comparison const& comparison, Setup const& setup);
 
 }  // namespace gladstone

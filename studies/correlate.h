@@ -11,51 +11,58 @@
 
 namespace gladstone {
 
-/// What a measurement gives.
+/// Result of correlating one or several image pairs.
 struct Measurement {
-  DisplacementField field;  ///< as judge_pair() leaves it
-  double seconds = 0;
-  std::string device;  ///< that correlated: "cpu" or "cuda"
+  DisplacementField field;  ///< vectors after validation by judge_pair() or judge_ensemble()
+  double seconds = 0;       ///< wall time [s]
+  std::string device;       ///< device of the correlation: "cpu" or "cuda"
 };
 
-/// Correlates two frames. @throws DataError where they differ in size or are smaller than a window
+/// Correlates two frames.
+/// @throws DataError if they differ in size or are smaller than an interrogation window
 Measurement correlate_frames(std::string const& reference_name, Image<double> const& reference,
                              std::string const& flow_name, Image<double> const& flow,
                              CorrelationSettings const& settings, Device const& device);
-/// The same for frames that a device may keep. @pre no window is larger than they are
+/// Correlates two frames that may be stored on a device.
+/// @pre the frames are at least as large as the largest interrogation window
 Measurement correlate_frames(FramePair const& frames, CorrelationSettings const& settings, Device const& device);
 
-/// Reads the [correlate] table of a whole setup, whose other tables are not looked at, or of a file with nothing else.
-/// @throws SetupError
+/// Settings of a [correlate] table.
 struct CorrelationFile {
   CorrelationSettings settings;
-  std::string resolved;  ///< text of the table with all defaults
+  std::string resolved;  ///< the table as text with all defaults
 };
+/// Reads the [correlate] table of a complete setup, whose other tables are ignored, or of a file with nothing else.
+/// @throws SetupError if the table is invalid
 CorrelationFile read_correlation_file(std::string const& path, std::vector<std::string> const& overrides);
+/// Returns the default settings, changed by `overrides` ("correlate.key=value").
 CorrelationFile default_correlation(std::vector<std::string> const& overrides);
 
-/// Reads a frame and enters it, by what it holds, among the sources of the vectors. A colour picture is warned of.
-/// @param name "reference" or "flow"
+/// Reads a frame and adds the hash of its pixels to `sources`. Warns if the image is in colour.
+/// @param name  "reference" or "flow"
 Image<double> read_frame(std::string const& path, std::string const& name, SourceFiles& sources);
 
-/// The same for a file of two pages, reference and flow.
+/// Reads both frames of a two-page file and adds their hashes to `sources`.
 std::array<Image<double>, 2> read_frames(std::string const& pair, SourceFiles& sources);
 
-/// The one displacement of many pairs, `files` being reference and flow of each in turn: correlate_ensemble(). Frames
-/// are read in every pass, one pair at a time, and entered among the sources as reference_1, flow_1, reference_2, ...
-/// @throws DataError
+/// Correlates many pairs for one common displacement field by correlate_ensemble(). Frames are read one pair at a time,
+/// in every pass, and added to `sources` as reference_1, flow_1, reference_2, ...
+/// @param files  frames A and B of each pair in turn
+/// @throws DataError if frames differ in size or are smaller than an interrogation window
 Measurement correlate_ensemble_files(std::vector<std::string> const& files, CorrelationSettings const& settings,
                                      SourceFiles& sources);
 
-/// Enters the pictures that masks and steps read among the sources, as preparation_1, preparation_2, ...
+/// Adds the images of masks and preprocessing steps to `sources` as preparation_1, preparation_2, ...
 void add_preparation(CorrelationSettings const& settings, SourceFiles& sources);
 
-/// Adds a warning where the frames named "reference" and "flow" are a case's flow frame and its reference, by what the
-/// truth.h5 beside them or their names say.
+/// Adds a warning if frames A and B of a case were exchanged, according to the hashes in truth.h5 of the same folder or
+/// to their file names.
 void warn_of_exchanged_frames(DisplacementField& field, SourceFiles const& sources);
 
-/// Correlates the frames of a CASE by its own settings and writes `output` (.h5 or .csv), which names the frames by
-/// what they hold. @throws DataError where frames or setup were replaced meanwhile: nothing is written then
+/// Correlates the frames of a CASE and writes `output` (.h5 or .csv) with the frames' hashes.
+/// @param output  path; empty: CASE/vectors.h5
+/// @param other   settings that replace those of the case; null: those of the case
+/// @throws DataError if frames or setup changed meanwhile; nothing is written then
 Measurement correlate_case(std::string const& folder, std::string const& output, CorrelationFile const* other,
                            Device const& device);
 

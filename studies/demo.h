@@ -6,15 +6,15 @@
 
 namespace gladstone {
 
-/// Runs the seed's experiment (Rajendran, Bane & Vlachos, section 4, Table 1) at both instants of the turbulence field:
-/// first on a field as coarse as the authors' sample, from setup to error report (a CASE folder each, figure4.png),
-/// then with rays and theory alone as the field gets finer (agreement.png). summary.md tells what came out, README's
-/// passage first.
-/// @return the text of summary.md
+/// Reproduces the experiment of Rajendran et al. (2019, section 4, Table 1) at both instants of the turbulence field:
+/// first on a field as coarse as the authors' sample, from setup to error report (one CASE folder each, figure4.png);
+/// then by rays and theory alone on increasingly fine fields (agreement.png). Writes summary.md, which starts with the
+/// README's passage.
+/// @return text of summary.md
 std::string run_demo(std::string const& folder, Device const& device);
 
-/// Folder of the files that gladstone brings along (studies/cases, data): beside the installed executable, or the
-/// source tree.
+/// Returns the folder of the files installed with gladstone (studies/cases, data): relative to the installed
+/// executable, or the source tree.
 std::string shared_folder();
 
 }  // namespace gladstone

@@ -6,23 +6,26 @@
 
 namespace gladstone {
 
-/// Bessel function of the first kind of order one. Named as Ceres names it, so that one template takes numbers and
-/// Jets.
+/// Bessel function of the first kind of order one. Has the name of the Ceres function, so that templates accept both
+/// numbers and Jets.
 inline double BesselJ1(double x) { return ::j1(x); }
 
-/// Mean of a wave over a disc, 2 J1(x) / x with x = pi times diameter over wavelength.
+/// Returns the mean of a wave over a disc, relative to its amplitude: 2 J1(x) / x with x = pi diameter / wavelength.
 template <class T>
 T disc_transfer(T diameter, T wavelength) {
   T const x = pi * diameter / wavelength;
-  if (x < 1e-4) return 1.0 - x * x / 8.0;  // the rest is x^4 / 192
+  if (x < 1e-4) return 1.0 - x * x / 8.0;  // series truncated at an error of x^4 / 192
   return 2.0 * BesselJ1(x) / x;
 }
 
-/// What the cone of light from a point in focus leaves of a wave of density: disc_transfer of the cone at every slice
-/// of the field, whose lever is its distance s from the dots, over the thickness (F10). For displacements much smaller
-/// than the wave.
-/// @param pupil diameter of the entrance pupil; z_b lens to dots; z_d mid-plane to dots; thickness of the field;
-///              wavelength of the density [m]
+/// Returns the transfer of a density wave's amplitude by the light cone of a point in focus: disc_transfer() of the
+/// cone's diameter at every slice of the field, averaged over the thickness with the slice's distance s from the dots
+/// as weight (F10 in docs/design.md). Valid for displacements much smaller than the wavelength.
+/// @param pupil       diameter of the entrance pupil [m]
+/// @param z_b         distance from lens to dots [m]
+/// @param z_d         distance from the medium's mid-plane to the dots [m]
+/// @param thickness   thickness of the medium [m]
+/// @param wavelength  wavelength of the density [m]
 template <class T>
 T cone_transfer(T pupil, T z_b, T z_d, double thickness, T wavelength) {
   constexpr int slices = 16;

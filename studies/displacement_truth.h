@@ -6,13 +6,16 @@
 
 namespace gladstone {
 
-/// True displacements at the pixels of a case's images, from its flow or medium and its camera: nothing is interpolated
-/// between dots or particles. Node (column, row) is the centre of pixel (column, row) * spacing_px.
-/// - PIV: of a particle in the middle of the laser sheet, which moves as the median particle does.
-/// - BOS: of a dot of the target's size.
-/// @param at reference: of what is seen at the pixel in the first frame; mid_position: of what is seen there midway
-///           between its images in both frames, which is mid-time but for the curvature of its path
-/// @param scene planned; traced through a copy
+/// Computes true displacements at the pixels of a case's images from its flow or medium and its camera, without
+/// interpolation between dots or particles. Node (column, row) is the centre of pixel (column, row) * spacing_px.
+/// - PIV: displacement of a particle in the middle of the laser sheet that follows the flow as the median particle
+///   does.
+/// - BOS: displacement of a dot of the target's size.
+/// @param scene       prepared scene with step and rays; not modified
+/// @param at          reference: of the source seen at the pixel in frame A; mid_position: of the source whose
+///                    positions in both frames have this pixel as their midpoint (mid-time, except for the curvature of
+///                    its path)
+/// @param spacing_px  distance between nodes [px]
 /// @return [px], u right, v down; NaN: no light reaches the pixel from there
 Image<Vec2d> displacement_truth(Scene const& scene, Renderer& renderer, TruthAt at, int spacing_px);
 

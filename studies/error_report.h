@@ -6,7 +6,7 @@
 
 namespace gladstone {
 
-/// The error measures and the budget as tables to read.
+/// Formats the error measures and the error budget as text tables.
 std::string error_report(Comparison const& comparison);
 
 }  // namespace gladstone

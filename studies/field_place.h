@@ -7,17 +7,17 @@
 
 namespace gladstone {
 
-/// Where a field's file puts it, in what units, and how much of a setup's view it would fill.
+/// Position, extent and units of a field file, and its coverage of a setup's view.
 struct FieldPlace {
-  nlohmann::json
-      units;  ///< of lengths and values, null where the file names none; `length_m`, what was taken; `unknown`
-  nlohmann::json extent_mm;  ///< from the first node to the last along x, y, z
+  nlohmann::json units;  ///< of lengths and values, null if the file names none; `length_m`, the unit used; `unknown`
+  nlohmann::json extent_mm;  ///< distance from the first node to the last along x, y, z [mm]
   nlohmann::json coverage;   ///< {share, view_mm, setup}; null without a setup
-  std::string text;          ///< the same to read
+  std::string text;          ///< the same as readable text
 };
 
-/// @param axes  world axes in the file's order, as the source was opened with; empty: as the file has them
-/// @param setup file of a setup, or empty; where its own field is a file too, its spacing, place and periods are taken
+/// Determines the position and coverage of a field file.
+/// @param axes   world axes in the file's order, as used to open the source; empty: the file's own
+/// @param setup  path of a setup, or empty; if its field is a file too, its spacing, position and periods are used
 FieldPlace field_place(FieldSource const& source, std::string const& path, std::string const& dataset,
                        std::string const& axes, std::string const& setup);
 
