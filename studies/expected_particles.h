@@ -40,7 +40,7 @@ struct ParticleImage {
   double diffraction_px = 0;  ///< e^-2 diameter of the diffraction-limited PSF [px]
   double blur_px = 0;         ///< diameter of the circle of confusion [px]
 
-  double diameter_px() const;  ///< e^-2 diameter of the total image [px]
+  double diameter_px() const;  ///< returns the e^-2 diameter of the total image [px]
 };
 /// @pre setup.piv
 /// @throws DataError for an invalid file of diameters

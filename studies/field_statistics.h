@@ -5,15 +5,17 @@
 
 namespace gladstone {
 
-/// What the numbers of a field range over, in the units of its file.
+/// Extremes of a field and of its gradient, in the units of its file.
 struct FieldStatistics {
   double minimum = 0;
   double maximum = 0;
-  Vec3d steepest{};  ///< largest difference between neighbours along x, y, z, per unit length
+  Vec3d steepest{};  ///< largest absolute difference of neighbouring nodes along x, y, z, per unit length
 };
 
-/// Reads a field through, block by block: of whatever size it is, some 100 MB of it are held. Tells its progress.
-/// @throws DataError as FieldSource, and for rows that do not fit into memory; Interrupted
+/// Reads a field block by block and computes its statistics; about 100 MB are held in memory for a field of any size.
+/// Reports its progress.
+/// @throws DataError as FieldSource, and if a row does not fit into memory
+/// @throws Interrupted if the user interrupts the command
 FieldStatistics field_statistics(FieldSource& source);
 
 }  // namespace gladstone

@@ -6,10 +6,10 @@
 
 namespace gladstone {
 
-/// Renders the seed's Figure 1 (Rajendran, Bane & Vlachos) and what belongs beside it, studies/cases/figure1/*.toml:
-/// particle images as they should be, and with what spoils them. FOLDER/NAME/ is the case of each, NAME/beside.png its
-/// first pulse beside the normal one at equal grey scale, gallery.png shows all.
-/// @return a text that says what to look at
+/// Renders Figure 1 of Rajendran et al. (2019) and related cases, studies/cases/figure1/*.toml: ideal particle images,
+/// and the effect of each imaging error. Writes one case per folder FOLDER/NAME/, its first frame next to the normal
+/// one at equal grey scale as NAME/beside.png, and gallery.png with all of them.
+/// @return text that describes what each image shows
 /// @throws SetupError, OutputError, DataError, DeviceError
 std::string run_gallery(std::string const& folder, Device const& device);
 

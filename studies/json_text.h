@@ -6,14 +6,13 @@
 
 namespace gladstone {
 
-/// A JSON value as text, indented to be read. Bytes that are no UTF-8, which names of files may have and JSON may not,
-/// are shown as U+FFFD.
+/// Formats a JSON value with indentation. Bytes that are not UTF-8, which file names may contain, become U+FFFD.
 template <class Json>
 std::string json_text(Json const& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A number; null where it is not known or has no end.
+/// Returns the number, or null if it is NaN or infinite.
 inline nlohmann::json known_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }

@@ -7,10 +7,10 @@
 
 namespace gladstone {
 
-/// Reads [light], the light of white paper at the setup's wavelength, if it is there.
+/// Reads the optional table [light]: illumination of white paper at the setup's wavelength.
 std::optional<PaperLight> read_light(SetupTable root);
 
-/// Electrons in a fully lit pixel on the axis of a setup's camera under this light: what camera.exposure is to be.
+/// Returns the value of camera.exposure under this light: electrons in a fully lit pixel on the axis [e].
 double exposure_under(PaperLight const& light, Setup const& setup);
 
 }  // namespace gladstone

@@ -4,7 +4,7 @@
 
 #include "render/medium/index_sample.h"
 
-/// Media in which rays are known in closed form: what `gladstone validate` and the tests trace through.
+/// Media with closed-form ray paths, used by `gladstone validate` and the tests.
 namespace gladstone::oracle {
 
 /// n^2 = n0^2 + 2 a x: every ray is a parabola in Sharma's parameter, R = R_0 + T_0 t + a t^2/2 (Ghatak & Thyagarajan).
@@ -35,7 +35,7 @@ struct ParabolicRod {
   }
 };
 
-/// n^2 = 2 - r^2 inside the unit sphere (Luneburg 1944): parallel light meets in a point of the surface.
+/// n^2 = 2 - r^2 inside the unit sphere (Luneburg 1944): parallel light is focused to a point on the surface.
 struct LuneburgSphere {
   Bounds<double> bounds() const { return {{-1, -1, -1}, {1, 1, 1}}; }
   IndexSample<double> sample(Vec3d p) const {
@@ -44,7 +44,7 @@ struct LuneburgSphere {
   }
 };
 
-/// n = 2 / (1 + r^2) (Maxwell 1854): rays are circles, every point is imaged sharply into its antipode.
+/// n = 2 / (1 + r^2) (Maxwell 1854): rays are circles, and every point is imaged stigmatically to its antipode.
 struct FishEye {
   double half_width = 3;
 
@@ -57,7 +57,7 @@ struct FishEye {
   }
 };
 
-/// One index throughout a box.
+/// Uniform refractive index within a box.
 struct GlassBox {
   double n = 1.5;
   Bounds<double> box{{-1, -1, -1}, {1, 1, 1}};

@@ -2,24 +2,25 @@
 
 #include "render/scene/renderer.h"
 
-/// Measurements behind the rows of validate.cpp; units stand in their names or beside them.
+/// Measurements compared in the rows of validate.cpp; units are given in the names or comments.
 namespace gladstone::oracle {
 
 // the ray equation: medium_oracles.cpp
 double linear_index_x(Renderer&);  ///< after one step of t = 5
 double rod_position_mm(Renderer&);
-double rod_error_ratio(Renderer&);        ///< of the error, when the step is halved
-double luneburg_focus(Renderer&);         ///< distance from the pole, largest of several heights [radii]
+double rod_error_ratio(Renderer&);  ///< ratio of the errors before and after halving the step
+/// distance of the focus from the pole, maximum over several ray heights [radii]
+double luneburg_focus(Renderer&);
 double luneburg_optical_path(Renderer&);  ///< from the plane z = -1 to the focus [radii]
-double fish_eye_miss(Renderer&);          ///< distance from the antipode
+double fish_eye_miss(Renderer&);          ///< distance of the ray from the antipode
 double slab_matched_m(Renderer&);
 double slab_refracting_m(Renderer&);
 double steep_slab_refracting_m(Renderer&);
-double eikonal_drift(Renderer&);            ///< | |T| - n | where a skew ray leaves the rod
-double reversal_miss_mm(Renderer&);         ///< of the start, by a ray sent back through the rod and its faces
-double spline_polynomial_error(Renderer&);  ///< relative, value and slopes of a bicubic up to the edge
-double plume_deflection(Renderer&);         ///< at x = a / sqrt 2, over dn / n0
-double tilted_shock_slope(Renderer&);       ///< over dn tan(phi) of Snell's exact one
+double eikonal_drift(Renderer&);            ///< | |T| - n | where a skew ray exits the rod
+double reversal_miss_mm(Renderer&);         ///< distance from the start of a ray reversed through the rod and its faces
+double spline_polynomial_error(Renderer&);  ///< largest relative error of value and slopes of a bicubic, up to the edge
+double plume_deflection(Renderer&);         ///< at x = a / sqrt 2, relative to dn / n0
+double tilted_shock_slope(Renderer&);       ///< relative to the exact slope by Snell's law, dn tan(phi)
 double shock_ratio_mach_2(Renderer&);
 double ciddor_532(Renderer&);
 double merzkirch_532(Renderer&);
@@ -30,11 +31,11 @@ double image_distance_m(Renderer&);
 double cone_diameter_m(Renderer&);
 double spot_diameter_px(Renderer&);
 double spot_energy(Renderer&);
-double off_axis_column_px(Renderer&);  ///< of a dot 10 mm off axis
+double off_axis_column_px(Renderer&);  ///< column of a dot 10 mm off axis
 double uniform_density_px(Renderer&);  ///< largest displacement in a uniform dense field
-double sensitivity_px(Renderer&);      ///< per kg/m^4
-double cone_average_4mm(Renderer&);    ///< displacement over Eq. 9
+double sensitivity_px(Renderer&);      ///< displacement per density gradient [px per kg/m^4]
+double cone_average_4mm(Renderer&);    ///< displacement relative to Eq. 9
 double cone_average_8mm(Renderer&);
-double ray_spread_8mm(Renderer&);  ///< standard deviation of the rays over Eq. 9
+double ray_spread_8mm(Renderer&);  ///< standard deviation of the rays relative to Eq. 9
 
 }  // namespace gladstone::oracle

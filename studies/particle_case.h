@@ -13,12 +13,13 @@ namespace gladstone {
 void write_particle_truth(std::string const& path, Scene const& scene, GroundTruth const& truth,
                           StatusCounts const& statuses, RenderMethod method, FileOrigin const& origin);
 
-/// What summary.json says of particles beside what it says of dots: how many there are, are lit and in view, their
-/// light, and how well their paths are known.
-/// @param exposure_e electrons that light of 1 sets free
+/// Returns the entries of summary.json that only PIV has: numbers of particles, of illuminated ones and of those in
+/// view, their light, and the accuracy of their paths.
+/// @param exposure_e  electrons released by one unit of light [e]
 nlohmann::json particle_summary(Scene const& scene, GroundTruth const& truth, double exposure_e);
 
-/// Reads the particles of a truth.h5 back. @throws DataError
+/// Reads the particles of a truth.h5.
+/// @throws DataError if the file is invalid
 GroundTruth read_particle_truth(std::string const& path);
 
 }  // namespace gladstone

@@ -7,23 +7,25 @@
 
 namespace gladstone {
 
-/// Truth of PIV at places of the picture, for virtual particles in the middle of the laser sheet.
+/// PIV truth at points of the image, from virtual particles in the middle of the laser sheet.
 struct ParticlePoints {
-  GroundTruth seen;               ///< with the medium: of the particle whose image is at the place at mid-time
-  std::vector<Vec2d> ambient_px;  ///< displacement without the medium: of the particle that would be seen there
-  /// The flow's velocity where the camera sees that place of the sheet, times dt: its part in the sheet, by the
-  /// derivatives of the camera's projection there.
+  GroundTruth seen;  ///< with the medium: particle whose image is at the point at mid-time (see TruthAt)
+  /// displacement without the medium, of the particle that would be seen at the point [px]
+  std::vector<Vec2d> ambient_px;
+  /// Velocity of the flow times dt at the point of the sheet seen by the camera, projected into the image by the
+  /// derivatives of the camera's projection there [px].
   std::vector<Vec2d> flow_px;
 };
 
-/// Virtual particles of the particles' median diameter move along the flow by half of dt to either side of mid-time,
-/// and send light alike into all directions; two rounds of correction with few rays bring their images to the places,
-/// then all rays are traced. NaN where the camera sees no place of the sheet.
-/// @param at whether a place is that of mid-time, half the displacement away from the first image, or the first image's
+/// Traces virtual particles of the median diameter that follow the flow by dt/2 before and after mid-time and scatter
+/// light equally in all directions. Two corrections with few rays shift the particles until their images coincide with
+/// the points; then all rays are traced. NaN if the camera sees no point of the sheet there.
+/// @param places_px  points in the image [px]
+/// @param at         mid_position: a point is the midpoint of both images; reference: the position of the first image
 ParticlePoints particle_points(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px, TruthAt at);
 
-/// Displacements with the medium alone, of the particles that particle_points() finds [px]. Without medium, through an
-/// ideal thin lens on the Z axis, no ray is traced: the pinhole projection is exact there.
+/// Computes only the displacements with the medium of the particles found by particle_points() [px]. Without a medium
+/// and with an ideal thin lens on the Z axis no rays are traced, since the pinhole projection is exact.
 std::vector<Vec2d> particle_displacements(Scene& scene, Renderer& renderer, std::vector<Vec2d> const& places_px,
                                           TruthAt at);
 

@@ -7,11 +7,11 @@
 
 namespace gladstone {
 
-/// Unique temporary folder, which only this user can read; removed on destruction. What killed processes of this user
-/// left is removed when the next one is made in the same place (TMPDIR).
+/// Unique temporary directory, readable by this user only; removed on destruction. Directories left by killed processes
+/// of this user are removed when the next one is created in the same place (TMPDIR).
 class PassingFolder {
  public:
-  /// @throws OutputError
+  /// @throws OutputError if no directory can be created
   PassingFolder();
   std::string const& path() const { return path_; }
 

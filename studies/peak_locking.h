@@ -7,36 +7,39 @@
 
 namespace gladstone {
 
-/// Images of dots or particles, and the error that their places on the pixels cause.
+/// Image diameters of dots or particles, and the peak-locking error that they cause.
 struct SmallImages {
-  double geometric_px = 0;  ///< diameter of the geometric image, g
-  double spot_px = 0;       ///< e^-2 diameter of the diffraction spot
-  double blur_px = 0;       ///< diameter of the disc of confusion
+  double geometric_px = 0;  ///< diameter of the geometric image [px]
+  double spot_px = 0;       ///< e^-2 diameter of the diffraction-limited PSF [px]
+  double blur_px = 0;       ///< diameter of the circle of confusion [px]
 
-  /// e^-2 diameter of the whole image [px].
+  /// Returns the e^-2 diameter of the total image [px].
   double diameter_px() const;
-  /// Error of a vector that whole-pixel locking causes, rms along the displacement (F26 without noise), by our
-  /// correlator with 20 dots in a window [px].
+  /// Returns the rms error of a vector component along the displacement from peak locking, without noise (F26 in
+  /// docs/design.md), for our correlator with 20 dots per window [px].
   double locking_error_px() const;
-  /// Factor on the f-number that widens the image to `diameter_px`: the spot grows, the disc of confusion shrinks. NaN
-  /// where no factor above 1 does.
+  /// Returns the factor on the f-number that widens the image to `diameter_px`: the PSF grows, the circle of confusion
+  /// shrinks. NaN if no factor above 1 does.
   double f_number_factor(double diameter_px) const;
 };
 
-/// Dots of a target, or the median particle in the middle of the sheet, by closed forms. @pre no calibration
+/// Returns the expected images of the target's dots, or of the median particle in the middle of the sheet, from closed
+/// forms.
+/// @pre not a calibration
 SmallImages expected_images(Setup const& setup);
 
-/// Distance that the lens is to be focused at, so that the images are `diameter_px` wide [m]: somewhat before dots or
-/// sheet. NaN of a lens that is not an ideal thin one, and where images are as wide already.
+/// Returns the focus distance, somewhat in front of dots or sheet, at which the images have the width `diameter_px`
+/// [m]. NaN unless the lens is an ideal thin lens, or if the images are already that wide.
 double defocus_distance(Setup const& setup, double diameter_px);
 
-/// Warns of images below least_image_px: their diameter, the error to be expected, and the f-number or the focus that
-/// cures it. Empty where images are large enough. @pre no calibration
+/// Returns a warning of images below least_image_px, with their diameter, the expected error, and the f-number or focus
+/// distance that avoids it. Empty if the images are large enough.
+/// @pre not a calibration
 std::string locking_advice(Setup const& setup);
 
-/// The same of a frame without a setup, by the autocorrelation of the dots in its middle (ImageStatistics); empty where
-/// nothing is known of them. Their width over the pixels includes that of a pixel, 1/12 px^2 in variance, which is
-/// taken off.
+/// Returns the same warning for a frame without a setup, from the autocorrelation of the dots in its middle
+/// (ImageStatistics); empty if their size cannot be estimated. The measured width includes the pixel's own variance of
+/// 1/12 px^2, which is subtracted.
 std::string locking_advice(Image<double> const& frame);
 
 }  // namespace gladstone

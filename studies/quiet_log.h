@@ -4,8 +4,8 @@
 
 namespace gladstone {
 
-/// Says nothing on the log below errors while it lives: what is warned of stands in results, or is no setup of the
-/// user's.
+/// RAII guard that silences log messages below `error`, for internally constructed setups and for warnings that are
+/// reported elsewhere.
 class QuietLog {
  public:
   QuietLog() : level_(spdlog::get_level()) { spdlog::set_level(spdlog::level::err); }

@@ -7,27 +7,27 @@
 
 namespace gladstone {
 
-/// How far rays are traced.
+/// End of the traced path: after the medium, after the lens, or at the sensor.
 enum class Through { medium, optics, all };
 
-/// Where a given ray ended; what is undefined is NaN.
+/// Final state of a given ray; undefined quantities are NaN.
 struct TracedRay {
   RayStatus status = RayStatus::alive;
   Vec3d position;           ///< [m]
   Vec3d direction;          ///< unit length
-  double optical_path = 0;  ///< from the start [m]; NaN behind a thin lens
-  Vec2d pixel;              ///< on the sensor
+  double optical_path = 0;  ///< length of the optical path from the start [m]; NaN after a thin lens
+  Vec2d pixel;              ///< position on the sensor
 };
 
-/// Reads x_mm,y_mm,z_mm,dx,dy,dz (world frame; directions of any length).
-/// @param farthest that a ray may start from the origin in any direction [m] @throws DataError with file:line
+/// Reads rays from a CSV file with columns x_mm,y_mm,z_mm,dx,dy,dz (world frame; directions of any length).
+/// @param farthest  largest admissible coordinate of a start point [m]
+/// @throws DataError with file:line
 std::vector<Ray<double>> read_rays(std::string const& path, double farthest);
 
-/// Traces rays through the medium, the lens, up to the sensor. A ray that misses the medium comes out of it as it went
-/// in.
+/// Traces rays through the medium and the lens to the sensor. A ray that misses the medium is not changed by it.
 std::vector<TracedRay> trace_rays(Scene const& scene, std::vector<Ray<double>> const& rays, Through through);
 
-/// status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px with 17 significant digits.
+/// Formats rays as CSV: status,x_mm,y_mm,z_mm,dx,dy,dz,opl_mm,col_px,row_px with 17 significant digits.
 std::string traced_rays_csv(std::vector<TracedRay> const& rays);
 
 }  // namespace gladstone

@@ -12,49 +12,52 @@
 
 namespace gladstone {
 
-/// What a rendering tells of one camera's case in a line.
+/// One camera's entry in the report of a rendering.
 struct RenderedCamera {
   std::string folder;
-  std::size_t planes = 0;   ///< of a calibration
-  std::size_t sources = 0;  ///< of a calibration: of all planes
+  std::size_t planes = 0;   ///< number of planes of a calibration
+  std::size_t sources = 0;  ///< number of dots or particles; of a calibration, in all planes together
   bool particles = false;
-  std::uint64_t rays = 0;               ///< a source; the least
-  std::uint64_t most_rays = 0;          ///< of one
-  std::optional<double> step_mm;        ///< none: there was no medium to step through
-  std::optional<double> magnification;  ///< [1]; none: every plane has its own
+  std::uint64_t rays = 0;               ///< smallest number of rays per source
+  std::uint64_t most_rays = 0;          ///< largest number of rays of a source
+  std::optional<double> step_mm;        ///< empty if there was no medium
+  std::optional<double> magnification;  ///< empty if it differs between planes [1]
   double seconds = 0;
   std::string device;
 };
 
-/// What is told of a setup that was rendered.
+/// Result of rendering a setup.
 struct RenderedSetup {
-  nlohmann::ordered_json summary;  ///< what summary.json holds
+  nlohmann::ordered_json summary;  ///< contents of summary.json
   std::vector<RenderedCamera> cameras;
 };
 
-/// A setup of any experiment and any number of cameras, read and checked: what `gladstone render` does.
+/// Reads, checks and renders a setup of any experiment with any number of cameras; implements `gladstone render`.
 class SetupRendering {
  public:
-  /// @param path of the setup file @throws SetupError
+  /// @param path  path of the setup file
+  /// @throws SetupError if the setup is invalid
   SetupRendering(std::string path, std::vector<std::string> const& overrides);
 
-  /// @throws OutputError where rendering into the folder would replace what is read for it
+  /// @throws OutputError if rendering into the folder would overwrite one of the setup's input files
   void refuse_over_inputs(std::string const& folder) const;
 
-  /// Renders into a CASE folder, all of it or nothing: one camera's case into the folder itself, those of several into
-  /// folders of their names, beside the setup of all and a summary.json that has each one's.
+  /// Renders into a CASE folder atomically: all files are written, or none. The case of a single camera is written into
+  /// the folder itself; those of several cameras into subfolders of their names, next to the common setup and a
+  /// summary.json that contains every camera's summary.
   RenderedSetup render(Renderer& renderer, std::string const& folder);
 
  private:
   struct OneCamera {
-    std::string name;  ///< empty: the only one
+    std::string name;  ///< empty for the only camera
     CaseSetup loaded;
-    std::vector<UncertainInput> uncertain;  ///< numbers of its setup that are written with their uncertainty
+    std::vector<UncertainInput> uncertain;  ///< numbers of its setup given with an uncertainty
   };
-  /// Renders one camera's case into its place in a folder. @return what its summary.json holds
+  /// Renders one camera's case into its part of the output folder.
+  /// @return the contents of its summary.json
   nlohmann::ordered_json render_one(OneCamera& camera, Renderer& renderer, KnownParts const& known, BuiltMedium& medium,
                                     class OutputFolder const& output, RenderedCamera& told) const;
-  /// The setup as it was written, with the absolute names of its files.
+  /// Returns the setup as written, with absolute file names.
   std::string written() const;
 
   std::string path_;

@@ -9,17 +9,18 @@
 
 namespace gladstone {
 
-/// The method that renders a scene: rays or focused_dots, never automatic.
+/// Returns the method that renders a scene: resolves `automatic` to rays, focused_dots or formula.
 RenderMethod method_of(Scene const& scene);
 
-/// "rays" or "focused_dots", as files call it.
+/// Returns the name of the method in files: "focused_dots", "formula" or "rays" (also for `automatic`).
 char const* to_string(RenderMethod method);
 
-/// Renders every scene by its method, on one device. Dots that the fast renderer leaves, at a side face of the medium
-/// or where their rays get lost, go ray by ray all the same, and by a number of rays of their own.
+/// Renders every scene by its method, on one device. Dots that the fast renderer rejects, at a side face of the medium
+/// or with lost rays, are rendered by individual rays, with a separate number of rays.
 class SceneRenderer : public Renderer {
  public:
-  /// @param focused_dots,rays the renderers of that device
+  /// @param focused_dots  fast renderer of that device
+  /// @param rays          general renderer of that device
   SceneRenderer(std::unique_ptr<Renderer> focused_dots, std::unique_ptr<Renderer> rays);
 
   std::string device() const override { return rays_->device(); }
@@ -28,23 +29,25 @@ class SceneRenderer : public Renderer {
                              RenderImages images) override;
 
  private:
-  /// Renders particles whose light can reach the sensor; the others have no truth and no planned rays.
+  /// Renders the particles whose light can reach the sensor; the others have no truth and zero planned rays.
   Rendering render_near_view(Scene& scene, Particles const& particles, RenderImages images);
   Rendering render_focused(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory);
 
   std::unique_ptr<Renderer> focused_dots_, rays_;
 };
 
-/// What plans a scene and maps its field, by its method.
+/// Determines the integration step of a scene. With two media, the shorter of both steps.
 StepPlan plan_step_of(Scene& scene);
-/// With "auto" the method, too: the fast renderer where what its table leaves is within what "auto" asks of truth and
-/// images, or less than what the general renderer's rays would scatter by; but rays where a table takes 60 times
-/// their processor time and more than 5 s of it, and they are given, or good enough. Sets scene.setup.render.method
-/// then.
+/// Determines the ray budget, and for "auto" the method, which it stores in scene.setup.render.method. It selects the
+/// fast renderer if the interpolation error of its deflection table is within the accuracy goals of "auto", or smaller
+/// than the scatter of the general renderer's rays; but the general renderer if the table takes more than 5 s and 60
+/// times the processor time of the rays, and their number is given or sufficient.
 RaysPlan plan_rays_of(Scene& scene);
-/// Processor time that rendering a planned scene takes [s], as ray_seconds() counts it.
+/// Estimates the processor time for rendering a prepared scene, with ray_seconds() per ray [s].
 double render_seconds(Scene const& scene, RaysPlan const& plan);
+/// Maps density, gradient and small-angle theory (Eq. 9) of the scene's field over the view.
 FieldMap field_of(Scene const& scene, int spacing_px);
+/// Maps the strain of the displacement field over the view.
 StrainMap strain_of(Scene const& scene);
 
 }  // namespace gladstone

@@ -7,9 +7,10 @@
 
 namespace gladstone {
 
-/// Gives all cameras of a setup one target (of PIV the same particles): the first camera's dots, on a target that
-/// covers all views, at one place.
-/// @param read what the cases' documents say, one by one
+/// Replaces the target of every camera's setup by a common one (for PIV, the number of particles by a common number):
+/// the first camera's dots, on a target at one position that covers all views.
+/// @param cases  setups to be changed
+/// @param read   the same setups, read
 void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read);
 
 }  // namespace gladstone

@@ -4,11 +4,12 @@
 
 namespace gladstone {
 
-/// Which of a lattice's vectors along rows and columns are at least so far apart: 1 all, 2 every second ...; 1 where
-/// there is no lattice.
+/// Returns the smallest step n such that every n-th vector of a lattice is at least `least_apart_px` from the next; 1
+/// for vectors without a lattice.
 int lattice_step(DisplacementField const& field, int least_apart_px);
 
-/// Every n-th row and column of a lattice, as near to its middle as they come. A field without a lattice stays.
+/// Selects every n-th row and column of a lattice, centred as well as possible. Vectors without a lattice are
+/// unchanged.
 DisplacementField every_nth(DisplacementField field, int n);
 
 }  // namespace gladstone

@@ -11,14 +11,15 @@
 namespace gladstone {
 
 /// Writes truth.h5: /dots, /rays, /field (docs/file-formats.md).
-/// @param table what a deflection table leaves, by measurement; null: none was used
+/// @param table  measured errors of the deflection table; null: no table was used
 void write_truth(std::string const& path, Scene const& scene, GroundTruth const& truth, StatusCounts const& statuses,
                  FieldMap const& field, RenderMethod method, RaysPlan const* table, FileOrigin const& origin);
 
-/// Reads the dots of a truth.h5 back. @throws DataError
+/// Reads the dots, or the particles, of a truth.h5.
+/// @throws DataError if the file is invalid
 GroundTruth read_truth(std::string const& path);
 
-/// Reads the maps of /field back.
+/// Reads the maps of /field.
 FieldMap read_field_map(std::string const& path);
 
 }  // namespace gladstone

@@ -9,36 +9,39 @@
 
 namespace gladstone {
 
-/// How what is known of an input spreads about its value.
+/// Probability distribution of an uncertain input about its value.
 enum class InputDistribution { normal, rectangular };
 char const* to_string(InputDistribution distribution);
 
-/// That an input is correlated with another one.
+/// Correlation of an input with another one.
 struct InputCorrelation {
-  std::string with;        ///< the other's key
+  std::string with;        ///< key of the other input
   double coefficient = 0;  ///< from -1 to 1 (JCGM 100:2008, 5.2.2)
 };
 
-/// A number of a setup that is written with its standard uncertainty,
-/// { value = 250.0, sigma = 1.0, distribution = "normal", degrees_of_freedom = 9 }. Numbers in the key's own unit.
+/// A number of a setup given with its standard uncertainty, in the unit of its key: { value = 250.0, sigma = 1.0,
+/// distribution = "normal", degrees_of_freedom = 9 }.
 struct UncertainInput {
   std::vector<std::string> path;  ///< keys from the root
-  std::string key;                ///< the same with dots, for the reader: "geometry.z_d_mm"
+  std::string key;                ///< the same joined by dots, e.g. "geometry.z_d_mm"
   double value = 0;
-  double sigma = 0;  ///< standard uncertainty, whatever the distribution: a rectangle is 2 sqrt(3) times as wide
+  /// standard uncertainty for either distribution; a rectangular one has the full width 2 sqrt(3) sigma
+  double sigma = 0;
   InputDistribution distribution = InputDistribution::normal;
-  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< of sigma (JCGM 100, G.4)
-  SetupNode node;                                                       ///< as written
-  std::vector<InputCorrelation> correlations;                           ///< each stands at both inputs
+  /// degrees of freedom of sigma (JCGM 100:2008, G.4) [1]
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();
+  SetupNode node;                              ///< node of the setup file
+  std::vector<InputCorrelation> correlations;  ///< every correlation is stored at both inputs
 };
 
-/// Puts the value in place of every number that a setup writes with its uncertainty, so that all that reads it reads a
-/// number, and tells of them; so with what [[correlations]] says of two of them each, { keys = [.., ..], coefficient =
-/// -0.5 }. What is wrong with one goes to the document at its key. Tables of the question of a design have none.
+/// Replaces every number given with an uncertainty by its value, so that all readers find a plain number, and returns
+/// the uncertainties. Also removes and returns the correlations in [[correlations]], { keys = [.., ..], coefficient =
+/// -0.5 }. Problems are added to the document at the key concerned. Tables of a design question (requirements, limits,
+/// ...) are not searched.
 std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document);
 
-/// A setup with the uncertainties written at their numbers again, and what correlates them.
-/// @param text TOML, in which each input's key is a number or absent
+/// Writes a setup with the uncertainties at their numbers and their correlations; inverse of take_uncertain_inputs().
+/// @param text  TOML, in which each input's key is a number or missing
 std::string with_uncertain_inputs(std::string const& text, std::vector<UncertainInput> const& inputs);
 
 }  // namespace gladstone

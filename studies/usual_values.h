@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// Values of a setup that lie outside what laboratories use, one text each: its place, the usual range and the unit
-/// that would bring it there. Only keys that are written in the file are looked at; zero and infinity are no slips.
+/// Returns one text for every value of a setup outside the range usual in laboratories: its key, the range, and the
+/// unit that would bring the value into it. Examines only keys written in the file; zero and infinity are accepted.
 std::vector<std::string> unusual_values(SetupDocument& document);
 
 }  // namespace gladstone

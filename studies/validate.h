@@ -8,7 +8,8 @@ namespace gladstone {
 
 enum class ToleranceKind { absolute, relative };
 
-/// A number that theory knows and that our code can be asked for. Adding one: a function, and its row in validate.cpp.
+/// A quantity with a known exact value and the function that measures it with our code. To add one, write the function
+/// and add a row in validate.cpp.
 struct Oracle {
   char const* name;
   char const* source;  ///< author, year, equation
@@ -18,16 +19,17 @@ struct Oracle {
   double (*measure)(Renderer& renderer);
 };
 
-/// An oracle's answer beside ours.
+/// Exact and measured value of an oracle.
 struct OracleResult {
   Oracle oracle;
   double measured = 0;
 
-  double error() const;  ///< of the oracle's kind
-  bool passed() const;   ///< false, too, where the measurement is no number
+  double error() const;  ///< absolute or relative error, as the oracle specifies
+  bool passed() const;   ///< false also if the measurement is NaN
 };
 
-/// Asks every oracle; those that need rendering use `renderer`.
+/// Measures all oracles.
+/// @param renderer  used by those that require rendering
 std::vector<OracleResult> run_oracles(Renderer& renderer);
 
 }  // namespace gladstone

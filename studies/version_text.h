@@ -4,11 +4,11 @@
 
 namespace gladstone {
 
-/// What this executable was built from: version and commit, "0.1.0 (a5503eb9ee49)".
+/// Returns version and commit of this build, "0.1.0 (a5503eb9ee49)".
 std::string build_text();
-/// What --version prints: version, commit, backends.
+/// Returns the text of --version: version, commit and backends.
 std::string version_text();
-/// The same as one JSON object.
+/// Returns the same as a JSON object.
 std::string version_json();
 
 }  // namespace gladstone
