@@ -11,12 +11,13 @@
 namespace gladstone {
 namespace {
 
-constexpr int pieces_across = 4;  // of the plane, for the jackknife
-constexpr int dots_across = 96;   // of the whole plane: at 512 nodes half the size of the turbulence's structures
+constexpr int pieces_across = 4;  // side length of the plane in jackknife pieces
+constexpr int dots_across =
+    96;  // side length of the plane in dots; at 512 nodes, the dot spacing is half the size of the turbulent structures
 
 using Pieces = std::array<AgreementSums, pieces_across * pieces_across>;
 
-/// Standard errors from the values without one piece each (Efron & Stein, Ann. Stat. 9 (1981) 586).
+/// Computes jackknife standard errors from the values without one piece each (Efron & Stein, Ann. Stat. 9 (1981) 586).
 Agreement jackknife(AgreementSums const& whole, Pieces const& pieces) {
   constexpr double count = std::tuple_size_v<Pieces>;
   Agreement mean{}, square{};
@@ -79,7 +80,7 @@ PlaneAgreement agreement_over_plane(Setup setup, int nodes, double spacing, Rend
   int const views = plane_nodes / nodes, dots = dots_across / views;
   GLADSTONE_EXPECTS(dots * views == dots_across);
   field.spacing = Vec3d{spacing, spacing, spacing};
-  double const pitch = nodes * spacing / dots * setup.z_b() / setup.z_a;  // on the target
+  double const pitch = nodes * spacing / dots * setup.z_b() / setup.z_a;  // dot spacing on the target [m]
   Pieces pieces;
   for (int row = 0; row < views; ++row) {
     for (int column = 0; column < views; ++column) {

@@ -19,9 +19,9 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t least_dots = 12;  // on a plane
+constexpr std::size_t least_dots = 12;  // minimum number of dots on a plane
 
-/// How the setup's camera sees the grid of a plane.
+/// Computes the expected image of the grid on a plane from the setup's camera: middle dot and spacing vectors [px].
 ExpectedView expected_view(Setup const& setup, double z, std::string const& name) {
   Camera const camera = build_camera(plane_setup(setup, z));
   auto const middle = camera.project({0, 0, z});
@@ -39,7 +39,7 @@ CalibrationGrid grid_of(Setup const& setup) {
   return {lattice.half_columns, lattice.half_rows, lattice.spacing, setup.dot_diameter()};
 }
 
-/// The pupil of the setup's lens, and the plane that its sensor is the image of.
+/// Returns the entrance pupil of the setup's lens and the object plane conjugate to its sensor.
 CalibratedLens lens_of(Setup const& setup) {
   ImagingGeometry const imaging = setup.imaging();
   Pose<double> const pose = setup.camera_pose();
@@ -47,7 +47,7 @@ CalibratedLens lens_of(Setup const& setup) {
   if (!std::isfinite(setup.focus_distance()) || !std::isfinite(imaging.entrance_pupil)) return lens;
   lens.pupil_radius = imaging.entrance_pupil / 2;
   lens.focus_point = pose.origin - setup.focus_distance() * pose.z;
-  // a sensor at z' = z_i - M a . (x', y') is the image of the plane z = -Z + a . (x, y), see sensor_tilt()
+  // A sensor at z' = z_i - M a . (x', y') is conjugate to the plane z = -Z + a . (x, y), see sensor_tilt().
   Vec2d const tilt = sensor_tilt(setup);
   Vec3d const sensor = Pose<double>{}.turned({tilt.x, tilt.y, 0}).z;
   double const per_slope = imaging.magnification * setup.z_b() / setup.focus_distance() * sensor.z;
@@ -55,7 +55,7 @@ CalibratedLens lens_of(Setup const& setup) {
   return lens;
 }
 
-/// What the setup says of its camera, for comparison with the fitted one.
+/// Returns the camera properties known from the setup, for comparison with the fitted camera.
 ExpectedCamera expected_camera(Setup const& setup) {
   ExpectedCamera expected;
   expected.is_pinhole = setup.windows.empty();
@@ -69,7 +69,7 @@ ExpectedCamera expected_camera(Setup const& setup) {
   return expected;
 }
 
-/// Reads a plane's picture and refuses one of another size, and one that was given before.
+/// Reads the image of a plane; throws if its size differs or its pixels equal those of an earlier plane.
 Image<double> read_plane(Calibration& calibration, Setup const& setup, std::string const& file, std::size_t plane) {
   ImageMetadata metadata;
   Image<double> picture = read_image(file, &metadata);
@@ -110,10 +110,10 @@ Image<double> read_plane(Calibration& calibration, Setup const& setup, std::stri
   return picture;
 }
 
-/// Warns where the middle of the grid is a guess that may be off by one, and where the grid is larger than told.
+/// Warns if the middle dot is uncertain by one spacing, and if the detected grid is larger than the setup's.
 void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, CalibrationGrid const& grid,
                         std::string const& file) {
-  constexpr double doubtful = 0.3;  // of a spacing
+  constexpr double doubtful = 0.3;  // in dot spacings
   int const columns = 2 * grid.half_columns + 1, rows = 2 * grid.half_rows + 1;
   if (assigned.columns > columns || assigned.rows > rows) {
     calibration.warnings.push_back(
@@ -129,7 +129,7 @@ void warn_of_assignment(Calibration& calibration, AssignedDots const& assigned, 
   }
 }
 
-/// Detects the dots of a plane's picture and adds them.
+/// Detects the dots in a plane's image and appends them.
 void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std::string const& file,
                std::size_t plane) {
   DetectedDots const detected = detect_dots(read_plane(calibration, setup, file, plane));
@@ -156,7 +156,7 @@ void add_plane(Calibration& calibration, PlateDots& all, Setup const& setup, std
   }
 }
 
-/// The pinhole camera that a truth.h5 knows; nothing where it knows none, or there is none.
+/// Reads the true pinhole camera from a truth.h5; nullopt if the file or the camera does not exist.
 std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCamera const& fitted) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
@@ -170,7 +170,7 @@ std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCam
   std::vector<double> const matrix = read("/pinhole/camera_matrix", 9), brown = read("/pinhole/distortion", 4),
                             t = read("/pinhole/tvec", 3);
   std::vector<double> r = read("/pinhole/rvec", 3);
-  // r and r (1 - 2 pi / |r|) are one rotation: that which is nearer to the fitted one
+  // The vectors r and r (1 - 2 pi / |r|) describe the same rotation; use the one closer to the fitted vector.
   double const angle = std::hypot(r[0], r[1], r[2]);
   double along = 0;
   for (std::size_t i = 0; i < 3; ++i) along += r[i] * fitted.value[8 + i];
@@ -185,7 +185,9 @@ std::optional<PinholeCamera> rendered_camera(std::string const& path, PinholeCam
 
 namespace {
 
-/// Detects and fits. @param setup_path of a setup of a calibration, that `loaded` is @param name for messages
+/// Detects the dots of all planes and fits the camera models.
+/// @param setup_path  path of the setup file, read as `loaded`
+/// @param name        name of the case or setup, for messages
 Calibration calibrate(CaseSetup const& loaded, std::string const& setup_path, std::vector<std::string> const& pictures,
                       std::string const& name) {
   Setup const& setup = loaded.setup;

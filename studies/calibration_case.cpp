@@ -20,12 +20,13 @@
 namespace gladstone {
 namespace {
 
-constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // that "auto" takes
-constexpr double place_tolerance_px = 1e-3;                    // rms of dots' places, that "auto" takes rays for
+constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // limits of the number of rays per dot chosen by "auto"
+constexpr double place_tolerance_px =
+    1e-3;  // rms error of the dot positions at which "auto" stops increasing the number of rays
 constexpr std::size_t dots_traced_again = 64;
-constexpr int dots_for_a_fit = 12;  // on a plane: what a homography and its check need
+constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
 
-/// A plane's scene, ready to trace: without a medium, in which a step would matter.
+/// Builds the scene of a plane. It has no medium, so the step size is irrelevant.
 Scene plane_scene(Setup const& setup, double z) {
   Scene scene = build_scene(plane_setup(setup, z));
   scene.setup.render.method = RenderMethod::rays;
@@ -33,7 +34,7 @@ Scene plane_scene(Setup const& setup, double z) {
   return scene;
 }
 
-/// Some of a scene's dots, all over it.
+/// Selects up to `dots_traced_again` dots, evenly distributed over the pattern.
 DotPattern some_dots(Scene const& scene) {
   DotPattern some = scene.dots;
   some.centre.clear();
@@ -64,20 +65,20 @@ PlaceError place_error(Scene scene, Renderer& renderer) {
   return error;
 }
 
-/// Rays a dot for all planes: what the plane needs that is farthest out of focus.
+/// Determines the rays per dot for all planes: the number required by the plane farthest out of focus.
 std::uint64_t rays_for(Setup const& setup, Renderer& renderer) {
   if (setup.render.rays_per_dot) return *setup.render.rays_per_dot;
   auto const nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
   Scene scene = plane_scene(setup, *std::max_element(setup.planes.begin(), setup.planes.end(), nearer));
   scene.rays_per_dot = std::max(least_rays, plan_rays_of(scene).rays);
-  scene.by_need.reset();  // all of them the same
+  scene.by_need.reset();  // use the same number of rays for all dots
   while (scene.rays_per_dot < most_rays && place_error(scene, renderer).rms_px > place_tolerance_px) {
     scene.rays_per_dot *= 2;
   }
   return scene.rays_per_dot;
 }
 
-/// Says where places are not as good as a calibration asks for.
+/// Warns if the position error of a plane exceeds the tolerance.
 void warn_of_place_errors(RenderedCalibration& rendered) {
   double worst = 0, at = 0;
   for (RenderedPlane const& plane : rendered.planes) {
@@ -92,7 +93,7 @@ void warn_of_place_errors(RenderedCalibration& rendered) {
                    rendered.rays, worst, at / unit::millimetre, place_tolerance_px));
 }
 
-/// The camera with another noise for each frame.
+/// Returns the camera with an independent noise seed for each frame.
 CameraSetup camera_of_frame(CameraSetup camera, std::size_t frame) {
   camera.noise.seed = repeat_seed(camera.noise.seed, frame);
   return camera;

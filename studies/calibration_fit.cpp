@@ -13,19 +13,20 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_scatter_px = 0.01;   // of dots within a plane, that residuals are held against
-constexpr double suspicious = 5;            // times that scatter
-constexpr double refused = 10;              // times that scatter
-constexpr double least_refused_px = 0.5;    // residual below which only a warning is given
-constexpr double outlier_deviations = 8;    // of a robust standard deviation
-constexpr double least_outlier_px = 0.05;   // residual of a dot that is never removed
-constexpr double same_place = 3;            // times that scatter, between two planes
-constexpr double principal_share = 0.05;    // of the picture's longer side, by which principal points may be off
-constexpr double tilted_share = 0.2;        // of how far a tilted sensor moves it
-constexpr double deviations = 6;            // standard errors that are no chance
-constexpr double least_known = 0.2;         // relative standard error of a focal length that is refused
-constexpr double other_focal_length = 0.1;  // relative difference from the setup's that is warned of
-constexpr double square_pixels = 0.01;      // relative difference of fx and fy that is warned of
+constexpr double least_scatter_px =
+    0.01;                         // lower bound of the dots' scatter within a plane, used as reference for residuals
+constexpr double suspicious = 5;  // residual, in multiples of that scatter, that is investigated
+constexpr double refused = 10;    // residual, in multiples of that scatter, that is an error
+constexpr double least_refused_px = 0.5;   // residual below which only a warning is given
+constexpr double outlier_deviations = 8;   // residual of an outlier, in robust standard deviations
+constexpr double least_outlier_px = 0.05;  // residual below which a dot is never an outlier
+constexpr double same_place = 3;          // rms distance, in multiples of that scatter, below which two planes coincide
+constexpr double principal_share = 0.05;  // allowed error of the principal point, relative to the image's longer side
+constexpr double tilted_share = 0.2;      // additional allowed error, relative to its displacement by the sensor's tilt
+constexpr double deviations = 6;          // significance limit, in standard errors
+constexpr double least_known = 0.2;       // relative standard error of a focal length that is an error
+constexpr double other_focal_length = 0.1;  // relative difference from the setup's focal length that causes a warning
+constexpr double square_pixels = 0.01;      // relative difference of fx and fy that causes a warning
 
 double median_of(std::vector<double> values) {
   auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -35,7 +36,7 @@ double median_of(std::vector<double> values) {
 
 double degrees(double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)) * 180 / pi; }
 
-/// A calibration while its models are fitted.
+/// State of a calibration during the fit.
 class CalibrationFit {
  public:
   CalibrationFit(Calibration& calibration, PlateDots dots, ExpectedCamera const& expected, std::string const& name)
@@ -63,7 +64,7 @@ class CalibrationFit {
   double focal_length() { return 0.5 * (pinhole().camera.fx() + pinhole().camera.fy()); }
   void warn(std::string text) { calibration_.warnings.push_back(std::move(text)); }
 
-  /// Dots that lie at the same pixels in two planes were not moved.
+  /// Throws if dots are at the same pixels in two planes, that is, if the plate was not moved.
   void refuse_planes_in_one_place() const {
     std::vector<std::map<std::array<int, 2>, Vec2d>> seen(dots_.z.size());
     for (std::size_t k = 0; k < dots_.pixel.size(); ++k) seen[dots_.plane_of[k]][dots_.index[k]] = dots_.pixel[k];
@@ -94,7 +95,7 @@ class CalibrationFit {
     } catch (std::invalid_argument const& reason) {
       refuse_open(reason.what());
     }
-    // planes in the wrong order fit a camera that looks at them from behind just as well
+    // Planes in reverse order fit a camera on the other side of the plate equally well.
     if (pinhole().camera.value.back() <= 0) {
       throw DataError(name_,
                       "fits a camera with the dots behind it only; give the pictures in the order of "
@@ -143,7 +144,7 @@ class CalibrationFit {
                     expected_.principal_point_px->y));
   }
 
-  /// Fits with another placement of the plate, and keeps it where its residuals are no larger.
+  /// Fits with another placement of the plate; reverts to the previous fit if the residuals increase.
   void try_placement(std::optional<PlatePlacement> const& placement) {
     if (!placement) return;
     PinholeFit const before = pinhole();
@@ -175,7 +176,7 @@ class CalibrationFit {
   void remove_outliers() {
     std::vector<double> sizes;
     for (Vec2d const residual : pinhole().residual_px) sizes.push_back(length(residual));
-    double const deviation = median_of(sizes) / 1.1774;  // median of a Rayleigh distribution
+    double const deviation = median_of(sizes) / 1.1774;  // ratio for the median of a Rayleigh distribution
     double const limit = std::max(outlier_deviations * deviation, least_outlier_px);
     PlateDots kept = dots_;
     kept.pixel.clear();
@@ -197,7 +198,7 @@ class CalibrationFit {
     fit();
   }
 
-  /// The plane with the largest residuals.
+  /// Returns the plane with the largest rms residual.
   std::size_t worst_plane() {
     std::vector<double> squares(dots_.z.size()), count(dots_.z.size());
     for (std::size_t k = 0; k < dots_.pixel.size(); ++k) {
@@ -291,7 +292,7 @@ class CalibrationFit {
   ExpectedCamera const& expected_;
   std::string const& name_;
   PlatePlacement placement_;
-  double scatter_ = least_scatter_px;  ///< of dots within their planes [px]
+  double scatter_ = least_scatter_px;  ///< scatter of the dots within their planes [px]
 };
 
 }  // namespace

@@ -56,7 +56,8 @@ void write_soloff(Hdf5Writer& file, SoloffFit const& fit) {
   file.attribute("/soloff", "rms_px", fit.rms_px);
 }
 
-/// Arrows of one model's residuals, drawn larger.
+/// Draws the residuals of one model as arrows.
+/// @param enlarged  magnification of the arrows [1]
 void draw_panel(GnuplotFigure& plot, Calibration const& calibration, std::vector<Vec2d> const& residuals,
                 std::string const& title, double enlarged) {
   plot.command(fmt::format("set title {} font 'DejaVu Sans Bold,12'", GnuplotFigure::quoted(title)));
@@ -85,7 +86,7 @@ nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
   return places;
 }
 
-/// "; 3 spots are no dots by size or shape, 1 by its place"; empty where there are none.
+/// Returns e.g. "; left out as no dots: 3 by size or shape, 1 by their place on the grid"; empty if there are none.
 std::string spots_in_words(CalibratedPlane const& plane) {
   if (plane.not_dots == 0 && plane.strangers.empty()) return "";
   return fmt::format("; left out as no dots: {} by size or shape, {} by their place on the grid", plane.not_dots,
@@ -126,7 +127,7 @@ void write_calibration_file(std::string const& path, Calibration const& calibrat
 
 void draw_calibration(std::string const& path, Calibration const& calibration) {
   constexpr int width = 1180, height = 620;
-  constexpr double longest = 0.06;  // of the picture's width, that the longest arrow takes
+  constexpr double longest = 0.06;  // length of the longest arrow, relative to the width of the image
   GnuplotFigure plot(width, height);
   auto const panel = [&](std::vector<Vec2d> const& residuals, char const* model, double rms) {
     double const most = largest(residuals);

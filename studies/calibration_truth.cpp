@@ -8,7 +8,7 @@
 namespace gladstone {
 namespace {
 
-/// The datasets of /pinhole.
+/// Writes the datasets of /pinhole.
 void write_pinhole(Hdf5Writer& file, Pinhole const& pinhole) {
   std::vector<double> const matrix{pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1};
   file.write("/pinhole/camera_matrix", std::span<double const>(matrix), {3, 3}, "px",

@@ -13,14 +13,14 @@
 namespace gladstone::oracle {
 namespace {
 
-/// Table 1 of Rajendran, Bane & Vlachos; the readers' defaults are it.
+/// Setup of Table 1 of Rajendran, Bane & Vlachos (2019), which is the default of all readers; dots are points.
 Setup table_1() {
   Setup setup;
   setup.target.dot_diameter_px = 0;
   return setup;
 }
 
-/// Truth of points on the target [m], with so many rays each.
+/// Traces points on the target [m] with the given number of rays each.
 GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::uint64_t rays, Renderer& renderer) {
   Scene scene;
   scene.setup = setup;
@@ -33,7 +33,7 @@ GroundTruth truth_of(Setup const& setup, std::vector<Vec2d> const& points, std::
   return renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::yes).truth;
 }
 
-/// A wave of density along X with a peak gradient of 10 kg/m^4 on the axis, seen from a point there by 2^15 rays.
+/// Traces an axial point with 2^15 rays through a density wave along X with a peak gradient of 10 kg/m^4 on the axis.
 GroundTruth behind_wave(double wavelength, Renderer& renderer) {
   Setup setup = table_1();
   setup.medium.field = Sinusoid<double>::wave(10 * wavelength / (2 * pi), wavelength);

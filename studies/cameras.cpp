@@ -19,16 +19,17 @@ namespace {
 
 using Kind = SetupNode::Kind;
 
-/// The cameras of a setup that has several; null where it has one.
+/// Returns the array of cameras of a setup with several cameras; null for a setup with one camera.
 SetupNode const* several_cameras(SetupDocument const& setup) {
   SetupNode const* const cameras = setup.find({"camera"});
   if (!cameras || cameras->kind != Kind::array || cameras->elements.size() < 2) return nullptr;
   bool const tables = std::all_of(cameras->elements.begin(), cameras->elements.end(),
                                   [](SetupNode const& camera) { return camera.kind == Kind::table; });
-  return tables ? cameras : nullptr;  // else the readers say what is wrong
+  return tables ? cameras : nullptr;  // the readers report the error
 }
 
-/// Takes a key out of a table. @return its value, or nothing
+/// Removes a key from a table.
+/// @return its value; nullopt if the key does not exist
 std::optional<SetupNode> take(SetupNode& table, std::string const& key) {
   auto const found = std::find_if(table.members.begin(), table.members.end(),
                                   [&key](SetupMember const& member) { return member.key == key; });
@@ -38,13 +39,14 @@ std::optional<SetupNode> take(SetupNode& table, std::string const& key) {
   return taken;
 }
 
-/// Leaves the windows that a camera looks through, without the key that says so.
-/// @param names of all cameras
+/// Retains only the windows that a camera looks through, and removes their key `cameras`.
+/// @param names  names of all cameras
 void keep_own_windows(SetupDocument& document, std::string const& camera, std::vector<std::string> const& names) {
   SetupNode const* const all = document.find({"window"});
   if (!all || (all->kind != Kind::array && all->kind != Kind::table)) return;
   std::vector<SetupNode> windows = all->kind == Kind::array ? all->elements : std::vector{*all};
-  SetupDocument places = document.copy();  // asked where things stand: what was asked is part of a resolved setup
+  SetupDocument places =
+      document.copy();  // used to locate errors; querying `document` itself would add keys to its resolved text
   SetupNode kept = *all;
   kept.kind = Kind::array;
   kept.members.clear();
@@ -72,7 +74,7 @@ void keep_own_windows(SetupDocument& document, std::string const& camera, std::v
   document.set({"window"}, kept);
 }
 
-/// Leaves one camera, with what is its own.
+/// Retains one camera of a setup, with its own lens and windows.
 void keep_camera(SetupDocument& document, SetupNode camera, std::vector<std::string> const& names) {
   SetupNode const* const name = camera.find("name");
   std::string const own = name && name->kind == Kind::text ? name->text : "";
@@ -92,19 +94,19 @@ void check_name(SetupTable camera, std::string const& name, std::set<std::string
   if (!others.insert(name).second) camera.problem("name", "is another camera's name too; give each its own");
 }
 
-/// Noise of camera `index` that is independent of the others', whatever seeds they have.
+/// Gives camera `index` a noise seed that makes its noise independent of the other cameras' noise.
 void give_own_noise(SetupDocument& document, std::size_t index) {
   SetupNode const* const noise = document.find({"camera", "noise"});
   if (!noise || noise->kind != Kind::table || index == 0) return;
   SetupNode const* const seed = noise->find("seed");
-  if (seed && (seed->kind != Kind::integer || seed->integer < 0)) return;  // the reader says what is wrong
+  if (seed && (seed->kind != Kind::integer || seed->integer < 0)) return;  // the reader reports the error
   std::uint64_t const given = seed ? static_cast<std::uint64_t>(seed->integer) : 1;
   SetupNode own = setup_integer(static_cast<long long>(repeat_seed(given, index) >> 1));
   if (seed) own.place = seed->place;
   document.set({"camera", "noise", "seed"}, own);
 }
 
-/// The place of cameras without a pose is none of those that have one.
+/// Removes the camera distances of [geometry], which apply to cameras without a pose only.
 void leave_place_to_others(SetupDocument& document) {
   SetupNode const* const found = document.find({"geometry"});
   if (!found || found->kind != Kind::table) return;

@@ -21,7 +21,7 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_displacement_px = 1e-6;  // below it nothing moves
+constexpr double least_displacement_px = 1e-6;  // displacements below this value count as zero
 
 void cross_check_windows(CaseSetup& loaded) {
   CameraSetup const& camera = loaded.setup.camera;
@@ -35,8 +35,8 @@ void cross_check_windows(CaseSetup& loaded) {
   }
 }
 
-/// Places check_memory's refusal, "table.key: message", in the setup. A field file that cannot be read is left to those
-/// who read it.
+/// Reports a refusal by check_memory(), "table.key: message", at the key of the setup. Field files that cannot be read
+/// are reported by their readers.
 void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   try {
     check_memory(loaded.setup, field, loaded.setup.piv ? std::vector<MemoryNeed>{} : focused_dots_memory(loaded.setup));
@@ -61,7 +61,8 @@ void cross_check_memory(CaseSetup& loaded, FieldMemory field) {
   }
 }
 
-/// Refuses ideal images where they do not hold, and rays of what has none.
+/// Rejects ideal images (method = "formula") where they are not valid, and ray tracing of particles without a
+/// scattering model.
 void cross_check_formula(CaseSetup& loaded) {
   Setup const& setup = loaded.setup;
   SetupTable root = loaded.document.root();
@@ -81,7 +82,7 @@ void cross_check_formula(CaseSetup& loaded) {
   }
 }
 
-/// Refuses the fast renderer where it does not hold.
+/// Rejects the fast renderer where it is not valid.
 void cross_check_method(CaseSetup& loaded) {
   cross_check_formula(loaded);
   if (loaded.setup.render.method != RenderMethod::focused_dots) return;
@@ -92,7 +93,7 @@ void cross_check_method(CaseSetup& loaded) {
                                                  "does not hold here (" + reason + "); use \"auto\" or \"rays\"");
 }
 
-/// Warns where the camera sees nothing of what there is.
+/// Warns if no dot or particle is in the camera's view.
 void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
   if (scene.setup.piv) {
     for (auto const& text : warnings_of_particles(scene)) warn(warnings, text);
@@ -109,7 +110,7 @@ void warn_of_view(Scene const& scene, std::vector<std::string>& warnings) {
   }
 }
 
-/// Warns of a field whose size or place does not fit the view, or that ends in it without fading into the ambient.
+/// Warns of a field whose size or position does not fit the view, or that ends within it without decaying to ambient.
 void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
   if (scene.setup.medium.field.kind == FieldKind::none || scene.setup.piv) return;
   Bounds<double> const box = std::visit([](auto const& view) { return view.bounds(); }, scene.medium.view);
@@ -119,7 +120,7 @@ void warn_of_field(Scene const& scene, std::vector<std::string>& warnings) {
   }
 }
 
-/// Warns where ideal images leave out a blur that would be seen.
+/// Warns if ideal images neglect a visible defocus blur.
 void warn_of_blur(Scene const& scene, std::vector<std::string>& warnings) {
   if (!scene.setup.piv || method_of(scene) != RenderMethod::formula) return;
   double const blur = ideal_images(scene)->largest_blur_px(scene.particles), spot = 4 * scene.spot_sigma_px();
@@ -140,7 +141,7 @@ CaseSetup load_case_setup(std::string const& path, std::vector<std::string> cons
 }
 
 CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
-  take_uncertain_inputs(document);  // who wants to know of them takes them before
+  take_uncertain_inputs(document);  // callers that need the uncertainties extract them before
   CaseSetup loaded{with_own_lens(std::move(document)), {}, {}, {}, {}};
   SetupTable root = loaded.document.root();
   loaded.setup = read_setup(root);
@@ -151,7 +152,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   }
   std::optional<PaperLight> const light = read_light(root);
   if (loaded.setup.piv) root.refuse("light", "is of BOS (PIV's light is that of [laser]); remove it");
-  // a setup may carry the question that gladstone design asks about it
+  // A setup may contain the tables of a design question, which rendering ignores.
   for (char const* const table : {"requirements", "limits", "inventory", "free", "correlations"}) root.pass_over(table);
   if (!loaded.correlate.window_px.empty()) loaded.setup.view_margin_px = loaded.correlate.window_px.front();
   for (std::string const& name : loaded.document.file_names()) {
@@ -170,7 +171,7 @@ CaseSetup load_case_setup(SetupDocument document, FieldMemory field) {
   }
   if (!loaded.document.has_problems()) cross_check_memory(loaded, field);
   std::vector<std::string> const unusual = unusual_values(loaded.document);
-  if (loaded.document.has_problems()) {  // a wrong unit may be what makes the setup impossible
+  if (loaded.document.has_problems()) {  // an error may be caused by a wrong unit
     for (std::string const& text : unusual) spdlog::warn("{}", text);
   } else {
     loaded.warnings.insert(loaded.warnings.begin(), unusual.begin(), unusual.end());
@@ -189,7 +190,7 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   if (scene.second_medium) {
     for (auto const& text : scene.second_medium->warnings) warn(prepared.warnings, text);
   }
-  warn_of_field(scene, prepared.warnings);  // before rays are traced through it
+  warn_of_field(scene, prepared.warnings);  // before rays are traced through the field
   if (known.step) {
     prepared.step = *known.step;
     use_step(scene, prepared.step);
@@ -237,7 +238,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  if ((by_table || prepared.rays.by_need) && !loaded.setup.render.rays_per_dot) {  // every source's are its own
+  if ((by_table || prepared.rays.by_need) &&
+      !loaded.setup.render.rays_per_dot) {  // the number of rays differs between sources
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

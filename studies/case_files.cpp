@@ -22,7 +22,7 @@ std::vector<std::string> in_folder(std::string const& folder, Names const& names
   return paths;
 }
 
-/// Says why a case has no pair of frames where it is not to have one.
+/// Throws, with an explanation, if a case holds several cameras or a calibration instead of an image pair.
 void require_pair(std::string const& folder) {
   std::error_code error;
   if (fs::exists(fs::path(folder) / case_file::reference, error)) return;

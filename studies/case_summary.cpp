@@ -13,14 +13,14 @@
 namespace gladstone {
 namespace {
 
-/// Least, median and most of some numbers.
+/// Minimum, median and maximum.
 nlohmann::json spread_of(std::vector<std::int64_t> numbers) {
   if (numbers.empty()) return nullptr;
   std::sort(numbers.begin(), numbers.end());
   return {{"least", numbers.front()}, {"median", numbers[numbers.size() / 2]}, {"most", numbers.back()}};
 }
 
-/// Numbers of rays without those of particles that were not traced.
+/// Removes the zero ray numbers of particles that were not traced.
 std::vector<std::int64_t> traced_only(std::vector<std::int64_t> rays) {
   std::erase(rays, 0);
   return rays;
@@ -34,7 +34,7 @@ nlohmann::json status_counts(StatusCounts const& counts, std::size_t frame) {
   return json;
 }
 
-/// Shares of a sample of rays by place and cause, in each frame.
+/// Returns the fractions of a sample of rays lost in each frame, by surface and cause.
 nlohmann::json losses_json(RayLosses const& losses) {
   nlohmann::json json{{"sample", {{"sources", losses.sources}, {"rays_of_each", losses.rays}}},
                       {"reference", nlohmann::json::object()},
@@ -49,7 +49,7 @@ nlohmann::json losses_json(RayLosses const& losses) {
   return json;
 }
 
-/// An error that was told from none; null: it was not, or was not measured.
+/// Returns an error; null if it is below its resolution or was not measured.
 nlohmann::json resolved(double error, double resolution) {
   return error < resolution ? nlohmann::json(nullptr) : known_or_null(error);
 }

@@ -74,10 +74,10 @@ void warn_of_truth(std::vector<std::string>& warnings, Rendering const& renderin
   }
   if (!(accuracy.rms_px > truth_tolerance_px)) return;
   bool const all_by_rays = accuracy.above_by_rays == accuracy.above;
-  if (plan.side_faces && plan.side_faces->excess() > 1 && all_by_rays) return;  // warned of already
+  if (plan.side_faces && plan.side_faces->excess() > 1 && all_by_rays) return;  // a warning was given before
   std::string why;
   if (rendering.table == TableState::by_rays) {
-    // all truth is that of rays then, as was asked or chosen
+    // rays were requested or chosen for all dots; no reason to add
   } else if (rendering.table != TableState::made && sources == "dots") {
     why = fmt::format("; truth is that of rays alone, since {}", to_string(rendering.table));
   } else if (accuracy.above_by_rays > 0 && sources == "dots") {
@@ -107,16 +107,16 @@ void warn_of_table(std::vector<std::string>& warnings, RaysPlan const& error) {
 
 std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scene, GroundTruth const& truth,
                            double pupil_margin) {
-  std::int64_t unseen = 0, rays = std::numeric_limits<std::int64_t>::max();  // the fewest of one
+  std::int64_t unseen = 0, rays = std::numeric_limits<std::int64_t>::max();  // smallest number of rays of an unseen dot
   for (std::size_t i = 0; i < truth.size(); ++i) {
     if (!std::isnan(truth.displacement_px[i].x)) continue;
     ++unseen;
     rays = std::min(rays, truth.rays_planned[i]);
   }
-  if (unseen > 0 && !scene.setup.piv) {  // of particles those are meant that are beside the light
+  if (unseen > 0 && !scene.setup.piv) {  // for PIV, unseen particles are those outside the light sheet
     double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
     double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
-    constexpr double few = 16;  // 16 rays all miss the stop once in e^16 dots
+    constexpr double few = 16;  // the probability that 16 rays all miss the stop is about e^-16
     std::string const why =
         !scene.chief_rays_only() && passing < few
             ? fmt::format(
@@ -132,7 +132,7 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
 
 namespace {
 
-/// What keeps pixels from saturation: what fills them is the light, the charge without light, or their noise.
+/// Returns a remedy for saturation, depending on its main cause: light, charge without light, or noise.
 std::string saturation_cure(CameraSetup const& camera, double light_e) {
   NoiseSetup const& noise = camera.noise;
   double const full_scale = std::pow(2.0, camera.bit_depth) - 1;

@@ -27,8 +27,8 @@
 namespace gladstone {
 namespace {
 
-/// Light of a dot in each frame multiplies in the correlation: a is the product, the squared flux where it did not
-/// change.
+/// Returns the weight of each dot in the correlation: the geometric mean of its light in both frames. The weight of a
+/// pair of images is proportional to the product of their light.
 std::vector<double> correlation_flux(GroundTruth const& truth) {
   std::vector<double> flux;
   flux.reserve(truth.size());
@@ -36,7 +36,7 @@ std::vector<double> correlation_flux(GroundTruth const& truth) {
   return flux;
 }
 
-/// What is known of vectors before they are compared.
+/// Initializes a comparison from its vectors.
 Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
   Comparison comparison;
   comparison.measured = std::move(vectors.field);
@@ -48,8 +48,9 @@ Comparison comparison_of(MeasuredVectors& vectors, bool piv) {
   return comparison;
 }
 
-/// Mask and budgets of a comparison whose chain is known.
-/// @param name of the vectors @throws DataError where none can be compared
+/// Computes mask and budgets of a comparison with a complete chain.
+/// @param name  name of the vectors, for messages
+/// @throws DataError if no vector can be compared
 void judge_chain(Comparison& comparison, std::string const& name) {
   DisplacementField const& measured = comparison.measured;
   std::vector<std::span<Vec2d const>> references{comparison.point.displacement_px, comparison.window.displacement_px};
@@ -95,7 +96,7 @@ GroundTruth truth_at_points(Scene& scene, Renderer& renderer, std::vector<Vec2d>
       virtual_dots.centre[i] = virtual_dots.centre[i] + (scene.to_target(seen + miss) - scene.to_target(seen));
     }
   };
-  // a point is where its dot is, but for a little that the second round takes off
+  // Both corrections use few rays, the first with point dots, the second with dots of the target's size.
   scene.rays_per_dot = std::min<std::uint64_t>(all_rays, 128);
   scene.rays_at_side_faces = std::min<std::uint64_t>(all_at_faces, 1024);
   for (double const half_size : {0.0, scene.dots.half_size}) {
@@ -114,10 +115,10 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
   virtual_dots.half_size = scene.dots.half_size;
   virtual_dots.shape = scene.dots.shape;
   for (Vec3d const& p : point.position_m) virtual_dots.centre.push_back({p.x, p.y});
-  // on the bench the ideal lens is one that the fast renderer takes, unless rays are asked for
+  // On the optical axis, the ideal lens can be rendered by the fast renderer, unless rays are requested.
   bool const focusable = scene.setup.on_bench() && !scene.chief_rays_only();
   if (!focusable || scene.setup.render.method == RenderMethod::rays) return ideal_displacements(scene, virtual_dots);
-  // the sensor stays where it is, and with it the magnification; the lens is made to image the target on it
+  // Retain the sensor's position, and so the magnification; change the focal length to focus on the target.
   scene.setup.lens.focal_length = 1 / (1 / scene.imaging.image_distance + 1 / scene.setup.z_b());
   scene.setup.lens.focus = Focus::target;
   scene.setup.lens.f_number = scene.setup.lens.focal_length / scene.imaging.entrance_pupil;
@@ -127,7 +128,7 @@ std::vector<Vec2d> ideal_lens_truth(Scene scene, Renderer& renderer, GroundTruth
 
 PointTruth truth_of_vectors(PreparedCase const& prepared, Renderer& renderer, std::vector<Vec2d> const& position_px,
                             TruthAt at) {
-  Scene scene = prepared.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
+  Scene scene = prepared.scene;  // copy: virtual dots may require a wider pupil than the images
   PointTruth truth;
   if (scene.setup.piv) {
     ParticlePoints points = particle_points(scene, renderer, position_px, at);

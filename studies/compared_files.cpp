@@ -13,7 +13,9 @@
 namespace gladstone {
 namespace {
 
-/// A file that a case should hold by now. @param command that makes it
+/// Returns the path of a file that the case must contain.
+/// @param command  command that creates it, for the message
+/// @throws DataError if it does not exist
 std::string made_file(std::string const& folder, char const* name, std::string const& command) {
   std::string path = in_case(folder, name);
   std::error_code error;
@@ -21,7 +23,8 @@ std::string made_file(std::string const& folder, char const* name, std::string c
   return path;
 }
 
-/// Where the vectors are. @throws DataError where they are not
+/// Returns the path of the vectors.
+/// @throws DataError if it does not exist
 std::string vectors_path(std::string const& folder, std::string const& given) {
   if (given.empty()) return made_file(folder, case_file::vectors, "gladstone correlate " + folder);
   std::error_code error;
@@ -30,12 +33,13 @@ std::string vectors_path(std::string const& folder, std::string const& given) {
   return given;
 }
 
-/// The files that the setup names are read again: they must be those that the truth was traced through.
+/// Adds the files named in the setup, which are read again.
+/// @throws DataError if one differs from the file used for rendering
 void add_inputs(SourceFiles& sources, std::string const& truth, std::string const& folder) {
   nlohmann::json const inputs = nlohmann::json::parse(Hdf5Reader(truth).attribute("inputs_sha256"), nullptr, false);
   if (!inputs.is_object()) return;
   for (auto const& [path, hash] : inputs.items()) {
-    if (!std::filesystem::exists(path)) continue;  // its reader says what is missing
+    if (!std::filesystem::exists(path)) continue;  // reported by its reader
     sources.add("", path, SourceFiles::Holds::bytes);
     if (hash == sources.all().back().sha256) continue;
     throw DataError(path, fmt::format("has changed since {} was rendered from it (another SHA-256 of its bytes); bring "

@@ -15,15 +15,15 @@
 namespace gladstone {
 namespace {
 
-/// Ray truth of the dots on a lattice, for quick look-ups anywhere in the view.
+/// Ray truth of the dots interpolated on a regular lattice, for fast evaluation anywhere in the view.
 class TruthMap {
  public:
   TruthMap(GroundTruth const& truth, CameraSetup const& camera)
       : grid_{camera.columns / spacing + 1, camera.rows / spacing + 1, {0, 0}, spacing},
         maps_(map_scattered(near_view(truth.reference_px, camera), truth.displacement_px, grid_)) {}
 
-  /// Bilinear between the lattice's points, so that half a pixel shows; NaN beyond the view by more than what codes'
-  /// ways of counting pixels differ by.
+  /// Interpolates bilinearly, so that offsets of half a pixel are detectable. Returns NaN farther outside the view than
+  /// the pixel conventions of different codes differ.
   Vec2d at(Vec2d c) const {
     Vec2d const last{spacing * (grid_.columns - 1.0), spacing * (grid_.rows - 1.0)};
     Vec2d const inside{std::clamp(c.x, 0.0, last.x), std::clamp(c.y, 0.0, last.y)};
@@ -40,7 +40,7 @@ class TruthMap {
   }
 
  private:
-  /// Dots far from the view do not count, lest a few of them spread the smoothing over all that is seen.
+  /// Replaces positions far from the view by NaN: a few distant dots would coarsen the smoothing of the whole map.
   static std::vector<Vec2d> near_view(std::vector<Vec2d> places, CameraSetup const& camera) {
     double const margin = std::max(camera.columns, camera.rows);
     for (Vec2d& p : places) {
@@ -56,9 +56,10 @@ class TruthMap {
   DisplacementMaps maps_;
 };
 
-/// Leaves out what no camera can have seen. @throws DataError where nothing is left, or no place is in px
+/// Rejects vectors that lie or point outside the image.
+/// @throws DataError if no vector remains, or no position is in px
 LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup const& camera) {
-  bool const turned = file.conventions.exchanges_places();  // the file's x then runs down
+  bool const turned = file.conventions.exchanges_places();  // the file's x then points down
   int const columns = turned ? camera.rows : camera.columns, rows = turned ? camera.columns : camera.rows;
   LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, columns, rows);
   std::string const refusal = refusal_of_places(file.field, left_out, columns, rows);
@@ -72,7 +73,7 @@ LeftOutVectors screen(VectorFile& file, std::string const& path, CameraSetup con
   return left_out;
 }
 
-/// Refuses masks and backgrounds that are not those which the vectors were measured with: they are read again.
+/// Throws if masks or backgrounds, which are read again, differ from those of the measurement.
 void check_preparation(Hdf5Reader const& measured, std::string const& path, CorrelationSettings const& settings) {
   std::size_t number = 0;
   for (std::string const& file : settings.preparation.files) {
@@ -85,7 +86,7 @@ void check_preparation(Hdf5Reader const& measured, std::string const& path, Corr
   }
 }
 
-/// Whether the truth cannot tell two readings of the format's own apart, of which one had to be taken.
+/// Returns true if the format allows two readings that the truth cannot distinguish.
 bool has_rival_of_its_own(VectorFile const& file, DetectedConventions const& detected) {
   VectorConventions const& taken = detected.conventions;
   auto const axes = [](VectorConventions const& c) { return std::tuple(c.y_up, c.v_up, c.swapped, c.exchange); };
@@ -96,7 +97,8 @@ bool has_rival_of_its_own(VectorFile const& file, DetectedConventions const& det
   });
 }
 
-/// How the vectors are read: as the format says, with what they may have wrong. @throws DataError where nothing fits
+/// Determines the conventions of the vectors, starting from those of the format.
+/// @throws DataError if no convention fits the truth
 DetectedConventions detect(VectorFile const& file, std::string const& path, GroundTruth const& truth,
                            CameraSetup const& camera) {
   using Verdict = DetectedConventions::Verdict;
@@ -125,7 +127,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   file = convert_to_pixels(std::move(file), path);
   CameraSetup const& camera = loaded.setup.camera;
   LeftOutVectors const left_out = screen(file, path, camera);
-  // what is left out was valid as given, but for what has no displacement
+  // rejected vectors count as valid unless their displacement was not finite
   bool any_valid = left_out.all() > left_out.displacement_not_finite;
   for (std::size_t i = 0; i < file.field.size() && !any_valid; ++i) any_valid = file.field.counts(i);
   if (!any_valid)
@@ -136,7 +138,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
   bool const hdf5 = path.ends_with(".h5") || path.ends_with(".hdf5");
   if (options.conventions && specifies_reading(*options.conventions)) {
     vectors.report = file.format + " vectors, as told: " + describe(file.conventions);
-  } else if (file.foreign || !hdf5) {  // a .h5 of ours names its frames
+  } else if (file.foreign || !hdf5) {  // our .h5 files name their frames, so their conventions are certain
     vectors.detected = detect(file, path, truth, camera);
     vectors.report = vectors.detected->report;
     file.conventions = vectors.detected->conventions;
@@ -151,7 +153,7 @@ MeasuredVectors load_vectors(std::string const& path, CaseSetup const& loaded, G
       check_preparation(measured, path, vectors.settings);
     }
   } else if (!file.foreign) {
-    vectors.foreign = true;  // a CSV does not say how it was measured, so it cannot be measured again
+    vectors.foreign = true;  // a CSV file does not contain the correlation settings
   }
   return vectors;
 }

@@ -35,7 +35,8 @@ nlohmann::ordered_json fit_json(ConventionFit const& fit) {
   return {{"conventions", describe(fit.conventions)}, {"rms_px", known_or_null(fit.rms_px)}};
 }
 
-/// How a foreign file's vectors fit the truth by its conventions, without the offset, and by every other choice.
+/// Returns how a foreign file's vectors fit the truth: with the detected conventions, without offset, and with every
+/// other convention.
 nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   using Verdict = DetectedConventions::Verdict;
   nlohmann::ordered_json json = fit_json(detected.fit);
@@ -59,8 +60,9 @@ nlohmann::ordered_json fit_json(DetectedConventions const& detected) {
   return json;
 }
 
-/// How well the measurement's own uncertainties tell its errors against the truth on the window, on the deformed
-/// window, and against that at the point, which the window's averaging adds to; nothing where there are none.
+/// Returns the quality of the measured uncertainties as predictions of the errors against the truth on the window, on
+/// the deformed window, and at the point; the last also contains the averaging over the window. Empty if there are no
+/// uncertainties.
 nlohmann::ordered_json uncertainty_json(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
   auto const is_known = [](Vec2d sigma) { return std::isfinite(sigma.x) && std::isfinite(sigma.y); };
@@ -104,7 +106,7 @@ nlohmann::ordered_json errors_of(Comparison const& comparison) {
   if (comparison.chain == BudgetChain::piv) {
     json["flow"] = summary(comparison.flow_px);
     json["ambient_truth"] = summary(comparison.ambient_px);
-    json["eq9"] = json["eq9_cone"] = nullptr;  // it is of BOS
+    json["eq9"] = json["eq9_cone"] = nullptr;  // defined for BOS only
   } else {
     json["eq9"] = summary(comparison.point.eq9_px);
     json["eq9_cone"] = summary(comparison.point.eq9_cone_px);
@@ -136,7 +138,7 @@ nlohmann::ordered_json errors_of(Comparison const& comparison) {
                      {"left_out_fewer_than_three_dots", comparison.window.left_out},
                      {"conventions", comparison.report}};
   LeftOutVectors const& left_out = comparison.left_out;
-  if (comparison.foreign || left_out.all() > 0) {  // what a study measures itself has none
+  if (comparison.foreign || left_out.all() > 0) {  // vectors measured within a study have none
     json["vectors"].update({{"left_out_place_not_finite", left_out.place_not_finite},
                             {"left_out_outside_image", left_out.outside_image},
                             {"left_out_displacement_not_finite", left_out.displacement_not_finite},

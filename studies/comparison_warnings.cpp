@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Says where the true displacements are too small to be measured; empty where they are not, or nothing is to move.
+/// Returns a warning if the true displacements are too small to be measured; empty if not, or if all are zero.
 std::string signal_warning(Comparison const& all, bool piv) {
   std::vector<Vec2d> const nothing(all.mask.size());
   double const signal = summarize_errors(all.point.displacement_px, nothing, all.mask).rms_px;

@@ -13,10 +13,12 @@
 namespace gladstone {
 namespace {
 
-/// Mean square of a wave's average along the chief rays of the view through stacked planes.
+/// Returns the mean square of a wave averaged along chief rays through stacked planes, over the view and all wave
+/// directions, relative to the unaveraged wave.
 double chief_ray_energy(Setup const& setup, double wavenumber) {
   double const on_target = setup.camera.pixel_pitch / setup.imaging().magnification;
-  double const half_x = setup.camera.columns * on_target / 2 / setup.z_b();  // slope at the view's edge
+  double const half_x =
+      setup.camera.columns * on_target / 2 / setup.z_b();  // slope of the chief ray at the view's edge
   double const half_y = setup.camera.rows * on_target / 2 / setup.z_b();
   constexpr int places = 6, directions = 12;
   double sum = 0;

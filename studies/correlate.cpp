@@ -25,7 +25,7 @@ namespace {
 
 CorrelationFile read_document(SetupDocument document, std::vector<std::string> const& overrides) {
   SetupTable root = document.root();
-  // of a whole setup, which may carry the question of gladstone design
+  // The file may be a complete setup, including the tables of a design question.
   for (char const* other :
        {"schema", "experiment", "camera", "lens", "geometry", "window", "medium", "target", "light", "particles",
         "laser", "flow", "calibration", "render", "requirements", "limits", "inventory", "free", "correlations"}) {
@@ -45,7 +45,7 @@ CorrelationFile read_document(SetupDocument document, std::vector<std::string> c
   return file;
 }
 
-/// Frames that somebody else owns.
+/// Non-owning pair of frames.
 class FramesView final : public FramePair {
  public:
   FramesView(Image<double> const& reference, Image<double> const& flow) : reference_(reference), flow_(flow) {}
@@ -57,7 +57,7 @@ class FramesView final : public FramePair {
   Image<double> const& flow_;
 };
 
-/// Warns of what was done to a picture when it was read.
+/// Warns of conversions applied to an image on reading.
 void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   if (metadata.channels >= 3) {
     spdlog::warn("{} is a colour picture: its luminance (Rec. 709) is correlated; cameras' raw grey images are better",
@@ -71,7 +71,7 @@ void warn_of_reading(std::string const& path, ImageMetadata const& metadata) {
   }
 }
 
-/// Correlates what the masks and steps of the settings leave of the frames.
+/// Applies masks and preprocessing steps to the frames and correlates the result.
 Measurement correlate_prepared(FramePair const& frames, CorrelationSettings settings, Device const& device) {
   auto const start = std::chrono::steady_clock::now();
   HostFrames const prepared = prepare_frames(frames, settings.preparation);
@@ -84,8 +84,8 @@ Measurement correlate_prepared(FramePair const& frames, CorrelationSettings sett
   return measurement;
 }
 
-/// Pixels that are nan or infinite are left out of every window, as the correlator does: they are told, and refused
-/// where nothing else is there.
+/// Warns of pixels that are NaN or infinite, which the correlator excludes from every window; throws if there are no
+/// others.
 void check_finite(std::string const& reference_name, Image<double> const& reference, std::string const& flow_name,
                   Image<double> const& flow) {
   for (auto const& [name, image] : {std::pair(reference_name, &reference), std::pair(flow_name, &flow)}) {
@@ -174,7 +174,7 @@ Measurement correlate_ensemble_files(std::vector<std::string> const& files, Corr
   auto const start = std::chrono::steady_clock::now();
   int columns = 0, rows = 0;
   Image<double> reference;
-  std::vector<std::string> twice;  // pairs of one picture
+  std::vector<std::string> twice;  // flow frames of pairs whose images are identical
   for (std::size_t k = 0; k < files.size(); ++k) {
     bool const is_flow = k % 2 == 1;
     Image<double> frame =

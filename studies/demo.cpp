@@ -37,15 +37,15 @@ constexpr Instant instants[] = {
     {"late", "t = 6.00", "decayed", "hbdt512_late_slice.h5"},
 };
 
-/// How many nodes of the planes reach across 32.7 mm, and the spacing that makes them do so.
+/// Number of nodes across 32.7 mm, and the corresponding spacing.
 struct Fineness {
   int nodes;
   double spacing_mm;
 };
-/// First that of the paper's authors' sample field.
+/// The first one is that of the authors' sample field.
 constexpr Fineness finenesses[] = {{64, 0.519}, {128, 0.2575}, {256, 0.1282}, {512, 0.06399}};
 
-constexpr int rays_of_case = 256, rays_of_planes = 64;  // a dot
+constexpr int rays_of_case = 256, rays_of_planes = 64;  // rays per dot
 
 CaseSetup load_instant(std::string const& shared, Instant const& instant, Fineness fineness, int rays) {
   return load_case_setup(shared + "/studies/cases/table1.toml",
@@ -88,7 +88,7 @@ SeedFigure4Instant figure_instant(std::string const& heading, FieldMap const& fi
   return instant;
 }
 
-/// The numbers of the paper's case, over the vectors that are compared.
+/// Returns the results of the paper's case over the compared vectors.
 DemoInstant::Paper paper_numbers(Comparison const& comparison) {
   VectorMask const& mask = comparison.mask;
   DemoInstant::Paper paper;
@@ -106,7 +106,7 @@ DemoInstant::Paper paper_numbers(Comparison const& comparison) {
   return paper;
 }
 
-/// The planes of an instant from coarse to fine, traced and predicted.
+/// Traces and predicts the planes of an instant, from coarse to fine.
 std::vector<DemoInstant::Plane> trace_planes(Setup const& setup, GradientSpectrum const& spectrum, Renderer& renderer) {
   std::vector<DemoInstant::Plane> planes;
   for (Fineness const& fineness : finenesses) {
@@ -118,7 +118,7 @@ std::vector<DemoInstant::Plane> trace_planes(Setup const& setup, GradientSpectru
   return planes;
 }
 
-/// Points and curve of an instant in the agreement figure.
+/// Returns points and curve of an instant for the agreement figure.
 AgreementSeries agreement_series(Setup const& setup, GradientSpectrum const& spectrum, DemoInstant const& instant) {
   AgreementSeries series;
   series.name = instant.time;
@@ -153,8 +153,8 @@ std::string run_demo(std::string const& folder, Device const& device) {
   std::vector<DemoInstant> found;
   std::vector<SeedFigure4Instant> panels;
   std::vector<AgreementSeries> series;
-  MapAxes axes;  // of both: one camera
-  Setup paper;   // likewise, but for its field
+  MapAxes axes;  // common to both instants: same camera
+  Setup paper;   // setup of the paper's case; only the field differs between instants
   OutputFile const tried((fs::path(folder) / "summary.md").string());
   for (Instant const& instant : instants) OutputFolder((fs::path(folder) / instant.name).string(), case_content());
   for (Instant const& instant : instants) {

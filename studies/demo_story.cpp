@@ -8,7 +8,7 @@
 namespace gladstone {
 namespace {
 
-/// A sentence's part for every instant, with "and" between.
+/// Formats one part for every instant, joined by "and".
 template <class Part>
 std::string each(std::vector<DemoInstant> const& instants, Part part) {
   std::string text;
@@ -16,13 +16,13 @@ std::string each(std::vector<DemoInstant> const& instants, Part part) {
   return text;
 }
 
-/// A length in px with so many significant digits and no power of ten.
+/// Formats a length in px with the given number of significant digits, without exponent.
 std::string digits(double px, int significant) {
   int const decimals = px > 0 ? significant - 1 - static_cast<int>(std::floor(std::log10(px))) : significant;
   return fmt::format("{:.{}f}", px, std::max(0, decimals));
 }
 
-/// The largest difference between a traced point and its prediction.
+/// Returns the largest differences between traced and predicted agreement.
 Agreement largest_miss(std::vector<DemoInstant> const& instants) {
   Agreement worst{};
   for (DemoInstant const& instant : instants) {

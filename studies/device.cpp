@@ -18,7 +18,7 @@
 namespace gladstone {
 namespace {
 
-/// The correlator of a GPU; what that does not have the CPU does, unless only the GPU is wanted.
+/// Creates the correlator of a GPU; for settings it does not support, that of the CPU, unless only the GPU is allowed.
 std::unique_ptr<Correlator> correlator_on_gpu(CorrelationSettings const& settings, bool only_gpu) {
   std::string const left = left_to_cpu(settings);
   if (left.empty()) return cuda::make_correlator(settings);

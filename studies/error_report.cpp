@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// How well the vectors' own uncertainties tell their errors; nothing where there are none.
+/// Formats the coverage of the errors by the vectors' uncertainties; empty if there are none.
 std::string uncertainty_line(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
   if (measured.sigma_px.empty()) return "";
@@ -23,7 +23,7 @@ std::string uncertainty_line(Comparison const& comparison) {
       100 * quality.coverage_1, comparison.recorded_name(), 100 * quality.coverage_2, quality.rms_ratio);
 }
 
-/// The terms of an undeformed window, which errors.json has as well; nothing where no pass deforms the frames.
+/// Formats the terms `window` and `estimator` of an undeformed window; empty unless passes deform the frames.
 std::string undeformed_line(Comparison const& comparison) {
   if (!comparison.frames_deformed) return "";
   auto const rms = [&comparison](char const* name) {

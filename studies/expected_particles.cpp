@@ -14,8 +14,8 @@ namespace gladstone {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t drawn = 4001;       // particles that a spread is told by: its quantiles to a few per cent
-constexpr double angle_margin = 0.01;     // about the angle that the light is seen under [rad]
+constexpr std::size_t drawn = 4001;       // sample size for quantiles with an accuracy of a few per cent
+constexpr double angle_margin = 0.01;     // margin about the scattering angles seen by the lens [rad]
 constexpr double visible_snr = 5;         // Rose's criterion
 constexpr double largest_tried = 100e-6;  // [m]
 constexpr double smallest_tried = 10e-9;  // [m]
@@ -29,18 +29,20 @@ SizeSpread spread_of(std::vector<double> values) {
   return {at(0.05), at(0.5), at(0.95)};
 }
 
-/// Where a camera's axis meets the sheet of the first pulse; where it runs along it, the sheet's middle.
+/// Returns the intersection of the camera's axis and the sheet of the first pulse; the sheet's middle if they are
+/// parallel.
 Vec3d place_in_sheet(Pose<double> const& camera, Pose<double> const& sheet) {
   double const along = dot(camera.z, sheet.z);
   if (std::abs(along) < 1e-3) return sheet.origin;
   return camera.origin + dot(sheet.origin - camera.origin, sheet.z) / along * camera.z;
 }
 
-/// Thickness of what is lit along the sheet's normal, within the particles' volume: that of the sheet, or less [m].
+/// Returns the illuminated thickness along the sheet's normal within the particles' volume, at most that of the sheet
+/// [m].
 double lit_thickness(PivSetup const& piv, Pose<double> const& sheet) {
   if (!piv.particles.volume) return piv.laser.thickness;
   Vec3d const volume = *piv.particles.volume, n = sheet.z;
-  double half_depth = HUGE_VAL;  // of the volume along the normal, through its centre
+  double half_depth = HUGE_VAL;  // half depth of the volume along the normal, through its centre
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(n[axis]) > 1e-9) half_depth = std::min(half_depth, volume[axis] / 2 / std::abs(n[axis]));
   }
@@ -48,7 +50,7 @@ double lit_thickness(PivSetup const& piv, Pose<double> const& sheet) {
   return std::max(0.0, std::min(half_depth, offset + half) - std::max(-half_depth, offset - half));
 }
 
-/// Photons through the lens from particles of these diameters, all at one place of the sheet.
+/// Returns the photons through the lens from particles of these diameters at one point of the sheet.
 std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> const& diameters) {
   PivSetup const& piv = *scene.setup.piv;
   LaserSheet<double> const sheet = laser_sheet<double>(piv.laser);
@@ -71,7 +73,8 @@ std::vector<double> photons_of(Scene& scene, Vec3d place, std::vector<double> co
   return photons;
 }
 
-/// Share of a centred image's light that falls on its middle pixel. @param sigma_px of the image, as a Gaussian
+/// Returns the fraction of a centred image's light on its middle pixel.
+/// @param sigma_px  standard deviation of the image as a Gaussian [px]
 double peak_share(Setup const& setup, double sigma_px) {
   if (setup.lens.spot == SpotModel::airy && setup.spot_scale_px() > 0) {
     AiryTable const airy(setup.spot_scale_px());
@@ -83,7 +86,7 @@ double peak_share(Setup const& setup, double sigma_px) {
   return along * along;
 }
 
-/// Peak electrons that exceed five times their noise: S = 5 sqrt(S + r^2).
+/// Returns the peak charge S that equals five times its noise, S = 5 sqrt(S + r^2) [e].
 double visible_electrons(NoiseSetup const& noise) {
   double const dark = noise.enabled ? noise.read_noise_e * noise.read_noise_e + noise.dark_current_e : 0.0;
   double const k2 = visible_snr * visible_snr;
@@ -103,7 +106,10 @@ double smallest_visible(Scene& scene, Vec3d place, double electrons_per_photon) 
   return first < diameters.size() ? diameters[first] : unknown;
 }
 
-/// Image of a particle of that diameter, `beyond` the sheet where the camera's axis meets it, at a distance.
+/// Computes the image of a particle.
+/// @param diameter  of the particle [m]
+/// @param distance  from the lens to the sheet, along the camera's axis [m]
+/// @param beyond    distance of the particle behind the sheet [m]
 ParticleImage image_of(Setup const& setup, double diameter, double distance, double beyond) {
   ImagingGeometry const imaging = setup.imaging();
   double const pitch = setup.camera.pixel_pitch, focus = setup.focus_distance();
@@ -112,13 +118,13 @@ ParticleImage image_of(Setup const& setup, double diameter, double distance, dou
   image.magnification = imaging.magnification * setup.z_b() / distance;
   image.geometric_px = image.magnification * diameter / pitch;
   image.diffraction_px = setup.spot_e2_diameter_px();
-  // the disc of confusion of a point `beyond` the sheet, by the magnification where the lens is focused
+  // circle of confusion of a point `beyond` the sheet, by the magnification at the focus distance
   double const z = distance + beyond - focus, focused = imaging.magnification * setup.z_b() / focus;
   image.blur_px = focused * imaging.entrance_pupil * std::abs(z) / (focus + z) / pitch;
   return image;
 }
 
-/// From the camera's front principal plane to where its axis meets the sheet [m].
+/// Returns the distance from the camera's front principal plane to the sheet, along the camera's axis [m].
 double distance_of_sheet(Setup const& setup) {
   Pose<double> const camera = setup.camera_pose();
   Vec3d const place = place_in_sheet(camera, laser_sheet<double>(setup.piv->laser).pose[0]);

@@ -12,7 +12,7 @@ namespace {
 
 nlohmann::json named(std::string const& unit) { return unit.empty() ? nlohmann::json(nullptr) : nlohmann::json(unit); }
 
-/// The setup with this field instead of its own.
+/// Returns a setup with its field replaced by this one.
 Setup with_field(std::string const& setup, FieldSource const& source, std::string const& path,
                  std::string const& dataset, std::string const& axes) {
   Setup whole = load_case_setup(setup, {}).setup;

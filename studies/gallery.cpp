@@ -22,12 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Picture {
-  char const* name;  ///< of the setup
+  char const* name;  ///< name of the setup
   char const* title;
-  char const* look;  ///< what to look at
+  char const* look;  ///< what the image shows
 };
 
-/// The first is what the others are held against.
+/// The first image is the reference for the others.
 constexpr std::array pictures{
     Picture{"normal", "normal", "particles in the sheet's middle, in focus"},
     Picture{"out_of_focus", "out of focus", "discs of the stop's shape instead of spots, and less light in each pixel"},
@@ -40,7 +40,7 @@ constexpr std::array pictures{
             "one disc of the stop for a particle in focus, parts of it in several lenslets for others"},
 };
 
-/// Below this share of pixels the normal picture is shown without clipping; the brightest particles are white.
+/// Fraction of pixels of the normal image shown without clipping; the brightest particles are white.
 constexpr double shown_share = 0.998;
 
 std::vector<double> levels_of(Image<double> const& image) { return {image.begin(), image.end()}; }

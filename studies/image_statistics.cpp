@@ -40,7 +40,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Heights over the background of what stands out from it and from its eight neighbours.
+/// Returns the heights above the background of all local maxima that exceed a third of the largest height.
 std::vector<double> peak_heights(Image<double> const& image, double background, double sign) {
   double largest = 0;
   for (double const value : image) {
@@ -88,7 +88,7 @@ ImageStatistics image_statistics(Image<double> const& image) {
   for (double const value : image) seen.mean += std::isfinite(value) ? value / finite : 0;
   double skewness = 0;
   for (double const value : image) skewness += std::isfinite(value) ? std::pow(value - seen.mean, 3) : 0;
-  double const sign = skewness < 0 ? -1 : 1;  // of the dots against the background
+  double const sign = skewness < 0 ? -1 : 1;  // sign of the dots' contrast against the background
 
   std::vector<Neighbourhood> flat = neighbourhoods(image);
   if (!flat.empty()) {

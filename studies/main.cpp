@@ -26,7 +26,7 @@
 namespace gladstone {
 namespace {
 
-/// One row a command.
+/// One row per command.
 constexpr std::array commands{
     Command{"render", "Trace the frames of a setup, a pair or the planes of a calibration, into a case folder",
             "gladstone render table1.toml -o out/case", attach_render},
@@ -57,17 +57,17 @@ constexpr std::array commands{
             "gladstone gallery -o out/gallery", attach_gallery},
 };
 
-/// Says what is wrong with a command line that names no command, or things that nobody knows.
+/// Reports a command line that names no command or contains unknown arguments.
 int refuse_arguments(std::vector<std::string> const& unknown, CLI::App const* command, CLI::App const& app) {
   std::vector<std::string> known;
   for (Command const& one : commands) known.emplace_back(one.name);
   std::string const name = unknown.empty() ? "" : unknown.front();
   std::string path = command ? command->get_name() + ' ' : "";
-  while (command && !command->get_subcommands().empty()) {  // of a command's own commands
+  while (command && !command->get_subcommands().empty()) {  // descend into subcommands
     command = command->get_subcommands().front();
     path += command->get_name() + ' ';
   }
-  bool chooses = !command;  // a command of several is what is missing
+  bool chooses = !command;  // a subcommand is missing
   if (command) {
     known.clear();
     for (CLI::App const* one : command->get_subcommands([](CLI::App const*) { return true; })) {
@@ -118,11 +118,11 @@ int run(int argc, char** argv) {
     bodies[i] = commands[i].attach(*parsed[i], options);
   }
   app.failure_message(refusal);
-  app.allow_extras();  // what nobody knows is refused below, with the nearest name
+  app.allow_extras();  // unknown arguments are rejected below, with the nearest name
   try {
     app.parse(argc, argv);
   } catch (CLI::CallForVersion const&) {
-    // parsing stopped there: --json may stand on either side
+    // Parsing stops there, but --json may come before or after it.
     options.json = std::find(argv + 1, argv + argc, std::string_view("--json")) != argv + argc;
     print_result(options, version_json(), version_text());
     return ok;
@@ -164,8 +164,8 @@ int guarded(int argc, char** argv) {
   }
 }
 
-/// Opens what the caller has closed of stdin, stdout and stderr, so that no file of the command gets such a number and
-/// has messages written into it. Reading and writing there fail.
+/// Opens stdin, stdout and stderr on /dev/null if the caller closed them, so that none of the command's files receives
+/// such a descriptor and collects messages. Reading and writing there fail.
 void occupy_closed_streams() {
   for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
@@ -173,7 +173,7 @@ void occupy_closed_streams() {
   }
 }
 
-/// Whether all that was printed has arrived.
+/// Returns true if all output was written.
 bool is_printed() {
   std::cout.flush();
   return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();

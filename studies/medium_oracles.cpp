@@ -11,7 +11,7 @@
 namespace gladstone::oracle {
 namespace {
 
-/// Sharma's scheme over the parameter t, with the optical path on the way.
+/// Integrates a ray by Sharma's scheme over the parameter t, with its optical path.
 struct Walk {
   RayState<double> end;
   double optical_path = 0;
@@ -27,7 +27,7 @@ Walk walk(Medium const& medium, RayState<double> ray, double t, int steps) {
   return way;
 }
 
-/// A ray in the x-z plane, `angle` from the z axis.
+/// Launches a ray in the x-z plane at `angle` from the z axis [rad].
 template <class Medium>
 RayState<double> launch(Medium const& medium, Vec3d at, double angle) {
   double const n = 1 + medium.sample(at).refractivity;
@@ -52,7 +52,7 @@ MediumSetup setup_of(FieldSetup const& field, double thickness = 0.01) {
   return setup;
 }
 
-/// Traces through a setup's field.
+/// Traces a ray through a setup's field.
 MediumPassage<double> trace(MediumSetup const& setup, double step, Ray<double> const& start) {
   TracingOptions<double> const options{step, setup.ambient_refractivity(), setup.integrator, setup.faces};
   BuiltMedium const built = build_medium(setup);
@@ -74,7 +74,7 @@ double slab_displacement(double gradient, Faces faces) {
   return apparent_ray(start, trace(setup, 1e-3, start)).position.x;
 }
 
-/// A skew ray through the rod [mm], and how it is traced.
+/// Skew ray through the rod [mm], and its tracing options.
 Ray<double> const skew{{0.7, -0.4, -2}, normalized(Vec3d{0.03, 0.05, 1})};
 constexpr TracingOptions<double> fine{0.01, 0, Integrator::rk4, Faces::refract};
 
@@ -103,7 +103,7 @@ double luneburg_optical_path(Renderer&) {
 
 double fish_eye_miss(Renderer&) {
   FishEye const eye;
-  double const t = 8 * pi / 3 - 4 * std::sqrt(3.0);  // of the circle that leaves at 30 degrees
+  double const t = 8 * pi / 3 - 4 * std::sqrt(3.0);  // parameter of the circle that starts at 30 degrees
   return length(walk(eye, launch(eye, {0, 0, -1}, 30 * unit::degree), t, 4000).end.position - Vec3d{0, 0, 1});
 }
 
@@ -137,7 +137,8 @@ double spline_polynomial_error(Renderer&) {
   Plane const plane(grid, Plane::Interpolation::cubic_bspline, 1, 0, [&](int, int, std::span<double> out) {
     for (std::size_t i = 0; i < out.size(); ++i) {
       std::size_t const column = i % 7, row = i / 7;
-      out[i] = static_cast<float>(f(static_cast<double>(column)) * f(static_cast<double>(row)));  // whole: exact
+      out[i] = static_cast<float>(f(static_cast<double>(column)) *
+                                  f(static_cast<double>(row)));  // whole numbers are exact in float
     }
   });
   auto const view = plane.view<double, CubicBspline, 2>(-1, 1);

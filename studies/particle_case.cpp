@@ -17,7 +17,7 @@ std::span<double const> pairs_as_numbers(std::vector<Vec2d> const& values) {
   return {reinterpret_cast<double const*>(values.data()), 2 * values.size()};
 }
 
-/// A dataset of /particles with two numbers a particle: a column that dots have as well, or one of particles alone.
+/// Dataset of /particles with two numbers per particle: a column that dots also have, or one of particles only.
 struct ParticlePairs {
   char const* name;
   std::vector<Vec2d> GroundTruth::*shared;
@@ -50,14 +50,14 @@ constexpr std::array<ParticlePairs, 7> particle_pairs{{
      "particle, pulse"},
 }};
 
-/// @throws DataError where a dataset has not the length that goes with the others
+/// @throws DataError if a dataset's length does not match the others
 void require_count(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
   throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
                             " belong to the others; render the case again");
 }
 
-/// Least, median and most of positive numbers.
+/// Minimum, median and maximum of positive numbers.
 nlohmann::json spread_of_light(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::sort(values.begin(), values.end());

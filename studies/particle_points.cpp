@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::uint64_t rough_rays = 128;
 constexpr int correction_rounds = 2;
-constexpr int projection_rounds = 4;  // each squares what the last has left, or divides it by the flow's strain
+constexpr int projection_rounds = 4;  // each iteration squares the residual, or divides it by the flow's strain
 constexpr double out_of_sight = std::numeric_limits<double>::quiet_NaN();
 
-/// The vectors of a picture as places of the sheet.
+/// Points of an image projected onto the laser sheet, corrected iteratively.
 class SheetPoints {
  public:
   SheetPoints(Scene const& scene, std::vector<Vec2d> const& places_px)
@@ -30,7 +30,7 @@ class SheetPoints {
     velocity_ = {piv.flow.flow, piv.particles.response_time(diameter_), 0.01 * piv.flow.dt};
   }
 
-  /// The particles at their present places, lit alike at both pulses.
+  /// Returns virtual particles at the present positions, with equal light at both pulses.
   Particles particles() const {
     Particles virtual_ones;
     virtual_ones.resize(place_.size());
@@ -45,7 +45,7 @@ class SheetPoints {
     return virtual_ones;
   }
 
-  /// Moves places so that images that were seen there come to where they should be.
+  /// Shifts the particles so that their images move from the traced to the required positions.
   void correct(std::vector<Vec2d> const& reference, std::vector<Vec2d> const& displacement, TruthAt at) {
     for (std::size_t i = 0; i < place_.size(); ++i) {
       Vec2d const shift = at == TruthAt::mid_position ? 0.5 * displacement[i] : Vec2d{};
@@ -86,10 +86,10 @@ bool without_medium(Scene const& scene) {
   return std::holds_alternative<NoMedium<double>>(scene.medium.view) && !scene.second_medium;
 }
 
-/// Which of a particle's places in the image count.
+/// Selects the image positions to be matched: with or without the medium.
 enum class SeenThrough { medium, ambient };
 
-/// Traces the particles whose images are at the places.
+/// Traces the particles whose images coincide with the points.
 GroundTruth trace_points(Scene& scene, Renderer& renderer, SheetPoints here, TruthAt at, SeenThrough through) {
   std::uint64_t const all_rays = scene.rays_per_dot;
   auto const trace = [&] {
@@ -106,8 +106,8 @@ GroundTruth trace_points(Scene& scene, Renderer& renderer, SheetPoints here, Tru
   return trace();
 }
 
-/// Displacements of the particles whose pinhole projections are at the places: what the rays of an ideal lens without
-/// medium have as their centroids, in a thousandth of their time.
+/// Computes the displacements of the particles whose pinhole projections coincide with the points. With an ideal lens
+/// and no medium, they equal the centroids of traced rays, in a thousandth of the time.
 std::vector<Vec2d> project_points(Scene const& scene, SheetPoints here, TruthAt at) {
   auto const project = [&](std::vector<Vec2d>& first, std::vector<Vec2d>& moved) {
     Particles const particles = here.particles();

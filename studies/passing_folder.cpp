@@ -29,7 +29,7 @@ PassingFolder::PassingFolder() {
     remove_leftovers(above, stem);
     partial_.emplace(above, stem, Partial::Kind::folder);
     path_ = partial_->path() + "/files";
-    // others may look at the lock, to find out whether this process is alive, and at nothing else
+    // Other users may only check the lock, which shows whether this process is running.
     if (::mkdir(path_.c_str(), 0700) != 0) problem = errno;
   } catch (std::system_error const& error) {
     problem = error.code().value();

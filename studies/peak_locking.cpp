@@ -13,14 +13,14 @@
 namespace gladstone {
 namespace {
 
-constexpr double usual_dots = 20;      // in a window, of the error that is expected
-constexpr double smallest_seen = 0.5;  // [px] what is narrower by the autocorrelation is noise, not dots
+constexpr double usual_dots = 20;      // dots per window assumed for the expected error
+constexpr double smallest_seen = 0.5;  // [px] a narrower autocorrelation peak is noise, not dots
 
-constexpr int most_judged_px = 512;  // of a frame, across and down
+constexpr int most_judged_px = 512;  // size of the evaluated central part of a frame
 
 double square(double x) { return x * x; }
 
-/// The cures of a setup, as keys with their values.
+/// Returns the remedies of a setup as keys with values.
 std::string cures(Setup const& setup, SmallImages const& images) {
   std::string text;
   auto const add = [&text](std::string const& cure) { text += (text.empty() ? "" : " or ") + cure; };
@@ -58,7 +58,7 @@ double SmallImages::locking_error_px() const {
 }
 
 double SmallImages::f_number_factor(double diameter_px) const {
-  // g^2 + k^2 spot^2 + blur^2 / k^2 = d^2; of both roots the larger k
+  // larger root k of g^2 + k^2 spot^2 + blur^2 / k^2 = d^2
   double const room = square(diameter_px) - square(geometric_px);
   double const root = square(room) - 4 * square(spot_px * blur_px);
   if (!(spot_px > 0) || !(root >= 0)) return std::nan("");
@@ -80,13 +80,13 @@ double defocus_distance(Setup const& setup, double diameter_px) {
   if (!(blur > 0) || !(pupil > 0)) return std::nan("");
   double const distance = setup.piv ? particle_image(setup).distance : setup.z_b();
   double const sharp = 1 / (1 / setup.lens.focal_length - 1 / distance);
-  // on a sensor that is farther away than the image, a point is a disc of D_a (z_i - z_sharp) / z_sharp
+  // On a sensor behind the image plane, a point is imaged to a disc of diameter D_a (z_i - z_sharp) / z_sharp.
   double const sensor = sharp * (1 + blur * setup.camera.pixel_pitch / pupil);
   return 1 / (1 / setup.lens.focal_length - 1 / sensor);
 }
 
 std::string locking_advice(Setup const& setup) {
-  if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // its dots are those of the picture
+  if (!setup.piv && setup.target.kind == TargetKind::image) return {};  // dot sizes of an image target are unknown
   SmallImages const images = expected_images(setup);
   double const diameter = images.diameter_px();
   if (!(diameter < least_image_px)) return {};

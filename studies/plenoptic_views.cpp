@@ -26,7 +26,7 @@ double PlenopticCamera::parallax(double distance) const {
 }
 
 PlenopticViews::PlenopticViews(PlenopticCamera const& camera, Image<double> const& raw) : camera_(camera), raw_(raw) {
-  // lenslets whose picture of the stop has its middle on the sensor
+  // Count the lenslets for which the centre of the stop's image is on the sensor.
   double const apart =
       (1 + camera.lenslets.to_sensor / camera.image_distance) * camera.lenslets.pitch / camera.pixel_pitch;
   half_columns_ = static_cast<int>(0.5 * (raw.columns() - 1) / apart);
@@ -42,7 +42,7 @@ double PlenopticViews::raw_at(Vec2d pixel) const {
   return upper + (y - j) * (lower - upper);
 }
 
-// The lens inverts, the picture does not: the sensor's x and y are right and up as the camera sees them.
+// The lens inverts, but the image does not: the sensor's x and y point right and up as the camera sees them.
 double PlenopticViews::of_lenslet(Vec2d axis, Vec2d s) const {
   Vec2d const on_sensor = axis + (camera_.lenslets.to_sensor / camera_.image_distance) * (axis - s);
   Vec2d const middle{0.5 * (raw_.columns() - 1), 0.5 * (raw_.rows() - 1)};

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A direction of any length, scaled by its largest component first: its square would overflow or vanish.
+/// Normalizes a direction, scaling by its largest component first to avoid overflow and underflow of its square.
 Vec3d unit_direction(Vec3d d) {
   double const largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
   return normalized(Vec3d{d.x / largest, d.y / largest, d.z / largest});
@@ -27,7 +27,7 @@ Vec3d unit_direction(Vec3d d) {
 
 TracedRay dead(RayStatus status) { return {status, {nan, nan, nan}, {nan, nan, nan}, nan, {nan, nan}}; }
 
-/// Whether a ray has an element still before it.
+/// Returns true if the element is in front of the ray.
 bool runs_to(CameraElement<double> const& element, Ray<double> const& ray) {
   return element.visit([&](auto const& held) { return held.pose.point_inwards(ray.position).z < 0; });
 }
@@ -48,7 +48,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
   if (way.status != RayStatus::alive) return dead(way.status);
   if (way.crossed) {
     Vec3d const left = exit_position(ray, way);
-    // along a slab without end there is no face to leave by
+    // In an infinitely wide slab, a ray parallel to the faces never exits.
     if (std::max(std::abs(left.x), std::abs(left.y)) >= unbounded) return dead(RayStatus::lost_in_medium);
     ray = {left, exit_direction(ray, way)};
     account.optical_path += way.optical_path;
@@ -61,7 +61,7 @@ TracedRay trace_one(Scene const& scene, TracingOptions<double> const& options, M
     RayStatus const status = pass_element(camera.elements[i], ray, account);
     if (status != RayStatus::alive) return dead(status);
   }
-  bool const thin = !scene.setup.lens.prescription;  // which has no optical path of its own
+  bool const thin = !scene.setup.lens.prescription;  // a thin lens has no defined optical path
   traced = {RayStatus::alive, ray.position, ray.direction, thin ? nan : account.optical_path, {nan, nan}};
   if (through == Through::optics) return traced;
   Vec2d place;

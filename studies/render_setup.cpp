@@ -105,7 +105,7 @@ nlohmann::ordered_json SetupRendering::render_one(OneCamera& camera, Renderer& r
   told.sources = rendering.truth.size();
   told.particles = camera.loaded.setup.piv.has_value();
   std::vector<std::int64_t> planned = rendering.truth.rays_planned;
-  std::erase(planned, 0);  // of particles out of view
+  std::erase(planned, 0);  // remove particles out of view
   if (!planned.empty()) {
     auto const [least, most] = std::minmax_element(planned.begin(), planned.end());
     told.rays = static_cast<std::uint64_t>(*least);

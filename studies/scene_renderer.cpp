@@ -20,7 +20,7 @@
 namespace gladstone {
 namespace {
 
-/// @throws DataError where "focused_dots" is asked for, but the scene is not
+/// @throws DataError if the scene does not meet the conditions of "focused_dots"
 FocusedDots enter(Scene const& scene) {
   std::optional<FocusedDots> const dots = focused_dots(scene);
   if (dots) return *dots;
@@ -28,7 +28,7 @@ FocusedDots enter(Scene const& scene) {
                                        std::string(to_string(table_state(scene))) + "; use \"auto\" or \"rays\"");
 }
 
-/// Some sources of a pattern.
+/// Selects some sources of a pattern.
 DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& numbers) {
   DotPattern some;
   some.half_size = all.half_size;
@@ -40,7 +40,7 @@ DotPattern some_of(DotPattern const& all, std::vector<std::size_t> const& number
   return some;
 }
 
-/// A copy of a scene with other dots, bright, of so many rays each or the most that they may need.
+/// Copies a scene with other, bright dots and the given number of rays per dot (maximum if chosen per dot).
 Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
   Scene copy = scene;
   copy.dots = std::move(dots);
@@ -49,7 +49,7 @@ Scene with_dots(Scene const& scene, DotPattern dots, std::uint64_t rays) {
   return copy;
 }
 
-/// Enters what was found of some sources, bright ones, among all.
+/// Merges the rendering of some sources, rendered as bright dots, into that of all.
 void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const& numbers, Polarity polarity) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     all.truth.copy(some.truth, i, numbers[i]);
@@ -60,7 +60,8 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
       all.statuses[frame][status] += some.statuses[frame][status];
     }
   }
-  double const sign = polarity == Polarity::dark ? -1 : 1;  // dark dots are taken from white paper
+  double const sign =
+      polarity == Polarity::dark ? -1 : 1;  // the light of dark dots is subtracted from that of white paper
   auto const add = [sign](Image<double>& to, Image<double> const& from) {
     std::transform(to.begin(), to.end(), from.begin(), to.begin(),
                    [sign](double there, double light) { return there + sign * light; });
@@ -70,7 +71,7 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
   add(all.light.flow, some.light.flow);
 }
 
-/// Takes the rays of a rendering out of the counts of another.
+/// Subtracts the ray counts of a rendering from those of another.
 void take_back(Rendering& all, Rendering const& some) {
   all.rays -= some.rays;
   for (std::size_t frame = 0; frame < all.statuses.size(); ++frame) {
@@ -129,7 +130,7 @@ Rendering SceneRenderer::render_near_view(Scene& scene, Particles const& particl
   if (std::find(near.begin(), near.end(), 0) == near.end()) {
     return rays_->render_particles(scene, particles, ParticleLight::scattered, images);
   }
-  Particles lit = particles;  // a particle without light takes no rays
+  Particles lit = particles;  // particles without light are not traced
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (near[i] == 0) lit.photons[0][i] = lit.photons[1][i] = 0;
   }
@@ -160,13 +161,13 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
   RenderImages const lit = images == RenderImages::no ? RenderImages::no : RenderImages::yes;
   if (auto const light = std::exchange(all.in_place, nullptr)) all.light = light->to_host();
   Scene by_rays = with_dots(scene, some_of(sources, left), std::max(scene.rays_per_dot, scene.rays_at_side_faces));
-  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // no plan foresaw them
+  if (!scene.by_need && !scene.setup.render.rays_per_dot) {  // the ray budget did not include these dots
     by_rays.by_need = need_of(scene);
     by_rays.rays_per_dot = most_rays_of_source(by_rays);
   }
   merge(all, rays_->render(by_rays, by_rays.dots, lit, theory), left, scene.setup.target.polarity);
   scene.pupil_margin = std::max(scene.pupil_margin, by_rays.pupil_margin);
-  // by what the fast renderer traced of them before it left them, they would count twice
+  // Subtract the rays that the fast renderer traced for these dots before rejecting them; otherwise they count twice.
   Scene given_up = scene;
   take_back(all, focused_dots_->render(given_up, by_rays.dots, RenderImages::no, RenderTheory::no));
   if (images == RenderImages::in_place) {
@@ -177,7 +178,7 @@ Rendering SceneRenderer::render_focused(Scene& scene, DotPattern const& sources,
 }
 
 StepPlan plan_step_of(Scene& scene) {
-  if (scene.second_medium) {  // the shorter step of both
+  if (scene.second_medium) {  // use the shorter step of both media
     Scene first = scene, second = at_second_pulse(scene);
     first.second_medium.reset();
     StepPlan const a = plan_step_of(first), b = plan_step_of(second);
@@ -191,8 +192,8 @@ StepPlan plan_step_of(Scene& scene) {
 
 namespace {
 
-/// The rays of those dots that are left to the general renderer, as far as the field's side faces tell which. Where
-/// their number is given, what it leaves of truth and images is measured all the same.
+/// Determines the rays of dots rejected by the fast renderer because of the field's side faces. If their number is
+/// given, measures the resulting errors of truth and images.
 void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   std::vector<std::size_t> const at_faces = sources_at_side_faces(scene, scene.dots);
   if (at_faces.empty()) return;
@@ -201,7 +202,8 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   bool const seen = std::any_of(by_rays.dots.centre.begin(), by_rays.dots.centre.end(),
                                 [&scene](Vec2d centre) { return scene.in_view(centre); });
   if (given && !seen) return;
-  constexpr std::uint64_t cheap_rays = 256;  // of a dot: to measure by more would cost more than to render them
+  constexpr std::uint64_t cheap_rays =
+      256;  // upper limit of the rays per dot, so that measuring costs no more than rendering
   RaysPlan const at_side_faces =
       given ? measure_rays_by_rays(by_rays, cheap_rays) : plan_rays_by_rays(by_rays, need_of(scene));
   if (seen) {
@@ -215,12 +217,12 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   plan.image_error_levels = std::fmax(plan.image_error_levels, at_side_faces.image_error_levels);
   plan.extrapolated = at_side_faces.extrapolated;
   plan.converged = plan.converged && at_side_faces.converged;
-  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);  // unknown stays unknown
+  plan.rays_wanted = std::max(plan.rays_wanted, at_side_faces.rays_wanted);  // NaN persists
   plan.seconds += at_side_faces.seconds;
 }
 
-/// The plan of few dots that are cheaper by rays than the table, which takes as long for any number; nothing where they
-/// are not, or where the rays that "auto" allows are too few.
+/// Returns a ray budget if tracing a few dots is much cheaper than the deflection table, whose cost is independent of
+/// their number. Returns nullopt otherwise, or if the rays allowed by "auto" do not reach the accuracy goals.
 std::optional<RaysPlan> plan_cheaper_rays(Scene const& scene) {
   constexpr double long_s = 5, much_cheaper = 60;
   if (scene.setup.render.method != RenderMethod::automatic) return std::nullopt;
@@ -238,14 +240,14 @@ std::optional<RaysPlan> plan_cheaper_rays(Scene const& scene) {
 }  // namespace
 
 RaysPlan plan_rays_of(Scene& scene) {
-  if (scene.second_medium) {  // the more rays of both
+  if (scene.second_medium) {  // use the larger number of rays of both media
     Scene first = scene, second = at_second_pulse(scene);
     first.second_medium.reset();
     RaysPlan const a = plan_rays_of(first), b = plan_rays_of(second), plan = b.rays > a.rays ? b : a;
     use_rays(scene, plan);
     return plan;
   }
-  if (method_of(scene) == RenderMethod::formula) {  // has none; what is written down is one
+  if (method_of(scene) == RenderMethod::formula) {  // no rays are traced; the recorded number is one
     RaysPlan plan;
     plan.rays = scene.rays_per_dot = 1;
     plan.bits = scene.setup.camera.bit_depth;
@@ -257,7 +259,7 @@ RaysPlan plan_rays_of(Scene& scene) {
     use_rays(scene, *cheaper);
     return *cheaper;
   }
-  constexpr std::uint64_t rivals = 4096;  // of a dot: fewer scatter by more than tables leave
+  constexpr std::uint64_t rivals = 4096;  // rays per dot; fewer scatter by more than the table's error
   RaysPlan plan = plan_rays(enter(scene));
   auto const given = given_rays(scene.setup);
   if (scene.setup.render.method == RenderMethod::automatic) {
@@ -267,12 +269,12 @@ RaysPlan plan_rays_of(Scene& scene) {
       plan = measure_table_error(enter(scene));
       plan.method = RenderMethod::focused_dots;
     }
-    if (plan.excess() > 1) {  // is the other way better?
+    if (plan.excess() > 1) {  // Compare with the general renderer.
       auto const by_rays_of = [&](Scene other) {
         RaysPlan const by_rays = plan_rays_by_rays(other);
         return given ? measure_rays_by_rays(other) : by_rays;
       };
-      // told by the same dots, so that the choice hangs on no others
+      // Use the same dots for both, so that the choice does not depend on the sample.
       if (by_rays_of(with_dots(scene, measured_places(scene), scene.rays_per_dot)).excess() < plan.excess()) {
         plan = by_rays_of(scene);
         plan.method = RenderMethod::rays;

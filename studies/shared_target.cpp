@@ -12,26 +12,26 @@ namespace {
 
 SetupNode pair(Vec2d numbers) { return setup_array({setup_number(numbers.x), setup_number(numbers.y)}); }
 
-/// Width and height of a target about `middle` that covers every camera's own [mm].
+/// Returns width and height of a target centred at `middle` that covers the targets of all cameras [mm].
 Vec2d extent_of_all(std::vector<Setup> const& read, Vec2d middle) {
   Vec2d half{};
   for (Setup const& one : read) {
     Vec2d const off = one.target_centre() - middle, extent = one.target_extent();
     half = {std::max(half.x, std::abs(off.x) + extent.x / 2), std::max(half.y, std::abs(off.y) + extent.y / 2)};
   }
-  // in whole micrometres: the same number for all, however it is written
+  // round up to whole micrometres, so that the number is independent of its text format
   auto const in_mm = [](double metres) { return std::ceil(metres / unit::micrometre) * 1e-3; };
   return {in_mm(2 * half.x), in_mm(2 * half.y)};
 }
 
-/// As many dots as the first camera's, in the words of another one.
+/// Sets another camera's dot density so that the number of dots equals the first camera's.
 void share_dots(SetupDocument& document, Setup const& first, Setup const& own, Vec2d extent) {
-  // a density that gives the very same number, to the last dot
+  // exact to the last dot
   double const density = first.dot_count() * 1024.0 * own.pixel_area() / (extent.x * extent.y);
   document.set({"target", "dots_per_32px_window"}, setup_number(density));
 }
 
-/// Dots of the first camera's size, in mm, for another one.
+/// Sets another camera's dot diameter in mm to that of the first camera.
 void share_diameter(SetupDocument& document, Setup const& first) {
   if (first.target.dot_diameter_m) return;
   if (SetupNode const* const table = document.find({"target"}); table && table->find("dot_diameter_px")) {
@@ -42,7 +42,7 @@ void share_diameter(SetupDocument& document, Setup const& first) {
   document.set({"target", "dot_diameter_mm"}, setup_number(first.dot_diameter() / unit::millimetre));
 }
 
-/// As many particles for all cameras as the first one's picture asks for.
+/// Sets the number of particles of all cameras to that required by the first camera's image.
 void share_particles(std::vector<CameraCase>& cases, Setup const& first) {
   if (first.piv->particles.count != ParticleCount::per_pixel) return;
   SetupNode const number = setup_number(std::round(particle_count(first)));
@@ -63,11 +63,11 @@ void share_target(std::vector<CameraCase>& cases, std::vector<Setup> const& read
     return;
   }
   TargetKind const kind = first.target.kind;
-  if (kind == TargetKind::lattice) return;  // the same as it is
+  if (kind == TargetKind::lattice) return;  // lattices are defined in metres and so already equal
   if (kind != TargetKind::image) {
     for (CameraCase& one : cases) share_diameter(one.document, first);
   }
-  if (kind == TargetKind::points) return;  // where they are is the same for all
+  if (kind == TargetKind::points) return;  // positions are defined in metres and so already equal
   Vec2d const middle = first.target.centre_m.value_or(Vec2d{});
   Vec2d const extent_mm =
       first.target.extent_m ? *first.target.extent_m / unit::millimetre : extent_of_all(read, middle);

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// A link of the chain as a dataset [N, 2].
+/// Stage of the chain stored as a dataset [N, 2].
 struct Link {
   char const* name;
   std::vector<Vec2d>& (*values)(Comparison&);
@@ -53,7 +53,7 @@ std::string comparison_fingerprint(SourceFiles const& sources, CompareOptions co
 
 void write_chain(std::string const& path, Comparison const& comparison, std::string const& errors) {
   Hdf5Writer file(path, {"gladstone comparison", 1, "", 0, "cpu"});
-  Comparison all = comparison;  // links give access to a comparison that changes
+  Comparison all = comparison;  // copy: links return mutable references
   for (Link const& link : links) {
     std::vector<Vec2d> const& values = link.values(all);
     if (values.empty()) continue;
@@ -107,7 +107,7 @@ bool read_chain(std::string const& folder, std::string const& fingerprint, Compa
     comparison = std::move(filled);
     return true;
   } catch (DataError const&) {
-    return false;  // a damaged file is made anew
+    return false;  // a damaged file is recomputed
   }
 }
 

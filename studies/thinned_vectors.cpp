@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// Numbers of those that stay of a row or column of so many.
+/// Returns the indices retained out of `count`, centred.
 std::vector<int> every_nth_of(int count, int n) {
   std::vector<int> stay;
   for (int i = (count - 1) % n / 2; i < count; i += n) stay.push_back(i);

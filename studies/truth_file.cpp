@@ -21,7 +21,7 @@ std::span<double const> flat(Image<Vec2d> const& image) {
   return {reinterpret_cast<double const*>(image.data()), 2 * image.size()};
 }
 
-/// The datasets of /dots that are pairs in px, with what they mean.
+/// Dataset of /dots with two components per dot.
 struct PairDataset {
   char const* name;
   std::vector<Vec2d> GroundTruth::*values;
@@ -110,7 +110,7 @@ void write_truth(std::string const& path, Scene const& scene, GroundTruth const&
 
 namespace {
 
-/// @throws DataError where a dataset has not the length that goes with the others
+/// @throws DataError if a dataset's length does not match the others
 void require_length(std::string const& path, std::string const& dataset, std::size_t there, std::size_t needed) {
   if (there == needed) return;
   throw DataError(path, dataset + " has " + std::to_string(there) + " values where " + std::to_string(needed) +
@@ -129,7 +129,7 @@ GroundTruth read_truth(std::string const& path) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     truth.position_m[i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
   }
-  bool const with_errors = file.attribute("version") != "1";  // the first files had none
+  bool const with_errors = file.attribute("version") != "1";  // version 1 did not contain them
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   for (PairDataset const& dataset : pair_datasets) {
     if (dataset.values == &GroundTruth::displacement_error_px && !with_errors) {
@@ -158,7 +158,7 @@ FieldMap read_field_map(std::string const& path) {
   std::vector<double> const spacing = file.read("/field/spacing_px");
   require_length(path, "/field/spacing_px", spacing.size(), 1);
   auto const shape = file.shape("/field/density_kg_m3");
-  constexpr std::size_t largest = 1'000'000;  // pixels of a camera along an axis
+  constexpr std::size_t largest = 1'000'000;  // pixels of a camera along an axis, sanity limit
   if (shape.size() != 2 || shape[0] > largest || shape[1] > largest || !(spacing[0] >= 1 && spacing[0] <= largest)) {
     throw DataError(path,
                     "/field holds no map (spacing_px, and density_kg_m3 in rows and columns); render the case again");

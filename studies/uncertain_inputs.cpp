@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<char const*, 4> known_keys{"value", "sigma", "distribution", "degrees_of_freedom"};
 
-/// Whether a table is a number with its uncertainty: it has a value and a sigma, or would have.
+/// Returns true if a table represents a number with its uncertainty, complete or not.
 bool is_uncertain(SetupNode const& node) {
   return node.kind == SetupNode::Kind::table && node.find("value") && node.find("value")->is_number() &&
          !node.find("kind") && !node.find("label");
@@ -31,7 +31,7 @@ class Reader {
  public:
   explicit Reader(SetupDocument& document) : document_(document) {}
 
-  /// @return whether anything below was replaced
+  /// @return true if any value below was replaced
   bool take(SetupNode& node) {
     bool changed = false;
     for (SetupMember& member : node.members) changed |= take_at(member.key, member.value);
@@ -49,7 +49,7 @@ class Reader {
   std::vector<UncertainInput> inputs;
 
  private:
-  /// Adds a problem at the key that has the number; what stands in an array, at the array.
+  /// Adds a problem at the key of the number; for a number in an array, at the array.
   void problem(std::string const& message) {
     SetupTable table = document_.root();
     std::size_t i = 0;
@@ -110,7 +110,7 @@ class Reader {
   std::vector<std::string> path_;
 };
 
-/// Reads what [[correlations]] says of inputs, and enters it at both of each pair.
+/// Reads [[correlations]] and stores each one at both inputs.
 class CorrelationReader {
  public:
   CorrelationReader(SetupDocument& document, std::vector<UncertainInput>& inputs)
@@ -166,7 +166,7 @@ class CorrelationReader {
     auto const found =
         std::find_if(inputs_.begin(), inputs_.end(), [&key](UncertainInput const& one) { return one.key == key; });
     if (found == inputs_.end()) {
-      if (has_sigma(key)) return std::nullopt;  // what is wrong with its value is said where it stands
+      if (has_sigma(key)) return std::nullopt;  // the problem with its value was reported there
       std::vector<std::string> names;
       for (UncertainInput const& input : inputs_) names.push_back(input.key);
       auto const nearest = nearest_name(key, names);
@@ -184,7 +184,7 @@ class CorrelationReader {
     return static_cast<std::size_t>(found - inputs_.begin());
   }
 
-  /// Whether a dotted key is written with a sigma, whatever its value is.
+  /// Returns true if a dotted key has a sigma, whatever its value.
   bool has_sigma(std::string const& key) const {
     std::vector<std::string> path;
     std::istringstream steps(key);
@@ -211,7 +211,7 @@ class CorrelationReader {
   Eigen::MatrixXd coefficients_;
 };
 
-/// As [[correlations]] is written, every pair once.
+/// Returns the node of [[correlations]], with every pair once.
 SetupNode correlations_node(std::vector<UncertainInput> const& inputs) {
   SetupNode all = setup_array({});
   for (UncertainInput const& input : inputs) {
@@ -226,7 +226,7 @@ SetupNode correlations_node(std::vector<UncertainInput> const& inputs) {
   return all;
 }
 
-/// The node at a path of keys and "[i]"; null where there is none.
+/// Returns the node at a path of keys and "[i]"; null if it does not exist.
 SetupNode* node_at(SetupNode& root, std::vector<std::string> const& path) {
   SetupNode* node = &root;
   for (std::string const& step : path) {
@@ -264,7 +264,7 @@ std::vector<UncertainInput> take_uncertain_inputs(SetupDocument& document) {
   bool const none = !correlations || (correlations->kind == SetupNode::Kind::array && correlations->elements.empty());
   if (!none) {
     CorrelationReader(document, reader.inputs).read(*correlations);
-    document.set({"correlations"}, setup_array({}));  // taken: who reads the setup next finds none
+    document.set({"correlations"}, setup_array({}));  // removed, so that later readers of the setup find none
   }
   return reader.inputs;
 }

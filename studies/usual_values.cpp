@@ -12,10 +12,10 @@
 namespace gladstone {
 namespace {
 
-/// A unit that a number may have been given in by mistake.
+/// Unit in which a number may have been given by mistake.
 struct OtherUnit {
   char const* name;
-  double factor;  ///< its size in the key's own unit
+  double factor;  ///< size of that unit in the key's unit
 };
 
 constexpr std::array of_mm{OtherUnit{"m", 1e3}, OtherUnit{"um", 1e-3}, OtherUnit{"cm", 10.0},
@@ -31,12 +31,12 @@ constexpr std::array of_viscosity{OtherUnit{"mPa s", 1e-3}, OtherUnit{"uPa s", 1
 constexpr std::array of_share{OtherUnit{"%", 0.01}};
 constexpr std::array<OtherUnit, 0> of_count{};
 
-/// The range that values of a key have in laboratories, wide enough for microscopes and wind tunnels.
+/// Range of a key's values in laboratories, from microscopes to wind tunnels.
 struct UsualRange {
-  std::array<char const*, 3> path;  ///< tables, then the key; null: none
+  std::array<char const*, 3> path;  ///< tables, then the key; null: unused
   double low, high;                 ///< in the key's unit
   char const* unit;
-  std::span<OtherUnit const> others;  ///< the likeliest first
+  std::span<OtherUnit const> others;  ///< most likely unit first
 };
 
 constexpr std::array usual_ranges{
@@ -70,13 +70,13 @@ constexpr std::array usual_ranges{
     UsualRange{{"flow", "velocity_m_s"}, 1e-6, 1e4, "m/s", of_speed},
 };
 
-/// A table, or the one of an array of one.
+/// Returns the element of an array with a single table; otherwise the node itself.
 SetupNode const* only(SetupNode const* node) {
   bool const one = node && node->kind == SetupNode::Kind::array && node->elements.size() == 1;
   return one && node->elements[0].kind == SetupNode::Kind::table ? &node->elements[0] : node;
 }
 
-/// Numbers under a key, which may be an array of them.
+/// Returns the number of a key, or the numbers of an array.
 std::vector<double> numbers_of(SetupNode const& node) {
   if (node.is_number()) return {node.as_double()};
   std::vector<double> numbers;
@@ -90,7 +90,7 @@ std::string with_unit(double value, char const* unit) {
   return fmt::format("{:.6g}{}{}", value, *unit ? " " : "", unit);
 }
 
-/// Returns the text on a value outside its key's range; empty where it is inside.
+/// Returns a text about a value outside its key's range; empty for values inside.
 std::string unusual_value(UsualRange const& usual, double value) {
   double const size = std::abs(value);
   auto const inside = [&usual](double x) { return x >= usual.low && x <= usual.high; };

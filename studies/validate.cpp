@@ -12,11 +12,11 @@ namespace {
 constexpr auto absolute = ToleranceKind::absolute;
 constexpr auto relative = ToleranceKind::relative;
 
-// Table 1 of Rajendran, Bane & Vlachos
+// Table 1 of Rajendran, Bane & Vlachos (2019)
 constexpr double f = 0.105, N = 11, Z_A = 0.75, Z_D = 0.25, Z_B = Z_A + Z_D, L_z = 0.01, pitch = 10e-6, lambda = 532e-9;
 constexpr double M = f / (Z_B - f), K = 2.26e-4, n_0 = 1 + K * 1.225;
 
-/// One row an oracle.
+/// One row per oracle.
 constexpr std::array oracles{
     Oracle{"linear n^2, one step: x", "Born & Wolf sec. 3.2: parabola", 1.11824088833465, 1e-13, absolute,
            oracle::linear_index_x},

@@ -25,17 +25,17 @@
 namespace gladstone {
 namespace {
 
-constexpr int map_spacing_px = 2;  // of the maps in truth.h5: turbulence's fronts are a few pixels wide
+constexpr int map_spacing_px = 2;  // spacing of the maps in truth.h5; turbulent fronts are a few pixels wide
 
-/// What the deflection table leaves of truth and images, measured where the plan has not.
+/// Returns the errors of truth and images caused by the deflection table; measures them unless the ray budget has.
 RaysPlan error_of_table(Scene const& scene, RaysPlan const& plan) {
-  // with dots at side faces "auto" tells the errors of their rays, too
+  // With dots at side faces, the errors in an "auto" budget include those of their rays.
   bool const measured =
       plan.rays_at_side_faces == 0 && (std::isfinite(plan.truth_error_px) || std::isfinite(plan.image_error_levels));
   return measured ? plan : measure_table_error(focused_dots(scene).value());
 }
 
-/// Whole grey levels as a picture's file holds them.
+/// Converts grey levels, which are whole numbers, to the integers of an image file.
 Image<std::uint16_t> picture_of(Image<double> const& levels) {
   Image<std::uint16_t> picture(levels.columns(), levels.rows());
   std::transform(levels.begin(), levels.end(), picture.begin(),
@@ -62,7 +62,7 @@ double exposure_of(Scene const& scene, RenderedLight const& light) {
 
 namespace {
 
-/// Says how long a long rendering will take.
+/// Logs the expected time of a long rendering.
 void announce_rendering(PreparedCase const& prepared) {
   constexpr double worth_a_word_s = 20;
   Scene const& scene = prepared.scene;
@@ -80,7 +80,7 @@ RenderedCase render_case(PreparedCase const& prepared, Renderer& renderer, Rende
   announce_rendering(prepared);
   auto const start = std::chrono::steady_clock::now();
   RenderedCase rendered;
-  Scene scene = prepared.scene;  // a copy: tracing may widen its pupil
+  Scene scene = prepared.scene;  // copy: tracing may widen its pupil
   stop_point("rendering");
   rendered.rendering = std::make_shared<Rendering const>(
       scene.setup.piv
@@ -134,7 +134,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
     warn_of_table(warnings, *table_error);
   }
   outcome.device = rendering.device.empty() ? renderer.device() : rendering.device;
-  // where the rays are planned again, they are planned for the same exposure
+  // If the rays are chosen again, they are chosen for the same exposure, so "auto" remains.
   if (camera.absolute_exposure) {
     loaded.document.root().table("camera").resolve("exposure", std::string("absolute"));
   } else if ((by_table || scene.by_need) && !loaded.setup.render.rays_per_dot && !camera.exposure_e) {
@@ -142,7 +142,7 @@ nlohmann::json write_case(CaseSetup& loaded, PreparedCase const& prepared, Rende
   } else {
     loaded.document.root().table("camera").resolve("exposure", rendered.exposure_e);
   }
-  // what "auto" takes for other scenes hangs on the device, and on what is compared
+  // The method that "auto" selects for other scenes depends on the device and on what is compared; record it.
   if (by_table || prepared.rays.method != RenderMethod::automatic) {
     loaded.document.root().table("render").resolve("method", std::string(to_string(rendering.method)));
   }

@@ -30,12 +30,13 @@ Image<std::uint16_t> picture_of(Image<double> const& levels) {
   return picture;
 }
 
-/// Number of a place along an axis of the stop, from its first.
+/// Returns the index of a position along an axis of the stop.
 int number_of(double place, double diameter, int across) {
   return static_cast<int>(std::lround((place / diameter + 0.5) * across - 0.5));
 }
 
-/// Distance from the lens to a plane Z = z along the camera's axis [m]. @throws DataError where the lens images none
+/// Returns the distance from the lens to the plane Z = z along the camera's axis [m].
+/// @throws DataError if the lens forms no real image of the plane
 double distance_of(Setup const& setup, double z) {
   Pose<double> const pose = setup.camera_pose();
   double const distance = (pose.origin.z - z) / pose.z.z;
@@ -74,7 +75,7 @@ ViewsWritten write_views(std::string const& case_folder, std::string const& fold
   for (Vec2d const place : stops) {
     summary["views"].push_back({{"file", name_of(place)}, {"stop_mm", {place.x / mm, place.y / mm}}});
   }
-  // a lenslet's picture has so many pixels over the stop: views between them are interpolated
+  // The image of the stop behind a lenslet has a limited number of pixels; more views are interpolated.
   if (double const seen = written.camera.picture_px(); across > 2 * seen) {
     spdlog::warn(
         "--views {}: {} views of either frame will be written, though a lenslet's picture of the stop is {:.3g} px "
