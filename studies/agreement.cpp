@@ -12,8 +12,8 @@ namespace gladstone {
 namespace {
 
 constexpr int pieces_across = 4;  // side length of the plane in jackknife pieces
-constexpr int dots_across =
-    96;  // side length of the plane in dots; at 512 nodes, the dot spacing is half the size of the turbulent structures
+// side length of the plane in dots; at 512 nodes, the dot spacing is half the size of the turbulent structures
+constexpr int dots_across = 96;
 
 using Pieces = std::array<AgreementSums, pieces_across * pieces_across>;
 

@@ -21,8 +21,8 @@ namespace gladstone {
 namespace {
 
 constexpr std::uint64_t least_rays = 1024, most_rays = 65536;  // limits of the number of rays per dot chosen by "auto"
-constexpr double place_tolerance_px =
-    1e-3;  // rms error of the dot positions at which "auto" stops increasing the number of rays
+// rms error of the dot positions at which "auto" stops increasing the number of rays
+constexpr double place_tolerance_px = 1e-3;
 constexpr std::size_t dots_traced_again = 64;
 constexpr int dots_for_a_fit = 12;  // minimum number of dots per plane for a homography and its check
 

@@ -13,10 +13,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_scatter_px =
-    0.01;                         // lower bound of the dots' scatter within a plane, used as reference for residuals
-constexpr double suspicious = 5;  // residual, in multiples of that scatter, that is investigated
-constexpr double refused = 10;    // residual, in multiples of that scatter, that is an error
+// lower bound of the dots' scatter within a plane, used as reference for residuals
+constexpr double least_scatter_px = 0.01;
+constexpr double suspicious = 5;           // residual, in multiples of that scatter, that is investigated
+constexpr double refused = 10;             // residual, in multiples of that scatter, that is an error
 constexpr double least_refused_px = 0.5;   // residual below which only a warning is given
 constexpr double outlier_deviations = 8;   // residual of an outlier, in robust standard deviations
 constexpr double least_outlier_px = 0.05;  // residual below which a dot is never an outlier

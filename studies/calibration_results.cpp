@@ -86,7 +86,7 @@ nlohmann::ordered_json strangers_json(CalibratedPlane const& plane) {
   return places;
 }
 
-/// Returns e.g. "; left out as no dots: 3 by size or shape, 1 by their place on the grid"; empty if there are none.
+/// Returns e.g. "; left out as no dots: 3 by size or shape, 1 by their place on the grid"; empty without such spots.
 std::string spots_in_words(CalibratedPlane const& plane) {
   if (plane.not_dots == 0 && plane.strangers.empty()) return "";
   return fmt::format("; left out as no dots: {} by size or shape, {} by their place on the grid", plane.not_dots,

@@ -45,8 +45,8 @@ void keep_own_windows(SetupDocument& document, std::string const& camera, std::v
   SetupNode const* const all = document.find({"window"});
   if (!all || (all->kind != Kind::array && all->kind != Kind::table)) return;
   std::vector<SetupNode> windows = all->kind == Kind::array ? all->elements : std::vector{*all};
-  SetupDocument places =
-      document.copy();  // used to locate errors; querying `document` itself would add keys to its resolved text
+  // used to locate errors; querying `document` itself would add keys to its resolved text
+  SetupDocument places = document.copy();
   SetupNode kept = *all;
   kept.kind = Kind::array;
   kept.members.clear();

@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Setup of one camera of a multi-camera setup, rendered as a case of its own folder.
+/// Setup of one camera of a multi-camera setup, rendered as a separate case.
 struct CameraCase {
   /// name of the camera and of its folder; empty if the setup has one camera, whose folder is the CASE itself
   std::string name;

@@ -116,7 +116,7 @@ std::size_t warn_of_unseen(std::vector<std::string>& warnings, Scene const& scen
   if (unseen > 0 && !scene.setup.piv) {  // for PIV, unseen particles are those outside the light sheet
     double const disc = scene.pupil_radius(), stop = scene.imaging.entrance_pupil / 2;
     double const passing = static_cast<double>(rays) * (stop * stop) / (disc * disc);
-    constexpr double few = 16;  // the probability that 16 rays all miss the stop is about e^-16
+    constexpr double few = 16;  // if 16 passing rays are expected, none passes with a probability of e^-16
     std::string const why =
         !scene.chief_rays_only() && passing < few
             ? fmt::format(

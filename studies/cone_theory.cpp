@@ -80,7 +80,7 @@ GradientSpectrum gradient_spectrum(Image<double> const& plane) {
   GLADSTONE_EXPECTS(!plane.empty());
   int const columns = plane.columns(), rows = plane.rows(), half = columns / 2 + 1;
   auto const along_x = roots_of_unity(columns), along_y = roots_of_unity(rows);
-  // first along x, where the plane is real and half of the wavenumbers say all, then along y
+  // Transform along x, for half of the wavenumbers since the plane is real, then along y.
   Image<std::complex<double>> partial(rows, half);
   parallel_for(static_cast<std::size_t>(rows), [&](std::size_t line) {
     int const row = static_cast<int>(line);

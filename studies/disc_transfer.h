@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>  // and j1, which is of POSIX
+#include <cmath>  // also declares j1 (POSIX)
 
 #include "render/base/units.h"
 

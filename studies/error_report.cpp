@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Formats the coverage of the errors by the vectors' uncertainties; empty if there are none.
+/// Formats the coverage of the errors by the vectors' uncertainties; empty without uncertainties.
 std::string uncertainty_line(Comparison const& comparison) {
   DisplacementField const& measured = comparison.measured;
   if (measured.sigma_px.empty()) return "";

@@ -34,8 +34,8 @@ FieldStatistics field_statistics(FieldSource& source) {
   std::vector<double> values, before;
   for (int first = 0; first < grid.nodes[1]; first += rows) {
     int const last = std::min(first + rows, grid.nodes[1]);
-    int const from =
-        std::max(first - 1, 0);  // the last row of the previous block is adjacent to the first row of this one
+    // the last row of the previous block is adjacent to the first row of this one
+    int const from = std::max(first - 1, 0);
     before.clear();
     for (int k = 0; k < grid.nodes[2]; ++k) {
       throw_if_interrupted();

@@ -164,7 +164,7 @@ int guarded(int argc, char** argv) {
   }
 }
 
-/// Opens stdin, stdout and stderr on /dev/null if the caller closed them, so that none of the command's files receives
+/// Opens stdin, stdout and stderr on /dev/null if the caller closed them, so that no file of the command receives
 /// such a descriptor and collects messages. Reading and writing there fail.
 void occupy_closed_streams() {
   for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

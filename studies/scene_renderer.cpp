@@ -60,8 +60,8 @@ void merge(Rendering& all, Rendering const& some, std::vector<std::size_t> const
       all.statuses[frame][status] += some.statuses[frame][status];
     }
   }
-  double const sign =
-      polarity == Polarity::dark ? -1 : 1;  // the light of dark dots is subtracted from that of white paper
+  // the light of dark dots is subtracted from that of white paper
+  double const sign = polarity == Polarity::dark ? -1 : 1;
   auto const add = [sign](Image<double>& to, Image<double> const& from) {
     std::transform(to.begin(), to.end(), from.begin(), to.begin(),
                    [sign](double there, double light) { return there + sign * light; });
@@ -202,8 +202,8 @@ void plan_rays_at_side_faces(Scene& scene, RaysPlan& plan) {
   bool const seen = std::any_of(by_rays.dots.centre.begin(), by_rays.dots.centre.end(),
                                 [&scene](Vec2d centre) { return scene.in_view(centre); });
   if (given && !seen) return;
-  constexpr std::uint64_t cheap_rays =
-      256;  // upper limit of the rays per dot, so that measuring costs no more than rendering
+  // upper limit of the rays per dot, so that measuring costs no more than rendering
+  constexpr std::uint64_t cheap_rays = 256;
   RaysPlan const at_side_faces =
       given ? measure_rays_by_rays(by_rays, cheap_rays) : plan_rays_by_rays(by_rays, need_of(scene));
   if (seen) {
