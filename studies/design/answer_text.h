@@ -9,30 +9,32 @@
 
 namespace gladstone {
 
-/// A design question with its answer and all that both refer to.
+/// A design question with its answer, its variants and its verification.
 struct AnsweredQuestion {
   DesignQuestion question;
   std::vector<DesignVariant> variants;
   Recommendation answer;
-  std::optional<Verification> verification;  ///< nothing: not asked for, or nothing is feasible
-  std::vector<SkippedVariant> skipped = {};  ///< cameras and lenses that do not go with the setup
+  std::optional<Verification> verification;  ///< empty if no simulation was requested or no design is feasible
+  std::vector<SkippedVariant> skipped = {};  ///< cameras and lenses that are incompatible with the setup
 
-  /// What is recommended: the best that the simulation keeps to, or the best by formula where none was simulated.
+  /// Returns the recommended design: the best one that meets the requirements in simulation, or the best by formula if
+  /// none was simulated.
   /// @pre answer.feasible()
   BranchOutcome const& chosen() const {
     bool const simulated = verification && verification->chosen;
     return simulated ? verification->benches[*verification->chosen].outcome : answer.outcomes.front();
   }
   Bench<double> best() const { return bench_at(chosen().branch, chosen().solution.logarithms); }
-  /// Whether the formulas have a design and no simulation says that it is none.
+  /// Returns true if a design is feasible by formula and no simulation contradicts it.
   bool feasible() const { return answer.feasible() && (!verification || verification->chosen || !verification->any()); }
 };
 
-/// The answer to read: what is recommended, what it will do, what binds, what each requirement costs; or what
-/// conflicts.
+/// Formats the answer: recommended design, predicted performance, active limits and the cost of each requirement; or
+/// the conflicting requirements.
 std::string answer_text(AnsweredQuestion const& answered);
 
-/// feasible, recommended {key path: value}, predicted, binding, costs, front, alternatives, conflicts, relaxations.
+/// Returns the answer as JSON with the keys feasible, recommended {key path: value}, predicted, binding, costs, front,
+/// alternatives, conflicts and relaxations.
 nlohmann::ordered_json answer_json(AnsweredQuestion const& answered);
 
 }  // namespace gladstone

@@ -10,8 +10,7 @@
 
 namespace gladstone {
 
-/// What a bench can break: first what the user requires, then what a bench must keep to be one that the formulas
-/// describe.
+/// Constraints on a set-up: first the user's requirements, then those for which the closed forms are valid.
 enum class Bound {
   gradient_min,
   resolution,
@@ -20,45 +19,47 @@ enum class Bound {
   view_width,
   view_height,
   z_total,
-  // of every bench
+  // of every set-up
   focus,       ///< an image of the dots exists
-  dots_clear,  ///< of the medium
-  lens_clear,  ///< of the medium
-  dot_least,   ///< the dot's geometric image is as large as the smallest that the random error was measured at
-  dot_most,    ///< and the whole image no larger than the largest
-  coverage,    ///< dots without overlap have room
-  noise_most,  ///< the noise is no more than the random error was measured at
-  full_well,   ///< the peak stays below full scale
+  dots_clear,  ///< the dots are outside the medium
+  lens_clear,  ///< the lens is outside the medium
+  dot_least,   ///< the dot's geometric image is not below the range in which the random error was measured
+  dot_most,    ///< the whole dot image is not above that range
+  coverage,    ///< dots without overlap fit on the target
+  noise_most,  ///< the noise is not above the range in which the random error was measured
+  full_well,   ///< the peak is below full scale
 };
 
 constexpr bool required_by_user(Bound bound) { return bound < Bound::focus; }
 
-/// A bound with its limit, in SI.
+/// A constraint with its limit, in SI.
 struct Limit {
   Bound bound;
   double value;
 };
 
-/// What a bound is called: the key for the user's, words for the others.
+/// Returns the name of a constraint for the user: the key of a requirement, a description for the others.
 std::string bound_name(Bound bound);
-/// Key of a requirement, its unit as suffix, and that unit in SI.
+/// Key of a requirement in the setup, whose suffix is the unit, and the value of that unit in SI.
 struct BoundKey {
   char const* path;
   double unit;
 };
 BoundKey bound_key(Bound bound);
 
-/// The user's limits, as far as they are given.
+/// Returns the limits required by the user.
 std::vector<Limit> required_limits(Requirements const& requirements);
-/// Those of every bench.
+/// Returns the limits that every set-up must meet.
 std::vector<Limit> bench_limits(BenchGiven const& given);
 
-inline constexpr double closest_focus = 1.02;  ///< least distance of the dots from the lens, in focal lengths
-inline constexpr double most_coverage = 0.45;  ///< of the target by dots; random discs without overlap reach 0.5
+inline constexpr double closest_focus = 1.02;  ///< minimum distance of the dots from the lens, in focal lengths
+/// maximum fraction of the target covered by dots; random discs without overlap reach 0.5
+inline constexpr double most_coverage = 0.45;
 
-/// By how much a bench exceeds a limit, as the logarithm of the ratio (the resolution as the transfer that lacks at the
-/// wavelength required): 0 or less is kept. Where no image of the dots exists, what lacks to its existence.
-/// @param bench may carry derivatives
+/// Returns the excess of a set-up over a limit as the logarithm of a ratio; for the resolution, the deficit of transfer
+/// at the required wavelength. A limit is met if the excess is 0 or less. If no image of the dots exists, returns the
+/// excess over the limit `focus` instead.
+/// @param bench  set-up; may contain derivatives
 template <class T>
 T excess(Limit const& limit, Bench<T> const& bench) {
   using std::log;
@@ -71,7 +72,7 @@ T excess(Limit const& limit, Bench<T> const& bench) {
     case Bound::resolution:
       return transfer_at_resolution - bench.transfer(T(limit.value));
     case Bound::displacement_max:
-      if (given.largest_gradient == 0) return T(-1);  // nothing moves
+      if (given.largest_gradient == 0) return T(-1);  // no displacement
       return log(bench.largest_displacement_px() / limit.value);
     case Bound::uncertainty_max:
       return log(bench.random_error() / limit.value);
@@ -101,7 +102,8 @@ T excess(Limit const& limit, Bench<T> const& bench) {
   return T(0);
 }
 
-/// The quantity that an objective makes small, in SI. @param value the same bench without derivatives
+/// Returns the quantity that an objective minimizes, in SI.
+/// @param value  the same set-up without derivatives
 template <class T>
 T objective_value(Objective objective, Bench<T> const& bench, Bench<double> const& value) {
   switch (objective) {
@@ -121,22 +123,23 @@ T objective_value(Objective objective, Bench<T> const& bench, Bench<double> cons
   return bench.z_b();
 }
 
-/// What is to be solved: an objective, and limits.
+/// Optimization problem: objective and limits.
 struct DesignProblem {
   Objective objective = Objective::gradient_min;
   std::vector<Limit> limits;
 };
 
-/// One combination of what is chosen from lists, and the intervals of what is not.
+/// One combination of the discrete design variables, with the intervals of the continuous ones.
 struct DesignBranch {
   BenchGiven const* given = nullptr;
-  std::array<double, choice_count> value{};  ///< of every choice that is not continuous [SI]
-  std::optional<double> dot_px;              ///< geometric image of a dot whose size is told in px and not chosen
-  std::vector<FreeChoice> continuous;        ///< intervals
-  std::size_t variant = 0;                   ///< camera and lens: a number of the caller's
+  std::array<double, choice_count> value{};  ///< value of every variable that is not continuous [SI]
+  /// diameter of the geometric dot image, if given in px and not a design variable [px]
+  std::optional<double> dot_px;
+  std::vector<FreeChoice> continuous;  ///< continuous design variables with their intervals
+  std::size_t variant = 0;             ///< index of the variant of camera and lens
 };
 
-/// The bench at a point of a branch, given by the logarithms of its continuous choices.
+/// Returns the set-up at a point of a branch, given the logarithms of its continuous design variables.
 template <class T>
 Bench<T> bench_at(DesignBranch const& branch, std::vector<T> const& logarithms) {
   using std::exp;

@@ -9,37 +9,40 @@
 
 namespace gladstone {
 
-/// One camera with one lens, or with the thin lenses that the choices describe.
+/// A combination of a camera with a lens prescription, or with the thin lens defined by the design variables.
 struct DesignVariant {
-  std::string camera;  ///< file of the inventory; empty: the setup's own
-  std::string lens;    ///< prescription of the inventory; empty: thin, or the setup's own
+  std::string camera;  ///< file of the inventory; empty: the setup's camera
+  std::string lens;    ///< prescription of the inventory; empty: thin lens, or the setup's prescription
   SetupDocument document;
   Setup setup;
   std::unique_ptr<BenchGiven> given;
 };
 
-/// A camera or lens of the inventory that does not go with the setup.
+/// A camera or lens of the inventory that is incompatible with the setup.
 struct SkippedVariant {
-  std::string camera, lens;  ///< files; empty as above
+  std::string camera, lens;  ///< files; empty as in DesignVariant
   std::string reason;
-  std::string name() const;  ///< for the reader
+  std::string name() const;  ///< returns a name for messages
 };
 
-/// Every camera of the inventory with the setup's lens and with every prescription.
-/// @param document a setup that can be loaded
-/// @param skipped gets those that do not go with the setup
-/// @throws SetupError where none does, where the setup's own do not, or where closed forms do not describe it
+/// Combines every camera of the inventory with the setup's lens and with every prescription.
+/// @param document  a valid setup
+/// @param skipped   receives the incompatible combinations
+/// @throws SetupError if no combination is compatible, if the setup's camera and lens are not, or if the closed forms
+///   do not apply
 std::vector<DesignVariant> design_variants(SetupDocument const& document, DesignQuestion const& question,
                                            std::vector<SkippedVariant>& skipped);
 
-/// All combinations of the variants and of the values to choose from. The variants must outlive them.
+/// Returns all combinations of the variants and the discrete values of the design variables. The variants must outlive
+/// them.
 std::vector<DesignBranch> design_branches(std::vector<DesignVariant> const& variants, DesignQuestion const& question);
 
-/// Camera, lens and values of a branch, for the reader.
+/// Returns camera, lens and values of a branch as text.
 std::string branch_name(DesignBranch const& branch, std::vector<DesignVariant> const& variants,
                         DesignQuestion const& question);
 
-/// The setup of a bench, ready to render: the variant's, with the bench's choices, without the tables of the question.
+/// Returns the setup of a design, ready to render: the variant's setup with the design's values, without the tables of
+/// the question.
 std::string applied_setup(DesignVariant const& variant, DesignQuestion const& question, Bench<double> const& bench);
 
 }  // namespace gladstone

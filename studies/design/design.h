@@ -10,29 +10,30 @@
 
 namespace gladstone {
 
-/// What `gladstone design` is asked.
+/// Request to `gladstone design`.
 struct DesignRequest {
   std::string setup;
   std::vector<std::string> overrides;
-  std::string figures;  ///< folder; empty: none are drawn
+  std::string figures;  ///< folder of the figures; empty: no figures
   std::string figure_format = "png";
-  std::string apply;                    ///< file for the recommended setup; empty: none
-  VerificationPlan verification;        ///< of no bench: the formulas are believed
-  std::function<Device()> open_device;  ///< that does so
+  std::string apply;                    ///< file for the recommended setup; empty: not written
+  VerificationPlan verification;        ///< zero benches: no simulation
+  std::function<Device()> open_device;  ///< opens the device of the simulation
 };
 
-/// What it answers.
+/// Result of `gladstone design`.
 struct DesignReport {
   nlohmann::ordered_json json;
   std::string text;
   std::vector<std::string> warnings;
-  bool feasible = true;  ///< by formula and, where it was simulated, in simulation; or nothing was required
+  bool feasible = true;  ///< by formula and, if simulated, in simulation; also true without requirements
 };
 
-/// The sheet of a setup and, where it has [requirements], the recommended setup or why none exists. Writes the figures
-/// and the recommended setup.
-/// @throws SetupError of the setup and of the question, all problems together; DataError where a design has no cone of
-///         light, or an --apply without [requirements]; OutputError
+/// Computes the design sheet of a setup and, if it has [requirements], the recommended setup or the reasons why none
+/// exists. Writes the figures and the recommended setup.
+/// @throws SetupError with all problems of the setup and the question
+/// @throws DataError if the design has no light cone, or for --apply without [requirements]
+/// @throws OutputError if a file cannot be written
 DesignReport design(DesignRequest const& request);
 
 }  // namespace gladstone

@@ -9,26 +9,28 @@
 
 namespace gladstone {
 
-/// Inputs that are correlated with one another, directly or by others; one that is with none is a group by itself.
+/// Group of inputs correlated directly or through other inputs; an uncorrelated input forms a group of one.
 struct CorrelatedGroup {
   std::vector<Eigen::Index> members;
-  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< the fewest of theirs
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();  ///< minimum over the members
 };
 
-/// Correlation coefficients of all pairs of inputs.
+/// Returns the matrix of correlation coefficients of all inputs.
 Eigen::MatrixXd coefficients_of(std::vector<MeasurementInput> const& inputs);
 
+/// Partitions the inputs into groups that are mutually uncorrelated.
 std::vector<CorrelatedGroup> correlated_groups(std::vector<MeasurementInput> const& inputs,
                                                Eigen::MatrixXd const& coefficients);
 
-/// Draws all inputs less their values, one sample at a time, from what drawn_distribution() says.
+/// Draws samples of all inputs minus their values, from the distributions named by drawn_distribution().
 class InputDraws {
  public:
-  /// @pre the coefficients have a factor, as take_uncertain_inputs() sees to
+  /// @pre the coefficients have a Cholesky factor, as checked by take_uncertain_inputs()
   explicit InputDraws(std::vector<MeasurementInput> const& inputs);
 
+  /// Draws one sample, with one component per input in its own unit.
   Eigen::VectorXd draw(KeyedEngine& engine) const;
-  /// The fewest degrees of freedom of the t distributions that samples are drawn from; infinite: none.
+  /// Returns the smallest number of degrees of freedom of the t distributions in use; infinity if none is.
   double fewest_degrees_of_t() const;
 
  private:

@@ -10,38 +10,39 @@
 
 namespace gladstone {
 
-/// What a density gradient measured with a setup is uncertain by: the sheet's part about inputs.
+/// Uncertainty of a density gradient measured with a setup, by contributions of the inputs.
 struct MeasurementUncertainty {
   std::vector<MeasurementInput> inputs;  ///< the displacement first
   std::vector<PropagatedResult> results;
-  double random_px = 0;  ///< of the displacement
-  double share_resolved =
-      0;                ///< of a wave twice as long as the resolved one that is left; the rest: uncorrected_bias.h
-  bool traced = false;  ///< whether rays were traced for the derivatives
+  double random_px = 0;  ///< random error of the displacement [px]
+  /// amplitude transfer of a wave twice as long as the resolved one [1]; for the remaining loss see
+  /// studies/uncorrected_bias.h
+  double share_resolved = 0;
+  bool traced = false;  ///< whether derivatives were computed by ray tracing
 };
 
-/// d ln(displacement per gradient) / d(key) of a setup, in the key's own unit: central differences over twice a
-/// thousandth of the value (of sigma where the value is 0), of chief rays that no stop clips, through a uniform
-/// gradient, with the same random numbers on both sides; from one side where the value is 0 and cannot have either
-/// sign. Nothing where the setup cannot be traced so.
+/// Computes d ln(displacement per gradient) / d(key) of a setup, in the key's unit, by ray tracing. Uses central
+/// differences with a step of a thousandth of the value (of sigma if the value is 0), or one-sided ones if the value is
+/// 0 and its sign is restricted. Chief rays, unclipped by any stop, cross a uniform gradient, with the same random
+/// numbers on both sides. Returns nullopt if the setup cannot be traced in this way.
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer);
 
-/// The formula's values for a displacement [px] that a setup measures.
+/// Returns the inputs of the measurement formula for a displacement [px] measured with a setup.
 GradientMeasurement<double> gradient_measurement(Setup const& setup, int window_px, double displacement_px);
 
-/// Inputs of a setup that were written with their uncertainty (take_uncertain_inputs() before it was loaded), as the
-/// measurement has them; those that the formula does not have, and off the bench all, by tracing.
+/// Converts the setup's uncertain inputs (extracted by take_uncertain_inputs() before loading) to inputs of the
+/// measurement. Those that the formula does not contain, and all inputs of a setup off the optical axis, get
+/// derivatives by ray tracing.
 std::vector<MeasurementInput> measurement_inputs(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                                                  Renderer& renderer);
 
-/// Propagates the inputs of a setup that are written with their uncertainty, and the random error of a displacement, to
-/// the density gradient that makes it.
-/// @param gradient that is measured [kg/m^4]
-/// @pre BOS
+/// Propagates the uncertain inputs of a setup and the random error of a displacement to the density gradient.
+/// @param gradient  density gradient to be measured [kg/m^4]
+/// @pre the setup is BOS
 MeasurementUncertainty measurement_uncertainty(CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                                                Bench<double> const& bench, double gradient, Renderer& renderer);
 
-/// "geometry.z_a_mm and geometry.z_d_mm, -0.8" of every pair that is correlated.
+/// Returns "geometry.z_a_mm and geometry.z_d_mm, -0.8" for every correlated pair.
 std::vector<std::string> correlation_texts(std::vector<MeasurementInput> const& inputs);
 
 std::string uncertainty_text(MeasurementUncertainty const& uncertainty);

@@ -7,17 +7,17 @@
 
 namespace gladstone {
 
-/// What the closed forms' blur makes of the very field that a setup has, as displacements less Eq. 9 at single places.
+/// Closed-form prediction of the blur of a setup's field: displacement minus small-angle theory (Eq. 9) at points.
 struct PredictedBlur {
-  std::vector<Vec2d> cone_px;   ///< cone of light (F10) and dot
-  std::vector<Vec2d> whole_px;  ///< and the window (F11), as its squared weights
+  std::vector<Vec2d> cone_px;   ///< by light cone (F10) and dot [px]
+  std::vector<Vec2d> whole_px;  ///< additionally by the interrogation window (F11), with its squared weights [px]
 };
 
-/// Eq. 9 on a lattice of the view, averaged over where cone, dot and window reach: the product of their transfers, for
-/// any field. A slice of the field counts by its distance from the dots, and all slices are taken for alike, as the
-/// formula has it.
-/// @param setup that is seen; it may be a part of the bench's view about the axis
-/// @param places_px of vectors, in pixels of that setup's camera
+/// Averages Eq. 9 on a lattice over the regions covered by cone, dot and window; equivalent to multiplying their
+/// transfers, but applicable to any field. As in the formula, each slice of the field is weighted by its distance from
+/// the dots, and all slices are assumed to be equal.
+/// @param setup      setup of the view, which may be a part of the set-up's view about the axis
+/// @param places_px  positions of the vectors, in pixels of that setup's camera
 PredictedBlur predicted_blur(Setup const& setup, Bench<double> const& bench, std::vector<Vec2d> const& places_px);
 
 }  // namespace gladstone

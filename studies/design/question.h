@@ -11,16 +11,16 @@
 
 namespace gladstone {
 
-/// What a design may choose.
+/// Design variables.
 enum class Choice { focal_length, f_number, z_a, z_d, dot_diameter };
 inline constexpr std::size_t choice_count = 5;
 
-/// How a choice is named and written.
+/// Keys and unit of a design variable.
 struct ChoiceKey {
-  char const* path;       ///< of the setup's key
-  char const* limit;      ///< key in [limits]: the path's last part
-  char const* inventory;  ///< key of the values in [inventory]; null: none
-  double unit;            ///< of the key as written [SI]
+  char const* path;       ///< path of the setup's key
+  char const* limit;      ///< key in [limits]: the last part of the path
+  char const* inventory;  ///< key of the available values in [inventory]; null: none
+  double unit;            ///< value of the key's unit in SI
 };
 inline constexpr std::array<ChoiceKey, choice_count> choice_keys{{
     {"lens.focal_length_mm", "focal_length_mm", "focal_lengths_mm", 1e-3},
@@ -31,34 +31,34 @@ inline constexpr std::array<ChoiceKey, choice_count> choice_keys{{
 }};
 constexpr ChoiceKey const& key_of(Choice choice) { return choice_keys[static_cast<std::size_t>(choice)]; }
 
-/// What is made best: the smallest of these.
+/// Quantity to be minimized.
 enum class Objective { gradient_min, resolution, uncertainty, z_total };
 inline constexpr std::array<char const*, 4> objective_words{"gradient_min", "resolution", "uncertainty", "z_total"};
-/// Of each as it is told, and what it is in SI.
+/// Unit, key and scale (value of the unit in SI) of each objective in the output.
 inline constexpr std::array<char const*, 4> objective_units{"kg/m^4", "mm", "px", "mm"};
 inline constexpr std::array<char const*, 4> objective_keys{"gradient_min_kg_m4", "resolution_mm", "random_px",
                                                            "z_total_mm"};
 inline constexpr std::array<double, 4> objective_scales{1, 1e-3, 1, 1e-3};
 
-/// What a design is to keep; empty: nothing is asked. In SI.
+/// Requirements on a design; empty members are not required. In SI.
 struct Requirements {
   Objective objective = Objective::gradient_min;
   std::optional<double> gradient_min;      ///< [kg/m^4]
   std::optional<double> resolution;        ///< [m]
   std::optional<double> displacement_max;  ///< [px]
   std::optional<double> uncertainty_max;   ///< [px]
-  std::optional<Vec2d> field_of_view;      ///< in the medium, width and height [m]
+  std::optional<Vec2d> field_of_view;      ///< width and height in the medium [m]
   std::optional<double> z_total_max;       ///< [m]
 };
 
-/// A choice and where it may lie: one of some values, or an interval. In SI.
+/// A design variable with its admissible values or interval, in SI.
 struct FreeChoice {
   Choice choice;
-  std::vector<double> values;  ///< empty: anything from low to high
+  std::vector<double> values;  ///< discrete values; empty: any value from low to high
   double low = 0, high = 0;
 };
 
-/// A camera of the inventory: what stands in its file's [camera].
+/// A camera of the inventory: contents of [camera] in its file.
 struct OwnedCamera {
   std::string file;
   SetupNode table;
@@ -68,11 +68,12 @@ struct OwnedCamera {
 struct DesignQuestion {
   Requirements requirements;
   std::vector<FreeChoice> free;
-  std::vector<OwnedCamera> cameras;  ///< empty: the setup's own
-  std::vector<std::string> lenses;   ///< prescription files, absolute; beside the focal lengths
+  std::vector<OwnedCamera> cameras;  ///< empty: the setup's camera
+  std::vector<std::string> lenses;   ///< absolute paths of prescription files, in addition to the thin lenses
 };
 
-/// Reads them; every problem goes to the document at its key. Nothing where there is no [requirements].
+/// Reads the question; adds every problem to the document at its key.
+/// @return nullopt if there is no table [requirements]
 std::optional<DesignQuestion> read_design_question(SetupDocument& document);
 
 }  // namespace gladstone

@@ -8,62 +8,64 @@
 
 namespace gladstone {
 
-/// What became of one combination of the values to choose from.
+/// Result for one combination of the discrete design variables.
 struct BranchOutcome {
   DesignBranch branch;
   BranchSolution solution;
-  bool skipped = false;  ///< `solution.worst` is the bound that excluded it before anything was solved
+  bool skipped = false;  ///< excluded before solving, because of the limit `solution.worst`
 };
 
-/// What a requirement costs: the objective's change where the requirement is 1 % stricter.
+/// Cost of a requirement: change of the objective if the requirement is 1 % stricter.
 struct RequirementCost {
   Bound bound;
-  double change = 0;  ///< of the objective, relative; infinite: nothing is feasible then
+  double change = 0;  ///< relative change of the objective; infinite if no design is feasible then [1]
 };
 
-/// A requirement that would have to give way, and how far. In SI.
+/// Limit of a requirement to which it would have to be relaxed, in SI.
 struct Relaxation {
   Bound bound;
   double value;
 };
 
-/// The best objective against one requirement's limit. In SI.
+/// Best objective for one limit of a requirement, in SI.
 struct FrontPoint {
   double limit;
   double objective;
 };
 
-/// An answer to a design question.
+/// Answer to a design question.
 struct Recommendation {
-  std::vector<BranchOutcome> outcomes;  ///< of every branch, the best first where one is feasible
-  // where one is feasible
-  std::vector<std::string> binding;  ///< bounds that the best keeps with nothing to spare, ends of intervals among them
+  std::vector<BranchOutcome> outcomes;  ///< of every branch; the best one first if any is feasible
+  // if a design is feasible
+  std::vector<std::string> binding;  ///< active limits of the best design, including ends of intervals
   std::vector<RequirementCost> costs;
-  std::vector<FrontPoint> front;  ///< against `front_bound`; empty: nothing conflicts with the objective
+  /// objective against the limit of `front_bound`; empty: no requirement conflicts with the objective
+  std::vector<FrontPoint> front;
   Bound front_bound = Bound::focus;
-  // where none is
-  std::vector<Bound> conflicts;  ///< the fewest requirements that cannot be kept together
-  /// Where none is kept even without them: of every branch's best without any, the one that misses least.
+  // if no design is feasible
+  std::vector<Bound> conflicts;  ///< smallest set of requirements that cannot be met together
+  /// Branch with the smallest violation if no design is feasible even without requirements.
   std::optional<BranchOutcome> without_requirements;
-  std::vector<Relaxation> relaxations;  ///< of which one would do, the others kept
-  std::vector<Relaxation> together;     ///< where no single one would: these would, by one share of each
+  std::vector<Relaxation> relaxations;  ///< relaxations of a single requirement, each of which suffices
+  std::vector<Relaxation> together;     ///< joint relaxation by a common factor, if no single one suffices
   bool feasible() const { return !outcomes.empty() && outcomes.front().solution.feasible(); }
 };
 
 /// Solves every branch.
-/// @param known of every branch, or null; what is found is added to it
-/// @return outcomes, the best first
+/// @param known  known designs of every branch, or null; solutions are added to it
+/// @return outcomes, the best one first
 std::vector<BranchOutcome> solve_branches(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
                                           std::vector<KnownBenches>* known = nullptr);
 
-/// Whether any branch has a bench within the limits.
-/// @param known of every branch, or empty
+/// Returns true if any branch has a design within the limits.
+/// @param known  known designs of every branch, or empty
 bool any_feasible(DesignProblem const& problem, std::vector<DesignBranch> const& branches,
                   std::vector<KnownBenches> const& known = {});
 
-/// The best bench, what binds and what each requirement costs; or the smallest set of requirements that conflict, and
-/// how far each of them would have to give way for the others to be kept; where none alone would do, which together.
-/// @param required the user's limits; those of every bench come on top
+/// Determines the best design, its active limits and the cost of each requirement; or the smallest set of conflicting
+/// requirements and the relaxation of each that suffices while the others are met; or, if no single one does, a joint
+/// relaxation.
+/// @param required  limits of the user; those of every set-up are added
 Recommendation recommend(Objective objective, std::vector<Limit> const& required,
                          std::vector<DesignBranch> const& branches);
 

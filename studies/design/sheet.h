@@ -8,63 +8,67 @@
 
 namespace gladstone {
 
-/// How a value of the sheet stands against what is usually asked of it.
+/// Rating of a value of the design sheet against the usual recommendation.
 enum class Margin {
-  none,      ///< nothing is asked
-  green,     ///< kept with room
-  marginal,  ///< kept, or missed, by little
+  none,      ///< no recommendation
+  green,     ///< met with a margin
+  marginal,  ///< met or missed by little
   violated,
 };
 
-/// "green", "marginal", "violated", or nothing.
+/// Returns "green", "marginal", "violated" or an empty text.
 char const* margin_word(Margin margin);
-/// Of a value that is to be large: green from `good` on, violated below `least`.
+/// Rates a value that should be large: green from `good` on, violated below `least`.
 Margin at_least(double value, double good, double least);
-/// Of a value that is to be small: green up to `good`, violated above `most`.
+/// Rates a value that should be small: green up to `good`, violated above `most`.
 Margin at_most(double value, double good, double most);
 
-/// One closed form of the design sheet.
+/// One closed-form quantity of the design sheet.
 struct SheetRow {
   std::string id;   ///< its number in docs/design.md, F1 to F27
-  std::string key;  ///< for programs, with its unit as suffix
+  std::string key;  ///< for programs, with the unit as suffix
   std::string name;
-  double value;  ///< in `unit`; NaN: it does not apply
+  double value;  ///< in `unit`; NaN: not applicable
   std::string unit;
   std::string formula;
   std::string source;
   Margin margin = Margin::none;
-  std::string note;  ///< what the margin is of, or what else is to be known
+  std::string note;  ///< criterion of the margin, or a remark
 };
 
-/// The closed forms that describe a setup, in the order of their numbers.
+/// Closed-form quantities of a setup, in the order of their numbers.
 struct DesignSheet {
   std::vector<SheetRow> rows;
 
-  /// The row of a key. @pre it is there
+  /// Returns the row of a key.
+  /// @pre the row exists
   SheetRow const& row(std::string const& key) const;
   double operator[](std::string const& key) const { return row(key).value; }
 };
 
-/// What a BOS setup gives its bench, its largest gradient among it. @throws DataError of a field that cannot be read
+/// Collects the given properties of a BOS setup, including its largest density gradient.
+/// @throws DataError if the field cannot be read
 BenchGiven bench_given(CaseSetup const& loaded);
-/// The bench of a setup; `given` must outlive it.
+/// Returns the closed-form model of a setup; `given` must outlive it.
 Bench<double> bench_of(Setup const& setup, BenchGiven const& given);
 
-/// What closed forms leave out of a setup, as warnings: dots out of focus, a posed camera, windows.
+/// Returns warnings for properties of a setup that closed forms neglect: defocused dots, a posed camera, windows.
 std::vector<std::string> beyond_closed_forms(Setup const& setup);
 
-/// The gradient that the sheet's displacements are of: the largest in view, or 10 kg/m^4 where there is none.
+/// Returns the gradient for the sheet's displacements: the largest in view, or 10 kg/m^4 if there is none [kg/m^4].
 double shown_gradient(BenchGiven const& given);
 
-/// In what a bench lies beyond the study that the random error (F26) was fitted to: "dots below 0.8 px, ..."; empty:
-/// within.
+/// Returns how a set-up exceeds the range of the study to which the random error (F26) was fitted, e.g. "dots below 0.8
+/// px, ..."; empty: within.
 std::string beyond_study(Bench<double> const& bench);
 
-/// Sheet of a BOS bench: F1 to F27. Gradients and deflections for which none is given are of 10 kg/m^4.
+/// Computes the sheet of a BOS set-up, F1 to F27. If no gradient is given, deflections are for 10 kg/m^4.
 DesignSheet bos_sheet(Setup const& setup, Bench<double> const& bench);
 
-/// Sheet of a PIV setup: imaging, particle images, how many a window, light, and how far particles may move.
-/// @throws DataError of a file of particles @pre loaded.setup.piv
+/// Computes the sheet of a PIV setup: imaging, particle images, particles per window, light and admissible
+/// displacements.
+/// @throws DataError for an invalid file of particles
+/// @pre loaded.setup.piv
 DesignSheet piv_sheet(CaseSetup const& loaded);
 
 }  // namespace gladstone

@@ -7,10 +7,10 @@
 
 namespace gladstone {
 
-/// The sheet as a table to read: number, quantity, value, margin, formula, source, note.
+/// Formats the sheet as a table: number, quantity, value, margin, formula, source, note.
 std::string sheet_text(DesignSheet const& sheet);
 
-/// Every row's value by its key, fields of view as [width, height], and the whole rows in "rows"; null: not known.
+/// Returns every value by its key, fields of view as [width, height], and all rows in "rows"; null: unknown.
 nlohmann::ordered_json sheet_json(DesignSheet const& sheet);
 
 }  // namespace gladstone

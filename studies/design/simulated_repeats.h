@@ -8,27 +8,31 @@
 
 namespace gladstone {
 
-/// What is kept of the repeats of one medium, at the vectors of the grid.
+/// Results of all repeats with one medium, at the vectors of the lattice.
 struct Repeats {
   std::vector<Vec2d> place, eq9;
-  std::vector<std::vector<Vec2d>> error;         ///< of each: measured less Eq. 9; NaN where one does not count
-  std::vector<std::vector<BudgetStage>> causes;  ///< of each: budget_differences()
-  std::vector<Vec2d> cone, refraction, lens;     ///< displacements of the first
+  /// measurement minus Eq. 9 of each repeat [px]; NaN at invalid vectors
+  std::vector<std::vector<Vec2d>> error;
+  std::vector<std::vector<BudgetStage>> causes;  ///< budget_differences() of each repeat
+  std::vector<Vec2d> cone, refraction, lens;     ///< displacements in the first repeat [px]
   double displacement_px = 0;
   std::optional<Setup> setup;
   double magnification = 0;
-  std::optional<std::uint64_t> rays;  ///< that correct a plain table; nothing where dots take what they need
+  std::optional<std::uint64_t> rays;  ///< rays per dot of an untabulated rendering; empty if chosen per dot
 };
 
-/// Adds a case to its medium's repeats. @param border around the picture where vectors do not count [px]
+/// Adds a case to the repeats of its medium.
+/// @param border  width of the margin in which vectors are excluded [px]
 void enter(Repeats& repeats, ObservedCase const& seen, double border);
 
-/// Random and systematic error over repeats, after RepeatSplit; the systematic one's error in the limit of many
-/// windows: its square has a standard deviation of sqrt((v^2 + 2 b^2 v) / n), v the variance of a mean over repeats,
-/// n = 2 N components over independent windows.
+/// Computes random and systematic error over the repeats by RepeatSplit. In the limit of many windows, the square of
+/// the systematic error has a standard deviation of sqrt((v^2 + 2 b^2 v) / n), with v the variance of a mean over
+/// repeats and n = 2 N components in N independent windows.
 void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> const& formulas);
 
-/// What a wave has left. @param wavelength [m] @param window_px the last pass's
+/// Computes the amplitude of a wave after each stage.
+/// @param wavelength  of the density wave [m]
+/// @param window_px   size of the last pass's interrogation window [px]
 WaveShares shares_of(Repeats const& repeats, double wavelength, int window_px);
 
 }  // namespace gladstone

@@ -9,62 +9,62 @@
 
 namespace gladstone {
 
-/// A number that a simulation gives, with its standard error; NaN: unknown.
+/// A simulated quantity with its standard error; NaN: unknown.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double standard_error = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Shares of Eq. 9's amplitude that a wave of density has left after each cause of loss.
+/// Amplitude of a density wave after each cause of loss, relative to the small-angle theory (Eq. 9).
 struct WaveShares {
   double wavelength = 0;  ///< [m]
-  double cone = 0;        ///< cone of light and dot, by theory averaged over the stop
+  double cone = 0;        ///< aperture-averaged theory: light cone and dot
   double refraction = 0;  ///< rays through an ideal lens
-  double lens = 0;        ///< rays through the lens there is
+  double lens = 0;        ///< rays through the actual lens
   Estimate measured;      ///< correlation of the images
 };
 
 /// A cause of the systematic error, rms over vectors and components [px].
 struct SystematicCause {
-  std::string name;  ///< of the budget's terms, "window" with the estimator's
+  std::string name;  ///< name of the budget's term; "window" includes the estimator
   double simulated = 0;
-  double predicted = 0;  ///< by formula; 0 where no formula has it
+  double predicted = 0;  ///< by formula; 0 if there is none
 };
 
-/// What the simulated measurement of a bench came to. Systematic is what repeats with other dots, rays and noise have
-/// in common, random what changes from one to another.
+/// Errors of the simulated measurement of a design. Repeats differ in dots, rays and noise; the systematic error is
+/// common to all repeats, the random error differs between them.
 struct SimulatedBench {
-  int columns = 0, rows = 0;  ///< of the camera's middle that was simulated [px]
+  int columns = 0, rows = 0;  ///< size of the simulated central part of the image [px]
   std::size_t repeats = 0;
-  std::size_t vectors = 0;       ///< that count in every repeat, away from the border
-  Estimate random_px;            ///< of a vector of the setup's own medium, per component
-  Estimate bias_px;              ///< systematic error against Eq. 9, rms over vectors and components
-  double predicted_bias_px = 0;  ///< what cone, dot and window lose of that very field, by formula
+  std::size_t vectors = 0;       ///< valid in every repeat and away from the border
+  Estimate random_px;            ///< random error per component, for the setup's medium
+  Estimate bias_px;              ///< systematic error against Eq. 9, rms over vectors and components [px]
+  double predicted_bias_px = 0;  ///< loss by light cone, dot and window for the same field, by formula [px]
   std::vector<SystematicCause> causes;
-  double displacement_px = 0;  ///< largest true one
-  Estimate peak_electrons;     ///< at the middle of dots' images
+  double displacement_px = 0;  ///< largest true displacement [px]
+  Estimate peak_electrons;     ///< at the centre of the dot images [e]
   double magnification = 0;    ///< M [1]
-  Estimate resolution;         ///< wavelength that the measurement passes with 1/sqrt(2) [m]
+  Estimate resolution;         ///< wavelength at which the measurement has a transfer of 1/sqrt(2) [m]
   std::vector<WaveShares> waves;
-  std::string failed;  ///< why there is nothing of all this; empty: there is
+  std::string failed;  ///< reason of a failed simulation; empty: successful
 };
 
-/// Of the camera's middle that is simulated, across or down: as many last windows as tell a random error to some per
-/// cent, and no more than cost a minute.
+/// Size of the simulated central part: as many windows of the last pass across and down as determine the random error
+/// to a few per cent, within limits on the size so that a simulation takes at most a minute.
 inline constexpr int simulated_windows = 12, least_simulated_px = 192, most_simulated_px = 384;
-/// Cases that a bench takes: its own medium and two waves, each of them as often as is repeated.
+/// Number of cases per design: the setup's medium and two waves, each with all repeats.
 constexpr std::size_t simulated_cases(std::size_t repeats) { return 3 * repeats; }
 
-/// How far apart the vectors of a bench are compared: half a window, since nearer ones tell little more. [px]
+/// Returns the distance between the compared vectors: half a window, since closer vectors are strongly correlated [px].
 int compared_apart_px(Bench<double> const& bench);
 
-/// Renders a bench, correlates and compares it, as a study of three media: the setup's own, and waves of the wavelength
-/// that the formulas resolve and of less.
-/// @param setup    as applied_setup() writes it
-/// @param repeats  of every medium, 2 at least, with other dots, rays and noise
-/// @param seed     that theirs derive from
-/// @param finished called after every case
-/// @throws as CaseRunner::run; what a case cannot have is `failed`
+/// Simulates a design: renders, correlates and compares three media, namely the setup's, and density waves of the
+/// wavelength resolved by formula and of a shorter one.
+/// @param setup     as returned by applied_setup()
+/// @param repeats   number of repeats per medium, at least 2, with different dots, rays and noise
+/// @param seed      base seed of the repeats
+/// @param finished  called after every case
+/// @throws as CaseRunner::run; errors of a case are reported in `failed`
 SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, std::size_t repeats, std::uint64_t seed,
                         CaseRunner& runner, std::string const& device, std::function<void()> const& finished);
 

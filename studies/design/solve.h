@@ -4,32 +4,34 @@
 
 namespace gladstone {
 
-/// By which a bench may exceed a limit and still keep it, as the logarithm of a ratio: rounding of a solution on it.
+/// Excess, as the logarithm of a ratio, up to which a limit counts as met; allows for rounding of solutions on the
+/// limit.
 inline constexpr double allowed_excess = 1e-7;
 
-/// The best bench of a branch.
+/// Best design of a branch.
 struct BranchSolution {
-  std::vector<double> logarithms;  ///< of the continuous choices
+  std::vector<double> logarithms;  ///< continuous design variables at the solution
   double objective = HUGE_VAL;     ///< in SI
   double violation = HUGE_VAL;     ///< largest excess over a limit
-  Bound worst = Bound::focus;      ///< the limit that it is of
+  Bound worst = Bound::focus;      ///< limit with the largest excess
 
   bool feasible() const { return violation <= allowed_excess; }
 };
 
-/// Benches of a branch that are known from other problems, by the logarithms of the continuous choices: more starts,
-/// and a solution is never worse than the best of them.
+/// Designs of a branch from the solutions of other problems, as logarithms of the continuous design variables. They
+/// serve as additional starting points; the solution is never worse than the best of them.
 using KnownBenches = std::vector<std::vector<double>>;
 
-/// Why no bench of the branch can keep a limit, told by the ends of its intervals alone; nothing: it may.
+/// Returns a limit that no design of the branch can meet, determined from the ends of its intervals alone; nullopt: not
+/// excluded.
 std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch);
 
-/// Minimises the objective within the limits by sequential quadratic programming (Kraft's SLSQP, ACM Trans. Math.
-/// Softw. 20 (1994) 262, as NLopt has it) in the logarithms of the choices, with derivatives from Jets, from several
-/// starts. Where none keeps the limits, the bench that exceeds them least.
+/// Minimizes the objective within the limits by sequential quadratic programming (Kraft's SLSQP, ACM Trans. Math.
+/// Softw. 20 (1994) 262, as implemented in NLopt) in the logarithms of the design variables, with derivatives from Jets
+/// and several starting points. If no design meets the limits, returns the one with the smallest excess.
 BranchSolution solve(DesignProblem const& problem, DesignBranch const& branch, KnownBenches const& known = {});
 
-/// The bench that exceeds its worst limit least, with no regard to the objective. Ends early where one keeps them all.
+/// Minimizes the largest excess over a limit, ignoring the objective. Stops as soon as all limits are met.
 BranchSolution least_violation(DesignProblem const& problem, DesignBranch const& branch,
                                KnownBenches const& known = {});
 

@@ -10,66 +10,67 @@
 
 namespace gladstone {
 
-/// A quantity as the formulas predict it and as the simulation has it.
+/// A quantity predicted by formula and measured in simulation.
 struct VerifiedQuantity {
-  std::string key;             ///< with its unit as suffix
-  double predicted = 0;        ///< in the key's unit, as the two that follow
+  std::string key;             ///< name with the unit as suffix
+  double predicted = 0;        ///< in the key's unit, like predicted_error and simulated
   double predicted_error = 0;  ///< standard error of the formula
   Estimate simulated;
-  bool rms = false;  ///< a root mean square, of which the square has the errors of a normal distribution
-  std::string why;   ///< of a disagreement
+  bool rms = false;  ///< root mean square; the errors of its square are normally distributed
+  std::string why;   ///< explanation of a disagreement
 
-  /// Within two standard errors of both together.
+  /// Returns true if the difference is within two combined standard errors.
   bool agrees() const;
 };
 
-/// A requirement as the simulation keeps it. In SI.
+/// A requirement checked in simulation, in SI.
 struct VerifiedRequirement {
   Bound bound;
   double required = 0;
   double predicted = 0;
   Estimate simulated;
 
-  /// Within two standard errors.
+  /// Returns true if the simulation meets the requirement within two standard errors.
   bool kept() const;
 };
 
-/// A recommended bench that was simulated.
+/// A recommended design that was simulated.
 struct VerifiedBench {
   BranchOutcome outcome;
   std::string name;
   SimulatedBench simulated;
-  std::vector<VerifiedQuantity> quantities;       ///< empty where the simulation failed
-  std::vector<VerifiedRequirement> requirements;  ///< those that a simulation can tell
-  bool tightened = false;  ///< solved for stricter limits, since what was solved for those required did not keep them
+  std::vector<VerifiedQuantity> quantities;       ///< empty if the simulation failed
+  std::vector<VerifiedRequirement> requirements;  ///< requirements that a simulation can check
+  /// solved with stricter limits, because earlier designs missed the required ones in simulation
+  bool tightened = false;
 
+  /// Returns true if the simulation succeeded and all requirements are met.
   bool kept() const;
 };
 
-/// What rendering and correlating says of a recommendation.
+/// Result of simulating a recommendation.
 struct Verification {
   std::vector<VerifiedBench> benches;  ///< in the order in which they were simulated
-  std::optional<std::size_t> chosen;   ///< the first that keeps what is required
+  std::optional<std::size_t> chosen;   ///< first design that meets the requirements
 
-  /// Whether any could be simulated at all.
+  /// Returns true if any simulation succeeded.
   bool any() const;
 };
 
-/// What is to be simulated.
+/// Extent of a verification.
 struct VerificationPlan {
-  std::size_t benches = 3;        ///< of the feasible combinations, the best first
-  std::size_t repeats = 2;        ///< of every medium of each
-  std::uint64_t seed = 20260101;  ///< of dots, rays and noise; a setup's own seeds are not used
+  std::size_t benches = 3;        ///< number of feasible combinations to simulate, starting with the best
+  std::size_t repeats = 2;        ///< number of repeats per medium and design
+  std::uint64_t seed = 20260101;  ///< base seed of dots, rays and noise; replaces the setup's seeds
 };
 
-inline constexpr int most_tightened = 2;  ///< times that limits are made stricter for the simulation to keep them
+inline constexpr int most_tightened = 2;  ///< maximum number of times that limits are tightened
 
-/// Compares what a bench was predicted to do with what its simulation came to.
+/// Compares predicted and simulated quantities of a design.
 void compare_with_formulas(VerifiedBench& verified, std::vector<Limit> const& required);
 
-/// Renders and correlates the best few of the feasible combinations. Where none keeps what is required, the limits that
-/// the best one misses are made stricter by as much as the simulation is worse than the formula, and what is best then
-/// is simulated.
+/// Simulates the best feasible combinations. If no design meets the requirements, tightens the limits missed by the
+/// best one by the ratio of simulation to formula, solves again, and simulates the new best design.
 /// @pre answer.feasible()
 Verification verify(DesignQuestion const& question, std::vector<DesignVariant> const& variants,
                     std::vector<DesignBranch> const& branches, Recommendation const& answer,

@@ -7,10 +7,12 @@
 
 namespace gladstone {
 
-/// What was predicted beside what was simulated, and why they differ; what is not kept of what was required.
+/// Formats a comparison of predicted and simulated quantities with explanations of the differences, and lists
+/// requirements that are not met.
 std::string verification_text(Verification const& verification, DesignQuestion const& question);
 
-/// simulated {bias_px, random_px, resolution_mm, ...} of the recommended bench, and verification [..] of all.
+/// Returns JSON: simulated {bias_px, random_px, resolution_mm, ...} of the recommended design, and verification [..] of
+/// all designs.
 nlohmann::ordered_json verification_json(Verification const& verification);
 
 }  // namespace gladstone

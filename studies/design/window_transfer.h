@@ -8,15 +8,15 @@
 
 namespace gladstone {
 
-/// What an interrogation window leaves of a wave of displacement across it, by its weights: correlation multiplies two
-/// images of weight W each, so that a pixel counts by W^2, and a wave along an axis keeps the share
-/// sum W^2(x) cos(2 pi x / wavelength) / sum W^2(x), over the pixels' places x from the middle. With equal weights that
-/// is sin(a)/a, a = pi width / wavelength, up to the pixels' finite number (Scarano & Riethmuller, Exp. Fluids 26
-/// (1999) 513). It holds for one pass; passes that deform the images give some of the rest back.
+/// Amplitude transfer of an interrogation window for a displacement wave along one axis. Correlation multiplies two
+/// images weighted by W, so pixels have the weight W^2, and the transfer is sum W^2(x) cos(2 pi x / wavelength) / sum
+/// W^2(x) over the pixel positions x relative to the centre. For equal weights it approaches sin(a)/a, a = pi width /
+/// wavelength (Scarano & Riethmuller, Exp. Fluids 26 (1999) 513). Valid for one pass; passes that deform the images
+/// recover part of the loss.
 class WindowTransfer {
  public:
   WindowTransfer() = default;
-  /// @param window_px nominal size; even
+  /// @param window_px  nominal size, even [px]
   WindowTransfer(WindowWeighting weighting, int window_px) : window_px_(window_px) {
     double sum = 0;
     for (double place = 0.5; place < window_half_support(weighting, static_cast<double>(window_px)); ++place) {
@@ -28,10 +28,11 @@ class WindowTransfer {
   }
 
   int window_px() const { return window_px_; }
-  /// Share of the pixels to one side, the i-th i + 1/2 px from the middle; they and those of the other side sum to 2.
+  /// Returns the weights of the pixels on one side of the centre, the i-th at i + 1/2 px from it; their sum is 1.
   std::vector<double> const& side() const { return weights_; }
 
-  /// Share of the amplitude. @param cycles_per_px pixels over the wavelength on the sensor
+  /// Returns the amplitude transfer [1].
+  /// @param cycles_per_px  reciprocal of the wavelength on the sensor [1/px]
   template <class T>
   T share(T cycles_per_px) const {
     using std::cos;
@@ -41,8 +42,8 @@ class WindowTransfer {
     return sum;
   }
 
-  /// Mean square distance of what counts from the middle [px^2]: share = 1 - (2 pi cycles)^2 / 2 times it for long
-  /// waves.
+  /// Returns the mean square distance from the centre by weight [px^2]; for long waves, the transfer is 1 - (2 pi
+  /// cycles)^2 / 2 times it.
   double variance() const {
     double sum = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
@@ -54,7 +55,7 @@ class WindowTransfer {
 
  private:
   int window_px_ = 0;
-  std::vector<double> weights_;  ///< of the pixels to one side; their sum is 1
+  std::vector<double> weights_;  ///< weights of the pixels on one side; their sum is 1
 };
 
 }  // namespace gladstone
