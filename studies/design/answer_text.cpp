@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 constexpr double mm = unit::millimetre;
 constexpr std::size_t most_alternatives = 5;
 
-/// A quantity of a bench as it is named and written.
+/// A predicted quantity with its key.
 struct Predicted {
   char const* key;
   double value;  ///< in the key's unit
@@ -38,7 +38,7 @@ std::vector<Predicted> predicted(Bench<double> const& b) {
           {"z_total_mm", b.z_b() / mm}};
 }
 
-/// The recommended value of every free key, as written in a setup.
+/// Returns the recommended value of every free key, in the unit of the key.
 std::vector<std::pair<std::string, double>> recommended(DesignQuestion const& question, Bench<double> const& b) {
   std::array<double, choice_count> const value{b.focal_length, b.f_number, b.z_a, b.z_d, b.dot_diameter};
   std::vector<std::pair<std::string, double>> keys;
@@ -60,7 +60,7 @@ char const* objective_word(AnsweredQuestion const& answered) {
   return objective_words[static_cast<std::size_t>(answered.question.requirements.objective)];
 }
 
-/// An objective in the unit in which it is written.
+/// Converts an objective from SI to the unit of its key.
 double written_objective(AnsweredQuestion const& answered, double objective) {
   return objective / objective_scales[static_cast<std::size_t>(answered.question.requirements.objective)];
 }

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double mm = unit::millimetre, um = unit::micrometre;
 constexpr double gradient_without_field = 10;  // [kg/m^4]
-constexpr double good_dot_px = 3;              // to which diffraction alone may widen a dot, F13
-constexpr double deforming_strain = 0.1;       // that windows which deform follow, F19
+constexpr double good_dot_px = 3;              // recommended maximum of the diffraction-limited dot diameter, F13
+constexpr double deforming_strain = 0.1;       // maximum strain that deforming interrogation windows follow, F19
 
-constexpr double binding = 1e-3;  // by which a bench that a bound binds may exceed it
+constexpr double binding = 1e-3;  // tolerance by which a design may exceed an active limit
 
-constexpr double good_signal = 20;  // over its noise, F21
+constexpr double good_signal = 20;  // recommended signal-to-noise ratio, F21
 
 constexpr char const* raffel = "Raffel 2015, Exp. Fluids 56:60";
 constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
@@ -137,7 +137,8 @@ void add_blur(DesignSheet& sheet, Bench<double> const& b) {
                                       "through the cone"});
 }
 
-/// Electrons that are q times their noise: n / sqrt(n + sigma_r^2) = q, sigma_r^2 all but the shot noise.
+/// Returns the peak charge that equals q times its noise: n / sqrt(n + sigma_r^2) = q, with sigma_r^2 the variance
+/// without shot noise [e].
 double peak_of_signal(Bench<double> const& b, double q) {
   double const n = b.peak_electrons(), variance = std::pow(b.noise() * n, 2);
   NoiseSetup const& noise = b.given->camera.noise;
@@ -145,15 +146,15 @@ double peak_of_signal(Bench<double> const& b, double q) {
   return 0.5 * q * (shot * q + std::sqrt(shot * q * q + 4 * (variance - shot * n)));
 }
 
-/// Largest f-number whose dot images are no wider than the recommendation allows (Bound::dot_most); 0 where the
-/// geometric image alone is wider.
+/// Returns the largest f-number at which the dot images are within the recommended size (Bound::dot_most); 0 if the
+/// geometric image alone exceeds it.
 double widest_images_stop(Bench<double> const& b) {
   double const most = random_error_range.most_image, geometric = b.geometric_dot_px();
   return b.f_number * std::sqrt(std::max(0.0, most * most - geometric * geometric)) / (4 * b.spot_sigma_px());
 }
 
-/// Largest f-number whose peaks are bright enough, the share of the peak in a lit pixel being that of this stop;
-/// infinite where the light is not told.
+/// Returns the largest f-number with sufficiently bright peaks, assuming the peak share of the present f-number;
+/// infinite if the light is not specified.
 double brightest_stop(Bench<double> const& b) {
   if (!b.given->light) return HUGE_VAL;
   return b.f_number * std::sqrt(b.peak_electrons() / peak_of_signal(b, good_signal));
@@ -202,7 +203,7 @@ std::string beyond_study(Bench<double> const& b) {
   RandomErrorRange const& range = random_error_range;
   std::string text;
   auto const check = [&text](char const* what, double value, double low, double high, double unit, char const* name) {
-    constexpr double slack = 5e-3;  // of what the study's values are rounded to
+    constexpr double slack = 5e-3;  // relative rounding of the study's values
     bool const below = value < low * (1 - slack);
     if (below || value > high * (1 + slack))
       text += fmt::format("{}{} {} {:.3g}{}", text.empty() ? "" : ", ", what, below ? "below" : "above",

@@ -65,7 +65,7 @@ std::vector<Limit> required_limits(Requirements const& r) {
 }
 
 std::vector<Limit> bench_limits(BenchGiven const& given) {
-  constexpr double clearance = 1.02;  // of half the thickness
+  constexpr double clearance = 1.02;  // distance from the mid-plane, in half thicknesses
   std::vector<Limit> limits{{Bound::focus, 0},
                             {Bound::dots_clear, clearance * given.thickness / 2},
                             {Bound::lens_clear, clearance * given.thickness / 2},

@@ -24,7 +24,7 @@ SetupNode prescription_node(std::string const& file) {
   return lens;
 }
 
-/// Why closed forms do not describe a setup, with the key; empty: they do.
+/// Returns why the closed forms do not apply to a setup, with the key concerned; empty if they do.
 std::pair<std::string, std::string> beyond_design(Setup const& setup) {
   if (setup.piv || setup.calibration()) return {"experiment", "is not \"bos\" (requirements are of BOS benches)"};
   if (setup.lens.focus != Focus::target) {
@@ -46,7 +46,8 @@ bool chooses_dots(DesignQuestion const& question) {
                      [](FreeChoice const& free) { return free.choice == Choice::dot_diameter; });
 }
 
-/// To be loaded with any camera and lens: dots that are chosen do not cover the target as they are written.
+/// Returns a setup that is valid for any camera and lens: minimizes dot diameters that are design variables, so that
+/// they do not cover the target.
 SetupDocument with_small_dots(SetupDocument document) {
   constexpr double small_px = 1, small_mm = 1e-3;
   if (document.find({"target", "dot_diameter_mm"})) {
@@ -69,12 +70,12 @@ DesignVariant load_variant(SetupDocument document, DesignQuestion const& questio
   return {camera, lens, std::move(document), loaded.setup, std::move(given)};
 }
 
-/// Values of a choice in a variant: those to choose from, or one that is given; empty: an interval.
+/// Returns the values of a design variable in a variant: the discrete ones, or the given one; empty: an interval.
 std::vector<double> values_of(FreeChoice const& free, DesignVariant const& variant) {
   if (variant.lens.empty() || free.choice == Choice::z_a || free.choice == Choice::z_d) return free.values;
   if (free.choice == Choice::focal_length) return {variant.setup.lens.focal_length};
   std::vector<double> values = free.values;
-  if (free.choice == Choice::f_number) {  // it opens no wider than its own stop
+  if (free.choice == Choice::f_number) {  // a prescription cannot open wider than its own stop
     std::erase_if(values, [&](double value) { return value < variant.setup.lens.f_number * (1 - 1e-6); });
   }
   return values;
@@ -106,7 +107,7 @@ std::vector<DesignVariant> design_variants(SetupDocument const& document, Design
     try {
       variants.push_back(load_variant(with_both.copy(), question, camera, lens));
     } catch (SetupError const& error) {
-      if (camera.empty() && lens.empty()) throw;  // the setup itself
+      if (camera.empty() && lens.empty()) throw;  // the setup itself is invalid
       if (!first) first = std::current_exception();
       skipped.push_back({camera, lens, error.what()});
     }
@@ -184,7 +185,8 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
   SetupDocument document = variant.document.copy();
   std::array<double, choice_count> const value{bench.focal_length, bench.f_number, bench.z_a, bench.z_d,
                                                bench.dot_diameter};
-  if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");  // one size is enough
+  // remove the other key of the dot diameter
+  if (chooses_dots(question)) leave_out(document, "target", "dot_diameter_px");
   for (FreeChoice const& free : question.free) {
     if (free.choice == Choice::focal_length && !variant.lens.empty()) continue;
     ChoiceKey const& key = key_of(free.choice);
@@ -193,7 +195,7 @@ std::string applied_setup(DesignVariant const& variant, DesignQuestion const& qu
     document.set({path.substr(0, dot), path.substr(dot + 1)},
                  setup_number(value[static_cast<std::size_t>(free.choice)] / key.unit));
   }
-  // loaded once more: it is a setup that renders, and its file names are absolute then
+  // Load the setup again: verifies that it can be rendered, and makes its file names absolute.
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   CaseSetup const loaded = load_case_setup(std::move(document));
   SetupNode root = parse_toml(with_uncertain_inputs(loaded.document.written(), uncertain), "setup");

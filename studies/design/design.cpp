@@ -22,8 +22,9 @@
 namespace gladstone {
 namespace {
 
-/// A setup that belongs to a rendered case or a planned study is not replaced: what was made from it would be of
-/// another. @throws OutputError
+/// Prevents the setup of a rendered case or planned study from being overwritten, since its results would no longer
+/// match.
+/// @throws OutputError if `path` is such a setup
 void refuse_setup_of_results(std::string const& path) {
   std::error_code error;
   std::filesystem::path const folder = std::filesystem::absolute(path, error).parent_path();
@@ -35,7 +36,7 @@ void refuse_setup_of_results(std::string const& path) {
   }
 }
 
-/// Writes a figure's file into the folder; without gnuplot says so.
+/// Writes a figure into the folder; adds a warning if gnuplot is not installed.
 template <class Draw>
 void draw(DesignRequest const& request, DesignReport& report, std::string const& name, Draw&& write) {
   std::filesystem::path const path = std::filesystem::path(request.figures) / (name + '.' + request.figure_format);
@@ -71,7 +72,7 @@ AnsweredQuestion answered(DesignRequest const& request, SetupDocument const& doc
   return result;
 }
 
-/// The sheet of a setup with its figures.
+/// Adds the design sheet of a setup and its figures.
 void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vector<UncertainInput> const& uncertain,
                bool draws, DesignReport& report) {
   if (!std::isfinite(loaded.setup.lens.f_number)) {
@@ -100,7 +101,8 @@ void add_sheet(DesignRequest const& request, CaseSetup const& loaded, std::vecto
   report.text += uncertainty_text(*uncertainty);
 }
 
-/// @param loaded the setup as it is
+/// Adds the answer to the design question.
+/// @param loaded  the setup as given
 void add_answer(DesignRequest const& request, SetupDocument const& document, DesignQuestion question,
                 CaseSetup const& loaded, std::optional<OutputFile>& applied, DesignReport& report) {
   AnsweredQuestion const result = answered(request, document, std::move(question));
@@ -108,7 +110,7 @@ void add_answer(DesignRequest const& request, SetupDocument const& document, Des
   report.text += answer_text(result);
   report.feasible = result.feasible();
   if (!result.answer.feasible()) {
-    // the setup as it is, among what is required of it
+    // draw the given setup together with the requirements
     BenchGiven const given = bench_given(loaded);
     if (!request.figures.empty()) {
       draw_bench(request, report, bench_of(loaded.setup, given), result.question.requirements);
@@ -140,7 +142,7 @@ DesignReport design(DesignRequest const& request) {
   SetupDocument const written = document.copy();
   std::vector<UncertainInput> const uncertain = take_uncertain_inputs(document);
   std::optional<DesignQuestion> question = read_design_question(document);
-  CaseSetup const loaded = load_case_setup(std::move(document));  // problems of the question among its own
+  CaseSetup const loaded = load_case_setup(std::move(document));  // reports problems of setup and question together
   if (loaded.setup.calibration()) {
     throw DataError(request.setup, "is a calibration (closed forms are of BOS and PIV); give one of those");
   }

@@ -12,8 +12,9 @@
 namespace gladstone {
 namespace {
 
-/// Chi squared over its degrees of freedom, any number from 1 on: twice a gamma variate of half of them (Marsaglia &
-/// Tsang, ACM Transactions on Mathematical Software 26 (2000) 363; below one degree of freedom of 2, their section 6).
+/// Draws chi squared over its degrees of freedom, which may be any real number: twice a gamma variate with half of them
+/// as shape (Marsaglia & Tsang, ACM Transactions on Mathematical Software 26 (2000) 363; for a shape below one, their
+/// section 6).
 double mean_square_variate(KeyedEngine& engine, double degrees) {
   double const shape = degrees / 2;
   double boost = 1;
@@ -27,8 +28,8 @@ double mean_square_variate(KeyedEngine& engine, double degrees) {
   }
 }
 
-/// By how much the half width of a rectangle varies either way, of itself: a uniform variate of standard deviation
-/// 1 / sqrt(2 nu), and never below 0.
+/// Returns the relative range by which the half width of a rectangular distribution varies either way: that of a
+/// uniform variate with standard deviation 1 / sqrt(2 nu), limited to 1 so that the width is not negative.
 double limits_reach(double degrees) { return std::min(1.0, std::sqrt(1.5 / degrees)); }
 
 }  // namespace

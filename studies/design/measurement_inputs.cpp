@@ -9,10 +9,11 @@
 namespace gladstone {
 namespace {
 
-constexpr double step_share = 1e-3;      ///< of a value, that it is moved by either way
-constexpr double traced_gradient = 1.0;  ///< uniform, that rays are traced through [kg/m^4]
-constexpr int traced_px = 96;            ///< of the camera's middle
-constexpr int traced_rays = 16;          ///< of a dot: where they begin on it, since all go through the pupil's middle
+constexpr double step_share = 1e-3;      ///< step of the central difference, relative to the value
+constexpr double traced_gradient = 1.0;  ///< uniform gradient through which rays are traced [kg/m^4]
+constexpr int traced_px = 96;            ///< size of the central part of the image that is traced
+/// rays per dot, which differ in their starting points only, since all pass through the centre of the pupil
+constexpr int traced_rays = 16;
 struct FormulaKey {
   char const* key;
   GradientInput input;
@@ -36,10 +37,10 @@ SetupNode steady_gradient() {
   return field;
 }
 
-/// Mean displacement along the gradient, of the dots of a setup with a key at a value [px].
+/// Computes the mean displacement along the gradient over the dots of a setup, with a key set to a value [px].
 double traced_displacement(CaseSetup const& loaded, UncertainInput const& input, double value, Renderer& renderer) {
   SetupNode root = parse_toml(loaded.document.written(), "setup");
-  std::erase_if(root.members, [](SetupMember const& member) {  // none of these changes what a gradient displaces
+  std::erase_if(root.members, [](SetupMember const& member) {  // none of these affects the displacement
     return member.key == "light" || member.key == "correlate" || member.key == "render";
   });
   SetupDocument changed = SetupDocument::from_text(toml_document(root), "setup", loaded.document.folder());
@@ -93,7 +94,7 @@ MeasurementInput of_setup(UncertainInput const& input, CaseSetup const& loaded) 
 }  // namespace
 
 std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainInput const& input, Renderer& renderer) {
-  if (input.key == "lens.f_number") return std::nullopt;  // a stop displaces nothing
+  if (input.key == "lens.f_number") return std::nullopt;  // the aperture does not affect the displacement of chief rays
   QuietLog const quiet;
   double const step = input.value != 0 ? step_share * std::abs(input.value) : step_share * input.sigma;
   if (step == 0) return std::nullopt;
@@ -106,11 +107,12 @@ std::optional<double> traced_log_derivative(CaseSetup const& loaded, UncertainIn
   };
   std::optional<double> more = displacement_at(input.value + step), less = displacement_at(input.value - step);
   double apart = 2 * step;
-  if (input.value == 0 && more.has_value() != less.has_value()) {  // a number of one sign alone: from one side
+  // one-sided difference if the sign of the key is restricted
+  if (input.value == 0 && more.has_value() != less.has_value()) {
     (more ? less : more) = displacement_at(0);
     apart = step;
   }
-  // neither side: a key of the field, of the correlation, which changes no displacement per gradient
+  // neither value is valid: a key of the replaced field or correlation, which has no effect here
   if (!more || !less) return std::nullopt;
   double const slope = std::log(*more / *less) / apart;
   return std::isfinite(slope) ? std::optional(slope) : std::nullopt;

@@ -9,20 +9,20 @@
 namespace gladstone {
 namespace {
 
-/// By how much derivative by formula and by tracing may differ, d ln / d ln: what lies off the axis, and differences.
+/// Tolerance of derivatives d ln / d ln by formula and by ray tracing, for off-axis effects and finite differences.
 constexpr double traced_tolerance = 0.02;
 
 std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
 
-/// Whether formula and tracing have the same derivative of the gradient; of none where there is no gradient, or it was
-/// not traced.
+/// Returns true if formula and ray tracing agree on the derivative of the gradient, or if there is no gradient or no
+/// traced derivative.
 bool same(MeasurementInput const& input, PropagatedResult const& gradient, Contribution const& contribution) {
   if (!input.traced || gradient.value == 0) return true;
   double const scale = input.value != 0 ? std::abs(input.value) : input.sigma;
   return std::abs(-*input.traced - contribution.derivative / gradient.value) * scale <= traced_tolerance;
 }
 
-/// "undefined" of moments that a distribution has not.
+/// Formats a moment; "undefined" if the distribution does not have it.
 std::string sampled_text(std::optional<double> value, int digits) {
   return value ? fmt::format("{:.{}g}", *value, digits) : "undefined";
 }

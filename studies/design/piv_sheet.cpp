@@ -16,7 +16,7 @@ constexpr char const* keane = "Keane & Adrian 1992, Appl. Sci. Res. 49:191";
 constexpr char const* adrian = "Adrian & Yao 1985; Raffel et al. 2018";
 constexpr char const* olsen = "Olsen & Adrian 2000, Exp. Fluids 29:S166";
 
-/// Fastest flow in the view's part of the plane Z = 0, within the plane and across it [m/s].
+/// Largest speeds of the flow in the visible part of the plane Z = 0, in-plane and out-of-plane [m/s].
 struct FastestFlow {
   double within = 0, across = 0;
 };
@@ -68,7 +68,7 @@ void add_images(DesignSheet& sheet, Setup const& setup, ExpectedParticles const&
 }
 
 void add_density(DesignSheet& sheet, CaseSetup const& loaded, ExpectedParticles const& expected) {
-  if (!std::isfinite(expected.per_pixel)) return;  // of a file of particles nobody knows
+  if (!std::isfinite(expected.per_pixel)) return;  // unknown for particles from a file
   int const window = loaded.correlate.window_px.back();
   double const number = expected.per_pixel * window * window;
   sheet.rows.push_back({"F15", "particles_per_window", "particles in a window", number, "", "C N_w^2", keane,

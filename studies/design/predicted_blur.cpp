@@ -12,16 +12,17 @@
 namespace gladstone {
 namespace {
 
-constexpr int spacing_px = 2;  ///< of the lattice; a window's weights are averages over more
+constexpr int spacing_px = 2;  ///< lattice spacing; a window averages over many nodes
 
-/// A displacement off a place, and how it counts.
+/// Displaced sampling point with its weight.
 struct Offset {
   Vec2d px;
   double weight;
 };
 
-/// Points of an additive recurrence in five dimensions (Roberts 2018; the root of x^6 = x + 1), each with its opposite,
-/// so that a uniform gradient is averaged without error: slice, place in the cone, place in the dot.
+/// Samples slice, position in the cone and position in the dot by an additive recurrence in five dimensions (Roberts
+/// 2018; the root of x^6 = x + 1). Every point is paired with its opposite, so that a uniform gradient is averaged
+/// exactly.
 std::vector<Offset> blur_offsets(Bench<double> const& bench) {
   constexpr int points = 256;
   constexpr double root = 1.1347241384015194;
@@ -49,7 +50,7 @@ std::vector<Offset> blur_offsets(Bench<double> const& bench) {
   return offsets;
 }
 
-/// A lattice of displacements, linear between its nodes; beyond them as at the edge.
+/// Displacements on a lattice, with bilinear interpolation between nodes and constant extrapolation.
 class Lattice {
  public:
   explicit Lattice(Image<Vec2d> values) : values_(std::move(values)) {}
@@ -83,7 +84,7 @@ Lattice blurred(Lattice const& sharp, std::vector<Offset> const& offsets) {
   return Lattice(std::move(values));
 }
 
-/// Averaged over a window's pixels about a place.
+/// Averages over the pixels of an interrogation window centred at `place`, with its weights.
 Vec2d in_window(Lattice const& lattice, WindowTransfer const& window, Vec2d place) {
   std::vector<double> const& side = window.side();
   Vec2d sum{};

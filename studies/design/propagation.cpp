@@ -13,9 +13,9 @@ namespace {
 
 using Jet = ceres::Jet<double, static_cast<int>(gradient_inputs)>;
 
-/// Probability between -t and t.
+/// Returns the probability of Student's t distribution between -t and t.
 double student_coverage(double t, double degrees) {
-  // with t = sqrt(nu) tan(a): the integral of cos^(nu - 1), by Simpson's rule
+  // Substituting t = sqrt(nu) tan(a) gives the integral of cos^(nu - 1); evaluated by Simpson's rule.
   constexpr int steps = 2000;
   double const end = std::atan(t / std::sqrt(degrees)), h = end / steps;
   double sum = 0;
@@ -34,14 +34,14 @@ GradientMeasurement<Jet> with_derivatives(GradientMeasurement<double> const& at)
   return jets;
 }
 
-/// Change of the formula's input, in SI, by one of the key's own unit.
+/// Returns the derivative of the formula's input, in SI, with respect to the key in its unit.
 double slope_of(MeasurementInput const& input, double value) {
   return input.chain == 1 ? input.unit : input.chain * value / input.value;
 }
 
-/// d(result) / d(input): of what the formula has, by Jets; of the rest what tracing says, which is of the displacement
-/// a gradient makes and so of the opposite sign.
-/// @param from_gradient the result over the gradient
+/// Returns d(result) / d(input): by Jets for inputs of the formula; for others from ray tracing, with the opposite
+/// sign, since the traced derivative is that of the displacement per gradient.
+/// @param from_gradient  the result divided by the gradient
 double derivative_of(MeasurementInput const& input, GradientMeasurement<double> const& at, Jet const& result,
                      Jet const& from_gradient) {
   if (!input.enters) {
@@ -55,11 +55,12 @@ double derivative_of(MeasurementInput const& input, GradientMeasurement<double> 
   return result.v[static_cast<Eigen::Index>(*input.enters)] * slope_of(input, at[*input.enters]);
 }
 
-/// The results of a sample: of what the formula has not, by what its logarithm changes.
+/// Computes the results of one sample; inputs outside the formula scale it by the exponential of their traced effect.
 std::array<double, 2> sample(GradientMeasurement<double> measurement, std::vector<MeasurementInput> const& inputs,
                              Eigen::VectorXd const& drawn) {
   double factor = 1;
-  GradientMeasurement<double> whole = measurement;  // with what is not in the gradient's formula
+  // includes inputs that affect the density difference but not the gradient
+  GradientMeasurement<double> whole = measurement;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     MeasurementInput const& input = inputs[i];
     double const off = drawn[static_cast<Eigen::Index>(i)];
@@ -86,15 +87,17 @@ double at_fraction(std::vector<double> const& sorted, double fraction) {
   return (1 - part) * sorted[i] + part * sorted[i + 1];
 }
 
-/// Standard error of at_fraction(): half of how far the samples reach whose number below is uncertain by one.
+/// Returns the standard error of at_fraction(): half the range between fractions shifted by one binomial standard
+/// error.
 double error_at_fraction(std::vector<double> const& sorted, double fraction) {
   double const one = std::sqrt(fraction * (1 - fraction) / static_cast<double>(sorted.size()));
   return (at_fraction(sorted, fraction + one) - at_fraction(sorted, fraction - one)) / 2;
 }
 
-constexpr double covered = 0.954499736;  ///< of a normal distribution within two standard deviations
+constexpr double covered = 0.954499736;  ///< probability of a normal distribution within two standard deviations
 
-/// @param fewest degrees of freedom of a t distribution that the samples are drawn from
+/// Adds mean, standard deviation and coverage interval of the samples.
+/// @param fewest  smallest number of degrees of freedom of the sampled t distributions
 void add_samples(PropagatedResult& result, std::vector<double> samples, double fewest) {
   double sum = 0, squares = 0;
   for (double const one : samples) sum += one;
@@ -107,7 +110,7 @@ void add_samples(PropagatedResult& result, std::vector<double> samples, double f
   result.sampled_low = at_fraction(samples, below);
   result.sampled_high = at_fraction(samples, above);
   if (result.standard == 0) return;
-  // JCGM 101, 7.9.2 with one significant digit: u = c 10^l, c from 1 to 9, delta = 10^l / 2
+  // JCGM 101:2008, 7.9.2 with one significant digit: u = c 10^l, c from 1 to 9, delta = 10^l / 2.
   double const delta = 0.5 * std::pow(10.0, std::floor(std::log10(result.standard)));
   result.linear =
       std::abs(result.value - result.expanded() - result.sampled_low) <=
@@ -120,7 +123,7 @@ PropagatedResult first_order(std::string key, GradientMeasurement<double> const&
   PropagatedResult out;
   out.key = std::move(key);
   out.value = result.a;
-  Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));  // c_i u(x_i), with their signs
+  Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));  // c_i u(x_i), with sign
   for (MeasurementInput const& input : inputs) {
     Contribution one;
     one.derivative = derivative_of(input, at, result, from_gradient);
@@ -152,7 +155,7 @@ PropagatedResult first_order(std::string key, GradientMeasurement<double> const&
 
 double coverage_factor(double degrees_of_freedom) {
   if (!(degrees_of_freedom < 1e4)) return 2;
-  double low = 1.9, high = 20;  // nu = 1 has 13.97
+  double low = 1.9, high = 20;  // the factor for nu = 1 is 13.97
   while (high - low > 1e-9) {
     double const middle = (low + high) / 2;
     (student_coverage(middle, degrees_of_freedom) < covered ? low : high) = middle;
@@ -179,7 +182,8 @@ std::vector<PropagatedResult> propagate(GradientMeasurement<double> const& at,
 }
 
 double common_relative_uncertainty(GradientMeasurement<double> at, std::vector<MeasurementInput> const& inputs) {
-  at[GradientInput::displacement] = 1;  // what the others make is relative: it is the same of any displacement
+  // arbitrary: the relative contribution of the other inputs does not depend on it
+  at[GradientInput::displacement] = 1;
   Jet const gradient = with_derivatives(at).gradient();
   Eigen::VectorXd parts(static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_values = 1000;
 constexpr double mm = unit::millimetre;
 
-/// The texts of an array; what is none of texts is a problem at the key.
+/// Returns the texts of an array; adds a problem at the key if it contains anything else.
 std::vector<std::string> texts(SetupDocument& document, std::string const& table, std::string const& key) {
   std::vector<std::string> found;
   SetupTable owner = document.root().table(table);
@@ -56,7 +56,7 @@ Requirements read_requirements(SetupTable table, SetupTable limits) {
   return r;
 }
 
-/// Values or an interval at a key of [limits], or values at one of [inventory].
+/// Values or an interval from [limits], or values from [inventory].
 struct Allowed {
   std::vector<double> values;
   std::optional<std::pair<double, double>> interval;
@@ -111,7 +111,7 @@ FreeChoice read_free_choice(Choice choice, SetupTable free, SetupTable limits, S
   return found;
 }
 
-/// Whether prescription files stand among focal lengths: they have a list of their own.
+/// Reports prescription files listed among focal lengths; returns true if there are any.
 bool refuse_prescriptions(SetupDocument& document, SetupTable limits, SetupTable inventory, ChoiceKey const& key) {
   SetupNode const* const node = document.find({"inventory", key.inventory});
   auto const is_text = [](SetupNode const& one) { return one.kind == SetupNode::Kind::text; };
@@ -164,7 +164,7 @@ std::vector<FreeChoice> read_free(SetupDocument& document, SetupTable limits, Se
   return found;
 }
 
-/// Absolute names of the files at a key of [inventory].
+/// Returns the absolute paths of the files at a key of [inventory].
 std::vector<std::string> owned_files(SetupDocument& document, std::string const& key) {
   std::vector<std::string> files;
   for (std::string const& name : texts(document, "inventory", key)) {
@@ -196,7 +196,7 @@ std::vector<OwnedCamera> read_cameras(SetupDocument& document) {
   return cameras;
 }
 
-/// Limits that leave no room.
+/// Reports a z_total_max_mm that contradicts the lower limits of the distances.
 void check_total(DesignQuestion const& question, SetupTable limits) {
   if (!question.requirements.z_total_max) return;
   double least = 0;

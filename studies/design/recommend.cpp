@@ -14,24 +14,24 @@ namespace gladstone {
 namespace {
 
 constexpr double stricter = 0.01;
-constexpr double spare = 1e-4;  ///< below which a bound binds, as the logarithm of a ratio
+constexpr double spare = 1e-4;  ///< a limit is active if its margin is below this value, as the logarithm of a ratio
 constexpr int front_points = 13;
-constexpr double front_span = 1.6;  ///< either way of the limit as required
+constexpr double front_span = 1.6;  ///< range of limits on the front, as a factor to either side of the required one
 
-/// With the limits of every bench, which hang on the branch's camera.
+/// Adds the limits of every set-up, which depend on the branch's camera.
 DesignProblem complete(DesignProblem problem, DesignBranch const& branch) {
   for (Limit const& limit : bench_limits(*branch.given)) problem.limits.push_back(limit);
   return problem;
 }
 
-/// Whether a limit is one from below: stricter is more.
+/// Returns true for lower limits, for which a larger value is stricter.
 bool from_below(Bound bound) { return bound == Bound::view_width || bound == Bound::view_height; }
 
 double moved(Limit const& limit, double factor) {
   return from_below(limit.bound) ? limit.value * factor : limit.value / factor;
 }
 
-/// A question's branches, and the benches of each that its problems have found so far.
+/// Branches of a question, and the designs of each found so far.
 struct Search {
   std::vector<DesignBranch> const& branches;
   std::vector<KnownBenches> known{branches.size()};
@@ -60,13 +60,14 @@ std::vector<std::string> binding_of(DesignProblem const& problem, BranchOutcome 
     std::string const key = std::string("limits.") + key_of(free.choice).limit;
     bool const at_low = x - std::log(free.low) < spare, at_high = std::log(free.high) - x < spare;
     if (at_low && at_high)
-      names.push_back(key);  // an interval of one value
+      names.push_back(key);  // the interval contains a single value
     else if (at_low || at_high)
       names.push_back(key + (at_low ? "[0]" : "[1]"));
   }
   return names;
 }
 
+/// Adds the costs of the requirements.
 /// @return the best objective of the stricter problems
 double add_costs(Recommendation& answer, DesignProblem const& problem, Search& search) {
   double const best = answer.outcomes.front().solution.objective;
@@ -86,7 +87,8 @@ double add_costs(Recommendation& answer, DesignProblem const& problem, Search& s
   return least;
 }
 
-/// @return the best objective of the points that are as strict as required or more
+/// Adds the front.
+/// @return the best objective at limits at least as strict as required
 double add_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
   answer.front.clear();
   if (answer.front_bound == Bound::focus) return HUGE_VAL;
@@ -94,7 +96,7 @@ double add_front(Recommendation& answer, DesignProblem const& problem, Search& s
                                      [&](Limit const& limit) { return limit.bound == answer.front_bound; });
   auto const index = static_cast<std::size_t>(of_front - problem.limits.begin());
   double least = HUGE_VAL;
-  for (int k = 0; k < front_points; ++k) {  // the strictest first: what keeps it keeps the others
+  for (int k = 0; k < front_points; ++k) {  // strictest first: its solutions are also feasible at the others
     double const lenience = std::pow(front_span, 2.0 * k / (front_points - 1) - 1);
     double const limit = moved(*of_front, 1 / lenience);
     double const then = search.objective_with(problem, index, limit);
@@ -106,11 +108,11 @@ double add_front(Recommendation& answer, DesignProblem const& problem, Search& s
   return least;
 }
 
-/// What the requirements cost. A stricter one that gains shows a better bench for the requirements as they are: they
-/// are solved again, which knows it.
+/// Adds costs and front. If a stricter problem has a better objective, its solution improves that of the actual
+/// requirements, so they are solved again from it.
 void add_costs_and_front(Recommendation& answer, DesignProblem const& problem, Search& search) {
   constexpr int most_rounds = 8;
-  constexpr double gain = 1 - 1e-6;  // that is none
+  constexpr double gain = 1 - 1e-6;  // improvements below this factor are ignored
   for (int round = 0; round < most_rounds; ++round) {
     double const best = answer.outcomes.front().solution.objective;
     double least = add_costs(answer, problem, search);
@@ -120,7 +122,7 @@ void add_costs_and_front(Recommendation& answer, DesignProblem const& problem, S
   }
 }
 
-/// The fewest of the limits that no bench keeps together.
+/// Returns the smallest set of limits that no design meets together.
 std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, Search& search) {
   std::size_t const count = problem.limits.size();
   for (std::size_t size = 0; size <= count; ++size) {
@@ -139,15 +141,15 @@ std::vector<std::size_t> smallest_conflict(DesignProblem const& problem, Search&
   return {};
 }
 
-constexpr double most_lenient = 1e3;  ///< no limit gives way further
+constexpr double most_lenient = 1e3;  ///< maximum factor by which limits are relaxed
 
-/// Those limits, every one more lenient by a factor.
+/// Relaxes the given limits by a factor.
 DesignProblem relaxed(DesignProblem problem, std::vector<std::size_t> const& those, double factor) {
   for (std::size_t const index : those) problem.limits[index].value = moved(problem.limits[index], 1 / factor);
   return problem;
 }
 
-/// The least factor by which those limits have to give way, the others kept; nothing where none would do.
+/// Returns the smallest factor by which the given limits must be relaxed to meet the others; nullopt if none suffices.
 std::optional<double> least_factor(DesignProblem const& problem, std::vector<std::size_t> const& those,
                                    Search& search) {
   if (!search.feasible(relaxed(problem, those, most_lenient))) return std::nullopt;
@@ -159,7 +161,8 @@ std::optional<double> least_factor(DesignProblem const& problem, std::vector<std
   return high;
 }
 
-/// Limits that together would do where none alone does: all by the least share, less those that need not give way.
+/// Adds a joint relaxation if none suffices alone: all limits by the smallest common factor, except those that need not
+/// be relaxed.
 void add_joint_relaxation(Recommendation& answer, DesignProblem const& problem, Search& search) {
   std::vector<std::size_t> those(problem.limits.size());
   std::iota(those.begin(), those.end(), std::size_t{0});
@@ -176,8 +179,8 @@ void add_joint_relaxation(Recommendation& answer, DesignProblem const& problem, 
   }
 }
 
-/// The least that each limit of a conflict has to give way, the others kept; width and height of the view do so
-/// together.
+/// Adds the smallest relaxation of each conflicting limit for which the others are met; width and height of the view
+/// are relaxed together.
 void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::vector<std::size_t> const& conflict,
                      Search& search) {
   for (std::size_t const index : conflict) {
@@ -194,7 +197,7 @@ void add_relaxations(Recommendation& answer, DesignProblem const& problem, std::
   if (answer.relaxations.empty()) add_joint_relaxation(answer, problem, search);
 }
 
-/// Once more where nothing is feasible, from the best benches of the problem with one limit dropped.
+/// If no design is feasible, searches again, starting from solutions of problems with one limit dropped.
 void search_again(Recommendation& answer, DesignProblem const& problem, Search& search) {
   for (std::size_t i = 0; i < problem.limits.size(); ++i) {
     DesignProblem without = problem;

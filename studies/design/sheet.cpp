@@ -13,13 +13,13 @@
 namespace gladstone {
 namespace {
 
-/// Half width and height of what the camera sees in the medium's mid-plane [m].
+/// Returns half the width and height of the camera's view in the medium's mid-plane [m].
 Vec2d half_view_at_medium(Setup const& setup) {
   double const pixel = setup.camera.pixel_pitch / setup.imaging().magnification * setup.z_a / setup.z_b();
   return 0.5 * pixel * Vec2d{double(setup.camera.columns), double(setup.camera.rows)};
 }
 
-/// Largest gradient of density in the view, averaged over the thickness [kg/m^4].
+/// Returns the largest density gradient in the view, averaged over the thickness [kg/m^4].
 double largest_gradient(Setup const& setup) {
   if (setup.medium.field.kind == FieldKind::none) return 0;
   if (setup.medium.field.kind == FieldKind::closed_form) {

@@ -16,7 +16,7 @@ bool inside(Vec2d place, Setup const& setup, double border) {
          place.y <= setup.camera.rows - 1 - border;
 }
 
-/// Mean over the repeats where all of them count; NaN elsewhere.
+/// Returns the mean over the repeats; NaN at vectors that are invalid in any of them.
 std::vector<Vec2d> mean_of(std::vector<std::vector<Vec2d>> const& repeats) {
   std::vector<Vec2d> mean(repeats.front().size());
   for (auto const& one : repeats) {
@@ -27,7 +27,7 @@ std::vector<Vec2d> mean_of(std::vector<std::vector<Vec2d>> const& repeats) {
 
 bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
-/// Root mean square over the components of the vectors that count.
+/// Returns the rms over the components of the vectors for which `counts` is finite.
 double rms_of(std::vector<Vec2d> const& values, std::vector<Vec2d> const& counts) {
   double sum = 0;
   std::size_t count = 0;
@@ -39,7 +39,7 @@ double rms_of(std::vector<Vec2d> const& values, std::vector<Vec2d> const& counts
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : nan;
 }
 
-/// How many vectors of a grid share what one window measures: windows overlap.
+/// Returns the number of lattice vectors per independent window, since windows overlap.
 double vectors_per_window(std::vector<Vec2d> const& place, int window_px) {
   double spacing = window_px;
   for (std::size_t i = 1; i < place.size(); ++i) {
@@ -50,7 +50,7 @@ double vectors_per_window(std::vector<Vec2d> const& place, int window_px) {
   return std::max(1.0, across * across);
 }
 
-/// A budget's term of one repeat; nothing where it is not known.
+/// Returns a budget term of one repeat; zeros if it is unknown.
 std::vector<Vec2d> term_of(Repeats const& repeats, std::size_t repeat, std::string const& name) {
   for (BudgetStage const& stage : repeats.causes[repeat]) {
     if (stage.name == name) return stage.displacement_px;
@@ -69,7 +69,8 @@ std::vector<Vec2d> sum_of(std::vector<Vec2d> a, std::vector<Vec2d> const& b, dou
   return a;
 }
 
-/// Share of Eq. 9 that a displacement has, by least squares over the vectors that count.
+/// Returns the amplitude of a displacement relative to Eq. 9, by least squares over the vectors for which `counts` is
+/// finite.
 double share_of(std::vector<Vec2d> const& displacement, Repeats const& repeats, std::vector<Vec2d> const& counts) {
   double product = 0, square = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -119,10 +120,10 @@ void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> con
   std::vector<Vec2d> const counts = mean_of(repeats.error);
   PredictedBlur const blur = predicted_blur(*repeats.setup, formulas, repeats.place);
   bench.predicted_bias_px = rms_of(blur.whole_px, counts);
-  std::vector<std::vector<Vec2d>> window;  // what the estimator's term has of the patterns is none of the window's
+  std::vector<std::vector<Vec2d>> window;  // sum of window and estimator, since their pattern-dependent parts cancel
   for (std::size_t k = 0; k < repeats.error.size(); ++k) {
     window.push_back(sum_of(term_of(repeats, k, "window"), term_of(repeats, k, "estimator"), 1));
-    for (std::size_t i = 0; i < counts.size(); ++i) window[k][i] += 0.0 * counts[i];  // NaN where one does not count
+    for (std::size_t i = 0; i < counts.size(); ++i) window[k][i] += 0.0 * counts[i];  // NaN at invalid vectors
   }
   bench.causes = {
       {"cone", rms_of(mean_term(repeats, "cone"), counts), rms_of(blur.cone_px, counts)},
@@ -140,7 +141,7 @@ WaveShares shares_of(Repeats const& repeats, double wavelength, int window_px) {
   shares.refraction = share_of(repeats.refraction, repeats, error);
   shares.lens = share_of(repeats.lens, repeats, error);
   shares.measured.value = 1 + share_of(error, repeats, error);
-  // noise along the wave: scatter of a mean over repeats, by as many independent windows as there are
+  // Noise projected on the wave: scatter of a mean over repeats, for the number of independent windows.
   double square = 0;
   for (std::size_t i = 0; i < error.size(); ++i) square += finite(error[i]) ? dot(repeats.eq9[i], repeats.eq9[i]) : 0;
   double const scatter = split_repeats(repeats.error).scatter_px;

@@ -18,7 +18,8 @@ struct Repeats {
   double displacement_px = 0;
   std::optional<Setup> setup;
   double magnification = 0;
-  std::optional<std::uint64_t> rays;  ///< rays per dot of an untabulated rendering; empty if chosen per dot
+  /// rays per dot that correct the deflection table; empty without a table of single fineness, or if chosen per dot
+  std::optional<std::uint64_t> rays;
 };
 
 /// Adds a case to the repeats of its medium.

@@ -10,9 +10,10 @@
 namespace gladstone {
 namespace {
 
-constexpr double wave_strain = 0.02;     ///< of the image, by a wave: as in the estimator's study at most
-constexpr double shorter_wave = 0.85;    ///< of the wavelength that the formulas resolve
-constexpr double near_centre_px = 0.15;  ///< dots whose image lies so near a pixel's middle tell the peak
+constexpr double wave_strain = 0.02;   ///< image strain caused by a wave: the largest in the estimator's study
+constexpr double shorter_wave = 0.85;  ///< wavelength of the shorter wave, relative to the one resolved by formula
+/// dots whose image centre is this close to a pixel's centre are used for the peak
+constexpr double near_centre_px = 0.15;
 
 SetupNode wave_field(Bench<double> const& bench, double wavelength) {
   double const length_px = wavelength / bench.pixel_at_medium();
@@ -32,13 +33,13 @@ AxisValue value_of(char const* label, SetupNode node) {
   return value;
 }
 
-/// The bench's setup with the middle of its camera alone, repeated with other dots, rays and noise.
+/// Studies of a design's setup, reduced to the central part of the image and repeated with other dots, rays and noise.
 struct BenchStudies {
   SetupDocument base;
   std::size_t repeats;
   std::uint64_t seed;
 
-  /// @param rays of a dot; nothing: "auto"
+  /// @param rays  number per dot; nullopt: "auto"
   StudyFile of(std::vector<AxisValue> media, std::optional<std::uint64_t> rays) const {
     SetupDocument setup = base.copy();
     if (rays) setup.set({"render", "rays_per_dot"}, setup_integer(static_cast<long long>(*rays)));
@@ -69,25 +70,26 @@ BenchStudies studies_of(std::string const& setup, Bench<double> const& bench, st
                std::clamp(simulated_windows * bench.given->window.window_px(), least_simulated_px, most_simulated_px));
   int const columns = std::min(camera.columns, side), rows = std::min(camera.rows, side);
   base.set({"camera", "pixels"}, setup_array({setup_integer(columns), setup_integer(rows)}));
-  // the waves are as deep as the setup's own medium
+  // the waves have the thickness of the setup's medium
   base.set({"medium", "thickness_mm"}, setup_number(bench.given->thickness / unit::millimetre));
   return {std::move(base), repeats, seed};
 }
 
-/// Where the measured share crosses 1/sqrt(2), linear in the wavelength's logarithm between the waves and beyond them.
+/// Returns the wavelength at which the measured amplitude is 1/sqrt(2), by linear interpolation or extrapolation in the
+/// logarithm of the wavelength.
 Estimate resolution_of(std::vector<WaveShares> const& waves) {
   WaveShares const &a = waves[0], &b = waves[1];
   double const slope = (a.measured.value - b.measured.value) / std::log(a.wavelength / b.wavelength);
   if (!(slope > 0)) return {};
   double const x = (transfer_at_resolution - a.measured.value) / slope;
-  // the error of a straight line's crossing: each wave's, by its share of it
+  // Propagate the errors of both waves, weighted by their distance from the crossing.
   double const part = x / std::log(b.wavelength / a.wavelength);
   double const error = std::hypot((1 - part) * a.measured.standard_error, part * b.measured.standard_error) / slope;
   double const value = a.wavelength * std::exp(x);
   return {value, value * error};
 }
 
-/// Electrons at the pixel of dots whose image lies in its middle, in the reference frame.
+/// Electrons in the central pixel of dots that are centred on a pixel, in the reference image.
 struct Peaks {
   double sum = 0, squares = 0;
   std::size_t count = 0;
@@ -142,7 +144,8 @@ SimulatedBench simulate(std::string const& setup, Bench<double> const& bench, st
   Peaks peaks;
   run(studies.of({studies.own_medium()}, std::nullopt), as_set_up, &peaks);
   if (!simulated.failed.empty()) return simulated;
-  // waves are smooth: where the medium is, too, what corrects its table corrects theirs
+  // Waves are smooth; if the setup's medium is smooth too, its number of rays for correcting the deflection table
+  // suffices.
   double const wavelength = resolved_wavelength(bench);
   std::vector<AxisValue> media;
   for (double const share : {1.0, shorter_wave}) {

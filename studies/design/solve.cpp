@@ -10,14 +10,16 @@ namespace {
 
 using Jet = ceres::Jet<double, choice_count>;
 
-constexpr int candidates = 480;  // points that the starts are the best of
+constexpr int candidates = 480;  // number of points from which the starting points are selected
 constexpr std::size_t starts = 8;
-constexpr std::size_t known_starts = 4;  // of the benches known from other problems
-constexpr double apart = 0.1;            // of two starts, in an interval's length
+constexpr std::size_t known_starts = 4;  // maximum number of starting points from known designs
+// minimum distance of two starting points, relative to the length of the intervals
+constexpr double apart = 0.1;
 constexpr int most_evaluations = 300;
 constexpr double tolerance = 1e-9;
 
-/// A problem on a branch as NLopt's functions see it; with a slack variable at the end, limits may be exceeded by it.
+/// A problem on a branch in the form that NLopt requires; with `slack`, the last variable is the allowed excess over
+/// limits.
 struct Task {
   DesignProblem const* problem;
   DesignBranch const* branch;
@@ -48,7 +50,7 @@ double objective_of(unsigned n, double const* x, double* gradient, void* data) {
   }
   Bench<double> const here = task.numbers(x);
   double const lacking = excess({Bound::focus, 0}, here);
-  if (lacking > 0) {  // no image: nothing to be made best
+  if (lacking > 0) {  // no image exists: minimize the excess instead
     if (gradient) copy_derivatives(excess({Bound::focus, 0}, task.jets(x)), task.own(), gradient);
     return 100 + lacking;
   }
@@ -97,12 +99,12 @@ bool better(BranchSolution const& a, BranchSolution const& b) {
   return a.feasible() ? a.objective < b.objective : a.violation < b.violation;
 }
 
-/// A point of a sequence that is even over the intervals; the first is their middle.
+/// Returns a point of a low-discrepancy sequence over the intervals; the first is their centre.
 std::vector<double> spread_point(DesignBranch const& branch, int index) {
   std::vector<double> x;
   for (std::size_t i = 0; i < branch.continuous.size(); ++i) {
     FreeChoice const& free = branch.continuous[i];
-    // Kronecker's sequence by powers of the root of x^6 = x + 1: even in five dimensions
+    // Kronecker sequence with powers of the root of x^6 = x + 1, which is uniform in five dimensions.
     double const turn = 0.5 + index * std::pow(1 / 1.1347241384015194, static_cast<double>(i + 1));
     double const share = turn - std::floor(turn);
     x.push_back(std::log(free.low) + share * std::log(free.high / free.low));
@@ -121,8 +123,8 @@ bool far_from(std::vector<BranchSolution> const& chosen, BranchSolution const& p
   });
 }
 
-/// Where the search starts, the best first: the best of many points, each far from the others, so that a narrow region
-/// behind a worse one is found, too; and the best of the known benches.
+/// Selects starting points, best first: the best of many points with a minimum distance from each other, so that narrow
+/// feasible regions are found too, and the best known designs.
 std::vector<BranchSolution> start_points(DesignProblem const& problem, DesignBranch const& branch,
                                          KnownBenches const& known) {
   std::vector<BranchSolution> points, chosen, before;
@@ -157,14 +159,14 @@ std::vector<double> minimised(Task& task, std::vector<double> x) {
   optimizer.set_upper_bounds(high);
   optimizer.set_min_objective(objective_of, &task);
   optimizer.add_inequality_mconstraint(limits_of, &task, std::vector<double>(task.problem->limits.size(), tolerance));
-  // by the choices alone: the slack stands still where limits bend, long before it is least
+  // Stop by the design variables alone: the slack stagnates at curved limits long before its minimum.
   optimizer.set_xtol_rel(1e-12);
   optimizer.set_maxeval(most_evaluations);
   double value = 0;
   try {
     optimizer.optimize(x, value);
   } catch (std::runtime_error const&) {
-    // it goes no further than rounding lets it: where it stands is judged as any other point
+    // roundoff-limited: the current point is evaluated like any other
   }
   for (std::size_t i = 0; i < task.own(); ++i) x[i] = std::clamp(x[i], low[i], high[i]);
   return x;
@@ -173,7 +175,7 @@ std::vector<double> minimised(Task& task, std::vector<double> x) {
 }  // namespace
 
 std::optional<Bound> excluded_by(DesignProblem const& problem, DesignBranch const& branch) {
-  // the view widens, and an image comes to be, with both distances; their sum is least at the lower ends
+  // View and image distance increase with both distances; their sum is smallest at the lower ends of the intervals.
   std::vector<double> least, most;
   for (FreeChoice const& free : branch.continuous) {
     bool const distance = free.choice == Choice::z_a || free.choice == Choice::z_d;
@@ -197,7 +199,7 @@ BranchSolution least_violation(DesignProblem const& problem, DesignBranch const&
   BranchSolution best = points.front();
   for (BranchSolution const& start : points) {
     if (best.feasible() || branch.continuous.empty()) return best;
-    for (bool const slack : {true, false}) {  // where one gets stuck, the other may not
+    for (bool const slack : {true, false}) {  // one of them may converge where the other does not
       Task task{&problem, &branch, slack};
       BranchSolution const found = judged(problem, branch, minimised(task, start.logarithms));
       if (better(found, best)) best = found;

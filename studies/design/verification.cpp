@@ -11,15 +11,16 @@ namespace gladstone {
 namespace {
 
 constexpr double mm = unit::millimetre;
-constexpr double coverage = 2;  ///< standard errors that two numbers may differ by
-/// What the formula of the random error is from the study that it was fitted to, and closed forms from what they leave
-/// out in first order (docs/design.md), relative.
+constexpr double coverage = 2;  ///< admissible difference of two numbers, in standard errors
+/// Relative accuracy of the random-error formula with respect to its study, and of the closed forms because of
+/// neglected higher orders (docs/design.md).
 constexpr double random_error_accuracy = 0.2, closed_form_accuracy = 0.02;
 
-/// The part of a difference that a cause is to be off by, to be its reason.
+/// Minimum fraction of a difference that a cause must account for to be named as its reason.
 constexpr double least_explained = 0.5;
 
-/// The cause whose simulated part is farthest from the predicted one, if that comes near the difference of the whole.
+/// Returns the cause with the largest difference between simulation and prediction, if it accounts for the total
+/// difference.
 std::string why_biased(SimulatedBench const& simulated) {
   SystematicCause const* farthest = nullptr;
   auto const off = [](SystematicCause const& cause) { return std::abs(cause.simulated - cause.predicted); };
@@ -42,7 +43,7 @@ std::string why_biased(SimulatedBench const& simulated) {
   return text;
 }
 
-/// Which share of the wave is farthest from its formula, and what it is instead.
+/// Returns the stage of the wave's transfer that deviates most from its formula, and its actual value.
 std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& bench) {
   WaveShares const& wave = simulated.waves.front();
   double const cone = cone_transfer(bench.pupil(), bench.z_b(), bench.z_d, bench.given->thickness, wave.wavelength) *
@@ -65,7 +66,7 @@ std::string why_resolved(SimulatedBench const& simulated, Bench<double> const& b
                      farthest->predicted, wave.wavelength / mm, farthest->because);
 }
 
-/// The formula's study moved dots by this much either way, through every fraction of a pixel [px].
+/// Largest displacement either way in the formula's study, which covers all fractions of a pixel [px].
 constexpr double studied_displacement_px = 0.5;
 
 std::string why_random(SimulatedBench const& simulated) {
@@ -82,7 +83,8 @@ std::string why_lit(Bench<double> const& bench) {
                    : "light of neighbouring dots, or what the lens cuts off";
 }
 
-/// Smallest gradient seen at two standard deviations, by the simulated error and magnification.
+/// Returns the smallest detectable gradient, at two standard deviations, from the simulated random error and
+/// magnification.
 Estimate gradient_seen(SimulatedBench const& simulated, Bench<double> const& bench) {
   double const per_px = 2 / (bench.sensitivity() * simulated.magnification / bench.magnification());
   return {simulated.random_px.value * per_px, simulated.random_px.standard_error * per_px};
@@ -93,7 +95,7 @@ Estimate view_of(SimulatedBench const& simulated, Bench<double> const& bench, in
   return {pixels * bench.given->camera.pixel_pitch / at_medium, 0};
 }
 
-/// What the simulation says of a limit; nothing where it cannot tell more than the limit itself.
+/// Returns prediction and simulation of a limited quantity; nullopt if a simulation adds no information.
 std::optional<std::pair<double, Estimate>> simulated_of(Bound bound, SimulatedBench const& simulated,
                                                         Bench<double> const& bench) {
   CameraSetup const& camera = bench.given->camera;
@@ -142,7 +144,7 @@ VerifiedBench simulated_bench(DesignQuestion const& question, std::vector<Design
   return verified;
 }
 
-/// The limits, those that were missed stricter by what the simulation is worse than the formula.
+/// Tightens the limits that were missed by the ratio of simulation to prediction.
 std::vector<Limit> tightened(std::vector<Limit> limits, VerifiedBench const& missed) {
   for (VerifiedRequirement const& requirement : missed.requirements) {
     if (requirement.kept()) continue;
