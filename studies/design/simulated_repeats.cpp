@@ -120,7 +120,8 @@ void add_errors(SimulatedBench& bench, Repeats const& repeats, Bench<double> con
   std::vector<Vec2d> const counts = mean_of(repeats.error);
   PredictedBlur const blur = predicted_blur(*repeats.setup, formulas, repeats.place);
   bench.predicted_bias_px = rms_of(blur.whole_px, counts);
-  std::vector<std::vector<Vec2d>> window;  // sum of window and estimator, since their pattern-dependent parts cancel
+  // window plus estimator; only the part common to all dot patterns is assigned to the window below
+  std::vector<std::vector<Vec2d>> window;
   for (std::size_t k = 0; k < repeats.error.size(); ++k) {
     window.push_back(sum_of(term_of(repeats, k, "window"), term_of(repeats, k, "estimator"), 1));
     for (std::size_t i = 0; i < counts.size(); ++i) window[k][i] += 0.0 * counts[i];  // NaN at invalid vectors

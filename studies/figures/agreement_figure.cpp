@@ -50,7 +50,7 @@ void draw_panel(GnuplotFigure& plot, Panel const& panel, std::vector<AgreementSe
     commands +=
         fmt::format("{} using 1:2:3 with yerrorbars linewidth 1.6 pointtype {} pointsize 1.3 linecolor '{}' title {}, ",
                     table, i == 0 ? 7 : 5, house_colour(i), GnuplotFigure::quoted(series[i].name + ": rays"));
-    // beside the points, above one curve and below the other
+    // label the points, above one curve and below the other
     commands +=
         fmt::format("{} using 1:2:(sprintf('%d', $4)) with labels font 'DejaVu Sans,10' textcolor '{}' offset {}{}",
                     table, house_colour(i), i == 0 ? "-2.2,0.6" : "2.2,-0.6", i + 1 < series.size() ? ", " : "");

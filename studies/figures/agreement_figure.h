@@ -7,28 +7,31 @@
 
 namespace gladstone {
 
-/// Agreement of rays with Eq. 9 on one field, at several sizes of its structures over the cone's width.
+/// Agreement of rays with the small-angle theory (Eq. 9) on one field, at several ratios of structure size to cone
+/// diameter.
 struct AgreementSeries {
   std::string name;
   struct Point {
     double size_over_cone = 0;  ///< GradientSpectrum::structure_size() over cone_width() [1]
-    int nodes = 0;              ///< across the view
+    int nodes = 0;              ///< number of nodes across the view
     Agreement value, error;
   };
-  std::vector<Point> points;  ///< traced
+  std::vector<Point> points;  ///< ray-traced
   struct Prediction {
     double size_over_cone = 0;
     Agreement value;
   };
-  std::vector<Prediction> prediction;  ///< by predicted_agreement(), ascending
+  std::vector<Prediction> prediction;  ///< by predicted_agreement(), in ascending order
 };
 
-/// Sizes over the cone's width at which curves are to be predicted, from end to end of the figure [1].
+/// Returns the ratios of structure size to cone diameter at which curves are predicted, over the range of the figure
+/// [1].
 std::vector<double> agreement_sizes();
 
-/// Two panels over the size of structures: correlation of rays and Eq. 9, and the ratio of their rms. Points with
-/// standard errors are traced, curves predicted; in the right panel, grey, what a single wave of that size would keep.
-/// @param single_wave the ratio of one wave at agreement_sizes()
+/// Draws two panels against structure size over cone diameter: correlation of rays with Eq. 9, and ratio of their rms.
+/// Ray-traced points have error bars of one standard error; predictions are curves. The grey curve in the right panel
+/// is the amplitude ratio of a single wave of that size.
+/// @param single_wave  amplitude ratio of a single wave at agreement_sizes() [1]
 /// @throws GnuplotMissing, OutputError
 void write_agreement_figure(std::string const& path, std::vector<AgreementSeries> const& series,
                             std::vector<double> const& single_wave);

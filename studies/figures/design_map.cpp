@@ -15,14 +15,14 @@ namespace {
 constexpr double mm = unit::millimetre;
 constexpr int width = 960, height = 700;
 constexpr std::array<double, 8> stops{2.8, 4, 5.6, 8, 11, 16, 22, 32};
-constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // of Z_A
+constexpr std::array<double, 5> marked_z_d{0.1, 0.25, 0.5, 1, 2};  // relative to Z_A
 
 std::vector<double> in_mm(std::vector<double> lengths) {
   for (double& length : lengths) length /= mm;
   return lengths;
 }
 
-/// Adds a data source drawn with lines to a plot command.
+/// Appends a data source, drawn with lines, to a plot command.
 void add_line(GnuplotFigure& plot, std::string& command, std::vector<double> const& x, std::vector<double> const& y,
               std::string const& look, std::string const& title) {
   command += fmt::format("{}{} using 1:2 with {} {}", command.empty() ? "plot " : ", ", plot.add_table({x, y}), look,
@@ -37,7 +37,7 @@ struct Range2 {
   }
 };
 
-/// Tics of a logarithmic axis at 1, 2 and 5 of every decade.
+/// Returns tics of a logarithmic axis at 1, 2 and 5 of every decade.
 std::string tics(double low, double high) {
   std::string list;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10) {
@@ -50,7 +50,7 @@ std::string tics(double low, double high) {
 }
 
 std::string colour_of_stop(std::size_t index) {
-  // from light to dark blue: an order, not names
+  // light to dark blue, because f-numbers are ordered
   constexpr std::array<char const*, 8> shades{"#a6c8e4", "#86b5da", "#67a1cf", "#4a8cc2",
                                               "#3277b3", "#1f62a0", "#114c89", "#08366d"};
   return shades[index % shades.size()];
@@ -68,7 +68,7 @@ std::vector<DesignCurve> design_curves(Bench<double> const& bench) {
       b.f_number = stop;
       b.z_d = bench.z_a * 0.05 * std::pow(80.0, i / (points - 1.0));
       if (b.z_b() < 1.05 * b.focal_length) continue;
-      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();  // as large in the image as the setup's
+      b.dot_diameter = bench.geometric_dot_px() * b.pixel_at_dots();  // constant image size
       curve.z_d.push_back(b.z_d);
       curve.sensitivity.push_back(b.sensitivity());
       curve.resolution.push_back(resolved_wavelength(b));
@@ -92,7 +92,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
     std::string const colour = colour_of_stop(i);
     add_line(plot, command, curve.sensitivity, in_mm(curve.resolution),
              fmt::format("lines linewidth 2.5 linecolor '{}'", colour), fmt::format("f/{:g}", curve.f_number));
-    // the cone alone passes 1/sqrt(2) at D_c / 0.51450
+    // the cone alone has a transfer of 1/sqrt(2) at the wavelength D_c / 0.51450
     std::vector<double> cone = in_mm(curve.cone);
     for (double& value : cone) value /= 0.51450;
     add_line(plot, command, curve.sensitivity, cone, fmt::format("lines linewidth 1 dashtype 3 linecolor '{}'", colour),
@@ -116,7 +116,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
         GnuplotFigure::quoted(fmt::format("Z_D = {:.4g} mm", share * bench.z_a / mm)), sensitivity.front(),
         *std::max_element(resolution.begin(), resolution.end())));
   }
-  // what is required is shown wherever it lies
+  // extend the ranges so that the requirements are visible
   if (requirements && requirements->resolution) y.hold(*requirements->resolution / mm);
   if (requirements && requirements->gradient_min) x.hold(2 * bench.random_error() / *requirements->gradient_min);
   double const x_low = x.low / 1.1, x_high = x.high * 1.2, y_low = y.low / 1.3, y_high = y.high * 1.3;
@@ -138,7 +138,7 @@ void write_design_map(std::string const& path, Bench<double> const& bench,
                            GnuplotFigure::quoted(fmt::format("Design map: f = {:.5g} mm, Z_A = {:.5g} mm",
                                                              bench.focal_length / mm, bench.z_a / mm))));
   plot.command("set xtics (" + tics(x_low, x_high) + "); set ytics (" + tics(y_low, y_high) + ")");
-  plot.command("set clip two");  // lines of what is required begin and end at the border
+  plot.command("set clip two");  // clip lines of requirements at the border
   plot.command("set logscale xy; set grid linecolor '#e4e4e4'; set key left top Left reverse samplen 2 opaque");
   plot.command("set xlabel 'sensitivity [px per kg/m⁴]'; set ylabel 'wavelength passed with 1/√2 [mm]'");
   plot.command(fmt::format("set xrange [{:.6g}:{:.6g}]; set yrange [{:.6g}:{:.6g}]", x_low, x_high, y_low, y_high));

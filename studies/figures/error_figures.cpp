@@ -31,7 +31,7 @@ void set_title(GnuplotFigure& plot, std::string const& title) {
                   GnuplotFigure::quoted(title), 1.0 - 26.0 / plot.height_px()));
 }
 
-/// Outlines of a histogram: probability density [1/px] over bins of equal width on [-reach, reach].
+/// Returns the outline of a histogram: probability density [1/px] over bins of equal width on [-reach, reach].
 std::vector<std::vector<double>> density_of(std::vector<double> const& errors, double reach, int bins) {
   std::vector<double> count(static_cast<std::size_t>(bins), 0.0);
   double const width = 2.0 * reach / bins;
@@ -50,7 +50,7 @@ std::vector<std::vector<double>> density_of(std::vector<double> const& errors, d
   return outline;
 }
 
-/// A panel's place, in pixels from the upper left.
+/// Sets the margins of a panel, in pixels from the upper left.
 void place(GnuplotFigure& plot, int left, int right, int top, int bottom) {
   double const w = plot.width_px(), h = plot.height_px();
   plot.command(fmt::format("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}", left / w, right / w));
@@ -144,14 +144,15 @@ void write_error_against_gradient(std::string const& path, std::string const& ti
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return gradient[a] < gradient[b]; });
 
-    // Bins of equal count, at least 20 vectors each where there are as many.
+    // Bins of equal count, with at least 20 vectors each if there are enough.
     std::size_t const bins = std::clamp<std::size_t>(order.size() / 20, 1, 15);
     std::vector<std::vector<double>> curve(4);
     for (std::size_t bin = 0; bin < bins && !order.empty(); ++bin) {
       std::vector<double> place_of, magnitude;
       for (std::size_t k = bin * order.size() / bins; k < (bin + 1) * order.size() / bins; ++k) {
         place_of.push_back(gradient[order[k]]);
-        magnitude.push_back(std::max(length(series[s].error_px[order[k]]), 1e-15));  // the axis is logarithmic
+        // positive for the logarithmic axis
+        magnitude.push_back(std::max(length(series[s].error_px[order[k]]), 1e-15));
       }
       if (magnitude.empty()) continue;
       curve[0].push_back(quantile(place_of, 0.5));
@@ -186,11 +187,11 @@ std::vector<double> local_gradient(DisplacementField const& field) {
       std::size_t const below = index(column, std::min(row + 1, field.rows - 1));
       auto const slope = [&](std::size_t from, std::size_t to, double Vec2d::*axis) {
         double const distance = field.position_px[to].*axis - field.position_px[from].*axis;
-        return (field.displacement_px[to] - field.displacement_px[from]) / distance;  // a single row: NaN
+        return (field.displacement_px[to] - field.displacement_px[from]) / distance;  // NaN for a single row
       };
       Vec2d const dx = slope(left, right, &Vec2d::x);
       Vec2d const dy = slope(above, below, &Vec2d::y);
-      // Singular values of [dx dy]: s^2 are the eigenvalues of its normal matrix.
+      // Largest singular value of [dx dy]: square root of the larger eigenvalue of its normal matrix.
       double const a = dot(dx, dx), b = dot(dx, dy), c = dot(dy, dy);
       gradient[index(column, row)] = std::sqrt(0.5 * (a + c) + std::hypot(0.5 * (a - c), b));
     }

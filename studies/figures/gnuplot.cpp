@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The environment without the user's default terminal, which gnuplot starts before the script names another: it fails
-/// where that one is not compiled in.
+/// Returns the environment without GNUTERM: gnuplot opens that terminal before it reads the script, and fails if it is
+/// not compiled in.
 std::vector<char*> environment_of_gnuplot() {
   std::vector<char*> kept;
   for (char** variable = environ; *variable != nullptr; ++variable) {
@@ -39,7 +39,7 @@ std::vector<char*> environment_of_gnuplot() {
   return kept;
 }
 
-/// Runs gnuplot on script.gp within the folder, its messages going to log.txt; returns its exit code.
+/// Runs gnuplot on script.gp in the folder, with messages in log.txt; returns its exit code.
 int run_gnuplot(std::string const& folder) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -47,7 +47,7 @@ int run_gnuplot(std::string const& folder) {
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, 2, "log.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  std::array<std::string, 3> arguments{"gnuplot", "-d", "script.gp"};  // -d: no start-up file of the user's
+  std::array<std::string, 3> arguments{"gnuplot", "-d", "script.gp"};  // -d: ignore the user's start-up file
   std::array<char*, 4> argv{arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
   pid_t child = 0;
   int const error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, argv.data(), environment_of_gnuplot().data());
@@ -59,7 +59,7 @@ int run_gnuplot(std::string const& folder) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/// Why a file in the temporary folder could not be written, with what to do about it.
+/// Returns why a file in the temporary directory could not be written, with a remedy.
 std::string why_not(int error) {
   std::string const full = error == ENOSPC || error == EDQUOT ? "; free some space there or set TMPDIR" : "";
   return fmt::format("cannot be written ({}){}", std::strerror(error == 0 ? EIO : error), full);
@@ -72,20 +72,20 @@ std::string text_of(std::string const& path) {
   return text.str();
 }
 
-/// A format of pictures.
+/// File format of figures.
 struct PictureFormat {
   std::string_view ending;
-  std::string_view terminal;  ///< of gnuplot
-  /// What a whole picture ends with: gnuplot ends well even where the disk was full and its picture is cut short.
+  std::string_view terminal;  ///< gnuplot terminal
+  /// Last bytes of a complete file; gnuplot reports success even if the disk was full and the file is truncated.
   std::string_view last;
-  double units_per_px;  ///< of the terminal's sizes
+  double units_per_px;  ///< unit of the terminal's sizes, per pixel
   std::string_view unit;
 };
-constexpr std::array formats{
-    PictureFormat{".png", "pngcairo", "IEND", 1, ""}, PictureFormat{".svg", "svg", "</svg>", 1, ""},
-    PictureFormat{".pdf", "pdfcairo", "%%EOF", 1.0 / 96, "in"}};  // 96 px an inch, as CSS has it
+constexpr std::array formats{PictureFormat{".png", "pngcairo", "IEND", 1, ""},
+                             PictureFormat{".svg", "svg", "</svg>", 1, ""},
+                             PictureFormat{".pdf", "pdfcairo", "%%EOF", 1.0 / 96, "in"}};  // 96 px per inch, as in CSS
 
-/// PNG where the name tells none.
+/// Returns the format by file name extension; PNG for others.
 PictureFormat const& format_of(std::string const& path) {
   for (PictureFormat const& format : formats) {
     if (path.ends_with(format.ending)) return format;
@@ -93,7 +93,7 @@ PictureFormat const& format_of(std::string const& path) {
   return formats.front();
 }
 
-/// No byte more can be written into the folder.
+/// Returns true if the file system of the folder is full.
 bool is_full(std::string const& folder) {
   std::error_code error;
   return fs::space(folder, error).available == 0 && !error;
@@ -126,7 +126,7 @@ std::string GnuplotFigure::store(std::span<double const> values) {
 std::string GnuplotFigure::add_map(Image<double> const& map, double x_first, double x_step, double y_first,
                                    double y_step) {
   GLADSTONE_EXPECTS(!map.empty() && x_step != 0.0 && y_step != 0.0);
-  // gnuplot wants growing coordinates: mirror what runs the other way.
+  // gnuplot requires ascending coordinates; mirror the others.
   Image<double> upright(map.columns(), map.rows());
   for (int row = 0; row < map.rows(); ++row) {
     for (int column = 0; column < map.columns(); ++column) {
@@ -165,7 +165,7 @@ void GnuplotFigure::write(std::string const& path) const {
     if (!script.flush()) throw OutputError(folder_ + "/script.gp", why_not(errno));
   }
   int const code = run_gnuplot(folder_);
-  throw_if_interrupted();  // Ctrl-C stops gnuplot as well
+  throw_if_interrupted();  // Ctrl-C also stops gnuplot
   std::string const picture = folder_ + "/figure";
   std::string const bytes = text_of(picture);
   if (code != 0 || bytes.find(format.last) == std::string::npos) {

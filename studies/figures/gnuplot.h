@@ -11,7 +11,7 @@
 
 namespace gladstone {
 
-/// The program gnuplot is not there: figures cannot be drawn, the numbers are not concerned.
+/// Thrown if the program gnuplot is not installed. Only figures are affected.
 class GnuplotMissing : public Error {
  public:
   GnuplotMissing()
@@ -20,11 +20,12 @@ class GnuplotMissing : public Error {
             "are written all the same") {}
 };
 
-/// A figure in the making: commands and data for one run of gnuplot, in the house style (DejaVu Sans, UTF-8 text taken
-/// literally). Data are stored in a temporary folder, removed with the object.
+/// Builder of a figure: commands and data for one run of gnuplot, in a common style (DejaVu Sans, UTF-8 text taken
+/// literally). Data are stored in a temporary directory that is removed on destruction.
 class GnuplotFigure {
  public:
-  /// @param width_px,height_px of the picture
+  /// @param width_px   width of the figure [px]
+  /// @param height_px  height of the figure [px]
   GnuplotFigure(int width_px, int height_px);
   GnuplotFigure(GnuplotFigure const&) = delete;
   GnuplotFigure& operator=(GnuplotFigure const&) = delete;
@@ -32,22 +33,24 @@ class GnuplotFigure {
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
 
-  /// Appends a line of gnuplot's language.
+  /// Appends a line to the gnuplot script.
   void command(std::string_view line);
 
   /// Stores a map and returns its data source for `plot`: first node at (x_first, y_first), steps of either sign.
   std::string add_map(Image<double> const& map, double x_first, double x_step, double y_first, double y_step);
 
-  /// Stores columns of equal length and returns their data source; columns are 1, 2, ... for `using`. NaN breaks lines.
+  /// Stores columns of equal length and returns their data source; `using` addresses them as 1, 2, ... NaN interrupts
+  /// lines.
   std::string add_table(std::vector<std::vector<double>> const& columns);
 
-  /// Runs gnuplot and writes the picture as one whole file: SVG or PDF where the path ends so, else PNG.
-  /// @throws GnuplotMissing; OutputError where the picture cannot be made or written
+  /// Runs gnuplot and writes the figure atomically, as SVG or PDF if the path ends accordingly, else as PNG.
+  /// @throws GnuplotMissing if gnuplot is not installed
+  /// @throws OutputError if the figure cannot be created or written
   void write(std::string const& path) const;
 
-  /// Text as a gnuplot string.
+  /// Returns text as a gnuplot string.
   static std::string quoted(std::string_view text);
-  /// Text of a tic as a gnuplot string: gnuplot takes it for a format of the tic's number.
+  /// Returns the text of a tic label as a gnuplot string, escaped because gnuplot interprets it as a format.
   static std::string quoted_tic(std::string_view text);
 
  private:
@@ -56,12 +59,12 @@ class GnuplotFigure {
   int width_px_;
   int height_px_;
   PassingFolder temporary_;
-  std::string folder_;  ///< its path
+  std::string folder_;  ///< path of temporary_
   std::string script_;
   int files_ = 0;
 };
 
-/// The house's colours, for lines and bars: distinct for readers with a colour vision deficiency (Okabe & Ito 2008).
+/// Returns a colour for lines and bars, distinguishable with a colour vision deficiency (Okabe & Ito 2008).
 std::string_view house_colour(std::size_t index);
 
 }  // namespace gladstone

@@ -15,11 +15,11 @@ namespace {
 constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 constexpr double mm = unit::millimetre;
 constexpr int width = 1200;
-constexpr double left = 0.04, right = 0.98;  // of the panels, of the screen
-// heights from below [px]: the stretched panel's bottom and top, what is between the panels and above them
+constexpr double left = 0.04, right = 0.98;  // horizontal limits of the panels, relative to the figure
+// heights from below [px]: bottom and top of the stretched panel, gap between the panels, space above
 constexpr int stretched_bottom = 64, stretched_top = 410, between = 50, above = 84;
 
-/// Polylines in mm, broken by NaN.
+/// Polylines in mm, separated by NaN.
 struct Lines {
   std::vector<double> z, y;
   void add(std::initializer_list<std::pair<double, double>> points) {
@@ -57,7 +57,7 @@ Drawing drawing_of(BenchLayout const& l) {
   return d;
 }
 
-/// Puts a panel between two heights [px].
+/// Sets the vertical limits of a panel [px].
 void place(GnuplotFigure& plot, double low, double high) {
   double const height = plot.height_px();
   plot.command(fmt::format("set lmargin at screen {}; set rmargin at screen {}", left, right));
@@ -98,11 +98,11 @@ void draw(GnuplotFigure& plot, Drawing const& d) {
   plot.command(command);
 }
 
-/// What is written on a layout.
+/// Labels of a layout.
 struct LayoutWords {
   std::string title;
-  std::string seen;    ///< in the dots' plane, or in the sheet's
-  std::string medium;  ///< empty: nothing of its own
+  std::string seen;    ///< in the plane of the dots or of the sheet
+  std::string medium;  ///< empty: no label
 };
 
 void write_layout(std::string const& path, BenchLayout const& l, LayoutWords const& words) {
@@ -113,7 +113,7 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
   double const tallest =
       1.3 * std::max({l.dots_half, l.medium_half, l.pupil_radius, l.sensor_half, l.sheet_half_height});
   double const mm_a_px = (z_high - z_low) / mm / ((right - left) * width);
-  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // of the panel that is to scale
+  double const to_scale_px = std::max(40.0, 2 * tallest / mm / mm_a_px);  // height of the panel to scale
   GnuplotFigure plot(width, stretched_top + between + static_cast<int>(std::ceil(to_scale_px)) + above);
   plot.command("set style textbox opaque noborder margins 0.4,0.2");
   plot.command("set multiplot");
@@ -138,7 +138,7 @@ void write_layout(std::string const& path, BenchLayout const& l, LayoutWords con
     distance(plot, l.dots_z, 0, 0.14, "Z_D");
     distance(plot, l.dots_z, l.lens_z, 0.06, "Z_B");
   }
-  // the image distance is too short to hold its name
+  // the arrow of the image distance is too short for its label
   arrow(plot, l.lens_z, l.sensor_z, 0.14);
   plot.command(fmt::format("set label {} at graph 1,0.06 right front textcolor '#202020'",
                            GnuplotFigure::quoted(fmt::format("z_i = {:.5g} mm", (l.sensor_z - l.lens_z) / mm))));

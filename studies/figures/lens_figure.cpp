@@ -20,7 +20,7 @@ struct Panel {
   double left, right, top, bottom;  ///< [px] from the upper left
 };
 
-/// Polylines as two columns, broken by NaN.
+/// Polylines as two columns, separated by NaN.
 struct Lines {
   std::vector<double> x, y;
   void add(Vec3d p) {
@@ -41,7 +41,8 @@ void place(GnuplotFigure& plot, Panel const& panel) {
                            1 - panel.bottom / h));
 }
 
-/// Half the height that a surface is drawn with: its edge, else what its file draws and the rays need.
+/// Returns the half height with which each surface is drawn: its edge, or else the larger of its nominal semi-diameter
+/// and the height of the rays.
 std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3d>> const& rays) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
@@ -59,8 +60,9 @@ std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3
   return heights;
 }
 
-/// One half of a surface from its axis, or the rim of what is obscured, to a height: its shape as far as its own edge,
-/// flat beyond, as lenses are ground. @param side 1: above the axis, -1: below it
+/// Returns one half of a surface's outline, from the axis or the edge of its obscuration to a height; curved up to its
+/// own edge, flat beyond, as ground lenses are.
+/// @param side  1: above the axis, -1: below
 std::vector<Vec3d> half_outline(Lens const& lens, std::size_t i, double own_height, double height, double side) {
   std::vector<Vec3d> points;
   double const inner = lens.prescription.surfaces[i].obscured;
@@ -81,7 +83,7 @@ bool is_glass_behind(Lens const& lens, std::size_t i) {
   return !after.is_air() && !after.is_mirror();
 }
 
-/// What is drawn of a lens besides its rays.
+/// Outlines of a lens without its rays.
 struct LensDrawing {
   Lines glass, mirrors, planes, stop;
 };
@@ -89,7 +91,7 @@ struct LensDrawing {
 LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
   LensDrawing drawing;
   std::size_t const count = lens.surfaces.size();
-  // pieces cemented together have one width
+  // cemented elements have the same height
   std::vector<double> widths = heights;
   for (std::size_t i = 0; i < count; ++i) {
     std::size_t end = i;
@@ -116,7 +118,7 @@ LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
     for (double const side : {-1.0, 1.0}) {
       std::vector<Vec3d> const half = half_outline(lens, i, heights[i], widths[i], side);
       for (Vec3d const p : half) lines.add(p);
-      if (is_glass_behind(lens, i) && i + 1 < count && !half.empty()) {  // along the edge to the other face
+      if (is_glass_behind(lens, i) && i + 1 < count && !half.empty()) {  // along the cylindrical edge to the other face
         auto const other = half_outline(lens, i + 1, heights[i + 1], widths[i + 1], side);
         if (!other.empty()) lines.add(other.back());
       }
@@ -126,14 +128,14 @@ LensDrawing drawing_of(Lens const& lens, std::vector<double> const& heights) {
   return drawing;
 }
 
-/// Rays of a field point that fill the stop's height, from the object or a little in front of the lens.
+/// Traces rays of a field point over the height of the stop, starting at the object or slightly in front of the lens.
 std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const& paraxial, FieldAnalysis const& field,
                                            double angle, double total) {
   std::vector<std::vector<Vec3d>> rays;
   RayOrigin const origin = field_origin(lens, paraxial, angle);
   auto const disc = find_aim_disc(lens, origin);
   if (!disc) return rays;
-  double foremost = 0;  // behind mirrors surfaces stand in front of the first
+  double foremost = 0;  // behind a mirror, surfaces may be in front of the first one
   for (Pose<double> const& pose : lens.poses) foremost = std::min(foremost, pose.origin.z);
   double const begin = std::max(foremost - 0.25 * total, origin.at_infinity ? -HUGE_VAL : origin.place.z);
   for (double const y : {-0.99, -0.5, 0.0, 0.5, 0.99}) {
@@ -141,7 +143,7 @@ std::vector<std::vector<Vec3d>> drawn_rays(Lens const& lens, ParaxialLens const&
     Ray<double> ray = origin.ray_through(disc->at(across > 0 ? y * Vec2d{disc->a.y, disc->b.y} / across : Vec2d{0, y}));
     ray.position = ray.position + (begin - ray.position.z) / ray.direction.z * ray.direction;
     std::vector<Vec3d> const way = follow_ray(lens, ray, field.image_plane);
-    if (way.size() > 2 || lens.surfaces.size() == 1) rays.push_back(way);  // not what passes beside the first surface
+    if (way.size() > 2 || lens.surfaces.size() == 1) rays.push_back(way);  // skip rays that miss the first surface
   }
   return rays;
 }
@@ -186,7 +188,7 @@ void draw_layout(GnuplotFigure& plot, Lens const& lens, ParaxialLens const& para
   add(drawing.planes, "linewidth 1 dashtype 2 linecolor '#909090'");
   add(drawing.stop, "linewidth 4 linecolor '#202020'");
   add(image, "linewidth 2 linecolor '#808080'");
-  command.resize(command.size() - 2);  // the last comma
+  command.resize(command.size() - 2);  // remove the last separator
   plot.command(command);
   plot.command("set size noratio");
 }
@@ -220,7 +222,7 @@ void draw_spots(GnuplotFigure& plot, FieldAnalysis const& field, Panel const& pa
   plot.command("unset key; set size noratio");
 }
 
-/// Quantities against the field angle, from the prescription's axis to its edge.
+/// Draws quantities against the field angle, from the axis to the prescription's largest angle.
 void draw_curves(GnuplotFigure& plot, Panel const& panel, std::string const& label, FieldAnalysis const& curves,
                  std::vector<std::pair<std::string, double (*)(FieldPoint const&)>> const& values) {
   place(plot, panel);
@@ -243,7 +245,7 @@ void draw_curves(GnuplotFigure& plot, Panel const& panel, std::string const& lab
   plot.command("unset grid; unset key");
 }
 
-/// The same lens at many angles between the axis and its widest field, for curves.
+/// Analyses the lens at many angles from the axis to its largest field angle, for curves.
 FieldAnalysis between_fields(Lens const& lens, ParaxialLens const& paraxial) {
   double widest = 0;
   for (double const angle : lens.prescription.field_angles) widest = std::max(widest, std::abs(angle));

@@ -29,7 +29,7 @@ void write_displacement_maps(std::string const& path, std::string const& title, 
   figure.axes = axes;
   figure.columns = static_cast<int>(sources.size());
   auto const add_row = [&](char const* component, Image<double> NamedMaps::*map) {
-    // Eq. 9 has by far the largest values: on its range, the others would be white.
+    // If the range included Eq. 9, whose values are by far the largest, the other maps would appear white.
     ColourRange const range = colour_range(sources.front().*map, ColourScale::diverging);
     for (NamedMaps const& source : sources) {
       figure.panels.push_back({fmt::format("{}, {} [px]", component, source.name), source.*map, ColourScale::diverging,

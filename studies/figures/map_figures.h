@@ -15,25 +15,25 @@ struct NamedMaps {
   Image<double> v_px;
 };
 
-/// A column per source with u above v, on the range of the first source (larger values take the end colours), then the
-/// differences from the first, on one range a source.
-/// @param sources the first is what the others are compared with; maps of one size
+/// Draws one column per source with u above v, with the colour range of the first source (larger values are clipped),
+/// then the differences from the first source, with one range per source.
+/// @param sources  maps of equal size; the first is the reference
 void write_displacement_maps(std::string const& path, std::string const& title, MapAxes const& axes,
                              std::vector<NamedMaps> const& sources);
 
-/// One instant of the seed's Figure 4; maps of one size, row 0 at the top of the picture.
+/// One instant of Figure 4 of Rajendran et al. (2019); maps of equal size, row 0 at the top.
 struct SeedFigure4Instant {
-  std::string heading;                   ///< "t = 2.56, after the peak of kinetic energy"
+  std::string heading;                   ///< e.g. "t = 2.56, after the peak of kinetic energy"
   Image<double> density;                 ///< [kg/m^3]
   Image<double> gradient_x, gradient_y;  ///< d rho/dx, d rho/dy, y upwards [kg/m^4]
-  NamedMaps theory;                      ///< Eq. 9
-  NamedMaps cone;                        ///< Eq. 9 averaged over the cone, interpolated as the rays are
-  NamedMaps rays;                        ///< ray displacement interpolated onto the grid
+  NamedMaps theory;                      ///< small-angle theory (Eq. 9)
+  NamedMaps cone;                        ///< aperture-averaged theory, interpolated like the rays
+  NamedMaps rays;                        ///< ray displacements interpolated onto the grid
 };
 
-/// Rajendran, Bane & Vlachos, Figure 4: contours of density, density gradients, theoretical displacements, simulated
-/// light ray displacements, and between these Eq. 9 averaged over the ray cone; two rows an instant, whose
-/// displacements share one range, as its gradients do. The magnitude of the gradient fills the place below the density.
+/// Reproduces Figure 4 of Rajendran, Bane & Vlachos (2019): maps of density, density gradient, theoretical and ray
+/// displacement, and additionally the aperture-averaged theory. Each instant has two rows; its displacements share one
+/// colour range, as do its gradients. The panel below the density shows the magnitude of the gradient.
 void write_seed_figure4(std::string const& path, MapAxes const& axes, std::vector<SeedFigure4Instant> const& instants);
 
 }  // namespace gladstone

@@ -17,7 +17,7 @@ namespace {
 constexpr char const* diverging_palette =
     "set palette defined (0 '#0b3c6f', 0.125 '#2a6fae', 0.25 '#6aacd0', 0.375 '#c3dcea', 0.5 '#f7f7f7', "
     "0.625 '#f9d3bf', 0.75 '#ec9374', 0.875 '#c43b3e', 1 '#6d0720')";
-/// Viridis (S. van der Walt & N. Smith, CC0) at nine points.
+/// Viridis (S. van der Walt & N. Smith, CC0), sampled at nine points.
 constexpr char const* viridis =
     "set palette defined (0 '#440154', 0.125 '#482878', 0.25 '#3e4a89', 0.375 '#31688e', 0.5 '#26828e', "
     "0.625 '#1f9e89', 0.75 '#6cce59', 0.875 '#b5de2b', 1 '#fde725')";
@@ -41,7 +41,7 @@ ColourRange range_of(std::vector<double> const& values, ColourScale scale) {
     range.lower = scale == ColourScale::diverging ? -range.upper : 0.0;
   }
   if (range.upper > range.lower) return range;
-  // A constant map still needs a range.
+  // widen the range of a constant map
   double const half = range.upper == 0.0 ? 1.0 : 1e-3 * std::abs(range.upper);
   return scale == ColourScale::magnitude || scale == ColourScale::grey
              ? ColourRange{0.0, half}
@@ -54,7 +54,7 @@ std::vector<double> finite_values(Image<double> const& map) {
   return values;
 }
 
-/// The range of every panel, shared within its group.
+/// Returns the range of every panel, shared within its group.
 std::vector<ColourRange> ranges_of(std::vector<MapPanel> const& panels) {
   std::map<std::string, std::vector<double>> values;
   auto const group = [&](std::size_t i) {
@@ -74,7 +74,7 @@ std::vector<ColourRange> ranges_of(std::vector<MapPanel> const& panels) {
   return ranges;
 }
 
-/// The step 1, 2 or 5 times a power of ten that puts at most `most` tics on a length.
+/// Returns the smallest step of 1, 2 or 5 times a power of ten with at most `most` tics.
 double tic_step(double length, double most) {
   double const least = length / most;
   double const power = std::pow(10.0, std::floor(std::log10(least)));
@@ -84,17 +84,18 @@ double tic_step(double length, double most) {
   return 10.0 * power;
 }
 
-/// Lengths of the layout, in pixels of the picture.
+/// Dimensions of the layout in pixels.
 struct Layout {
   static constexpr int above = 34, below = 28, edge = 14, bar_gap = 10, bar = 13;
   static constexpr int title = 44, heading = 34;
   int left = 40, right = 74, axis_label = 26;
   int map_width = 300;
   int map_height = 300;
-  bool inner_tics = true;  ///< numbers along every panel, not along the outer ones alone
+  bool inner_tics = true;  ///< tic labels at every panel, not only at the outer ones
 };
 
-/// The largest map of the data's proportions that fits the width, at most 1.5 times as high.
+/// Determines the largest map with the proportions of the data that fits the width, with a height of at most 1.5
+/// widths.
 Layout layout_of(MapFigure const& figure, Image<double> const& map) {
   Layout layout;
   layout.map_width = figure.columns >= 4 ? 270 : 330;
@@ -113,11 +114,11 @@ Layout layout_of(MapFigure const& figure, Image<double> const& map) {
   return layout;
 }
 
-/// Five tics from one end of the range to the other, so that its limits can be read.
+/// Returns five tics including both ends of the range.
 std::string colour_tics(ColourRange range) {
   constexpr int steps = 4;
   double const largest = std::max(std::abs(range.lower), std::abs(range.upper));
-  // three digits of the range's width, and whatever stands before them
+  // resolve the range to three digits
   int const decimals = static_cast<int>(2 - std::floor(std::log10(range.upper - range.lower)));
   std::string tics;
   for (int i = 0; i <= steps; ++i) {
@@ -131,7 +132,7 @@ std::string colour_tics(ColourRange range) {
   return tics;
 }
 
-/// Averages blocks of pixels where the map is much finer than the picture, so that nothing aliases.
+/// Averages blocks of pixels if the map is much finer than the figure, to avoid aliasing.
 std::pair<Image<double>, int> reduced(Image<double> const& map, int width_px) {
   int const factor = std::max(1, map.columns() / (2 * width_px));
   if (factor == 1 || map.rows() < factor) return {map, 1};
@@ -168,7 +169,7 @@ void write_map_figure(std::string const& path, MapFigure const& figure) {
     return i < figure.row_headings.size() ? figure.row_headings[i] : std::string{};
   };
 
-  // Pixel positions of the rows from the top.
+  // vertical positions of the rows [px]
   int const cell_width = layout.left + layout.map_width + layout.right;
   int const cell_height = Layout::above + layout.map_height + Layout::below;
   std::vector<int> top(static_cast<std::size_t>(rows));

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double gap = std::numeric_limits<double>::quiet_NaN();
 
-/// Most decades that are drawn: beyond, the ripples of the outer ones are lost to the eye.
+/// Maximum number of decades; beyond it, ripples of the outer decades would be invisible.
 constexpr int most_decades = 7;
 
-/// Lines as columns of x and y, broken by NaN.
+/// Lines as columns of x and y, separated by NaN.
 struct Polyline {
   std::vector<double> x, y;
   void polar(double radius, double degrees) {
@@ -30,7 +30,7 @@ struct Polyline {
   }
 };
 
-/// Decades that hold a diagram: the outermost circle and the centre, as powers of ten.
+/// Decades shown in a diagram: outermost circle and centre, as powers of ten.
 struct Decades {
   int inner = -1, outer = 0;
 
@@ -42,7 +42,7 @@ struct Decades {
         if (value > 0) least = std::min(least, value);
       }
     }
-    if (most <= 0) return;  // nothing is scattered
+    if (most <= 0) return;  // no scattered light
     outer = static_cast<int>(std::ceil(std::log10(most)));
     inner = std::clamp(static_cast<int>(std::floor(std::log10(least))), outer - most_decades, outer - 2);
   }
@@ -57,7 +57,7 @@ Polyline curve(Decades const& decades, std::vector<double> const& angle_deg, std
   return line;
 }
 
-/// Circles at the decades and spokes every 30 degrees.
+/// Returns circles at the decades and spokes every 30 degrees.
 Polyline paper(Decades const& decades) {
   Polyline lines;
   for (int decade = 1; decade <= decades.count(); ++decade) {
@@ -102,7 +102,7 @@ void write_mie_figure(std::string const& path, ScatteringDiagram const& diagram)
     label(plot, fmt::format("{}°", degrees <= 180 ? degrees : 360 - degrees), 1.07 * rim * std::cos(angle),
           1.07 * rim * std::sin(angle), "center font 'DejaVu Sans,10' textcolor '#606060'");
   }
-  // the decades stand along a spoke where neither curve is read
+  // labels of the decades along a spoke, away from the curves
   for (int decade = 1; decade <= decades.count(); ++decade) {
     double const angle = 75 * unit::degree;
     label(plot, fmt::format("1e{}", decades.inner + decade), decade * std::cos(angle), decade * std::sin(angle),

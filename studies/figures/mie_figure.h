@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// Light that a sphere scatters over angle, from forward to backward.
+/// Light scattered by a sphere against the scattering angle, from forward to backward.
 struct ScatteringDiagram {
   double x;
   std::complex<double> m;
@@ -18,9 +18,9 @@ struct ScatteringDiagram {
   std::vector<double> s2_squared;  ///< |S2|^2 [1]
 };
 
-/// Draws |S1|^2 and |S2|^2 on polar paper whose radius is logarithmic, a circle a decade: the field across the plane of
-/// scattering in the upper half, in the plane in the lower one; light comes from the left. What is below the innermost
-/// circle's decade is drawn in the centre.
+/// Draws |S1|^2 and |S2|^2 in a polar diagram with logarithmic radius, one circle per decade. The upper half shows the
+/// field perpendicular to the scattering plane, the lower half the field in the plane; light comes from the left.
+/// Values below the innermost decade are drawn at the centre.
 /// @throws GnuplotMissing, OutputError
 void write_mie_figure(std::string const& path, ScatteringDiagram const& diagram);
 

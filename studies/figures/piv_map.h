@@ -7,20 +7,22 @@
 
 namespace gladstone {
 
-/// What a stop makes of the particles of a setup.
+/// Particle images of a setup at one f-number.
 struct PivStop {
   double f_number;
   double image_px;           ///< e^-2 diameter of an image in the middle of the sheet [px]
-  double edge_px;            ///< and at its edge [px]
-  double peak_electrons[3];  ///< at the peak, of which a twentieth, half, and all but a twentieth of the particles have
-                             ///< less
+  double edge_px;            ///< e^-2 diameter at the edge of the sheet [px]
+  double peak_electrons[3];  ///< 5th percentile, median and 95th percentile of the peak charge [e]
 };
 
-/// The usual stops from f/1.4 to f/32. @pre setup.piv @throws DataError as expected_particles()
+/// Computes the particle images at the standard f-numbers from f/1.4 to f/32.
+/// @pre setup.piv
+/// @throws DataError as expected_particles()
 std::vector<PivStop> piv_stops(Setup setup);
 
-/// Draws them over the f-number, with the diameters that suit correlation, the full well, and the setup's own stop:
-/// what a stop is chosen by. @throws GnuplotMissing, OutputError
+/// Draws these quantities against the f-number, with the image diameters suitable for correlation, the full well and
+/// the setup's f-number.
+/// @throws GnuplotMissing, OutputError
 void write_piv_map(std::string const& path, Setup const& setup);
 
 }  // namespace gladstone

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Unevenness of the steps between growing numbers: their standard deviation over their mean.
+/// Returns the standard deviation of the steps between ascending numbers, relative to their mean.
 double unevenness(std::vector<double> const& numbers) {
   double sum = 0, squares = 0;
   for (std::size_t i = 1; i < numbers.size(); ++i) {
@@ -70,7 +70,7 @@ FigureAxis figure_axis(StudyAxis const& axis, std::size_t most) {
   std::size_t const count = axis.labels.size();
   FigureAxis figure;
   figure.title = axis_title(axis.key);
-  // infinity has no place on a scale
+  // infinity has no position on a scale
   figure.numeric = axis.numeric && std::all_of(axis.numbers.begin(), axis.numbers.end(),
                                                [](double number) { return std::isfinite(number); });
   figure.binned = figure.numeric && count > most;

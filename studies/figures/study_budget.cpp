@@ -11,14 +11,14 @@ namespace {
 
 using namespace study_drawing;
 
-/// A term of the budget, with its rms at every place of the axis.
+/// A term of the budget with its rms at every position of the axis.
 struct Term {
   std::string name;
   std::string colour;
   std::vector<double> rms;
 };
 
-/// Contributions below this share of the largest are not shown [1].
+/// Contributions below this fraction of the largest one are not shown [1].
 constexpr double smallest_share = 1e-4;
 
 std::vector<Term> terms_of(StudyTable const& table) {
@@ -27,7 +27,7 @@ std::vector<Term> terms_of(StudyTable const& table) {
   for (std::string const& measure : table.measures) {
     if (!measure.starts_with(start) || !measure.ends_with(end)) continue;
     std::string const name = measure.substr(start.size(), measure.size() - start.size() - end.size());
-    // One more than the house's colours, whose grey would look like the total's.
+    // Seventh colour; the grey of house_colour() is used for the total.
     bool const beyond = terms.size() >= 6;
     terms.push_back({name,
                      std::string(!beyond             ? house_colour(terms.size())
@@ -61,7 +61,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
         std::string const measure =
             term.name == "total" ? "budget.total.rms_px" : fmt::format("budget.terms.{}.rms_px", term.name);
         std::vector<double> values = cells.values(measure, rows);
-        if (!points) {  // repeats tell the estimator's part of an undeformed window alone
+        if (!points) {  // repeats only give the estimator's part for undeformed windows
           std::vector<double> const after =
               cells.values(fmt::format("budget.after_passes.terms.{}.rms_px", term.name), rows);
           for (std::size_t i = 0; i < after.size() && i < values.size(); ++i) {
@@ -78,7 +78,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
     panels.push_back(std::move(terms));
   }
   if (!(high > 0)) return nullptr;
-  // Terms that are nothing anywhere are named in the caption alone.
+  // Terms below the axis everywhere are named in the caption only.
   std::vector<std::size_t> shown;
   std::string nothing;
   for (std::size_t t = 0; t < panels.front().size(); ++t) {
@@ -118,7 +118,7 @@ std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t 
   plot.command("set multiplot");
   plot.command("set grid ytics linecolor '#e4e4e4' linewidth 1 linetype 1");
   plot.command("set style fill solid 1.0 noborder");
-  // Bars of a place share 0.84 of the way to the next.
+  // The bars at a position occupy 0.84 of the distance to the next.
   double const bar = 0.84 / bars;
   FigureAxis rows_of_bars = axis;
   rows_of_bars.numeric = false;

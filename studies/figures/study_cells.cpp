@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// "Z_D 250 mm" for the place of an axis titled "Z_D [mm]"; a category names itself.
+/// Returns the name of a position, e.g. "Z_D 250 mm" for an axis titled "Z_D [mm]"; for categories, the label.
 std::string place_name(FigureAxis const& axis, std::size_t place) {
   if (!axis.numeric) return axis.label[place];
   auto const bracket = axis.title.find(" [");
@@ -65,7 +65,7 @@ std::vector<CurveChoice> curves_over(StudyCells const& cells, std::size_t axis, 
   for (std::size_t const k : cells.varied()) {
     if (k != axis) others.push_back(k);
   }
-  // Combinations of the other axes' places, each with how many places of this axis it has.
+  // Combinations of positions on the other axes, with the positions of this axis that occur.
   std::map<std::vector<std::size_t>, std::set<std::size_t>> combinations;
   for (std::size_t const row : cells.rows_at({})) {
     std::vector<std::size_t> const& value = cells.table().rows[row].value;

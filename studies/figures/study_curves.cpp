@@ -11,12 +11,12 @@ namespace {
 
 using namespace study_drawing;
 
-/// One line of a panel.
+/// One curve of a panel.
 struct Curve {
   std::string name;
   std::string colour;
   bool dashed = false;
-  std::vector<Scatter> points;  ///< at every place of the axis
+  std::vector<Scatter> points;  ///< one per position of the axis
 };
 
 struct Panel {
@@ -34,7 +34,7 @@ constexpr Reference references[] = {{"ray_truth.rms_px", "measured − ray truth
                                     {"window_truth.rms_px", "measured − ray truth on the window"}};
 constexpr char const* signal = "signal_px";
 
-/// Collects curves and remembers what their points stand for.
+/// Creates curves and accumulates the range of their values and the kind of their points.
 struct CurveMaker {
   StudyCells const& cells;
   std::size_t axis;
@@ -68,7 +68,7 @@ void plot_panel(GnuplotFigure& plot, FigureAxis const& axis, Panel const& panel)
   for (Curve const& curve : panel.curves) solid += curve.dashed ? 0 : 1;
   for (Curve const& curve : panel.curves) {
     std::vector<std::vector<double>> columns(4);
-    // Categories have no way between them: points stand side by side there.
+    // For categories, shift the points of different curves sideways instead of connecting them.
     double const shift = axis.numeric ? 0.0 : 0.09 * (static_cast<double>(seen) - 0.5 * static_cast<double>(solid - 1));
     for (std::size_t i = 0; i < axis.size(); ++i) {
       columns[0].push_back(axis.position[i] + (curve.dashed && !axis.numeric ? 0.0 : shift));
@@ -95,7 +95,7 @@ void plot_panel(GnuplotFigure& plot, FigureAxis const& axis, Panel const& panel)
   plot.command(commands);
 }
 
-/// Panels side by side under one title, with one scale of errors.
+/// Arranges panels side by side with a common title and error scale.
 std::unique_ptr<GnuplotFigure> lay_out(FigureAxis const& axis, std::vector<Panel> const& panels, double low,
                                        double high, std::string const& title, std::string const& caption) {
   int const count = static_cast<int>(panels.size());

@@ -8,31 +8,33 @@
 
 namespace gladstone {
 
-/// The figures of a study, not yet written. Null where the study has no finite number to show.
+/// Draw the figures of a study without writing them; null if the study has no finite values to show.
 std::unique_ptr<GnuplotFigure> draw_error_curves(StudyCells const& cells, std::size_t axis);
 std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size_t x_axis, std::size_t y_axis);
-/// @param points of a study with repeats (study_points()): estimator and pattern are told apart there; else null
+/// @param points  averages of a study with repeats (study_points()), which separate estimator and pattern; else null
 std::unique_ptr<GnuplotFigure> draw_budget(StudyCells const& cells, std::size_t axis, StudyCells const* points);
-/// What is the same in every repeat and what changes between them. @param points of a study with repeats
+/// Draws the errors common to all repeats and those that differ between them.
+/// @param points  averages of a study with repeats
 std::unique_ptr<GnuplotFigure> draw_repeats(StudyCells const& points, std::size_t axis);
 
-/// What the drawings have in common.
+/// Common parts of the drawings.
 namespace study_drawing {
 
-/// Title above and caption below, at most two lines.
+/// Sets the title and a caption of at most two lines.
 void set_texts(GnuplotFigure& plot, std::string const& title, std::string const& caption);
-/// A panel's place, in pixels from the upper left of the figure.
+/// Sets the margins of a panel, in pixels from the upper left of the figure.
 void place(GnuplotFigure& plot, double left, double right, double top, double bottom);
-/// Range, scale, tics and title of a figure's x axis. @param width_px of the panel
+/// Sets range, scale, tics and title of the x axis.
+/// @param width_px  width of the panel
 void set_x_axis(GnuplotFigure& plot, FigureAxis const& axis, double width_px);
-/// Room below a panel for tics and title of that axis [px].
+/// Returns the space required below a panel for tics and title of the axis [px].
 int room_below(FigureAxis const& axis, double width_px);
-/// Tics, label and range of a logarithmic y axis over these values, or of one from zero where they span less than a
-/// factor of four.
+/// Sets tics, label and range of the y axis: logarithmic, or linear from zero if the values span less than a factor of
+/// four.
 void set_y_axis(GnuplotFigure& plot, std::string const& title, double low, double high);
-/// "study NAME, 28 cases"
+/// Returns e.g. "study NAME, 28 cases".
 std::string study_name(StudyCells const& cells);
-/// What points or bars stand for, where rows of one of them are such.
+/// Returns the caption's explanation of points and bars.
 std::string meaning(bool repeats_alone, std::size_t repeats);
 
 }  // namespace study_drawing

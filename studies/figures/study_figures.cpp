@@ -15,14 +15,14 @@ namespace {
 
 constexpr double letter_px = 7.6;
 
-/// Tics' texts do not fit side by side.
+/// Returns true if the tic labels do not fit side by side.
 bool crowded(FigureAxis const& axis, double width_px) {
   std::size_t longest = 0;
   for (std::string const& label : axis.label) longest = std::max(longest, label.size());
   return letter_px * static_cast<double>(longest + 2) > width_px / static_cast<double>(axis.size());
 }
 
-/// A tic at every place would be too dense somewhere.
+/// Returns true if tics at every position would overlap.
 bool dense(FigureAxis const& axis, double width_px) {
   auto const at = [&](std::size_t i) { return axis.logarithmic ? std::log(axis.position[i]) : axis.position[i]; };
   double const span = at(axis.size() - 1) - at(0);
@@ -114,7 +114,7 @@ std::string meaning(bool repeats_alone, std::size_t repeats) {
 
 namespace {
 
-/// A key path as part of a file's name.
+/// Converts a key path to a part of a file name.
 std::string file_part(std::string key) {
   std::replace_if(
       key.begin(), key.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
@@ -130,7 +130,7 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
   StudyTable const point_table = repeated ? study_points(table) : StudyTable{};
   StudyCells const points(point_table);
   std::vector<std::unique_ptr<GnuplotFigure>> figures;
-  std::vector<std::string> paths;  // one for each format of a figure
+  std::vector<std::string> paths;  // one per figure and format
   auto const add = [&](std::unique_ptr<GnuplotFigure> figure, std::string const& name) {
     if (!figure) return;
     figures.push_back(std::move(figure));
@@ -147,7 +147,7 @@ std::vector<std::string> draw_study(std::string const& folder, StudyTable const&
           fmt::format("error_map_{}_{}", name, file_part(cells.key(varied[j]))));
     }
   }
-  // gnuplot takes most of the time: a process a figure, as many at once as there are threads
+  // gnuplot dominates the run time: run one process per figure, in parallel
   parallel_for(figures.size(), [&](std::size_t i) {
     for (std::size_t k = 0; k < formats.size(); ++k) figures[i]->write(paths[i * formats.size() + k]);
   });

@@ -7,22 +7,20 @@
 
 namespace gladstone {
 
-/// Draws a study, each figure in every format:
+/// Draws the figures of a study, each in every format:
 ///
-/// error_against_AXIS  the error of the measurement against ray truth and against Eq. 9 over the axis, a curve for each
-///                     combination of the other axes; without any, all references in one panel. With more combinations
-///                     than colours, a curve for each value of the axis of fewest categories, or one alone: the median
-///                     of all its cases with the band from 10 to 90 %.
-/// error_map_AXIS_AXIS the same errors over two axes, median over the others
-/// budget_AXIS         the rms of each term of the error budget, side by side, and of the total
-/// repeats_AXIS        of a study with repeats: the part of either error that is the same in every repeat, and the
-///                     standard deviation between repeats
-///
-/// An axis of one value is no axis. Points are the root mean square over repeats, bars reach from the smallest to the
-/// largest. Cases that are not done are left out; a study without one has no figures.
-/// @param folder  made where it is missing
-/// @param formats "png", "svg", "pdf"
-/// @return the paths
+/// - error_against_AXIS: error of the measurement against ray truth and Eq. 9, with a curve for each combination of the
+///   other axes; without other axes, all references in one panel. With more combinations than colours, one curve for
+///   each value of the axis with the fewest categories, or a single curve: median over all cases and band from 10 to 90
+///   %.
+/// - error_map_AXIS_AXIS: the same errors against two axes, median over the others
+/// - budget_AXIS: rms of each term of the error budget, side by side, and of the total
+/// - repeats_AXIS: for studies with repeats: systematic part of both errors and standard deviation between repeats
+/// Axes with a single value are ignored. Points are the root mean square over repeats; bars extend from minimum to
+/// maximum. Unfinished cases are omitted; a study without finished cases has no figures.
+/// @param folder   created if it does not exist
+/// @param formats  "png", "svg", "pdf"
+/// @return paths of the figures
 /// @throws GnuplotMissing, OutputError
 std::vector<std::string> draw_study(std::string const& folder, StudyTable const& table,
                                     std::vector<std::string> const& formats = {"png", "svg"});

@@ -12,14 +12,14 @@ namespace {
 
 using namespace study_drawing;
 
-/// Places of both axes as rows and columns of equal cells.
+/// Errors over two axes, as rows and columns of equal cells.
 struct ErrorMap {
   char const* measure;
   char const* heading;
   std::vector<std::vector<double>> columns = std::vector<std::vector<double>>(3);  ///< x, y, error
 };
 
-/// Cells stand side by side, whatever the scale: tics name their values.
+/// Returns tics with the values' labels; cells have equal sizes on any scale.
 std::string cell_tics(FigureAxis const& axis) {
   std::string tics;
   for (std::size_t i = 0; i < axis.size(); ++i) {
@@ -64,7 +64,8 @@ std::unique_ptr<GnuplotFigure> draw_error_map(StudyCells const& cells, std::size
     }
     most_filled = std::max(most_filled, filled);
   }
-  if (!(high > 0) || 2 * most_filled <= x.size() * y.size()) return nullptr;  // no more than half: the axes go together
+  // at most half of the cells are filled: the axes vary together
+  if (!(high > 0) || 2 * most_filled <= x.size() * y.size()) return nullptr;
 
   bool const logarithmic = high > 10 * low;
   double const cell = x.size() > 8 ? 50.0 : 62.0;
