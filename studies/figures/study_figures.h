@@ -11,8 +11,7 @@ namespace gladstone {
 ///
 /// - error_against_AXIS: error of the measurement against ray truth and Eq. 9, with a curve for each combination of the
 ///   other axes; without other axes, all references in one panel. With more combinations than colours, one curve for
-///   each value of the axis with the fewest categories, or a single curve: median over all cases and band from 10 to 90
-///   %.
+///   each value of the axis with the fewest categories, or a single curve: median and 10-90 % band over all cases.
 /// - error_map_AXIS_AXIS: the same errors against two axes, median over the others
 /// - budget_AXIS: rms of each term of the error budget, side by side, and of the total
 /// - repeats_AXIS: for studies with repeats: systematic part of both errors and standard deviation between repeats

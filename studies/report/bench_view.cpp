@@ -60,7 +60,7 @@ bool is_drawn(Setup const& setup) {
   return std::isfinite(setup.lens.f_number);
 }
 
-/// A figure that the page holds; without gnuplot its words.
+/// Returns a figure embedded in the page; without gnuplot, its description.
 template <class Write>
 ReportBlock drawn_block(std::string title, std::string words, Write const& write) {
   try {

@@ -12,30 +12,34 @@
 
 namespace gladstone {
 
-/// The bench of a setup as its report draws it.
+/// Set-up of a setup as drawn in its report.
 struct BenchView {
-  std::unique_ptr<BenchGiven> given;  ///< null of PIV
-  Bench<double> bench;                ///< of PIV nothing
+  std::unique_ptr<BenchGiven> given;  ///< null for PIV
+  Bench<double> bench;                ///< unused for PIV
   std::optional<Setup> piv;
 };
 
-/// Nothing where a setup is of no thin or rotationally symmetric lens on the axis before dots or particles: of a
-/// calibration, posed, tilted, plenoptic, behind windows or without a stop; of PIV where the sheet stands
-/// elsewhere than in the plane Z = 0. The medium's field is not read.
+/// Returns nullopt for set-ups that the drawing does not cover: a calibration, a posed, tilted or plenoptic camera,
+/// windows, no aperture stop, a lens that is neither thin nor rotationally symmetric on the axis, or, for PIV, a laser
+/// sheet outside the plane Z = 0. The medium's field is not read.
 std::optional<BenchView> bench_view(CaseSetup loaded);
 
-/// What the layout shows, in numbers.
+/// Describes the contents of the layout in numbers.
 std::string layout_text(BenchView const& view);
 
-/// Section "Set-up": the layout to scale, and the design map with the set-up as a point (of PIV, what each stop makes
-/// of the particles), both drawn now and held by the page; without gnuplot their words.
-/// @param whose "the measurement", "the base"
+/// Returns the section "Set-up": the layout to scale, and the design map with the set-up as a point (for PIV, particle
+/// images against f-number). Both are drawn now and embedded in the page; without gnuplot, they are replaced by their
+/// descriptions.
+/// @param whose  "the measurement", "the base"
 ReportSection bench_section(BenchView const& view, std::string const& whose);
 
-/// The layout alone. @param whose "case 3"
+/// Returns the layout only.
+/// @param whose  e.g. "case 3"
 ReportBlock layout_block(BenchView const& view, std::string const& whose);
 
-/// The same as files of a paper. @return their paths @throws GnuplotMissing, OutputError
+/// Draws layout and design map into files for a publication.
+/// @return paths of the files
+/// @throws GnuplotMissing, OutputError
 std::vector<std::string> draw_bench(std::string const& folder, std::string const& format, BenchView const& view);
 
 }  // namespace gladstone

@@ -40,7 +40,7 @@ std::vector<std::string> uncertainty_statements(CaseView const& view) {
   Comparison const& all = view.comparison;
   char const* const truth = all.recorded_name();
   std::vector<std::string> statements;
-  UncertaintyQuality quality{};  // of vectors without an uncertainty there is none
+  UncertaintyQuality quality{};  // stays empty for vectors without uncertainties
   if (!all.measured.sigma_px.empty()) {
     quality = uncertainty_quality(all.measured.displacement_px, all.recorded().displacement_px, all.measured.sigma_px,
                                   all.mask);

@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_frame_px = 1024;  ///< of a picture in a report, across and down
+constexpr int most_frame_px = 1024;  ///< maximum width and height of an image in a report
 
-/// The displacements of the budget's chain, and what each cause adds to them.
+/// Adds maps of the displacements along the budget's chain and of the contribution of each cause.
 void add_maps(CaseView& view) {
   Comparison const& all = view.comparison;
   std::vector<Vec2d> const& measured = all.measured.displacement_px;
@@ -54,7 +54,7 @@ void add_maps(CaseView& view) {
   }
 }
 
-/// rms of the error over bins of equal count of the estimated uncertainty.
+/// Returns the rms error in bins of equal count of the estimated uncertainty.
 nlohmann::json reliability_of(Comparison const& all) {
   nlohmann::json bins = nlohmann::json::array();
   if (all.measured.sigma_px.empty()) return bins;
@@ -89,7 +89,7 @@ TextTable errors_table(CaseView const& view) {
   return table;
 }
 
-/// Grey values of a frame from black to white as 8 bits, of its middle where it is large.
+/// Encodes a frame as 8-bit PNG, scaled from black to white; of a large frame, the central part.
 std::string png_of(Image<double> const& frame, double black, double white) {
   int const columns = std::min(frame.columns(), most_frame_px), rows = std::min(frame.rows(), most_frame_px);
   int const left = (frame.columns() - columns) / 2, top = (frame.rows() - rows) / 2;
@@ -103,7 +103,8 @@ std::string png_of(Image<double> const& frame, double black, double white) {
   return encode_png(picture);
 }
 
-/// Setup, frames and what was compared. @throws DataError where a frame is another than the vectors were measured on
+/// Returns setup, frames and compared files with their hashes.
+/// @throws DataError if a frame differs from that of the vectors
 SourceFiles case_sources(std::string const& folder, Comparison const& compared) {
   SourceFiles sources;
   sources.add("setup", in_case(folder, case_file::setup), SourceFiles::Holds::bytes);

@@ -11,7 +11,7 @@
 
 namespace gladstone {
 
-/// Displacements at the vectors as a map of the report: whole multiples of 1e-6 px, null where unknown.
+/// Returns one component of the displacements as a map of the report: integer multiples of 1e-6 px, null if unknown.
 inline nlohmann::json component_json(std::vector<Vec2d> const& values, double Vec2d::*component) {
   nlohmann::json json = nlohmann::json::array();
   for (Vec2d const& value : values) {
@@ -21,7 +21,7 @@ inline nlohmann::json component_json(std::vector<Vec2d> const& values, double Ve
   return json;
 }
 
-/// A comparison as its report shows it.
+/// A comparison with the maps of its report.
 struct CaseView {
   Comparison comparison;
   bool piv = false;
@@ -37,7 +37,7 @@ struct CaseView {
                       {"u", component_json(values, &Vec2d::x)},
                       {"v", component_json(values, &Vec2d::y)}});
   }
-  /// What `to` is beyond `from`, at the vectors that count.
+  /// Returns `to` minus `from` at the unmasked vectors, NaN at the others.
   std::vector<Vec2d> difference(std::vector<Vec2d> const& to, std::vector<Vec2d> const& from) const {
     if (to.empty() || from.empty()) return {};
     std::vector<Vec2d> values(to.size(), Vec2d{std::nan(""), std::nan("")});
@@ -56,22 +56,22 @@ struct CaseView {
   }
 };
 
-/// The terms of a budget, and their total.
+/// Formats the terms of a budget and their total as a table.
 TextTable budget_table(std::string const& title, ErrorBudget const& budget);
 
-/// The same as data of the chart "budget", those that are known.
+/// Returns the known terms as data of the chart "budget".
 nlohmann::json budget_json(ErrorBudget const& budget);
 
-/// What the budget's largest term is, in a sentence; empty where none is known.
+/// Returns a sentence about the largest term of the budget; empty if no term is known.
 std::string largest_term(ErrorBudget const& budget);
 
-/// What the words of a budget's table mean.
+/// Returns an explanation of the budget's terms.
 std::string budget_words(Comparison const& all);
 
-/// What an uncertainty report says in the words of the GUM (JCGM 100:2008).
+/// Returns the statements of an uncertainty report in the terms of the GUM (JCGM 100:2008).
 std::vector<std::string> uncertainty_statements(CaseView const& view);
 
-/// What a reader is to know before all else.
+/// Returns the main results for the beginning of the report.
 std::vector<std::string> findings_of(CaseView const& view);
 
 }  // namespace gladstone

@@ -2,12 +2,12 @@
 
 #include <string_view>
 
-/// Texts that the build puts into the program (studies/CMakeLists.txt).
+/// Texts embedded in the executable by the build (studies/CMakeLists.txt).
 namespace gladstone::embedded {
 
 extern std::string_view const report_css;
 extern std::string_view const report_js;
-extern std::string_view const d3_js;       ///< Mike Bostock's d3, as Debian's package node-d3 has it
-extern std::string_view const d3_licence;  ///< of that package
+extern std::string_view const d3_js;       ///< Mike Bostock's d3, from Debian's package node-d3
+extern std::string_view const d3_licence;  ///< licence of d3, from the same package
 
 }  // namespace gladstone::embedded

@@ -30,7 +30,8 @@ std::string escaped(std::string_view text) {
   return html;
 }
 
-/// What may stand within a script: no text in it ends the script, and none is no UTF-8.
+/// Returns JSON that can be embedded in a script element: "<" is escaped, so that no text ends the script, and invalid
+/// UTF-8 is replaced.
 std::string json_in_script(nlohmann::json const& json) {
   std::string const text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   std::string safe;
@@ -38,7 +39,7 @@ std::string json_in_script(nlohmann::json const& json) {
   return safe;
 }
 
-/// A name that may go on in the next line behind its points and underscores.
+/// Returns a name in which line breaks are allowed after points and underscores.
 std::string breakable(std::string_view name) {
   std::string html;
   for (char const c : name) {
@@ -48,7 +49,8 @@ std::string breakable(std::string_view name) {
   return html;
 }
 
-/// @param numeric whether others of its column are numbers
+/// Returns the HTML of a table cell.
+/// @param numeric  true if other cells of its column are numbers
 std::string cell_of(TableCell const& cell, bool numeric) {
   if (!cell.number) return (numeric ? "<td class=\"number\">" : "<td>") + escaped(cell.text) + "</td>";
   return fmt::format("<td class=\"number\" data-value=\"{}\">{}</td>", *cell.number, escaped(cell.text));
@@ -132,7 +134,7 @@ std::string html_page(ReportPage const& page) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      // nothing is fetched, whatever stands in here
+      // forbid all external requests
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
       "script-src 'unsafe-inline'; img-src data:\">\n";
   html += fmt::format("<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n", escaped(page.title),

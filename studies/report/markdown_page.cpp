@@ -5,7 +5,7 @@
 namespace gladstone {
 namespace {
 
-/// Text within a line of Markdown: nothing in it is a mark.
+/// Escapes text so that it contains no Markdown syntax.
 std::string plain(std::string_view text) {
   std::string marked;
   for (char const c : text) {

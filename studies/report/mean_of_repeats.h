@@ -7,16 +7,17 @@
 
 namespace gladstone {
 
-/// What the repeats of a measurement tell of its mean (JCGM 100:2008, 4.2), beside what is known of each of them.
+/// Mean of repeated measurements with its type A uncertainty (JCGM 100:2008, 4.2), and the individual estimates.
 struct MeanOfRepeats {
-  DisplacementField field;  ///< of the mean, with its standard deviation for uncertainty; of one measurement as it is
+  DisplacementField field;  ///< mean, with its standard deviation as uncertainty; a single measurement is unchanged
   std::size_t count = 1;
-  double estimated_px = 0;  ///< the mean's uncertainty by what every measurement says of itself, median over components
+  /// uncertainty of the mean from the estimates of the individual measurements, median over components [px]
+  double estimated_px = 0;
 };
 
-/// The mean of several measurements at the same vectors, those that count in all of them.
-/// @param all        with the first's places, one or more
-/// @param formula_px random error of one that does not say
+/// Averages several measurements over the vectors that are valid in all of them.
+/// @param all         one or more measurements at the same positions
+/// @param formula_px  random error of a measurement without uncertainties [px]
 MeanOfRepeats mean_of_repeats(std::vector<DisplacementField> const& all, double formula_px);
 
 }  // namespace gladstone

@@ -13,13 +13,13 @@
 namespace gladstone {
 namespace {
 
-constexpr double unknown_weight = 1e-6;  ///< of a difference that is not known against one that is
+constexpr double unknown_weight = 1e-6;  ///< weight of an unknown difference, relative to a known one
 
-/// Normal equations of differences between nodes.
+/// Normal equations for the differences between nodes.
 class Differences {
  public:
   explicit Differences(int nodes) : right_(Eigen::VectorXd::Zero(nodes)) {
-    for (int i = 0; i < nodes; ++i) entries_.emplace_back(i, i, 1e-12);  // the level is free
+    for (int i = 0; i < nodes; ++i) entries_.emplace_back(i, i, 1e-12);  // regularizes the undetermined constant
   }
   void add(int from, int to, double difference) {
     bool const known = std::isfinite(difference);
@@ -57,7 +57,7 @@ double border_mean(Image<double> const& image) {
   return sum / count;
 }
 
-/// A value at whole places, beyond the border by the straight line of the last two.
+/// Returns the value at a node; beyond the border, linear extrapolation of the last two nodes.
 double continued(Image<double> const& image, int column, int row) {
   int const i = std::clamp(column, 0, image.columns() - 1), j = std::clamp(row, 0, image.rows() - 1);
   double value = image(i, j);
@@ -80,7 +80,7 @@ Image<double> integrated_density(std::vector<Vec2d> const& gradient, int columns
         int const next = at(column + 1, row);
         differences.add(here, next, spacing * (gradient[here].x + gradient[next].x) / 2);
       }
-      if (row + 1 < rows) {  // downwards, against Y
+      if (row + 1 < rows) {  // downwards, opposite to Y
         int const next = at(column, row + 1);
         differences.add(here, next, -spacing * (gradient[here].y + gradient[next].y) / 2);
       }

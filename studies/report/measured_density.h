@@ -7,16 +7,16 @@
 
 namespace gladstone {
 
-/// Density, averaged over the thickness, less the ambient one, at the vectors of a lattice [kg/m^3]: the least-squares
-/// solution of rho(j) - rho(i) = h (g(i) + g(j)) / 2 between neighbours, exact for quadratic fields; its mean along the
-/// border is 0. Where vectors are not known the differences are taken for small.
-/// @param gradient d rho / d(X, Y) at the vectors, X right and Y up, row by row downwards; NaN: not known [kg/m^4]
-/// @param spacing  of the vectors in the medium [m]
-/// @pre columns and rows of 2 or more
+/// Integrates gradients on a lattice to the density, averaged over the thickness, minus the ambient density [kg/m^3].
+/// Least-squares solution of rho(j) - rho(i) = h (g(i) + g(j)) / 2 between neighbours, exact for quadratic fields, with
+/// zero mean along the border. Across unknown vectors, small differences are preferred.
+/// @param gradient  d rho / d(X, Y) at the vectors, X right and Y up, row by row downwards; NaN: unknown [kg/m^4]
+/// @param spacing   distance between vectors in the medium [m]
+/// @pre at least 2 columns and 2 rows
 Image<double> integrated_density(std::vector<Vec2d> const& gradient, int columns, int rows, double spacing);
 
-/// Writes it as a NRRD plane, y upwards, continued straight over `margin` nodes beyond its border, on top of `ambient`.
-/// @throws OutputError
+/// Writes density plus `ambient` as a NRRD plane, y upwards, linearly extrapolated by `margin` nodes beyond its border.
+/// @throws OutputError if the file cannot be written
 void write_density_plane(std::string const& path, Image<double> const& density, int margin, double ambient);
 
 }  // namespace gladstone

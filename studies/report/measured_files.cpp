@@ -27,7 +27,8 @@ bool is_hdf5(std::string const& path) { return path.ends_with(".h5") || path.end
 
 std::string pixels_of(CameraSetup const& camera) { return fmt::format("{} x {} px", camera.columns, camera.rows); }
 
-/// Leaves out what no camera can have seen. @throws DataError where places are not this camera's
+/// Rejects vectors that lie or point outside the image.
+/// @throws DataError if positions do not match this camera
 void screen(VectorFile& file, std::string const& path, std::string const& setup, CameraSetup const& camera) {
   LeftOutVectors const left_out = screen_vectors(file.field, file.conventions.offset_px, camera.columns, camera.rows);
   if (left_out.outside_image > 0) {
@@ -61,7 +62,7 @@ DisplacementField read_measured(std::string const& path, std::string const& setu
   return field;
 }
 
-/// Equal to the last bit, NaN where NaN.
+/// Returns true if all components are bitwise equal, with NaN equal to NaN.
 bool same_vectors(DisplacementField const& a, DisplacementField const& b) {
   auto const same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
   return std::equal(a.displacement_px.begin(), a.displacement_px.end(), b.displacement_px.begin(),

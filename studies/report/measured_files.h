@@ -10,27 +10,28 @@
 
 namespace gladstone {
 
-/// What a measurement consists of, as its files are now.
+/// Files of a measurement in their present state.
 struct MeasuredFiles {
   std::string setup, vectors;
-  std::vector<std::string> repeats;  ///< vectors of the same measured again
-  bool frames = false;               ///< whether the folder holds them
-  SourceFiles sources;               ///< setup, frames, vectors and repeats by what they hold
+  std::vector<std::string> repeats;  ///< vectors of repeated measurements
+  bool frames = false;               ///< true if the folder contains the frames
+  SourceFiles sources;               ///< setup, frames, vectors and repeats with their hashes
 };
 
-/// @throws DataError where a file cannot be read
+/// Locates and hashes the files of a measurement.
+/// @throws DataError if a file cannot be read
 MeasuredFiles measured_files(ReportOptions const& options);
 
-/// Makes sure that the frames are the camera's and those that the vectors were measured on.
-/// @throws DataError where they have another number of pixels than the setup's camera, or vectors.h5 names other frames
+/// Checks that the frames are from the setup's camera and those of the vectors.
+/// @throws DataError if their number of pixels differs from the setup's camera, or vectors.h5 names other frames
 void require_frames_of(MeasuredFiles const& files, ReportOptions const& options, CameraSetup const& camera);
 
-/// The vectors and those of the repeats in our conventions, all at the same places.
-/// @throws DataError where vectors lie beyond the setup's camera, or a repeat has its own elsewhere
+/// Reads the vectors and their repeats in our conventions.
+/// @throws DataError if vectors are outside the camera's image, or positions of a repeat differ
 std::vector<DisplacementField> read_repeats(MeasuredFiles const& files, ReportOptions const& options,
                                             CameraSetup const& camera);
 
-/// How much of the camera's frame the places of vectors span, from 0 to 1.
+/// Returns the fraction of the image area spanned by the vectors, from 0 to 1.
 double spanned_share(DisplacementField const& field, CameraSetup const& camera);
 
 }  // namespace gladstone

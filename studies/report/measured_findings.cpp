@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// Where the displacements' uncertainty comes from.
+/// Returns the origin of the displacements' uncertainty.
 std::string source_of_sigma(MeasuredGradients const& all) {
   if (all.estimated == all.count) return "the estimator's own, from the images";
   if (all.estimated == 0) return "by the formula of the random error (F26), since the vectors have none";

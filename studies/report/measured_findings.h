@@ -11,19 +11,19 @@
 
 namespace gladstone {
 
-/// What is known of a measurement's uncertainty, the displacement first of the inputs.
+/// Results of a measurement from which its statements are derived; the displacement is the first input.
 struct MeasurementKnown {
   MeasuredGradients const& gradients;
-  PropagatedResult const& typical;  ///< of a vector of typical displacement and uncertainty
+  PropagatedResult const& typical;  ///< for a vector of typical displacement and uncertainty
   std::vector<MeasurementInput> const& inputs;
   MeanOfRepeats const& mean;
-  SimulatedTwin const* twin = nullptr;  ///< null: there is none
+  SimulatedTwin const* twin = nullptr;  ///< null without a simulated twin
   double sensitivity = 1;               ///< [px per kg/m^4]
 
   bool simulated() const { return twin && twin->failed.empty(); }
 };
 
-/// In the words of the GUM (JCGM 100:2008).
+/// Statements in the terms of the GUM (JCGM 100:2008).
 struct MeasurementStatements {
   std::string measurand, expanded, displacement, setup, bias;
 
@@ -31,7 +31,7 @@ struct MeasurementStatements {
 };
 MeasurementStatements measurement_statements(MeasurementKnown const& known);
 
-/// The inputs with their parts in the uncertainty of the gradient.
+/// Formats a table of the inputs with their contributions to the uncertainty of the gradient.
 TextTable inputs_table(MeasurementKnown const& known);
 
 }  // namespace gladstone

@@ -10,30 +10,33 @@
 
 namespace gladstone {
 
-/// Gradients at measured vectors, with what they are uncertain by. Components along X and Y of the world.
+/// Density gradients at measured vectors with their uncertainties; components along X and Y of the world.
 struct MeasuredGradients {
-  std::vector<Vec2d> gradient;  ///< NaN where a vector does not count [kg/m^4]
-  std::vector<Vec2d> random;    ///< standard uncertainty by the displacement's
-  std::vector<Vec2d> combined;  ///< with that of the setup's numbers
-  std::size_t estimated = 0;    ///< of vectors whose displacement's uncertainty is the estimator's, else the formula's
-  double common = 0;            ///< relative, of the setup's numbers
-  std::size_t count = 0;        ///< of vectors
+  std::vector<Vec2d> gradient;  ///< NaN at invalid vectors [kg/m^4]
+  std::vector<Vec2d> random;    ///< standard uncertainty from the displacement [kg/m^4]
+  std::vector<Vec2d> combined;  ///< including the uncertainty of the setup's parameters [kg/m^4]
+  /// number of vectors with the estimator's uncertainty; the others have that of the formula
+  std::size_t estimated = 0;
+  double common = 0;      ///< relative uncertainty from the setup's parameters [1]
+  std::size_t count = 0;  ///< number of valid vectors
 };
 
-/// @param common relative uncertainty of the setup's numbers together
+/// Computes gradients and uncertainties at the vectors of a field.
+/// @param common  relative uncertainty from all parameters of the setup [1]
 MeasuredGradients gradients_of(DisplacementField const& field, Bench<double> const& bench, double common);
 
-/// Both components of all vectors that have them.
+/// Returns both components of all finite vectors.
 std::vector<double> finite_components(std::vector<Vec2d> const& values);
 
-/// NaN of none.
+/// Returns the root mean square; NaN for no values.
 double rms_of(std::vector<double> const& values);
 
-/// Maps of the report, of a lattice: displacement, gradient, its combined uncertainty, and the displacement's part.
+/// Returns maps for the report, for vectors on a lattice: displacement, gradient, its combined uncertainty, and the
+/// displacement's contribution.
 nlohmann::json measured_maps(DisplacementField const& field, MeasuredGradients const& all);
 
-/// Displacement, gradient and its combined standard uncertainty on the lattice of the vectors, as a figure. @return
-/// path
+/// Draws displacement, gradient and its combined standard uncertainty on the lattice of the vectors.
+/// @return path of the figure
 std::string draw_measured_maps(std::string const& path, DisplacementField const& field, MeasuredGradients const& all);
 
 }  // namespace gladstone

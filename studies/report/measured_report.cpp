@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The displacement as an input: that of a vector of typical displacement and uncertainty, which stands for all.
+/// Returns the displacement as an input: a representative vector with typical displacement and uncertainty.
 MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_px) {
   std::vector<double> const sigma = finite_components(mean.field.sigma_px);
   bool const repeated = mean.count > 1;
   MeasurementInput input;
   input.key = "displacement_px";
   input.value = rms_of(finite_components(mean.field.displacement_px));
-  input.sigma = repeated        ? rms_of(sigma)  // of few repeats the median is too small
+  input.sigma = repeated        ? rms_of(sigma)  // for few repeats, the median is biased low
                 : sigma.empty() ? formula_px
                                 : quantile(sigma, 0.5);
   if (repeated) input.degrees_of_freedom = static_cast<double>(mean.count - 1);
@@ -38,7 +38,7 @@ MeasurementInput typical_displacement(MeanOfRepeats const& mean, double formula_
   return input;
 }
 
-/// The twin of a lattice of vectors.
+/// Simulates the twin of a measurement with vectors on a lattice.
 SimulatedTwin twin_of(CaseSetup const& loaded, DisplacementField const& field, MeasuredGradients const& all,
                       double pixel_at_medium, Device const& device) {
   double const spacing = (field.position_px[1].x - field.position_px[0].x) * pixel_at_medium;
@@ -80,7 +80,8 @@ ReportSection maps_section(ReportPage& page, DisplacementField const& field, Mea
                        {"x", component_json(field.position_px, &Vec2d::x)},
                        {"y", component_json(field.position_px, &Vec2d::y)}};
   ReportSection maps{"Maps", {Chart{"field", "Displacement, gradient and their uncertainty", alt}}};
-  constexpr double doubtful = 0.5;  // of the frame; full frames leave a window's half width at each edge
+  // fraction of the image; the vectors of full frames only omit half a window at each edge
+  constexpr double doubtful = 0.5;
   if (double const share = spanned_share(field, camera); share < doubtful) {
     maps.blocks.push_back(Paragraph{fmt::format(
         "The vectors span {:.2g} % of the camera's {} x {} px: part of the frame was measured, or camera.pixels of the "

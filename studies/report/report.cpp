@@ -64,7 +64,8 @@ std::string write_report(ReportOptions const& options, Device const& device) {
                                                 "measurement with its setup and vectors",
                                                 run_file::manifest, case_file::setup));
   }
-  OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");  // shows that the place can be written
+  // fails early if the output cannot be written
+  OutputFile output(options.output, options.markdown ? "Markdown" : "HTML");
   bool const measured = !run && !fs::exists(fs::path(options.source) / case_file::truth);
   if (!measured && !options.repeats.empty()) {
     throw DataError(options.source,

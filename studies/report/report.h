@@ -10,45 +10,47 @@
 
 namespace gladstone {
 
-/// What a report is written from and as.
+/// Options of a report.
 struct ReportOptions {
   std::string source;                ///< RUN or CASE folder
   std::string output;                ///< file
-  bool markdown = false;             ///< else HTML
-  std::string figures;               ///< folder for the figures of a paper; empty: none
+  bool markdown = false;             ///< true: Markdown, false: HTML
+  std::string figures;               ///< folder of figures for a publication; empty: none
   std::string figure_format;         ///< "png", "svg" or "pdf"
-  std::string vectors;               ///< of a CASE: file; empty: its own
-  std::vector<std::string> repeats;  ///< of a measured case: vectors of the same measured again
-  std::string
-      conventions;  ///< of a measured case's foreign vectors, as parse_conventions() reads them; empty: their format's
+  std::string vectors;               ///< for a CASE: path; empty: vectors of the CASE
+  std::vector<std::string> repeats;  ///< for a measurement: vectors of repeated measurements
+  /// for foreign vectors of a measurement, as parse_conventions() reads them; empty: those of the format
+  std::string conventions;
 };
 
-/// Writes the report of a study or of a case, and its figures. @return the findings, a line each
-/// @throws DataError where the folder is neither, holds no finished case, or was never correlated; OutputError
+/// Writes the report of a study, a case or a measurement, and its figures.
+/// @return the findings, one per line
+/// @throws DataError if the folder contains no study, case or measurement, no finished case, or no vectors
+/// @throws OutputError if a file cannot be written
 std::string write_report(ReportOptions const& options, Device const& device);
 
-/// The report of a RUN from what is finished: nothing is computed.
+/// Creates the report of a RUN from the finished cases, without computations.
 ReportPage run_report(ReportOptions const& options);
 
-/// The report of a CASE, which is compared with truth and theory anew.
+/// Creates the report of a CASE, which is compared with truth and theory again.
 ReportPage case_report(ReportOptions const& options, Device const& device);
 
-/// The uncertainty report of a measurement: a folder with the setup that describes it and its vectors, and frames or
-/// not, but no truth. Gradients of density with what they are uncertain by, and the errors of a simulated twin.
+/// Creates the uncertainty report of a measurement, a folder without truth that contains the setup, the vectors and,
+/// optionally, the frames. It reports density gradients with uncertainties, and the errors of a simulated twin.
 /// @throws SetupError, DataError
 ReportPage measured_report(ReportOptions const& options, Device const& device);
 
-/// The figures of a paper, as blocks that name them: what `draw` draws into a folder in a format, without gnuplot none.
-/// Empty where none are wanted.
+/// Returns the figures for a publication as blocks that name their files; empty if none are requested.
+/// @param draw  draws the figures into a folder in a format and returns their paths; skipped without gnuplot
 ReportSection drawn_figures(
     ReportOptions const& options,
     std::function<std::vector<std::string>(std::string const& folder, std::string const& format)> const& draw);
 
-/// How every report ends: versions, checksums, commands, how to cite.
-/// @param sources what it was made from: those that have a name are told, with their SHA-256
+/// Returns the final section of every report: versions, checksums, commands, citation.
+/// @param sources  inputs of the report; those with a name are listed with their SHA-256
 ReportSection how_it_was_made(SourceFiles const& sources, std::vector<std::string> const& commands);
 
-/// Two frames as 8-bit pictures of equal grey scale; of large ones the middle.
+/// Converts both frames to 8-bit images of equal grey scale; of large frames, the central part.
 FramePictures frame_pictures(std::string const& folder, std::string const& title);
 
 }  // namespace gladstone

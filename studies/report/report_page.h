@@ -8,53 +8,53 @@
 
 namespace gladstone {
 
-/// What a report consists of, whatever it is written as. Texts are plain; whoever writes them escapes them.
+/// Blocks of a report, independent of the output format. Texts are plain; the writers escape them.
 struct Paragraph {
   std::string text;
 };
 struct TextList {
   std::vector<std::string> items;
 };
-/// Text as it stands in a file.
+/// Text reproduced from a file.
 struct Verbatim {
-  std::string summary;  ///< what it is; the text itself is folded away behind it
+  std::string summary;  ///< title shown in place of the collapsed text
   std::string text;
 };
-/// A cell that holds a number is sorted by it, and shows it rounded.
+/// A table cell; with a number, it is sorted by the number and shows it rounded.
 struct TableCell {
   std::string text;
   std::optional<double> number = std::nullopt;
 
-  /// Four significant digits; "unknown" for NaN.
+  /// Formats four significant digits; "unknown" for NaN.
   static TableCell of(double number);
-  /// Displacements and their errors: hundred-thousandths of a pixel, which no measurement tells from 0.
+  /// Formats displacements or errors to 1e-5 px, below the resolution of any measurement; "unknown" for NaN.
   static TableCell px(double number);
 };
 struct TextTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<TableCell>> rows;
-  bool filtered = false;  ///< long enough to be searched
+  bool filtered = false;  ///< true for tables long enough to require a search field
 };
-/// A chart that report.js draws from the report's data.
+/// A chart drawn by report.js from the report's data.
 struct Chart {
   std::string kind;  ///< a key of `charts` in report.js
   std::string title;
-  std::string alt;  ///< what it shows, in numbers
+  std::string alt;  ///< description in numbers
 };
-/// Two frames that can be held against each other in turn.
+/// Two frames that can be shown alternately at the same position.
 struct FramePictures {
   std::string title, alt;
   std::string first_name, second_name;
-  std::string first_png, second_png;  ///< bytes
+  std::string first_png, second_png;  ///< contents of the PNG files
 };
-/// A figure that the report holds; as Markdown it is told by its words.
+/// A figure embedded in the report; in Markdown, replaced by its description.
 struct Picture {
   std::string title;
-  std::string alt;  ///< what it shows, in numbers
-  std::string png;  ///< bytes
+  std::string alt;  ///< description in numbers
+  std::string png;  ///< contents of the PNG file
 };
-/// A figure that is a file beside the report.
+/// A figure stored as a separate file.
 struct FigureFile {
   std::string path;  ///< relative to the report
   std::string alt;
@@ -71,12 +71,13 @@ struct ReportPage {
   std::string question;
   std::vector<std::string> findings;
   std::vector<ReportSection> sections;
-  nlohmann::json data;  ///< what report.js draws charts from
+  nlohmann::json data;  ///< data of the charts drawn by report.js
 };
 
-/// One file that works without a network: styles, scripts (d3, with its licence) and data are in it.
+/// Formats the report as a single HTML file that works offline: styles, scripts (d3, with its licence) and data are
+/// embedded.
 std::string html_page(ReportPage const& page);
-/// The same as Markdown, without what takes a browser.
+/// Formats the report as Markdown, without interactive elements.
 std::string markdown_page(ReportPage const& page);
 
 }  // namespace gladstone

@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_told = 12;  ///< values of an axis in a list
+constexpr std::size_t most_told = 12;  ///< maximum number of values of an axis in a list
 
-/// The frames of a case, where the study has kept them.
+/// Returns the frames of a case, if the study has stored them.
 ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow const& row, std::string const& which) {
   std::string const folder = (fs::path(run) / run_file::cases / std::to_string(row.index)).string();
   std::string const title =
@@ -36,7 +36,8 @@ ReportBlock frames_of(std::string const& run, StudyView const& study, StudyRow c
   return frame_pictures(folder, title);
 }
 
-/// The bench of a setup; nothing where what it names is not there any more, or it is none without the study's axes.
+/// Returns the set-up of a setup; nullopt if a file that it names no longer exists, or if it is invalid without the
+/// study's axes.
 std::optional<BenchView> bench_of_text(std::string const& setup, std::string const& name) {
   if (setup.empty()) return std::nullopt;
   try {
@@ -46,13 +47,13 @@ std::optional<BenchView> bench_of_text(std::string const& setup, std::string con
   }
 }
 
-/// A file of RUN as text; empty where there is none, as of a study that an older gladstone planned.
+/// Reads a file of a RUN; empty if it does not exist, as in runs planned by older versions.
 std::string text_in_run(std::string const& run, char const* name) {
   std::string const path = (fs::path(run) / name).string();
   return fs::exists(path) ? read_text_file(path) : std::string();
 }
 
-/// What every case starts from, and what the study changes of it.
+/// Describes the base setup and the axes of the study.
 ReportSection setup_section(StudyView const& study, BenchView const* base) {
   ReportSection section{"Set-up", {}};
   if (base) section = bench_section(*base, "the base");
@@ -70,7 +71,7 @@ ReportSection setup_section(StudyView const& study, BenchView const* base) {
   return section;
 }
 
-/// What the report was made from: the study as planned, its table, and the frames that are shown.
+/// Returns the inputs of the report: planned study, its tables, and the frames shown.
 SourceFiles run_sources(std::string const& run, std::vector<StudyRow const*> const& shown) {
   SourceFiles sources;
   for (char const* const name : {run_file::study, run_file::base, run_file::manifest}) {
@@ -95,7 +96,7 @@ ReportPage run_report(ReportOptions const& options) {
   StudyView const study(run);
   auto const worse = [&](StudyRow const* a, StudyRow const* b) {
     double const of_a = study.of(*a, study.main), of_b = study.of(*b, study.main);
-    return std::isfinite(of_a) && (!std::isfinite(of_b) || of_a < of_b);  // what is unknown is neither
+    return std::isfinite(of_a) && (!std::isfinite(of_b) || of_a < of_b);  // unknown values are excluded
   };
   StudyRow const& best = **std::min_element(study.finished.begin(), study.finished.end(), worse);
   StudyRow const* worst = &best;

@@ -17,7 +17,8 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t twin_repeats = 2;
-constexpr int margin_nodes = 16;  ///< of the density beyond the vectors: what cones and dots out of view see
+/// extrapolated nodes beyond the vectors, seen by light cones and dots at the edge of the view
+constexpr int margin_nodes = 16;
 
 SetupNode field_of(std::string const& file, double spacing, Vec2d centre) {
   double const mm = unit::millimetre;

@@ -9,21 +9,23 @@
 
 namespace gladstone {
 
-/// A measurement that is made again in simulation: the density that was measured, as the medium of the setup, rendered,
+/// Simulated repetition of a measurement: the measured density is the medium of the setup, which is rendered,
 /// correlated and compared.
 struct SimulatedTwin {
-  Comparison comparison;             ///< of the first repeat
-  double random_px = 0;              ///< scatter between repeats
-  double systematic_px = 0;          ///< what they share against Eq. 9 of the density put in, rms
-  std::vector<std::uint64_t> seeds;  ///< of the repeats
-  int columns = 0, rows = 0;         ///< of the camera's middle that was simulated
-  std::string failed;                ///< why there is none; empty: there is
+  Comparison comparison;             ///< comparison of the first repeat
+  double random_px = 0;              ///< scatter between repeats [px]
+  double systematic_px = 0;          ///< rms error common to the repeats, relative to Eq. 9 of the given density [px]
+  std::vector<std::uint64_t> seeds;  ///< seeds of the repeats
+  int columns = 0, rows = 0;         ///< size of the simulated central part of the image [px]
+  std::string failed;                ///< reason of a failed simulation; empty: successful
 };
 
-inline constexpr int most_twin_px = 512;  ///< of the camera, across and down
+inline constexpr int most_twin_px = 512;  ///< maximum width and height of the simulated part [px]
 
-/// @param density of the vectors' lattice, less the ambient one [kg/m^3]
-/// @param spacing of its nodes [m] @param centre its middle, X and Y [m]
+/// Simulates a measurement twice with the given density.
+/// @param density  at the vectors of the lattice, minus the ambient density [kg/m^3]
+/// @param spacing  distance between its nodes [m]
+/// @param centre   X and Y of its centre [m]
 SimulatedTwin simulate_twin(CaseSetup const& loaded, Image<double> const& density, double spacing, Vec2d centre,
                             Device device);
 

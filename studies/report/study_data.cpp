@@ -12,7 +12,7 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::size_t most_table_rows = 20;  ///< without a search field
+constexpr std::size_t most_table_rows = 20;  ///< maximum without a search field
 
 }  // namespace
 
