@@ -238,8 +238,8 @@ PreparedCase prepare_case(CaseSetup& loaded, KnownParts const& known) {
   }
   SetupTable root = loaded.document.root();
   root.table("medium").resolve("step_mm", prepared.step.step_mm);
-  if ((by_table || prepared.rays.by_need) &&
-      !loaded.setup.render.rays_per_dot) {  // the number of rays differs between sources
+  // "auto" remains if the number of rays differs between sources
+  if ((by_table || prepared.rays.by_need) && !loaded.setup.render.rays_per_dot) {
     root.table("render").resolve("rays_per_dot", std::string("auto"));
   } else {
     root.table("render").resolve("rays_per_dot", static_cast<long long>(prepared.rays.rays));

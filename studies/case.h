@@ -79,8 +79,8 @@ struct FinishedCase {
   RecordedFrames frames;
 };
 
-/// Computes the SHA-256 of the files that a setup names before any of them is read. Files of [correlate] are excluded:
-/// they are recorded with the vectors.
+/// Computes the SHA-256 of the files that a setup names, before the scene is built from them. Files of [correlate] are
+/// excluded: they are recorded with the vectors.
 void hash_inputs(CaseSetup& loaded);
 
 /// Renders a case in memory.

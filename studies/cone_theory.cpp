@@ -17,8 +17,8 @@ namespace {
 /// directions, relative to the unaveraged wave.
 double chief_ray_energy(Setup const& setup, double wavenumber) {
   double const on_target = setup.camera.pixel_pitch / setup.imaging().magnification;
-  double const half_x =
-      setup.camera.columns * on_target / 2 / setup.z_b();  // slope of the chief ray at the view's edge
+  // slopes of the chief rays at the view's edges
+  double const half_x = setup.camera.columns * on_target / 2 / setup.z_b();
   double const half_y = setup.camera.rows * on_target / 2 / setup.z_b();
   constexpr int places = 6, directions = 12;
   double sum = 0;

@@ -54,8 +54,9 @@ ParticleImage particle_image(Setup const& setup);
 ///   1992); source density C dz pi d^2 / (4 M^2) (Adrian 1991).
 /// - Photons as in the renderer: fluence times differential cross-section times solid angle of the entrance pupil. The
 ///   peak pixel's share is that of a centred Gaussian or Airy pattern.
-/// - A particle is visible if its peak exceeds five times the combined shot and read noise (Rose, J. Opt. Soc. Am. 38
-///   (1948) 196).
+/// - A particle is visible if its peak exceeds five times the combined shot, dark and read noise (Rose, J. Opt. Soc.
+/// Am.
+///   38 (1948) 196).
 /// @pre setup.piv
 /// @throws DataError for an invalid file of diameters or particles
 ExpectedParticles expected_particles(Setup const& setup);

@@ -137,8 +137,8 @@ double spline_polynomial_error(Renderer&) {
   Plane const plane(grid, Plane::Interpolation::cubic_bspline, 1, 0, [&](int, int, std::span<double> out) {
     for (std::size_t i = 0; i < out.size(); ++i) {
       std::size_t const column = i % 7, row = i / 7;
-      out[i] = static_cast<float>(f(static_cast<double>(column)) *
-                                  f(static_cast<double>(row)));  // whole numbers are exact in float
+      // whole numbers are exact in float
+      out[i] = static_cast<float>(f(static_cast<double>(column)) * f(static_cast<double>(row)));
     }
   });
   auto const view = plane.view<double, CubicBspline, 2>(-1, 1);

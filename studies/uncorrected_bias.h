@@ -11,7 +11,7 @@ namespace gladstone {
 /// is neither corrected nor included in any uncertainty (JCGM 100:2008, F.2.4.5).
 std::string uncorrected_bias_words(BudgetChain chain);
 
-/// Returns the uncorrected bias of a comparison: rms over the unmasked vectors, per component [px].
+/// Returns the uncorrected bias of a comparison: rms over the compared vectors, per component [px].
 double uncorrected_bias_px(Comparison const& comparison);
 
 }  // namespace gladstone

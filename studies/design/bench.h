@@ -51,7 +51,7 @@ struct Bench {
   T magnification() const { return focal_length / (z_b() - focal_length); }
   T magnification_at_medium() const { return image_distance() / z_a; }
   T pupil() const { return focal_length / f_number; }
-  /// Returns the width of a pixel in the medium's mid-plane and in the dots' plane [m].
+  /// Return the width of a pixel in the medium's mid-plane and in the dots' plane [m].
   T pixel_at_medium() const { return given->camera.pixel_pitch / magnification_at_medium(); }
   T pixel_at_dots() const { return given->camera.pixel_pitch / magnification(); }
 
@@ -129,7 +129,7 @@ struct Bench {
     return sqrt(variance) / peak_electrons();
   }
 
-  // what is measured (F15, F18, F26)
+  // measurement (F15, F18, F26)
   double dots_in_window() const {
     double const window = given->window.window_px() / 32.0;
     return given->dots_per_window_32 * window * window;

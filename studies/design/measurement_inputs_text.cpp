@@ -14,7 +14,7 @@ constexpr double traced_tolerance = 0.02;
 
 std::string degrees_text(double degrees) { return std::isfinite(degrees) ? fmt::format("{:.3g}", degrees) : "inf"; }
 
-/// Returns true if formula and ray tracing agree on the derivative of the gradient, or if there is no gradient or no
+/// Returns true if formula and ray tracing agree on the derivative of the gradient, or without a gradient or a
 /// traced derivative.
 bool same(MeasurementInput const& input, PropagatedResult const& gradient, Contribution const& contribution) {
   if (!input.traced || gradient.value == 0) return true;

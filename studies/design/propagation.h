@@ -67,7 +67,7 @@ struct MeasurementInput {
   double chain = 1;
   /// d ln(displacement per gradient) / d(key) by ray tracing, in the key's unit; empty: not traced.
   std::optional<double> traced;
-  std::vector<InputCorrelation> correlations{};  ///< with other inputs
+  std::vector<InputCorrelation> correlations{};  ///< correlations with other inputs
   /// Input through which the key affects the conversion from gradient to density difference across a window, for setups
   /// that the closed forms do not describe; that conversion is assumed to be the one on the optical axis.
   std::optional<GradientInput> scales{};
@@ -88,7 +88,7 @@ struct PropagatedResult {
   double standard = 0;  ///< combined standard uncertainty, to first order
   /// effective, by Welch and Satterthwaite; infinite if those of all inputs are
   double degrees_of_freedom = 0;
-  double coverage_factor = 2;               ///< for 95.45 %
+  double coverage_factor = 2;               ///< coverage factor for 95.45 %
   std::vector<Contribution> contributions;  ///< one per input, in their order
   /// empty if an input has one degree of freedom, since its mean does not exist
   std::optional<double> sampled_mean;

@@ -73,7 +73,7 @@ struct DesignQuestion {
 };
 
 /// Reads the question; adds every problem to the document at its key.
-/// @return nullopt if there is no table [requirements]
+/// @return nullopt without a table [requirements]
 std::optional<DesignQuestion> read_design_question(SetupDocument& document);
 
 }  // namespace gladstone

@@ -11,7 +11,7 @@
 
 namespace gladstone {
 
-/// Errors of a measurement against one reference at the unmasked vectors.
+/// Errors of a measurement against one reference at the compared vectors.
 struct ErrorSeries {
   std::string name;             ///< "against ray truth", "against Eq. 9", ...
   std::vector<Vec2d> error_px;  ///< non-finite values are omitted [px]

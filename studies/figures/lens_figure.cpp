@@ -41,8 +41,8 @@ void place(GnuplotFigure& plot, Panel const& panel) {
                            1 - panel.bottom / h));
 }
 
-/// Returns the half height with which each surface is drawn: its edge, or else the larger of its nominal semi-diameter
-/// and the height of the rays.
+/// Returns the half height with which each surface is drawn: the radius of the stop, the edge of a surface, or else the
+/// larger of its nominal semi-diameter and 1.05 times the height of the rays.
 std::vector<double> drawn_heights(Lens const& lens, std::vector<std::vector<Vec3d>> const& rays) {
   std::vector<double> heights;
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {

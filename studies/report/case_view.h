@@ -37,7 +37,7 @@ struct CaseView {
                       {"u", component_json(values, &Vec2d::x)},
                       {"v", component_json(values, &Vec2d::y)}});
   }
-  /// Returns `to` minus `from` at the unmasked vectors, NaN at the others.
+  /// Returns `to` minus `from` at the compared vectors, NaN at the others.
   std::vector<Vec2d> difference(std::vector<Vec2d> const& to, std::vector<Vec2d> const& from) const {
     if (to.empty() || from.empty()) return {};
     std::vector<Vec2d> values(to.size(), Vec2d{std::nan(""), std::nan("")});

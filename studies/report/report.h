@@ -13,7 +13,7 @@ namespace gladstone {
 /// Options of a report.
 struct ReportOptions {
   std::string source;                ///< RUN or CASE folder
-  std::string output;                ///< file
+  std::string output;                ///< path of the report
   bool markdown = false;             ///< true: Markdown, false: HTML
   std::string figures;               ///< folder of figures for a publication; empty: none
   std::string figure_format;         ///< "png", "svg" or "pdf"
