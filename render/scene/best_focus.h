@@ -5,15 +5,17 @@
 
 namespace gladstone {
 
-/// By how much a camera's sensor is to be moved along its axis, so that the bundle of a point, traced through stop and
-/// glass, is narrowest there: the least of its mean square radius, which rays make a parabola along the axis [m].
-/// @throws DataError where too few rays get through, or they meet nowhere
+/// Returns the distance by which the sensor must move along its normal to reach the best focus of an object point [m].
+/// Traces a bundle of rays from the point through stop and lens. Its mean square radius is a parabola along the
+/// sensor's normal; the best focus is the minimum.
+/// @throws DataError if too few rays reach the sensor
 double best_focus(Camera const& camera, Vec3d point);
 
-/// Places the lens of a setup whose sensor stands at setup.z_sensor on the Z axis: sets z_a, so that the best focus of
-/// the point in focus falls on the sensor. Of the two places that a thin lens has (Bessel) it takes the one nearer the
-/// sensor. Ceres finds it on Jets of the traced rays (dual numbers, which carry derivatives by the lens' place).
-/// @throws DataError where no place of the lens images the plane in focus on the sensor
+/// Positions the lens of a setup whose sensor is fixed at setup.z_sensor on the Z axis: sets z_a such that the best
+/// focus of the plane in focus lies on the sensor.
+/// A thin lens has two such positions (Bessel); the one nearer the sensor is chosen. For prescriptions and cameras
+/// behind windows, Ceres refines the paraxial position with automatic derivatives (Jets) of the traced rays.
+/// @throws DataError if no lens position images the plane in focus onto the sensor
 void place_lens_by_sensor(Setup& setup);
 
 }  // namespace gladstone

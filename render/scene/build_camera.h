@@ -5,31 +5,34 @@
 
 namespace gladstone {
 
-/// How paraxial light runs through a setup's lens and windows.
+/// Returns the paraxial model (ray-transfer matrices) of a setup's lens and windows.
 ParaxialCamera paraxial_camera(Setup const& setup);
 
-/// Sizes that follow from it, see Setup::imaging().
+/// Computes image distance, magnification and entrance pupil from a paraxial model; see Setup::imaging().
 ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& paraxial);
 
-/// Tilt of a setup's sensor about its x, then its turned y: the camera's own, or for scheimpflug = "auto" the one that
-/// images Z = const through the point in focus sharply all over [rad].
+/// Returns the tilt of a setup's sensor about its x axis, then about its rotated y axis [rad]: the configured tilt or,
+/// for scheimpflug = "auto", the one that images the plane Z = const through the point in focus sharply everywhere.
 Vec2d sensor_tilt(Setup const& setup);
 
-/// Width and height about target_centre() of what a turned or tilted camera sees of the dots' plane [m].
+/// Returns width and height, centred on target_centre(), of the part of the dots' plane that a posed or tilted camera
+/// sees [m].
 Vec2d posed_view(Setup const& setup);
-/// The same with the setup's margin all round [m].
+/// Like posed_view(), enlarged on all sides by Setup::view_margin_px and rounded up to whole micrometres [m].
 Vec2d posed_extent(Setup const& setup);
 
-/// Setup::pixel_size() of a turned or tilted camera. @throws DataError where it sees nothing of the target's middle
+/// Returns Setup::pixel_size() of a posed or tilted camera [m].
+/// @throws DataError if the camera does not see the centre of the target
 double posed_pixel_size(Setup const& setup);
 
-/// Area that a turned or tilted camera's picture takes on the dots' plane: of the polygon through several pixels of
-/// each of its edges [m^2].
+/// Returns the area of the dots' plane that a posed or tilted camera sees [m^2]: that of the polygon through four
+/// points on each edge of the image, since distortion curves the edges.
 double posed_view_area(Setup const& setup);
 
-/// The camera of a setup, focused: an ideal thin lens by its formula; a prescription, or any lens behind windows, by
-/// moving the sensor along the axis to where the rays from the axis point of the plane in focus, traced through stop
-/// and glass, come closest together (least squares). @throws DataError where no ray gets through, or they meet nowhere
+/// Builds the focused camera of a setup.
+/// An ideal thin lens without windows is focused by the lens formula. Otherwise the sensor is moved along the axis to
+/// the best focus (least squares) of rays traced from the axis point of the plane in focus.
+/// @throws DataError if the plane in focus has no real image or too few rays reach the sensor
 Camera build_camera(Setup const& setup);
 
 }  // namespace gladstone

@@ -10,26 +10,27 @@
 
 namespace gladstone {
 
-/// A calibration's setup with its dots on one plane: the camera stays the very same, focused and tilted as for Z = 0.
-/// @param z of the plane [m]
+/// Returns the setup of one plane of a calibration. The camera is unchanged: its focus and tilt remain those for Z = 0.
+/// @param z  position of the plane [m]
 Setup plane_setup(Setup const& setup, double z);
 
-/// A pinhole camera as OpenCV writes it: x right, y down, z into the scene; with d = R X + t and (x, y) = (d.x, d.y) /
-/// d.z, distorted as BrownDistortion says, the pixel is (fx x + cx, fy y + cy).
+/// Pinhole camera in OpenCV's convention: x right, y down, z into the scene. With d = R X + t and (x, y) = (d.x, d.y) /
+/// d.z, distorted by BrownDistortion, the pixel is (fx x + cx, fy y + cy).
 struct Pinhole {
-  double fx, fy, cx, cy;  ///< [px]
+  double fx, fy, cx, cy;  ///< focal lengths and principal point [px]
   BrownDistortion<double> brown;
-  std::array<Vec3d, 3> rows;  ///< of the rotation R, from the world to the camera
-  Vec3d translation;          ///< t [m]
+  std::array<Vec3d, 3> rows;  ///< rows of the rotation R from world to camera
+  Vec3d translation;          ///< translation t [m]
 };
 
-/// The pinhole camera that images as an ideal thin lens does. Of a tilted sensor its z is the sensor's normal, and (cx,
-/// cy) is where the normal through the lens meets the sensor. Nothing where there is none: for a prescription, through
-/// windows, and for a tilted sensor with distortion, which is about another point then.
+/// Returns the pinhole camera that is equivalent to a setup's ideal thin lens. For a tilted sensor, its z axis is the
+/// sensor's normal, and (cx, cy) is where the normal through the lens meets the sensor.
+/// @return nullopt if there is no equivalent: for a prescription, windows or lenslets, and for a tilted sensor with
+/// distortion, whose centre of distortion is not (cx, cy)
 std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera);
 
-/// Checks of a calibration: planes within the reach of the lens, windows before all of them, sizes of dots in the
-/// picture.
+/// Checks a calibration setup: object distances that the lens can image, windows in front of all planes, diameter and
+/// spacing of the dots in the image.
 void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
 
 }  // namespace gladstone

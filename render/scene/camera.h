@@ -9,49 +9,51 @@
 
 namespace gladstone {
 
-/// How paraxial light runs through a camera's lens, in air, along its axis.
+/// Paraxial model of a camera's lens: ray transfer in air along its axis.
 struct ParaxialCamera {
-  double front = 0;         ///< first surface, along the camera's z [m]
-  RayTransfer to_stop;      ///< from there to the stop
-  RayTransfer whole;        ///< from there to behind the last surface
-  Pose<double> behind;      ///< of the last surface's vertex in the camera's frame; light leaves along its z, or back
-  double forwards = 1;      ///< -1: it leaves along -z, after an odd number of mirrors
-  double stop_radius = 0;   ///< [m]; 0: chief rays only
-  double window_shift = 0;  ///< by which windows bring things nearer, sum of t (1 - 1/n) [m]
+  double front = 0;         ///< position of the first surface along the camera's z [m]
+  RayTransfer to_stop;      ///< ray transfer from the first surface to the stop
+  RayTransfer whole;        ///< ray transfer from the first surface to behind the last
+  Pose<double> behind;      ///< pose of the last vertex in the camera's frame; light leaves along its +z or -z
+  double forwards = 1;      ///< -1: light leaves along -z, after an odd number of mirrors
+  double stop_radius = 0;   ///< radius of the stop [m]; 0: chief rays only
+  double window_shift = 0;  ///< apparent shift of objects towards the lens by windows, sum of t (1 - 1/n) [m]
 
-  /// Slope of the chief ray of a point on its way in, over the point's height. @param distance before the front [m]
+  /// Returns the slope of the chief ray of a point in object space per unit height of the point [1/m].
+  /// @param distance  distance of the point in front of the first surface [m]
   double chief_slope(double distance) const;
-  /// Slope of the ray from a point of the axis to the stop's rim.
+  /// Returns the slope in object space of the marginal ray from an axial point to the edge of the stop [1].
   double marginal_slope(double distance) const;
-  /// The same behind the lens: half of one over the working f-number.
+  /// Returns the slope of the marginal ray in image space, 1 / (2 N_w) with the working f-number N_w [1].
   double image_slope(double distance) const;
 };
 
-/// A point that a pixel sees.
+/// Object point whose chief ray meets a pixel.
 struct SeenPoint {
-  Vec2d place{};         ///< in the plane's frame [m]
-  Ray<double> chief;     ///< from the point towards the camera, in the world
-  Vec2d by_x{}, by_y{};  ///< derivatives of the pixel by the place along the plane's x and y [px/m]
+  Vec2d place{};         ///< position in the frame of the object plane [m]
+  Ray<double> chief;     ///< chief ray from the point towards the camera, in the world frame
+  Vec2d by_x{}, by_y{};  ///< derivatives of the pixel position by the point's x and y in the plane [px/m]
 
-  /// By how much the pixel changes where the place moves [px].
+  /// Returns the displacement of the pixel for a small displacement of the point in the plane [px].
   Vec2d moved(Vec2d by) const { return by.x * by_x + by.y * by_y; }
 };
 
-/// The footprint of a source's rays that pass the stop on the aim plane, in the world.
+/// Entrance pupil as seen from a source: ellipse on the aim plane, in the world frame, that contains all rays passing
+/// the stop.
 struct WorldAimDisc {
   Vec3d centre{}, a{}, b{};  ///< centre + a cos + b sin [m]
 };
 
-/// A camera: where it stands, what its light meets on the way, its sensor. Rays are traced through it; nothing about it
-/// is known as a magnification.
+/// Camera for ray tracing: its pose, the optical elements on the light path and its sensor. No quantity is derived from
+/// a magnification.
 class Camera {
  public:
-  Pose<double> pose;  ///< of the front principal plane (of the first vertex where there is none); z along the light
-  std::vector<CameraElement<double>> elements;  ///< in the world, in the order light meets them
-  int before_medium = 0;                        ///< of them, those on the target's side of the medium
-  int stop = 0;                                 ///< of them
-  double stop_radius = 0;                       ///< that rays meet [m]; 0: chief rays only
-  double aim_step = 0;                          ///< differences on the aim plane are taken over [m]
+  Pose<double> pose;  ///< pose of the front principal plane (first vertex if it has none); z along the light
+  std::vector<CameraElement<double>> elements;  ///< elements in the world frame, in the order of the light path
+  int before_medium = 0;                        ///< number of elements on the target's side of the medium
+  int stop = 0;                                 ///< index of the stop in `elements`
+  double stop_radius = 0;                       ///< radius of the stop [m]; 0: chief rays only
+  double aim_step = 0;                          ///< step of finite differences on the aim plane [m]
   Pose<double> aim_plane;
   PosedSensor<double> sensor;
   ParaxialCamera paraxial;
@@ -60,44 +62,54 @@ class Camera {
     return {elements.data(), before_medium, static_cast<int>(elements.size()), sensor, aim_plane};
   }
   bool chief_rays_only() const { return stop_radius == 0; }
-  /// Gives the stop a smoothed rim, as a share of its area. A stop that is a surface of glass keeps its sharp one.
+  /// Smooths the edge of the stop. Has no effect on a stop that is a glass surface or mirror, whose edge remains sharp.
+  /// @param edge  width of the smoothed zone as a fraction of the stop's area [1]
   void smooth_stop(double edge);
 
-  /// Where the chief ray of a point ends without medium [px]; nothing where none gets through. Lenslets are looked
-  /// past: the middle of the small pictures that they make of the point.
+  /// Returns the pixel position of a point's chief ray without medium [px]; nullopt if no chief ray reaches the sensor.
+  /// Lenslets are ignored: the result is the centre of the sub-images that they form of the point.
   std::optional<Vec2d> project(Vec3d point) const;
-  /// The point of a plane (its frame's x and y) whose chief ray ends at a pixel.
+  /// Finds the point of a plane whose chief ray meets a pixel; nullopt if there is none.
   std::optional<SeenPoint> unproject(Vec2d pixel, Pose<double> const& plane) const;
-  /// What the camera sees of a point of a plane: its chief ray, and how its pixel changes. place is in the plane's
-  /// frame.
+  /// Returns the chief ray of a point of a plane and the derivatives of its pixel position; nullopt if no chief ray
+  /// passes.
+  /// @param place  position in the plane's frame [m]
   std::optional<SeenPoint> see(Vec2d place, Pose<double> const& plane) const;
-  /// What a source sees of the stop, a little wide: by this factor where nothing distorts it.
+  /// Returns the safety factor by which aim_disc() exceeds the entrance pupil of a lens without pupil aberrations [1].
   static double sight_margin();
+  /// Returns the entrance pupil as seen from a source, enlarged by sight_margin(); without a stop, the point of the
+  /// chief ray on the aim plane. nullopt if no chief ray passes.
   std::optional<WorldAimDisc> aim_disc(Vec3d source) const;
-  /// Where the paraxial chief ray of a point ends, without distortion: the camera as an ideal lens, a collinear map
-  /// [px].
+  /// Returns the pixel position of a point's paraxial chief ray without distortion [px]: the camera as an ideal lens
+  /// (collinear map).
   Vec2d ideal_project(Vec3d point) const;
 
  private:
-  /// What becomes of the ray from a point through a point of the aim plane, vignetted or not.
+  /// Intersections of a ray with the stop [m] and the sensor [px], whether or not it is vignetted.
   struct Sight {
     Vec2d in_stop{}, pixel{};
   };
   std::optional<Sight> sight(Vec3d point, Vec2d aim) const;
   std::optional<Vec2d> in_stop(Vec3d point, Vec2d aim) const;
-  /// What places in the stop are small or large beside [m].
+  /// Returns the length by which positions in the stop are normalised: the stop's radius or, without a stop, 1e4 aim
+  /// steps [m].
   double in_stop_unit() const;
   StopSight stop_sight(Vec3d point) const;
   Vec2d paraxial_aim(Vec3d point) const;
   Ray<double> towards(Vec3d point, Vec2d aim) const;
   std::optional<Vec2d> chief_aim(Vec3d point) const;
-  /// The point of a plane whose chief ray ends at a pixel, by Newton's method for place and aim together, which follows
-  /// no chief ray on the way. @param place to start from
+  /// Finds the point of a plane whose chief ray meets a pixel by Newton's method in four unknowns (position in the
+  /// plane, position on the aim plane). Solves for no chief ray in between.
+  /// @param place  start value [m]
   std::optional<SeenPoint> find_place_and_aim(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
-  /// The same by Newton's method for the place alone, with the chief ray of every place on the way: slower, and sure
-  /// where a small change of the aim loses the ray, as in wide-angle lenses.
+  /// Like find_place_and_aim(), by damped Newton iterations over the position alone, with a chief ray found at each
+  /// iterate. Slower, but robust in wide-angle lenses, where a small change of the aim point loses the ray.
   std::optional<SeenPoint> find_place(Vec2d pixel, Pose<double> const& plane, Vec2d place) const;
-  /// Derivatives of the pixel that the chief ray of a point of a plane ends at.
+  /// Computes the derivatives of the pixel position of the chief ray by the position of its object point. The chief ray
+  /// continues to meet the same point of the stop.
+  /// @param aim  point of the chief ray on the aim plane [m]
+  /// @param seen  receives by_x and by_y at seen.place
+  /// @return false if a neighbouring ray is lost
   bool differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen) const;
   double place_step(Pose<double> const& plane) const;
 };

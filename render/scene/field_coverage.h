@@ -8,24 +8,26 @@
 
 namespace gladstone {
 
-/// How much of the view a field fills, at the depth of its own middle.
+/// Extent of a density field compared with the field of view, at the depth of the field's mid-plane.
 struct FieldCoverage {
-  Vec2d field{};     ///< width and height [m]; infinite where it has no end
-  Vec2d view{};      ///< that chief rays cross there [m]
-  double share = 0;  ///< of the view's area [1]
-  double ratio = 0;  ///< the field's width or height over the view's, whichever is larger [1]
+  Vec2d field{};     ///< width and height of the field [m]; infinite if unbounded
+  Vec2d view{};      ///< width and height of the view at that depth [m]
+  double share = 0;  ///< fraction of the view's area that the field covers [1]
+  double ratio = 0;  ///< field width or height over that of the view, whichever is larger [1]
 
-  /// A field that fills less than a tenth of the view, or reaches hundreds of times beyond it: what that looks like,
-  /// and what it would be if lengths were told in another unit. Empty for others.
+  /// Returns a warning if the field covers less than a tenth of the view or is more than 300 times wider, as happens if
+  /// lengths are given in the wrong unit; otherwise an empty text. The warning states the sizes and the size in another
+  /// unit.
   std::string warning() const;
 };
 
-/// @param box where the field is [m]
+/// Computes the coverage of the view by a field.
+/// @param box  bounds of the field [m]
 FieldCoverage field_coverage(Bounds<double> const& box, Setup const& setup);
 
-/// Warning if the view shows side faces of a file's field where n differs from the ambient by more than a fifth of its
-/// range (rms over a face): rays that pass the field by see a jump there. Exchanged axes are a likely cause. Empty for
-/// other fields.
+/// Returns a warning if the view shows side faces of a field read from a file at which n differs markedly from the
+/// ambient index: by more than a fifth of the field's range (rms over a face). Rays that miss the field see a jump
+/// there; swapped axes are a likely cause. Returns an empty text otherwise.
 std::string side_face_warning(BuiltMedium const& medium, Setup const& setup);
 
 }  // namespace gladstone

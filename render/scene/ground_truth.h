@@ -9,7 +9,7 @@
 
 namespace gladstone {
 
-/// Weighted sums of one dot's hits in one frame, about an origin near them so that no digits are lost.
+/// Weighted sums over the ray hits of one dot in one image, relative to a nearby origin to avoid loss of significance.
 template <class T>
 struct CentroidSum {
   T weight{};
@@ -17,6 +17,8 @@ struct CentroidSum {
   Vec2<T> second{};
   std::int64_t count = 0;
 
+  /// Adds a hit at p with weight w.
+  /// @param counts  whether the ray is included in `count`
   GLADSTONE_HD void add(Vec2<T> p, T w, bool counts) {
     weight += w;
     first += w * p;
@@ -40,66 +42,69 @@ struct CentroidSum {
   }
 };
 
-/// What a dot's truth was made from.
+/// Method by which the true displacement of a dot was computed.
 enum class TruthPath : int {
-  rays,   ///< the centroids of its rays
-  table,  ///< the integral of a deflection table over its cone, which its rays correct
+  rays,   ///< centroids of traced rays
+  table,  ///< integral of the deflection table over the light cone, corrected by traced rays
 };
 
-/// A dot's truth in numbers, on whichever device they were made.
+/// Results of a dot's rays from which its truth follows, on CPU or GPU.
 struct DotTruth {
-  Vec2d origin;  ///< that the sums' places count from [px]
+  Vec2d origin;  ///< position to which the sums are relative [px]
   CentroidSum<double> hits[2];
   Vec2d error;  ///< standard error of the displacement [px]
   TruthPath path = TruthPath::rays;
 };
 
-/// What a camera sees of particles beside GroundTruth, whose reference is the first pulse and whose flow the second.
+/// Truth of particles in addition to GroundTruth, whose reference is frame A and whose flow is frame B.
 struct ParticleTruth {
-  std::vector<Vec3d> second_m;                 ///< where they are at the second pulse [m]
-  std::vector<double> diameter_m;              ///< [m]
-  std::vector<Vec2d> reference_ambient_px;     ///< as GroundTruth::reference_px, without the medium
-  std::vector<Vec2d> displacement_ambient_px;  ///< as GroundTruth::displacement_px, without the medium
+  std::vector<Vec3d> second_m;                 ///< positions at the second pulse [m]
+  std::vector<double> diameter_m;              ///< particle diameters [m]
+  std::vector<Vec2d> reference_ambient_px;     ///< like GroundTruth::reference_px, without the medium
+  std::vector<Vec2d> displacement_ambient_px;  ///< like GroundTruth::displacement_px, without the medium
 };
 
-/// What a camera sees of every dot (ray truth), and what theory says of it; all in px, flow minus reference.
+/// True image positions and displacements of all dots or particles (by rays) and their theoretical displacements [px].
+/// Displacements are measurement image minus reference image (PIV: frame B minus frame A).
 struct GroundTruth {
   std::vector<Vec3d> position_m;
-  std::vector<Vec2d> reference_px;     ///< radiance-weighted centroid of the rays that pass the stop; NaN: none does
-  std::vector<Vec2d> displacement_px;  ///< flow centroid minus reference centroid
+  std::vector<Vec2d> reference_px;     ///< radiance-weighted centroid of the rays that pass the stop; NaN: none passes
+  std::vector<Vec2d> displacement_px;  ///< measurement centroid minus reference centroid
   std::vector<Vec2d> displacement_error_px;  ///< standard error of displacement_px; NaN: unknown (truth_error.h)
-  std::vector<Vec2d> displacement_std_px;    ///< weighted standard deviation of the flow hits
-  std::vector<Vec2d> flux;  ///< light in the reference (x) and the flow (y) frame [fully lit px]; of particles photons
-  std::vector<std::array<std::int64_t, 2>> rays;  ///< counted in each frame
-  std::vector<std::int64_t> rays_planned;         ///< that it was to have
-  std::vector<Vec2d> eq9_px;                      ///< Rajendran et al. eq. 9 along the chief ray, lever Z_D
-  std::vector<Vec2d> chief_px;                    ///< the same with each slice's own lever
-  std::vector<Vec2d> eq9_cone_px;                 ///< averaged over the disc and the stop's pupil, own levers
-  std::vector<TruthPath> path;                    ///< that displacement_px came by
-  ParticleTruth particles;                        ///< empty for dots
+  std::vector<Vec2d> displacement_std_px;    ///< weighted standard deviation of the hits in the measurement image
+  std::vector<Vec2d> flux;  ///< light in reference (x) and measurement image (y) [fully lit px; particles: photons]
+  std::vector<std::array<std::int64_t, 2>> rays;  ///< number of rays counted in each image
+  std::vector<std::int64_t> rays_planned;         ///< number of rays planned
+  std::vector<Vec2d> eq9_px;                      ///< small-angle theory (Eq. 9) along the chief ray, lever Z_D
+  std::vector<Vec2d> chief_px;                    ///< Eq. 9 along the chief ray, with the lever of each slice
+  std::vector<Vec2d> eq9_cone_px;  ///< aperture-averaged theory: mean over dot and pupil, levers of slices
+  std::vector<TruthPath> path;     ///< method that computed displacement_px
+  ParticleTruth particles;         ///< empty for dots
 
   std::size_t size() const { return position_m.size(); }
   void resize(std::size_t count);
-  /// Writes what another truth says of a source.
+  /// Copies all values of source `from` of another truth to source `to` of this one, except `particles`.
   void copy(GroundTruth const& other, std::size_t from, std::size_t to);
-  /// Writes what the rays of a dot say.
+  /// Stores the ray results of a dot.
+  /// @param light_per_weight  light per unit of ray weight
   void set_hits(std::size_t dot, DotTruth const& found, double light_per_weight);
 };
 
-/// What the standard errors of the dots' displacements come to.
+/// Statistics of the standard errors of the true displacements.
 struct TruthAccuracy {
-  double rms_px = 0;              ///< over dots and components whose error is known; NaN: none is
-  double largest_px = 0;          ///< of a component
-  std::size_t worst = 0;          ///< the dot that has it
-  std::size_t above = 0;          ///< dots with a component above the limit
-  std::size_t unknown = 0;        ///< dots that are seen, but by so few rays that their errors are not known
-  std::size_t by_table = 0;       ///< dots whose truth is the table's
-  std::size_t above_by_rays = 0;  ///< of those above the limit, the others
+  double rms_px = 0;              ///< rms over dots and components with a known error [px]; NaN: none is known
+  double largest_px = 0;          ///< largest error of any component [px]
+  std::size_t worst = 0;          ///< index of the dot with the largest error
+  std::size_t above = 0;          ///< number of dots with a component above the limit
+  std::size_t unknown = 0;        ///< number of visible dots whose error is unknown because too few rays passed
+  std::size_t by_table = 0;       ///< number of dots whose truth is from the deflection table
+  std::size_t above_by_rays = 0;  ///< number of dots above the limit whose truth is from rays alone
 };
-/// @param limit_px of a component
+/// Computes the statistics of a truth's standard errors.
+/// @param limit_px  limit of the error of a component [px]
 TruthAccuracy truth_accuracy(GroundTruth const& truth, double limit_px);
 
-/// Counts of rays by RayStatus in each frame.
+/// Number of rays for each RayStatus, for each of the two images.
 using StatusCounts = std::array<std::array<std::int64_t, ray_status_count>, 2>;
 
 }  // namespace gladstone

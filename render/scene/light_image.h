@@ -10,7 +10,8 @@
 
 namespace gladstone {
 
-/// An image in the making: 64-bit fixed point, added to from many threads in any order.
+/// Image accumulator in 64-bit fixed point. Threads may add to it concurrently; the result does not depend on the
+/// order.
 class LightImage {
  public:
   LightImage(int columns, int rows)

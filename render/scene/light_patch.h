@@ -8,34 +8,37 @@
 
 namespace gladstone {
 
-/// A square piece of a frame in which one source's rays are gathered in double before they join the image.
+/// Square pixel buffer that accumulates the PSFs of one source's rays in double precision before they are added to the
+/// image.
 class LightPatch {
  public:
-  /// @param half pixels to each side that it is to have room for, should the spot's be fewer
+  /// @param half  minimum half width of the footprints that the buffer must hold, if larger than that of the PSF [px]
   explicit LightPatch(SpotView const& spot, int half = 0);
 
-  /// Adds one ray's spot of weight `weight` at p [px]; a spot beyond the patch first sends the patch to the image.
+  /// Adds the PSF of one ray with the given weight at p [px]. If it does not fit into the buffer, the buffer is flushed
+  /// first.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);
-  /// Adds what has been gathered to the image (if any) and clears the patch.
+  /// Adds the buffer to the image (unless null) and clears it.
   void flush(LightImage* image, double light_per_weight);
 
  protected:
   SpotView const& spot() const { return spot_; }
-  /// Pixels that a spot reaches to each side of its own.
+  /// Half width of a PSF's footprint, without its middle pixel [px].
   int half() const { return half_; }
-  /// From one row of the patch to the next.
+  /// Row length of the buffer [px].
   int side() const { return side_; }
-  /// Makes room for a spot and marks it as touched. @return the place of its first pixel
+  /// Makes room for a footprint and marks its pixels as used.
+  /// @return pointer to its first pixel
   double* reach(Footprint const& spot, LightImage* image, double light_per_weight);
 
  private:
   SpotView spot_;
   int half_;
   int side_;
-  int left_ = 0, top_ = 0;                                             // image position of the patch's corner
-  int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // touched part
+  int left_ = 0, top_ = 0;                                             // image position of the buffer's first pixel
+  int low_column_ = 0, high_column_ = 0, low_row_ = 0, high_row_ = 0;  // range of used pixels
   std::vector<double> light_;
-  std::vector<double> column_shares_, row_shares_;  ///< for shares()
+  std::vector<double> column_shares_, row_shares_;  ///< factors of the PSF along both axes
 };
 
 }  // namespace gladstone

@@ -8,24 +8,27 @@
 
 namespace gladstone {
 
-/// Particles that a PIV setup has in its volume at a time, on average. For per_pixel the volume's share that the camera
-/// sees is found by the chief rays of 16384 places in it, to about 0.1 %. @pre setup.piv, without a file of particles
+/// Returns the mean number of particles in the volume of a PIV setup.
+/// For per_pixel, the fraction of the volume that the camera sees is estimated from the chief rays of 16384 points, to
+/// about 0.1 %.
+/// @pre setup.piv, and the particles are not read from a file
 double particle_count(Setup const& setup);
 
-/// Memory that the particles of a setup take, and the key of [particles] that says how many.
+/// Returns the memory that a setup's particles need, with the key of [particles] that sets their number.
 MemoryNeed particle_memory(Setup const& setup);
 
-/// Puts particles, their scattering and the unit of light into a scene whose camera stands.
-/// @throws DataError where no particle is lit
+/// Adds particles, their scattering properties and the unit of light to a scene whose camera has been built.
+/// @throws DataError if no particle is illuminated
 void add_particles(Scene& scene);
 
-/// What a particle sends through the lens, by its light into the middle of the lens.
+/// Light that a particle sends through the lens, approximated by its intensity in the direction of the lens' centre.
 class LightThroughLens {
  public:
-  /// The scene must outlive it. @param light as it scatters the laser's, or alike into all directions
+  /// @param scene  must outlive this object
+  /// @param light  scattering of the laser light, or an equal intensity in all directions
   explicit LightThroughLens(Scene const& scene, ParticleLight light = ParticleLight::scattered);
 
-  /// Photons through the lens from a place [m], over those per area that light the particle there [m^2].
+  /// Returns the photons through the lens from a position [m] per incident photon fluence at the particle [m^2].
   double operator()(Vec3d place, std::size_t particle, int pulse) const;
 
  private:
@@ -37,37 +40,40 @@ class LightThroughLens {
   MieScatteringView<double> mie_;
 };
 
-/// Photons that a particle sends through the lens at a pulse.
+/// Returns the number of photons that a particle sends through the lens at a pulse.
 double photons_through_lens(Scene const& scene, std::size_t particle, int pulse);
 
-/// Photons through the lens from the one of these particles that sends most; 0 where none is lit.
+/// Returns the largest number of photons that any of the particles sends through the lens; 0 if none is illuminated.
 double brightest_photons(Scene const& scene, Particles const& particles, ParticleLight light);
 
-/// Photons that light of 1 stands for in pictures of these particles: scene.photon_unit of what the laser lights. Equal
-/// light is brighter by what a sphere is smaller than a square metre, 1e12 and more, which the pictures' fixed point
-/// does not hold: it has a unit of its own, the brightest of these particles.
+/// Returns the number of photons that corresponds to a light of 1 in images of the particles.
+/// For scattered laser light this is scene.photon_unit. Light that is equal in all directions is stronger by the ratio
+/// of a square metre to the scattering cross-section, 1e12 or more, which exceeds the range of the fixed-point images;
+/// its unit is therefore the brightest of the particles.
 double photon_unit(Scene const& scene, Particles const& particles, ParticleLight light);
 
-/// Most electrons that light of 1 can set free: its photons times the quantum efficiency, where the sensor has noise.
-/// Infinite without noise, whose full well is only the scale of grey levels, and for BOS, whose light has no photons.
+/// Returns the number of electrons that a light of 1 generates: its photons times the quantum efficiency. This limits
+/// the exposure if the sensor has noise. Returns infinity without noise, where the full well only scales the grey
+/// levels, and for BOS, whose light is not counted in photons.
 double photon_limited_exposure(Scene const& scene);
 
-/// Displacements that correlation resolves at best; smaller ones are warned of [px].
+/// Smallest displacement that correlation resolves at best; smaller displacements cause a warning [px].
 inline constexpr double measurable_displacement_px = 0.01;
 
-/// What the warnings of a PIV case rest on.
+/// Particle counts from which the warnings of a PIV case are derived.
 struct ParticleCensus {
-  std::size_t lit[2] = {0, 0};  ///< particles in volume and sheet at either pulse
-  std::size_t in_view = 0;      ///< of the first pulse's, whose chief ray meets the sensor
-  std::size_t paired = 0;       ///< of those in view, lit at the second pulse too, by a tenth as much or more
-  double largest_px = 0;        ///< displacement of the images of those in view, without medium [px]
+  std::size_t lit[2] = {0, 0};  ///< number of illuminated particles at each pulse
+  std::size_t in_view = 0;      ///< number of those at the first pulse whose chief ray meets the sensor
+  std::size_t paired = 0;       ///< number of those in view with at least a tenth of the light at the second pulse
+  double largest_px = 0;        ///< largest image displacement of those in view, without medium [px]
 };
 ParticleCensus count_particles(Scene const& scene);
 
-/// Warnings of particles that nothing can be measured by, in words.
+/// Returns warnings for particles or flows that prevent a measurement.
 std::vector<std::string> warnings_of_particles(Scene const& scene);
 
-/// Checks of a PIV setup that go beyond single keys: what scatters nothing, a sheet beside the volume.
+/// Checks a PIV setup across keys: particles that scatter no light, a laser sheet outside the volume, windows,
+/// wavelengths.
 void cross_check_particles(Setup const& setup, SetupTable root, std::vector<std::string>& warnings);
 
 }  // namespace gladstone

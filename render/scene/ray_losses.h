@@ -8,29 +8,29 @@
 #include "render/scene/ray_hit.h"
 #include "render/scene/scene.h"
 
-/// Where the rays of a scene's sources end that do not reach its sensor's plane, by a sample of them: renderers count
-/// rays by cause alone.
+/// Diagnosis of ray losses: the elements at which a sample of a scene's rays is blocked or lost. Renderers count lost
+/// rays by cause only.
 namespace gladstone {
 
-/// Rays that ended at one place for one cause.
+/// Fraction of rays lost at one element for one cause.
 struct RaysLostAt {
-  std::string place;  ///< "surface 3" of a prescription, counted from 1 as `gladstone info lens` counts, "stop", "thin
-                      ///< lens", "window 1, first face", "lenslets", "medium", "sensor"
+  std::string place;  ///< "surface 3" of a prescription (counted from 1, as in `gladstone info lens`), "stop", "thin
+                      ///< lens", "window 1, first face", "lenslets", "medium" or "sensor"
   RayStatus cause;
-  std::array<double, frame_count> share;  ///< of all that were sent, in each frame [1]
+  std::array<double, frame_count> share;  ///< fraction of all rays sent, for each image [1]
 };
 
-/// A sample of a scene's rays.
+/// Result of sample_ray_losses().
 struct RayLosses {
-  std::size_t sources = 0;       ///< that were looked at, spread over those in view
-  std::size_t rays = 0;          ///< of each
-  std::vector<RaysLostAt> lost;  ///< in the order that light meets the places
+  std::size_t sources = 0;       ///< number of sampled sources, spread evenly over those in view
+  std::size_t rays = 0;          ///< number of rays per source
+  std::vector<RaysLostAt> lost;  ///< losses in the order of the light path
 };
 
-/// Follows rays from the middles of up to 32 sources in view, 256 of each, which fill what the source sees of the stop
-/// without the medium: all of them would pass, were it not for other edges, what lies beside an aberrated pupil's rim,
-/// and the medium, which bends some past the stop (and others, not sent here, into it). Of a camera without a stop one
-/// ray of each.
+/// Traces 256 rays from the centre of each of up to 32 sources in view and records where they are lost.
+/// The rays fill the entrance pupil as seen from the source without medium. Rays are lost at other apertures, outside
+/// the edge of an aberrated pupil, and where the medium deflects them past the stop; rays that the medium deflects into
+/// the stop are not sampled. A camera without a stop has one ray per source.
 RayLosses sample_ray_losses(Scene const& scene);
 
 }  // namespace gladstone

@@ -12,112 +12,111 @@
 
 namespace gladstone {
 
-/// How the step was chosen.
+/// Integration step and the error estimate that led to it.
 struct StepPlan {
-  double step_mm = 0;    ///< [mm], the number that a setup file holds
-  double change_px = 0;  ///< largest change of a dot's displacement when the step is halved
-  std::size_t limiting_dot = 0;
-  double largest_shift = 0;  ///< on the lens plane, of the probing rays [m]
+  double step_mm = 0;            ///< step as a setup file states it [mm]
+  double change_px = 0;          ///< largest change of a dot's displacement when the step is halved [px]
+  std::size_t limiting_dot = 0;  ///< dot with the largest change
+  double largest_shift = 0;      ///< largest deflection of the probe rays on the lens plane [m]
 };
 
-/// What "auto" asks of truth [px] and of images [grey levels].
+/// Accuracy required of "auto" ray numbers: true displacements [px] and images [grey levels].
 inline constexpr double truth_tolerance_px = 1e-3;
 inline constexpr double image_tolerance_levels = 0.5;
 
-/// Processor time that the rays of a source may take where they are chosen by its need [s]: a minute for the 5000 dots
-/// of 512 x 512 px. Of a source and not of a scene, so that none has the fewer rays for the others. 1024 rays are
-/// always allowed, 65,536 at most.
+/// Maximum processor time for the rays of one source with an adaptive ray number [s]: one minute for the 5000 dots of
+/// 512 x 512 px. The limit applies per source, so that the ray number of a source does not depend on the others. The
+/// resulting maximum is between 1024 and 65,536 rays.
 inline constexpr double source_budget_s = 0.012;
 
-/// What nothing tells of a plan.
+/// NaN: not measured.
 inline constexpr double not_told = std::numeric_limits<double>::quiet_NaN();
 
-/// Errors over their tolerances, whichever is larger; 0 for one that is not known.
+/// Returns the larger of the two errors in units of their tolerances; errors that were not measured count as 0.
 inline double excess_of(double truth_px, double image_levels) {
   return std::fmax(std::fmax(0.0, truth_px / truth_tolerance_px), image_levels / image_tolerance_levels);
 }
 
-/// What rays alone leave of the dots at side faces (side_faces.h), as RaysPlan says it of all.
+/// Measured errors of dots at side faces of the medium (side_faces.h), which are rendered by rays alone; cf. RaysPlan.
 struct SideFaceErrors {
-  std::size_t dots = 0;    ///< there are
-  std::uint64_t rays = 0;  ///< of each
+  std::size_t dots = 0;    ///< number of such dots
+  std::uint64_t rays = 0;  ///< rays per dot
   double truth_error_px = not_told, image_error_levels = not_told;
   double rays_wanted = not_told;
 
   double excess() const { return excess_of(truth_error_px, image_error_levels); }
 };
 
-/// How the number of rays was chosen.
+/// Number of rays per source and the measured errors that led to it.
 struct RaysPlan {
-  RenderMethod method = RenderMethod::automatic;  ///< that "auto" chose by these errors; else what the scene says
-  std::uint64_t rays = 0;                ///< of every source; where each takes what it needs, the most of the sample's
-  std::uint64_t most = 0;                ///< that a source may take of what it needs; 0: all have `rays`
-  std::optional<RaysByNeed> by_need;     ///< of the sources that take what they need
-  std::uint64_t rays_at_side_faces = 0;  ///< of dots there (side_faces.h), the most of one; 0: as many
-  int fineness = 1;                      ///< as the scene's
-  double truth_error_px = not_told;      ///< of displacements, rms over dots, components and scramblings; NaN: none was
-                                         ///< measured, or of no dot a ray got through
-  double image_error_levels = not_told;  ///< rms over lit pixels of the worse frame, in grey levels of `bits`; NaN:
-                                         ///< none was measured, or none was lit
-  double truth_resolution_px =
-      0;  ///< two standard errors where the table leaves nothing: a smaller one is not told from none
-  double image_resolution_levels = 0;  ///< likewise
-  int bits = 0;
-  bool extrapolated = false;  ///< the errors were measured up to 4096 rays and extrapolated from there
-  bool converged = true;      ///< false: the errors are larger than is asked
-  double rays_wanted =
-      not_told;               ///< of a source, that would do, as far as can be told; NaN: nothing tells, or none would
-  double seconds = not_told;  ///< of processor time that a rendering will take, by ray_seconds()
+  RenderMethod method = RenderMethod::automatic;  ///< renderer chosen by "auto" from the errors, or the configured one
+  std::uint64_t rays = 0;                ///< rays per source; if adaptive, the largest number among the sampled sources
+  std::uint64_t most = 0;                ///< maximum number of rays per source if adaptive; 0: all sources have `rays`
+  std::optional<RaysByNeed> by_need;     ///< criteria of the adaptive ray number; empty: not adaptive
+  std::uint64_t rays_at_side_faces = 0;  ///< maximum number of rays of dots at side faces (side_faces.h); 0: as others
+  int fineness = 1;                      ///< as Scene::fineness
+  double truth_error_px = not_told;      ///< rms error of displacements [px]; NaN: not measured, or no ray passed
+  double image_error_levels =
+      not_told;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: not measured or none lit
+  double truth_resolution_px = 0;      ///< detection limit of truth_error_px: two standard errors at zero error [px]
+  double image_resolution_levels = 0;  ///< detection limit of image_error_levels, likewise [grey levels]
+  int bits = 0;                        ///< bit depth of the grey levels
+  bool extrapolated = false;           ///< the errors were measured with up to 4096 rays and extrapolated
+  bool converged = true;               ///< false: the errors exceed the tolerances
+  double rays_wanted = not_told;       ///< estimated rays per source that meet the tolerances; NaN: unknown or none
+  double seconds = not_told;           ///< estimated processor time of a rendering by ray_seconds() [s]
 
-  std::optional<SideFaceErrors> side_faces;  ///< of the fast renderer; none: no dot in view lies there
+  std::optional<SideFaceErrors> side_faces;  ///< for the fast renderer; empty: no dot in view is at a side face
 
-  /// Of the errors, or of what could be told of them where that is larger.
+  /// Returns the larger of errors and resolutions in units of the tolerances.
   double excess() const {
     return excess_of(std::fmax(truth_error_px, truth_resolution_px),
                      std::fmax(image_error_levels, image_resolution_levels));
   }
 };
 
-/// Processor time that a rendering of the scene takes for one ray of a source in both frames [s]: a count of steps and
-/// of pixels lit times what each took on the processor of docs/benchmarks.md. Not a clock's, so that a plan is the same
-/// anywhere.
+/// Estimates the processor time per ray of one source, traced in both images [s].
+/// Integration steps, lit pixels and lens surfaces are counted and multiplied by times measured on the processor of
+/// docs/benchmarks.md. No clock is read, so the estimate, and hence the ray number, is the same on any machine.
 double ray_seconds(Scene const& scene);
-/// The same for one ray of every source.
+/// Estimates the processor time for one ray of every source [s].
 double rays_seconds(Scene const& scene);
 
-/// The most rays that a source may take of what it needs: a power of two.
+/// Returns the maximum number of rays per source for adaptive ray numbers: a power of two from 1024 to 65,536.
 std::uint64_t most_rays_of_source(Scene const& scene);
 
-/// Displacements of dots by shared rays, and how far the lens plane sees them bent at most.
+/// Displacements of dots by a common set of rays, and their largest deflections on the lens plane.
 struct Probe {
   std::vector<Vec2d> displacement_px;
-  std::vector<double> shift;  ///< [m]
+  std::vector<double> shift;  ///< largest deflection of each dot's rays on the lens plane [m]
 
   double largest_shift() const;
 };
-/// How far each dot moves from one probe to the other [px].
+/// Returns the difference of each dot's displacement between two probes [px].
 std::vector<double> changes(Probe const& coarse, Probe const& fine);
 
-/// What tells how good a step is.
+/// Probes by which the accuracy of a step is measured.
 struct StepProbes {
-  std::vector<std::size_t> dots;  ///< that are probed
-  double largest_shift = 0;       ///< of rays beside these [m]
+  std::vector<std::size_t> dots;  ///< dots that `at` probes
+  double largest_shift = 0;       ///< largest deflection of rays of other dots on the lens plane [m]
+  /// traces the probes with a given step [m]
   std::function<Probe(double step)> at;
 };
-/// Dots that are probed by all rays, of a target with more: those with the largest values.
+/// Maximum number of dots that are probed with all rays. For larger targets, those with the largest values are chosen.
 inline constexpr std::size_t probed_dots = 256;
 std::vector<std::size_t> largest_of(std::vector<double> const& value);
 
-/// Chooses the step such that halving it changes no dot's displacement by 1e-4 px; starts from medium.coarsest_step,
-/// never above it. With a step in the setup that one is used, and measured likewise. use_step() is left to the caller.
-/// @param prepare makes probes for the first step and hands them to the search
+/// Chooses the integration step such that halving it changes no dot's displacement by more than 1e-4 px.
+/// The search starts at medium.coarsest_step and halves it up to 12 times. A step given in the setup is used unchanged,
+/// and its error is measured. Does not change the scene; see use_step().
+/// @param prepare  creates the probes for the first step and passes them to its second argument, which runs the search
 StepPlan choose_step(Scene const& scene,
                      std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare);
 
 /// Sets scene.step and scene.pupil_margin.
 void use_step(Scene& scene, StepPlan const& plan);
 
-/// The plan of a setup that says how many rays; nothing where that is to be chosen.
+/// Returns the plan of a setup with a given number of rays; nullopt for "auto".
 std::optional<RaysPlan> given_rays(Setup const& setup);
 
 /// Sets scene.rays_per_dot, by_need and rays_at_side_faces.

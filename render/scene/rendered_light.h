@@ -8,33 +8,33 @@
 
 namespace gladstone {
 
-/// Two frames as light per pixel, in fully lit pixels on the axis; noise-free, not rounded.
+/// Light of two images per pixel, in units of a fully lit pixel on the axis; noise-free and not rounded.
 struct LightPair {
   Image<double> reference;
   Image<double> flow;
 };
 
-/// What a camera records of both frames.
+/// Two images as recorded by a camera.
 struct RecordedFrames {
-  std::shared_ptr<FramePair const> levels;  ///< whole grey levels
-  std::size_t saturated_reference = 0;      ///< pixels at full well or full scale
+  std::shared_ptr<FramePair const> levels;  ///< integer grey levels
+  std::size_t saturated_reference = 0;      ///< number of pixels at full well or full scale
   std::size_t saturated_flow = 0;
 };
 
-/// The light of a rendering where the renderer has made it; what cameras make of it stays there, too.
+/// Light of a rendering in the memory of the device that rendered it. Recorded images remain on that device, too.
 class RenderedLight {
  public:
   virtual ~RenderedLight() = default;
   virtual LightPair to_host() const = 0;
   /// Light of the brightest pixel of both frames.
   virtual double brightest() const = 0;
-  /// As Detector::record, the two frames with a noise of their own each.
+  /// Like Detector::record, with independent noise in the two images.
   virtual RecordedFrames record(Detector const& detector) const = 0;
-  /// As Detector::ideal.
+  /// Like Detector::ideal.
   virtual std::unique_ptr<FramePair const> ideal(Detector const& detector) const = 0;
 };
 
-/// Light in the host's memory.
+/// Light in host memory.
 class HostLight final : public RenderedLight {
  public:
   explicit HostLight(LightPair light) : light_(std::move(light)) {}

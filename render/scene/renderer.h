@@ -11,65 +11,66 @@
 
 namespace gladstone {
 
-/// Whether truth had a deflection table, and why not.
+/// Whether a deflection table was built for the truth, and the reason if not.
 enum class TableState {
-  made,
-  no_medium,        ///< nothing bends rays
-  no_sources,       ///< there is nothing to see
-  field_too_small,  ///< it hardly reaches beyond the cones, if at all
-  field_too_fine,   ///< the table would take too many rays
-  by_rays,          ///< the general renderer knows none, nor does a formula
-  dots_too_wide,    ///< their cones change too much from place to place of a dot
+  made,             ///< a table was built
+  no_medium,        ///< no medium deflects rays
+  no_sources,       ///< no dots in the scene
+  field_too_small,  ///< the field extends hardly beyond the light cones
+  field_too_fine,   ///< the table would need too many rays
+  by_rays,          ///< rendered ray by ray or by formula, which use no table
+  dots_too_wide,    ///< the light cone varies too much over the area of a dot
 };
-/// As the end of the sentence "there is no deflection table: ..."; empty where there is one.
+/// Returns the reason as the end of the sentence "there is no deflection table: ..."; empty if there is a table.
 char const* to_string(TableState state);
 
-/// What tracing a scene gives.
+/// Result of rendering a scene.
 struct Rendering {
-  LightPair light;                                ///< empty where no images were asked for, or where they stay in place
-  std::shared_ptr<RenderedLight const> in_place;  ///< with RenderImages::in_place alone
+  LightPair light;                                ///< empty if images were not requested or remain on the device
+  std::shared_ptr<RenderedLight const> in_place;  ///< light on the device; only with RenderImages::in_place
   GroundTruth truth;
   StatusCounts statuses{};
-  std::int64_t rays = 0;                      ///< traced, both frames
-  std::vector<std::size_t> left;              ///< sources that are another renderer's: without truth or light here
-  TableState table = TableState::no_sources;  ///< whether truth had a deflection table
+  std::int64_t rays = 0;          ///< number of rays traced, both images together
+  std::vector<std::size_t> left;  ///< fallback dots: to be rendered by another renderer, without truth or light here
+  TableState table = TableState::no_sources;  ///< whether a deflection table was built
   RenderMethod method = RenderMethod::focused_dots;
-  std::string device;  ///< that rendered it; empty: the renderer's own
+  std::string device;  ///< device that rendered it; empty: that of the renderer
 };
 
-/// Whether a rendering has images: in the host's memory, or where the renderer makes them.
+/// Whether images are rendered, and whether they remain in the memory of the renderer's device.
 enum class RenderImages { yes, no, in_place };
 enum class RenderTheory { yes, no };
-/// Light of particles: as they scatter the laser's, or alike into all directions, for virtual ones: a photon per
-/// steradian for each that lights a square metre.
+/// Light of particles: scattered laser light, or an equal intensity in all directions for virtual particles (one photon
+/// per steradian for a fluence of one photon per square metre).
 enum class ParticleLight { scattered, equal };
 
-/// Traces scenes, on whichever device.
+/// Renders scenes on one device.
 class Renderer {
  public:
   virtual ~Renderer() = default;
   virtual std::string device() const = 0;
 
-  /// Traces `sources` (the scene's dots, or virtual ones) through a planned scene.
+  /// Renders `sources` (the scene's dots or virtual ones) of a scene whose step and ray numbers are planned.
   virtual Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) = 0;
 
-  /// Traces particles (the scene's own, or virtual ones) through a planned scene of PIV, the medium before both frames.
-  /// @throws DeviceError where this device renders none
+  /// Renders particles (the scene's own or virtual ones) of a planned PIV scene, with the medium in both frames.
+  /// @throws DeviceError if this renderer does not support particles
   virtual Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
                                      RenderImages images);
 };
 
-/// One try at tracing a scene.
+/// One attempt at rendering a scene. It is repeated with a larger deflection table if a dot needs one.
 struct TracingPass {
   Rendering rendering;
-  double farthest_aim = 0;  ///< from the axis, that a dot was aimed at in the pupil [m]
+  double farthest_aim = 0;  ///< largest distance of any aim point from the axis in the pupil [m]
 
-  /// Places the dots, each with its number of rays; the rest is for the device to fill in.
+  /// Initialises positions and ray numbers of the dots. The renderer fills in the other results.
   TracingPass(Scene const& scene, DotPattern const& sources);
-  /// Enters a dot that the renderer chose the rays of. Dots may be entered at the same time.
-  /// @param left to another renderer: not seen here
+  /// Stores the result of a dot. Threads may store different dots concurrently.
+  /// @param rays  number of rays that the renderer chose
+  /// @param left  true for a fallback dot, which has no truth here
   void enter(std::size_t dot, DotTruth const& truth, std::int64_t rays, bool left);
-  /// Counts the rays, and lists the dots that are left.
+  /// Sums up the rays and lists the fallback dots.
   Rendering finish();
 
  private:

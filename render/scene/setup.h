@@ -17,120 +17,119 @@
 
 namespace gladstone {
 
-/// e^-2 diameter of dot and particle images below which correlation locks to whole pixels [px].
+/// e^-2 diameter of dot and particle images below which correlation is biased towards whole pixels (peak locking) [px].
 inline constexpr double least_image_px = 2;
 
-/// That a ray may take across the medium: 10 nm each in 10 mm.
+/// Maximum number of integration steps per ray: 10 nm each in 10 mm.
 inline constexpr double most_steps = 1e6;
 
-/// Table [render] of a setup.
-/// Scalar that rays are traced in. Truth is double; single is the GPU's preview.
+/// Precision in which rays are traced. The truth requires double; single is a preview mode of the GPU.
 enum class Precision { double_precision, single };
 
-/// How images and truth are made.
+/// Method by which images and truth are computed.
 enum class RenderMethod {
-  automatic,     ///< focused_dots where it holds, formula for particles that have no other light, else rays
-  rays,          ///< ray by ray: any source, any camera
-  focused_dots,  ///< from tables, for flat dots in focus of an ideal thin lens
-  formula,       ///< particles as ideal images, without rays
+  automatic,     ///< focused_dots if valid; formula for particles with ideal images; else rays
+  rays,          ///< ray tracing: any source, any camera
+  focused_dots,  ///< deflection tables: flat dots in focus of an ideal thin lens
+  formula,       ///< ideal particle images, without rays
 };
 
+/// Table [render] of a setup.
 struct RenderSetup {
-  std::optional<std::uint64_t> rays_per_dot;  ///< empty: auto
+  std::optional<std::uint64_t> rays_per_dot;  ///< number of rays per dot; empty: auto
   PupilSampling sampling = PupilSampling::sobol;
   std::uint64_t seed = 1;
   Precision precision = Precision::double_precision;
   RenderMethod method = RenderMethod::automatic;
 };
 
-/// Particles in a laser sheet, and what moves them.
+/// Particles, laser sheet and flow of a PIV setup.
 struct PivSetup {
   ParticleSetup particles;
   LaserSetup laser;
   FlowSetup flow;
 };
 
-/// Everything that rendering a BOS pair, a PIV pair or a calibration needs, in SI.
+/// Complete description of a BOS pair, a PIV pair or a calibration, in SI.
 struct Setup {
   CameraSetup camera;
   LensSetup lens;
   MediumSetup medium;
   TargetSetup target;
-  std::vector<double> planes;   ///< Z of each that a calibration shows its target on [m]; empty: no calibration
-  std::optional<PivSetup> piv;  ///< there is no target then: "the dots' plane" is Z = 0
+  std::vector<double> planes;   ///< Z of the planes of a calibration target [m]; empty: no calibration
+  std::optional<PivSetup> piv;  ///< empty: BOS or calibration; in PIV, the "dots' plane" is Z = 0
   RenderSetup render;
   double z_a = 0.75;               ///< front principal plane to the medium's mid-plane, along the camera's axis [m]
-  std::optional<double> z_sensor;  ///< of the sensor on the Z axis, where it places the lens [m]
-  double z_d =
-      0.25;  ///< the medium's mid-plane to the dots, along Z [m]; 0 for PIV, and for a calibration: see plane_setup
-  std::optional<Pose<double>> pose;      ///< of the camera: see camera_pose(); empty: on the Z axis, looking along -Z
-  std::optional<LensletSetup> lenslets;  ///< a plenoptic camera's, which its lens is focused on
-  std::vector<WindowSetup> windows;      ///< in the order light meets them
-  std::vector<std::string> warnings;     ///< of what was read
-  int view_margin_px = 64;  ///< by which a target of default extent reaches beyond the view: the first pass's window
+  std::optional<double> z_sensor;  ///< position of a fixed sensor on the Z axis, from which the lens is placed [m]
+  double z_d = 0.25;  ///< mid-plane of the medium to the dots, along Z [m]; 0 for PIV and calibration (plane_setup)
+  std::optional<Pose<double>> pose;  ///< pose of the camera, see camera_pose(); empty: on the Z axis, looking along -Z
+  std::optional<LensletSetup> lenslets;  ///< lenslets of a plenoptic camera, in the image plane of its lens
+  std::vector<WindowSetup> windows;      ///< windows in the order of the light path
+  std::vector<std::string> warnings;     ///< warnings from reading the setup
+  int view_margin_px = 64;  ///< margin of a target of default extent beyond the view: first-pass window [px]
 
-  /// Of the front principal plane (of the first vertex, where a lens has no such plane): z along the light, x right and
-  /// y up as the camera sees them.
+  /// Returns the pose of the front principal plane (of the first vertex if the lens has no principal plane): z along
+  /// the light, x right and y up as the camera sees them.
   Pose<double> camera_pose() const { return pose ? *pose : Pose<double>{{0, 0, z_a}}; }
-  /// Front principal plane to the dots along the camera's axis [m].
+  /// Distance from the front principal plane to the dots along the camera's axis [m].
   double z_b() const { return z_a + z_d / camera_pose().z.z; }
-  /// Where the camera's axis meets the dots' plane [m].
+  /// Intersection of the camera's axis with the dots' plane [m].
   Vec2d axis_on_target() const;
-  /// Middle of the target on its plane: there, or as the setup says [m].
+  /// Centre of the target in its plane: as configured, or the intersection with the camera's axis [m].
   Vec2d target_centre() const;
-  /// By how much a target is to be larger than the view, since its middle lies elsewhere [m].
+  /// Returns the amount by which a target must be larger than the view because its centre is off the camera's axis [m].
   Vec2d beyond_view() const;
-  /// Whether the camera is an ideal thin lens on the Z axis with nothing before it, and its sensor square to it: what
-  /// closed forms describe.
+  /// Returns true for the set-up that closed forms describe: an ideal thin lens on the Z axis without windows, lenslets
+  /// or distortion, and a sensor perpendicular to the axis.
   bool on_bench() const {
     return !lens.prescription && !pose && windows.empty() && !camera.tilted() && !camera.distorted() && !lenslets;
   }
   bool calibration() const { return !planes.empty(); }
+  /// Distance from the front principal plane to the plane in focus [m].
   double focus_distance() const;
-  /// How far off the axis, in x or y, anything may lie that a lens is to see: ten times the way from the dots to it, 84
-  /// degrees [m].
+  /// Maximum distance of objects from the axis in x or y: ten times their distance from the lens, 84 degrees [m].
   double farthest_off_axis() const { return 10 * z_b(); }
-  /// Magnification and pupil about the axis; of prescriptions and through windows those of paraxial light, with the
-  /// sensor in the paraxial image.
+  /// Returns image distance, magnification and entrance pupil near the axis. For prescriptions and cameras behind
+  /// windows, these are paraxial values with the sensor in the paraxial image.
   ImagingGeometry imaging() const;
   double ambient_index() const { return 1 + medium.ambient_refractivity(); }
-  /// Width and height of the target, about target_centre() [m].
+  /// Width and height of the target, centred on target_centre() [m].
   Vec2d target_extent() const;
-  /// Diameter of a dot on the target [m]; from dot_diameter_px by pixel_size().
+  /// Diameter of a dot on the target, as configured or from dot_diameter_px [m].
   double dot_diameter() const;
-  /// N (1 + M) lambda, as image distance over pupil diameter times wavelength [px]; 0 for chief rays. Of a plenoptic
-  /// camera that of a lenslet: its distance from the sensor over its pitch, times wavelength.
+  /// Scale of diffraction, N (1 + M) lambda: image distance over pupil diameter times wavelength [px]; 0 for chief
+  /// rays. For a plenoptic camera, that of a lenslet: its distance from the sensor over its pitch, times wavelength.
   double spot_scale_px() const;
-  /// Diameter d_d of the diffraction spot that is drawn [px]: between the first zeros of the Airy pattern for "airy"
-  /// and for the Gaussian matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and
-  /// "seed_eq8" (pi times that, as the seed prints it); 0 without a spot.
+  /// Diameter d_d of the rendered diffraction PSF [px]: diameter of the first Airy zero for "airy" and for the Gaussian
+  /// matched to it; four standard deviations for "gaussian_first_zero" (2.44 N (1 + M) lambda) and "seed_eq8" (pi times
+  /// that, as printed in Eq. 8 of Rajendran et al. 2019); 0 without a PSF.
   double spot_diameter_px() const;
-  /// e^-2 diameter (four standard deviations) of the spot that is drawn; of "airy" that of the matched Gaussian [px].
+  /// e^-2 diameter (four standard deviations) of the rendered PSF; for "airy", that of the matched Gaussian [px].
   double spot_e2_diameter_px() const;
-  /// Diameter of the disc of confusion of a point in the dots' plane, on a sensor that is focused elsewhere [px].
+  /// Diameter of the circle of confusion of a point in the dots' plane for a camera that is focused elsewhere [px].
   double defocus_diameter_px() const;
-  /// The diameter of a dot's image, everywhere [px]: e^-2 diameters of the geometric image, the spot and the disc of
-  /// confusion, in quadrature (Adrian & Yao 1985; Olsen & Adrian 2000).
-  /// @param geometric_px diameter of the geometric image [px]
+  /// Diameter of a dot's image as used throughout: e^-2 diameters of the geometric image, the PSF and the circle of
+  /// confusion, added in quadrature (Adrian & Yao 1985; Olsen & Adrian 2000) [px].
+  /// @param geometric_px  diameter of the geometric image [px]
   double image_diameter_px(double geometric_px) const;
-  /// Diameter of the geometric image of a dot of the target [px].
+  /// Diameter of the geometric image of a target dot [px].
   double geometric_dot_px() const { return dot_diameter() / pixel_size(); }
-  /// Side of the square that is as large as what a pixel sees at the target's middle, by the chief rays there [m]: a
-  /// disc of that diameter has an image of a pixel's width, or, foreshortened, of the same area.
+  /// Side of the square whose area equals the part of the dots' plane that a pixel sees at the target's centre, by
+  /// chief rays [m]. A disc of that diameter has an image one pixel wide or, if foreshortened, of the same area.
   double pixel_size() const;
-  /// Area of the target that a pixel sees [m^2]; of a turned or tilted camera the mean over its picture.
+  /// Area of the target seen by a pixel [m^2]; for a posed or tilted camera, the mean over its image.
   double pixel_area() const;
-  /// Number of dots on the target, for kind = "dots".
+  /// Number of dots on the target, for kind = "dots" with a given number per window.
   double dot_count() const;
 };
 
-/// Reads the tables of a setup of BOS, PIV or calibration through the rooms' readers; what is due later is refused by
-/// name.
+/// Reads a setup of BOS, PIV or calibration from its tables. Unsupported keys and combinations are reported by name.
 Setup read_setup(SetupTable root);
 
-/// Cross-checks by physics: focus, planes, steps across the medium, field of view, dot size, dot coverage. Of files
-/// only the size of the field's grid is looked at. Problems go to the setup's document with their keys; warnings are
-/// returned.
+/// Checks the setup across tables: focus, planes, steps across the medium, field of view, dot size, dot coverage.
+/// Files are opened only to read the size of the field's grid. Problems are recorded at their keys in the setup's
+/// document.
+/// @return warnings
 std::vector<std::string> cross_check(Setup const& setup, SetupTable root);
 
 }  // namespace gladstone

@@ -7,31 +7,34 @@
 
 namespace gladstone {
 
-/// The parts of reading and of cross_check(); each puts its problems at their keys.
+/// Parts of read_setup() and cross_check(). Each records problems at the keys concerned.
 
-/// The table of the setup's one camera.
+/// Returns the table of the camera; records a problem if the setup has several cameras.
 SetupTable camera_table(SetupTable& root);
 
-/// A hint where a length in mm looks like one in metres; empty where it does not.
+/// Returns a hint if a length in mm was probably given in metres (below 2 mm); otherwise an empty text.
+/// @param length  length [m]
 std::string metres_hint(double length);
 
-/// Refuses dots or a lens inside the medium.
+/// Reports dots or a lens inside the medium.
 void cross_check_geometry(Setup const& setup, SetupTable geometry);
 
-/// Refuses windows within another thing, or out of the order that light meets them in, along the camera's axis.
+/// Reports windows that overlap another object or violate the order of the light path along the camera's axis.
 void cross_check_windows(Setup const& setup, SetupTable root);
 
-/// Warns of fields whose slab ends where they are still large.
+/// Warns if the thickness of the medium truncates a field that is still significant there.
 void cross_check_thickness(Setup const& setup, std::vector<std::string>& warnings);
 
-/// Refuses closed forms that make no medium of which a file would be accepted, and densities below zero, which no gas
-/// has. A uniform gradient has those somewhere whatever it is: there they are a warning, and optically linear beyond.
-/// @param of_field the key of the field's table: "field", or "second_field" where that stands in its place in `setup`
+/// Reports closed-form fields with impossible refractive indices, and negative densities.
+/// A uniform gradient reaches negative densities at some distance whatever its strength: inside the view this is only a
+/// warning.
+/// @param of_field  key of the field's table: "field", or "second_field" if `setup` contains the second field in its
+///   place
 void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,
                          std::string const& of_field = "field");
 
-/// Refuses what no ray would ever come to the end of: a step, or a length of the field, that is tiny beside the medium.
-/// A file that cannot be read is left to those who read it.
+/// Reports steps, or length scales of the field, that would require more than `most_steps` integration steps across the
+/// medium. A file that cannot be read is ignored; its reader reports it.
 void cross_check_steps(Setup const& setup, SetupTable medium, std::string const& of_field = "field");
 
 }  // namespace gladstone

@@ -2,9 +2,11 @@
 
 namespace gladstone {
 
-/// Refuses a medium that bends rays by more than 45 degrees on their way: no bench sees those, and the search for a
-/// pupil so wide that none is lost would not end.
-/// @param shift on the lens plane [m] @param z_b from the dots to the lens [m] @throws DataError
+/// Checks that the medium deflects no ray by more than 45 degrees before it reaches the lens: no real set-up does so,
+/// and the search for a sufficient pupil margin would not terminate.
+/// @param shift  deflection on the lens plane [m]
+/// @param z_b  distance from the dots to the lens [m]
+/// @throws DataError if shift > z_b
 void refuse_shift_beyond_any_bench(double shift, double z_b);
 
 }  // namespace gladstone

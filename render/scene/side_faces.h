@@ -7,9 +7,9 @@
 
 namespace gladstone {
 
-/// Sources of which some rays cross a side face of the medium or pass it by, others do not: their displacement jumps
-/// within the cone. Closed-form and periodic media have no side faces that a camera sees.
-/// @return their numbers, rising
+/// Returns the indices of the sources whose light cone partly crosses and partly misses the medium at its side faces,
+/// in ascending order. The displacement is discontinuous within such a cone.
+/// Closed-form and periodic media have no side faces inside the view.
 std::vector<std::size_t> sources_at_side_faces(Scene const& scene, DotPattern const& sources);
 
 }  // namespace gladstone

@@ -7,22 +7,25 @@
 
 namespace gladstone {
 
-/// Points of a unit disc (or square) with weights that integrate what a spot makes of a source to far below a grey
-/// level.
+/// Cubature rule over a source, a unit disc or square, that integrates the PSF over the source's area with an error far
+/// below a grey level.
 struct SourceCubature {
-  std::vector<Vec2d> points;    ///< offsets in units of the source's half size
-  std::vector<double> weights;  ///< sum 1
+  std::vector<Vec2d> points;    ///< points in units of the source's half size
+  std::vector<double> weights;  ///< weights of sum 1
 
-  /// Uniform over the unit disc: Gauss-Legendre in r^2 times equal angles, turned by half a step from ring to ring.
-  /// @param innermost,outermost points on a ring of radius zero and one; between them in proportion
+  /// Returns a rule for the uniform unit disc: Gauss-Legendre in r^2 times equally spaced angles, rotated by half a
+  /// step in every other ring.
+  /// @param radial  number of rings
+  /// @param innermost,outermost  number of points on a ring of radius 0 and 1; linear in between
   static SourceCubature disc(int radial, int innermost, int outermost);
-  /// Seven points, exact up to degree 5 over the unit disc (Radon 1948; Stroud 1971, S2: 5-1).
+  /// Returns Radon's seven-point rule, exact up to degree 5 over the unit disc (Radon 1948; Stroud 1971, S2: 5-1).
   static SourceCubature radon();
-  /// Uniform over the square from -1 to 1: Gauss-Legendre with `side` points in both directions.
+  /// Returns a Gauss-Legendre rule for the square [-1, 1]^2 with `side` points along each axis.
   static SourceCubature square(int side);
-  /// Disc as above; a spot that is wider than a twentieth of the disc is integrated to 1e-5 of the peak, a Table 1 dot
-  /// to 4e-7. Square: Gauss-Legendre in both directions. A point: itself.
-  /// @param half_size_px of the source's image; the finer the spot beside it, the more points
+  /// Returns a rule for a source's image; a point source has one node. For a disc and a PSF wider than a twentieth of
+  /// it, the error is 1e-5 of the peak; for a dot of Table 1 (Rajendran et al. 2019), 4e-7.
+  /// @param half_size_px  half size of the source's geometric image [px]
+  /// @param spot_px  standard deviation of the PSF [px]; a smaller one requires more points
   static SourceCubature make(SourceShape shape, double half_size_px, double spot_px);
 };
 

@@ -9,20 +9,20 @@ namespace gladstone {
 
 struct Scene;
 
-/// The spot that every ray leaves on the sensor; one model a launch.
+/// Point spread function of a ray on the sensor; the same for all rays of a rendering.
 struct SpotView {
   SpotModel model = SpotModel::none;
-  GaussianSpot<double> gaussian;  ///< for the three Gaussian models
-  AiryTable::View airy;           ///< for SpotModel::airy
+  GaussianSpot<double> gaussian;  ///< parameters of the three Gaussian models
+  AiryTable::View airy;           ///< table for SpotModel::airy
 
-  /// Pixels a ray's light reaches to each side of its own.
+  /// Number of pixels that the PSF covers on each side of its centre pixel.
   GLADSTONE_HD int half_width() const {
     if (model == SpotModel::none) return 0;
     return model == SpotModel::airy ? airy.half_width : gaussian.half_width();
   }
 };
 
-/// The spot of a scene's lens; an Airy table is built into `airy`, which must outlive the view.
+/// Returns the PSF of a scene's lens. An Airy table is built into `airy`, which must outlive the view.
 SpotView make_spot(Scene const& scene, std::optional<AiryTable>& airy);
 
 }  // namespace gladstone

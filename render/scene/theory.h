@@ -5,18 +5,19 @@
 
 namespace gladstone {
 
-/// Integrals along a straight ray through the medium, over z.
+/// Integrals over z along a straight ray through the medium.
 template <class T>
 struct GradientIntegral {
   T refractivity{};   ///< integral of (n - 1) dz [m]
   T depth{};          ///< integral of dz inside the medium [m]
   Vec2<T> plain{};    ///< integral of (dn/dx, dn/dy) dz [1]
-  Vec2<T> levered{};  ///< the same with each slice's own distance from the ray's start plane [m]
+  Vec2<T> levered{};  ///< integral of (dn/dx, dn/dy) z' dz, z' measured from the plane of the ray's start [m]
 };
 
-/// Calls visit(sample, s, ds) at the points of a quadrature along a straight ray through the medium: Gauss-Legendre
-/// panels of three points no longer than `step`; s is the way from the ray's start [m]. Outside the medium there is
-/// nothing.
+/// Calls visit(sample, s, ds) at the nodes of a composite Gauss-Legendre quadrature (three nodes per panel) along a
+/// straight ray. Only the part inside the medium is sampled.
+/// @param step  maximum length of a panel [m]
+/// @param visit  receives the index sample, the distance s from the ray's start [m] and the node's weight ds [m]
 template <class T, class Medium, class Visit>
 GLADSTONE_HD void along_field(Medium const& medium, Ray<T> const& start, T step, Visit&& visit) {
   using std::ceil;
@@ -35,8 +36,8 @@ GLADSTONE_HD void along_field(Medium const& medium, Ray<T> const& start, T step,
   }
 }
 
-/// Integrates grad n over z along an undeflected ray, as along_field().
-/// @param start the ray, from the target's plane; outside the medium there is no gradient
+/// Integrates the refractivity and the gradient of n over z along an undeflected ray by along_field().
+/// @param start  straight ray, starting in the target's plane
 template <class T, class Medium>
 GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T> const& start, T step) {
   GradientIntegral<T> sum;
@@ -51,9 +52,13 @@ GLADSTONE_HD GradientIntegral<T> integrate_gradient(Medium const& medium, Ray<T>
   return sum;
 }
 
-/// Displacement on the sensor that a deflection integral stands for [px]: dots appear displaced against grad n, and
-/// rows run downwards. Rajendran et al. eq. 9: M Z_D / (n_0 p) times the integral.
-/// @param magnification M; lever Z_D [m] with `plain` integrals, 1 with `levered` ones; n0 ambient index; pitch [m]
+/// Computes the displacement on the sensor from a deflection integral by small-angle theory [px]: M Z_D / (n_0 p) times
+/// the integral (Rajendran et al. 2019, Eq. 9). Dots appear displaced against grad n, and image rows run downwards.
+/// @param integral  member `plain` or `levered` of GradientIntegral
+/// @param lever  Z_D [m] with `plain`, 1 with `levered`
+/// @param magnification  M [1]
+/// @param n0  ambient index [1]
+/// @param pitch  pixel pitch p [m]
 template <class T>
 GLADSTONE_HD Vec2<T> theory_displacement(Vec2<T> integral, T lever, T magnification, T n0, T pitch) {
   T const scale = magnification * lever / (n0 * pitch);

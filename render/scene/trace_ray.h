@@ -10,19 +10,20 @@
 
 namespace gladstone {
 
-/// What a ray meets besides the medium, by value: a view that owns nothing.
+/// Optical elements and sensor on a ray's path: a non-owning view, passed by value.
 template <class T>
 struct CameraView {
   CameraElement<T> const* elements = nullptr;
-  int before_medium = 0;  ///< of them, those that light meets before it comes to the medium
+  int before_medium = 0;  ///< number of elements in front of the medium
   int count = 0;
   PosedSensor<T> sensor;
-  Pose<T> aim_plane;  ///< that rays are aimed at: tangent to the first surface of the lens
+  Pose<T> aim_plane;  ///< plane at which rays are aimed: tangent to the first surface of the lens
 };
 
-/// Carries N rays through elements [first, last), each while any of its light is left. They go side by side: a surface
-/// is one long chain of operations that wait for each other, and those of several rays fill each other's gaps.
-/// @param status of each; stays where nothing stops it
+/// Traces N rays through elements [first, last), as long as their weight is not zero.
+/// The rays are processed together: a surface is one long chain of dependent operations, and those of several rays
+/// overlap in the processor's pipeline.
+/// @param status  status of each ray; unchanged unless an element blocks the ray
 template <class T, int N>
 GLADSTONE_HD void carry(CameraView<T> const& camera, int first, int last, Ray<T> (&ray)[N], RayAccount<T> (&account)[N],
                         RayStatus (&status)[N]) {
@@ -37,7 +38,7 @@ GLADSTONE_HD void carry(CameraView<T> const& camera, int first, int last, Ray<T>
   }
 }
 
-/// The same for one.
+/// Traces one ray through elements [first, last).
 template <class T>
 GLADSTONE_HD RayStatus carry(CameraView<T> const& camera, int first, int last, Ray<T>& ray, RayAccount<T>& account) {
   RayStatus status = RayStatus::alive;
@@ -48,14 +49,15 @@ GLADSTONE_HD RayStatus carry(CameraView<T> const& camera, int first, int last, R
   return status;
 }
 
-/// The straight ray that goes on where a ray leaves the medium; the very one that came where nothing turned it.
+/// Returns the straight ray behind the medium; the incoming ray itself if it was not deflected.
 template <class T>
 GLADSTONE_HD Ray<T> outgoing_ray(Ray<T> const& start, MediumPassage<T> const& way) {
   if (!way.crossed || (way.turn == Vec3<T>{} && way.shift == Vec3<T>{})) return start;
   return {exit_position(start, way), exit_direction(start, way)};
 }
 
-/// From where rays leave the medium to the sensor's plane. @param status of each so far
+/// Traces rays from the medium through the remaining elements to the sensor's plane.
+/// @param status  status of each ray so far
 template <class T, int N>
 GLADSTONE_HD void finish_rays(CameraView<T> const& camera, Ray<T> (&ray)[N], RayAccount<T> (&account)[N],
                               RayStatus (&status)[N], RayHit<T> (&hit)[N]) {
@@ -80,9 +82,9 @@ GLADSTONE_HD void finish_rays(CameraView<T> const& camera, Ray<T> (&ray)[N], Ray
   }
 }
 
-/// N rays in one frame, side by side: through what stands before the medium, the medium, the camera, to the sensor.
-/// What the frame's medium is, its type says: NoMedium is the ambient. A view with a finish_rays() of its own decides
-/// where rays land.
+/// Traces N rays of one image together: elements in front of the medium, medium, remaining elements, sensor.
+/// The type of the medium is that of the image; NoMedium is the ambient. A View may define its own finish_rays() to
+/// determine where rays land.
 template <class View, class T, class Medium, int N>
 GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOptions<T> const& options,
                              Ray<T> const (&start)[N], T const (&weight)[N], RayHit<T> (&hit)[N]) {
@@ -109,7 +111,7 @@ GLADSTONE_HD void trace_rays(View const& camera, Medium const& medium, TracingOp
   finish_rays(camera, ray, account, status, hit);
 }
 
-/// The one per-ray function: one ray in one frame.
+/// Traces one ray of one image.
 template <class View, class T, class Medium>
 GLADSTONE_HD RayHit<T> trace_ray(View const& camera, Medium const& medium, TracingOptions<T> const& options,
                                  Ray<T> const& start, T weight) {

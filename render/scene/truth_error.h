@@ -3,10 +3,10 @@
 #include "render/scene/ground_truth.h"
 #include "render/scene/ray_hit.h"
 
-/// Standard errors of a source's displacement, from the scatter between the independent scramblings of its rays.
+/// Standard errors of a source's displacement, from the scatter between independent scramblings of its rays.
 namespace gladstone {
 
-/// What some of a source's rays come to.
+/// Sums over a subset of a source's rays, for both images.
 struct RaySums {
   CentroidSum<double> hits[frame_count];
 
@@ -16,23 +16,26 @@ struct RaySums {
   }
 };
 
-/// Student's quantile for `scramblings` - 1 degrees of freedom that 68.27 % lie within: widens an error that so few
-/// numbers tell.
+/// Returns Student's t quantile of the central 68.27 % interval for `scramblings` - 1 degrees of freedom, which widens
+/// a standard error estimated from so few values.
 GLADSTONE_HD inline double student_factor(int scramblings) {
   return scramblings >= 8 ? 1.077 : (scramblings >= 4 ? 1.197 : 1.837);
 }
-/// What makes the sum of the scramblings' squares the square of a standard error; infinite for a single one.
+/// Returns the factor from a sum of squared contributions of the scramblings to a squared standard error; infinite for
+/// one scrambling.
 GLADSTONE_HD inline double error2_factor(int scramblings) {
   double const factor = student_factor(scramblings);
   return factor * factor * scramblings / (scramblings - 1.0);
 }
 GLADSTONE_HD inline Vec2d squares_of(Vec2d v) { return {v.x * v.x, v.y * v.y}; }
 
-/// Square of the standard error of the difference of the rays' centroids, by component [px^2]. They are ratios of sums
-/// over groups, each linearised about the whole (Cochran, Sampling Techniques, 1977, section
-/// 6.3): a group moves a ratio by its own excess over the whole's. All of them together move it by nothing, so that the
-/// variance of the ratio is n / (n - 1) times the sum of the n groups' squares. NaN for a single group.
-/// @param of each scrambling @param all their sum
+/// Computes the squared standard error of the difference of two centroids, by component [px^2].
+/// A centroid is a ratio of sums over groups (scramblings), linearised about the total (Cochran, Sampling Techniques,
+/// 1977, section 6.3): each group contributes its deviation from the total ratio. The deviations sum to zero, so the
+/// variance is n / (n - 1) times the sum of their squares over the n groups, widened by student_factor(). NaN for a
+/// single group.
+/// @param of  sums of each scrambling
+/// @param all  sum over all scramblings
 template <class Sums>
 GLADSTONE_HD Vec2d displacement_error2(Sums const* of, int scramblings, Sums const& all) {
   CentroidSum<double> const &reference = all.hits[0], &flow = all.hits[1];

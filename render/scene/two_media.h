@@ -4,14 +4,16 @@
 
 namespace gladstone {
 
-/// The scene as its second pulse sees it: with its second medium as the only one. @pre scene.second_medium
+/// Returns the scene with its second medium as its only one, as seen by the second pulse.
+/// @pre scene.second_medium
 Scene at_second_pulse(Scene const& scene);
 
-/// Traces particles whose second pulse sees another medium: by any renderer, through either medium, of which the first
-/// gives the first pulse and the second the second. Both use the same random keys.
+/// Renders particles with a different medium at each pulse: renders each medium separately with the same random keys,
+/// and takes frame A from the first and frame B from the second.
 ///
-/// The places of a pulse in different media are not wrong by the same, as they nearly are in one. The standard error
-/// of a displacement is that of the scatter of `sampled` particles over four keys, the same for all.
+/// Errors of image positions in different media do not cancel in the displacement, as they nearly do in a single one.
+/// The standard error is estimated from the scatter of up to 256 particles over four random keys, and is the same for
+/// all particles. It is not estimated (0) if no images are rendered.
 /// @pre scene.second_medium
 Rendering render_in_two_media(Renderer& renderer, Scene& scene, Particles const& particles, ParticleLight light,
                               RenderImages images);
