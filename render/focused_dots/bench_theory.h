@@ -3,24 +3,25 @@
 #include "render/focused_dots/dot_model.h"
 #include "render/scene/theory.h"
 
-/// Eq. 9 for a thin lens on the Z axis: of one number, the magnification.
+/// Small-angle theory (Eq. 9) for a thin lens on the Z axis, for which the projection is a single magnification.
 namespace gladstone {
 
-/// What turns integrals along a dot's straight rays into theory; the same for all dots.
+/// Parameters that convert integrals along a dot's straight rays to theoretical displacements; the same for all dots.
 struct TheoryModel {
-  double step = 0;           ///< [m]
+  double step = 0;           ///< maximum panel length of the quadrature [m]
   double lever = 0;          ///< Z_D [m]
   double magnification = 0;  ///< M [1]
   double n0 = 1;             ///< ambient index [1]
-  double pitch = 0;          ///< [m]
+  double pitch = 0;          ///< pixel pitch [m]
 
-  /// @param with_lever of the integral [m]; 1 for levered ones @return [px]
+  /// @param with_lever  lever of the integral [m]; 1 for integrals that include the lever
+  /// @return displacement [px]
   GLADSTONE_HD Vec2d displacement(Vec2d integral, double with_lever) const {
     return theory_displacement(integral, with_lever, magnification, n0, pitch);
   }
 };
 
-/// A dot's average over disc and stop, by the rule over its cone.
+/// Weighted sums over a dot's area and the stop, for the aperture average.
 struct ConeSum {
   Vec2d levered{};
   double weight = 0;
@@ -32,14 +33,15 @@ struct ConeSum {
   }
 };
 
-/// What theory needs of one dot.
+/// Integrals from which the theoretical displacements of one dot follow.
 struct DotTheory {
-  GradientIntegral<double> along;  ///< its chief ray
+  GradientIntegral<double> along;  ///< integral along the chief ray
   ConeSum cone;
 };
 
-/// Integrates the gradient along a dot's chief ray and along the straight rays of its cone, the points of the rule at
-/// every place of the source, by a group of lanes. @return on lane 0 what it finds
+/// Integrates the gradient along a dot's chief ray and along the straight rays of its light cone, at the nodes of the
+/// cone rule for every point of the source rule, by a group of lanes.
+/// @return the integrals, valid on lane 0
 template <class Group, class Medium>
 GLADSTONE_HD DotTheory integrate_theory(Group const& group, DotModel const& model, TheoryModel const& theory,
                                         Medium const& medium, Vec2d centre) {
@@ -61,7 +63,7 @@ GLADSTONE_HD DotTheory integrate_theory(Group const& group, DotModel const& mode
   return found;
 }
 
-/// Writes what theory says of a dot.
+/// Stores the theoretical displacements of a dot.
 inline void set_theory(GroundTruth& truth, std::size_t dot, TheoryModel const& theory, DotTheory const& found) {
   truth.eq9_px[dot] = theory.displacement(found.along.plain, theory.lever);
   truth.chief_px[dot] = theory.displacement(found.along.levered, 1.0);

@@ -2,32 +2,34 @@
 
 #include "render/focused_dots/dot_model.h"
 
-/// A dot's rays and the integral over its cone, by a group of lanes (OneLane, or a device's).
+/// Ray tracing of a dot and the integral over its light cone, by a group of lanes (OneLane, or a device's).
 namespace gladstone {
 
-/// What is known of a dot once its rays are traced and its cone is integrated.
+/// Results of a dot after its rays are traced and its light cone is integrated.
 struct DotCone {
   DotKind kind = DotKind::left;
   Vec2d centre{}, aim{};
-  double light = 0;  ///< in the reference frame [fully lit px]
+  double light = 0;  ///< light in the reference image [fully lit px]
   TableCheck check;
   CheckErrors errors{};
-  Vec2d origin{};     ///< where the cone's displacements count from [px]
-  Extent extent;      ///< of displacements from there
-  MomentField field;  ///< of a narrow one
+  Vec2d origin{};     ///< mean displacement, to which the cone's displacements are relative [px]
+  Extent extent;      ///< range of displacements relative to `origin`
+  MomentField field;  ///< moments as a function of the position on the dot; only for DotKind::narrow
 };
 
-/// What a renderer enters.
+/// Results that a renderer stores.
 struct DotFound {
   DotTruth truth;
-  int rays = 0;       ///< traced
-  bool left = false;  ///< to another renderer
+  int rays = 0;       ///< number of rays traced
+  bool left = false;  ///< true for a fallback dot, to be rendered by another renderer
 };
 
-/// Aims at a dot, traces as many rays as it takes and compares them with the table.
-/// @param lanes with room for sums: check(ray) is this lane's sum for a ray, of_scramblings() all lanes' by scrambling,
-/// count(frame, status) counts a ray; `abreast` rays are traced side by side on a lane
-/// @param dot,found receive all but its light @return the aim
+/// Aims at a dot, traces an adaptive number of rays and compares them with the deflection table.
+/// @param lanes  group with storage for sums: check(ray) is the lane's sum for a ray, of_scramblings() the sums of all
+///   lanes by scrambling, count(frame, status) counts a ray; `abreast` rays are traced together on a lane
+/// @param dot  receives the results, except its light
+/// @param found  receives ray counts and the origin of the truth
+/// @return the aim
 template <class Lanes, class Medium>
 GLADSTONE_HD DotAim check_dot(Lanes& lanes, DotModel const& model, Medium const& medium, Vec2d centre, DotCone& dot,
                               DotFound& found) {
@@ -42,7 +44,7 @@ GLADSTONE_HD DotAim check_dot(Lanes& lanes, DotModel const& model, Medium const&
        enough = 2 * enough < model.most_rays ? 2 * enough : model.most_rays) {
     bool lost = false;
     for (int first = traced + abreast * lanes.lane(); first < enough; first += abreast * lanes.size()) {
-      lanes.poll();  // each of them may take a million steps
+      lanes.poll();  // A ray may have a million steps.
       Vec2d from[abreast], pupil[abreast];
       Deflection ray[abreast];
       for (int i = 0; i < abreast; ++i) {
@@ -103,17 +105,18 @@ GLADSTONE_HD inline CorrectedCone cone_of(DotModel const& model, DotCone const& 
           dot.check};
 }
 
-/// Integrals over a dot's cone, for all lanes of a group.
+/// Integrals over a dot's light cone, shared by the lanes of a group.
 struct ConeIntegral {
-  DisplacementMoments moments[PlaceRule::most_places];  ///< of the whole cone, at every place of the source
-  double without_medium[PlaceRule::most_places];
-  double* rims = nullptr;                  ///< [place][direction] of the rule: room from elsewhere
-  Extent extents[PlaceRule::most_places];  ///< of displacements
-  bool simple, sound, narrow;              ///< the stop's edge; the moments; their spread
+  DisplacementMoments moments[PlaceRule::most_places];  ///< moments of the whole cone at each point of the source rule
+  double without_medium[PlaceRule::most_places];        ///< sum of weights in the reference image
+  double* rims = nullptr;                  ///< [place][direction] radii at the edge of the stop [m]; external memory
+  Extent extents[PlaceRule::most_places];  ///< range of displacements
+  bool simple, sound, narrow;              ///< single-valued edge of the stop; finite moments; narrow spread
 };
 
-/// Moments of the whole cone at every place, a team a place, and what they say of its light.
-/// @param points [place][point] receives the rule's points, unless null
+/// Computes the moments of the whole cone at every point of the source rule, one team per point, and determines from
+/// them how its light is rendered.
+/// @param points  [place][point] receives the nodes of the rule, unless null
 template <class Group>
 GLADSTONE_HD void integrate_cone(Group const& group, DotModel const& model, CorrectedCone const& cone,
                                  ConeIntegral& whole, ConeLight* points) {
@@ -160,7 +163,7 @@ GLADSTONE_HD void integrate_cone(Group const& group, DotModel const& model, Corr
   group.sync();
 }
 
-/// Truth of a dot whose cone is integrated, and how its light goes.
+/// Computes the truth of a dot from the integrals over its cone and determines how its light is rendered.
 template <class Group>
 GLADSTONE_HD void conclude(Group const& group, DotModel const& model, Vec2d origin, ConeIntegral const& whole,
                            DotCone& dot, DotFound& found) {

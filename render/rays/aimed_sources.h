@@ -6,58 +6,57 @@
 
 namespace gladstone {
 
-/// Flat Lambertian sources of a target, as the general renderer takes sources: points in space with an intensity by
-/// direction. Every kind has place(), point(), intensity(), key(), middle(), reach(), area(); another is another
-/// such struct.
+/// Flat Lambertian sources of a target, in the form required by the general renderer: points in space with an angular
+/// intensity. A source type provides place(), point(), intensity(), key(), middle(), reach() and area().
 template <class T>
 struct LambertSources {
   SourcesView<T> dots;
 
-  /// A place of the unit disc, or of the square from -1 to 1; u and v are uniform in [0, 1).
+  /// Maps uniform random numbers u, v in [0, 1) to a position in the unit disc or the square [-1, 1]^2.
   GLADSTONE_HD Vec2<T> place(T u, T v) const {
     using std::sqrt;
     if (dots.shape == SourceShape::disc) return point_of_circle(sqrt(u), v);
     return {T(2) * u - T(1), T(2) * v - T(1)};
   }
-  /// The point of source i at such a place. Sources are symmetric about the middle: -place is as likely as place.
+  /// Returns the point of source i at such a position [m]. Sources are symmetric about the centre: -place is as likely
+  /// as place.
   GLADSTONE_HD Vec3<T> point(std::uint64_t i, Vec2<T> place) const {
     return {dots.centre[i].x + dots.half_size * place.x, dots.centre[i].y + dots.half_size * place.y, dots.plane_z};
   }
-  /// Light that it sends into a direction (unit length), per solid angle and area, relative to white paper seen
-  /// squarely.
+  /// Returns the intensity in a direction (unit vector) per area, relative to the normal radiance of white paper.
   GLADSTONE_HD T intensity(std::uint64_t i, Vec3<T> direction) const {
     return (dots.radiance ? dots.radiance[i] : T(1)) * (direction.z > T(0) ? direction.z : T(0));
   }
-  /// That its random numbers are keyed by.
+  /// Key of the source's random numbers.
   GLADSTONE_HD std::uint64_t key(std::uint64_t i) const { return key_of({dots.centre[i].x, dots.centre[i].y}); }
   GLADSTONE_HD Vec3<T> middle(std::uint64_t i) const { return {dots.centre[i].x, dots.centre[i].y, dots.plane_z}; }
-  /// Furthest that a point lies from the middle [m].
+  /// Maximum distance of a point of the source from its centre [m].
   GLADSTONE_HD T reach() const {
     return dots.shape == SourceShape::disc ? dots.half_size : T(1.4142136) * dots.half_size;
   }
-  /// [m^2]; 0: a point
+  /// Area of a source [m^2]; 0: point source.
   GLADSTONE_HD T area() const {
     return (dots.shape == SourceShape::disc ? T(3.14159265358979323846) : T(4)) * dots.half_size * dots.half_size;
   }
 };
 
-/// Where the rays of one source go, and which they are: what one source sees of the stop, widened.
+/// Target area of one source's rays: its view of the entrance pupil, enlarged by a margin.
 template <class T>
 struct AimedBundle {
-  Vec3<T> centre, a, b;  ///< rays are sent to centre + r (a cos + b sin), r up to 1 [m]
+  Vec3<T> centre, a, b;  ///< rays are sent to centre + r (a cos + b sin), 0 <= r <= 1 [m]
   Vec3<T> across;        ///< area of that ellipse times its normal [m^2]; a unit vector for chief rays
-  BundleView<T> choice;  ///< of the points; its pupil is not looked at
+  BundleView<T> choice;  ///< choice of sampling points; its pupil is not used
 };
 
-/// A ray as it leaves its source, and what it is worth: intensity times the solid angle of the whole aim disc, seen
-/// from its point. The mean over a source's rays is its light, per area, that goes through the disc.
+/// A ray at its source, and its weight: intensity times the solid angle of the whole target area as seen from the ray's
+/// start. The mean weight of a source's rays is its light per area through the target area.
 template <class T>
 struct AimedRay {
   Ray<T> ray;
   T weight{};
 };
 
-/// The ray from a place of source i to a point of the aim disc, which is a unit disc.
+/// Returns the ray from a position of source i to a point `at` of the unit disc that is mapped to the target area.
 template <class T, class Sources>
 GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i, Vec2<T> place,
                                 Vec2<T> at) {
@@ -71,11 +70,10 @@ GLADSTONE_HD AimedRay<T> ray_to(Sources const& sources, AimedBundle<T> const& bu
   return aimed;
 }
 
-/// Sends ray j of source i to the aim disc. cos^4 of plane pictures is in it and written nowhere.
+/// Returns ray j of source i. The cos^4 law of flat targets results from the geometry and is not applied explicitly.
 ///
-/// Rays of a scrambling come in pairs, to one point of the disc from opposite places of the source: what the stop takes
-/// of them in one frame and not in the other then moves the centroid by the source's middle, not by the scatter of
-/// places over it.
+/// Rays of a scrambling come in pairs with the same point of the pupil and opposite positions on the source. Where the
+/// stop blocks them in one image only, the centroid then changes by the source's centre instead of a random position.
 template <class T, class Sources>
 GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& bundle, std::uint64_t i,
                                  std::uint64_t j) {
@@ -88,10 +86,12 @@ GLADSTONE_HD AimedRay<T> aim_ray(Sources const& sources, AimedBundle<T> const& b
   return ray_to(sources, bundle, i, of_scrambling % 2 == 0 ? place : -place, point_of_circle(sqrt(u[0]), u[1]));
 }
 
-/// Enters what became of one ray in both frames: its ends are counted, its hits summed, its light laid down.
-/// @param origin that sums count from [px] @param hits of the ray's scrambling
-/// @param count called as (frame, status) @param deposit called as (frame, hit) where light arrives
-/// @return square of how far the medium moved it on the aim plane [m^2]; 0 where that is not known
+/// Adds the results of one ray in both images to status counts, centroid sums and light.
+/// @param origin  position to which the sums are relative [px]
+/// @param hits  sums of the ray's scrambling, for both images
+/// @param count  called as (frame, status)
+/// @param deposit  called as (frame, hit) if the ray arrives with weight
+/// @return squared deflection on the aim plane [m^2]; 0 if unknown
 template <class T, class Count, class Deposit>
 GLADSTONE_HD T enter_ray(RayHit<T> const& reference, RayHit<T> const& flow, Vec2<T> origin,
                          CentroidSum<T> (&hits)[frame_count], Count&& count, Deposit&& deposit) {

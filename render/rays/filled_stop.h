@@ -7,7 +7,7 @@
 #include "render/rays/aimed_sources.h"
 #include "render/scene/camera.h"
 
-// loops over rays stay loops on a device: each of their bodies holds a whole camera and a medium
+// Device code does not unroll loops over rays, since each loop body contains a whole camera and a medium.
 #if defined(__CUDA_ARCH__)
 #define GLADSTONE_RAY_BY_RAY _Pragma("unroll 1")
 #else
@@ -16,19 +16,19 @@
 
 namespace gladstone {
 
-/// How far the rim that rays are sent to may lie from the stop's, as a share of its radius: twice that is the most that
-/// the light of a source is wrong by, which is half a grey level of 12 bits.
+/// Tolerance of the edge of the filled disc, as a fraction of the stop's radius. The relative error of a source's light
+/// is at most twice that: half a grey level at 12 bits.
 inline constexpr double filled_to = 6e-5;
 
-/// A camera's stop as rays are sent to it: a view that owns nothing.
+/// Stop of a camera and the optics in front of it, as required to aim rays at it: a non-owning view.
 struct StopView {
-  CameraView<double> camera;  ///< its stop with a sharp rim
-  int stop = 0;               ///< of the elements
-  double radius = 0;          ///< of the stop [m]
-  Pose<double> pose;          ///< of the camera
-  double front = 0;           ///< first surface, along the camera's z [m]
-  double window_shift = 0;    ///< as ParaxialCamera's [m]
-  RayTransfer to_stop;        ///< from the first surface
+  CameraView<double> camera;  ///< camera; the edge of its stop must be sharp
+  int stop = 0;               ///< index of the stop among the camera's elements
+  double radius = 0;          ///< radius of the stop [m]
+  Pose<double> pose;          ///< pose of the camera
+  double front = 0;           ///< position of the first surface along the camera's z [m]
+  double window_shift = 0;    ///< as ParaxialCamera::window_shift [m]
+  RayTransfer to_stop;        ///< ray transfer from the first surface to the stop
 
   StopView() = default;
   explicit StopView(Camera const& of)
@@ -41,9 +41,9 @@ struct StopView {
         to_stop(of.paraxial.to_stop) {}
 };
 
-/// Sends the unit disc to the aim plane: centre + sum of a_m Re z^m + b_m Im z^m over m = 1, 2, 3, z = x + i y [m]. The
-/// first order makes an ellipse of it; the others bend that as a lens' aberrations bend its pupil. Harmonic polynomials
-/// follow the rim into the disc.
+/// Maps the unit disc to the entrance pupil on the aim plane: centre + sum over m = 1, 2, 3 of a_m Re z^m + b_m Im z^m
+/// with z = x + i y [m]. The first order is an ellipse; the higher ones are its deformation by pupil aberrations. Being
+/// harmonic, the polynomials are determined inside the disc by their values on the edge.
 struct AimMap {
   static constexpr int orders = 3;
 
@@ -58,7 +58,7 @@ struct AimMap {
     }
     return place;
   }
-  /// Area on the plane over that of the disc, about a place of it; negative where the map mirrors [m^2].
+  /// Returns the Jacobian determinant of the map at a point of the disc; negative if the map mirrors [m^2].
   GLADSTONE_HD double stretch(Vec2d u) const {
     Vec2d by_x{}, by_y{}, power{1, 0};
     for (int m = 0; m < orders; ++m) {
@@ -71,23 +71,27 @@ struct AimMap {
   }
 };
 
-/// Where rays of a point go to fill the stop.
+/// Rays of one point that fill the stop exactly.
 struct FilledStop {
+  /// maps the unit disc to the aim plane
   AimMap map;
-  Vec2d low{}, high{};  ///< between which the rays of the rim end on the sensor [px]
-  double spread2 = 0;   ///< variance along an axis of where rays end, if they fill a disc of that rim [px^2]
+  Vec2d low{}, high{};  ///< bounding box of the edge rays on the sensor [px]
+  double spread2 = 0;   ///< variance along an axis of the hits, for rays that fill a disc with this edge [px^2]
 };
 
 namespace detail {
 
-/// Takes a ray through an element, past its rim or not. @return false where it is lost
+/// Traces a ray through an element, ignoring vignetting.
+/// @return false if the ray is lost
 GLADSTONE_HD inline bool goes_on(CameraElement<double> const& element, Ray<double>& ray) {
   RayAccount<double> account;
   RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
   return status == RayStatus::alive || status == RayStatus::vignetted;
 }
 
-/// Where a ray meets the stop through a medium or without, in the stop's frame [m]. @return false: it is lost before
+/// Intersects a ray with the stop, through an optional medium and ignoring vignetting.
+/// @param place  receives the intersection in the stop's frame [m]
+/// @return false if the ray is lost before the stop
 template <class Medium>
 GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                              Ray<double> ray, Vec2d& place) {
@@ -110,12 +114,12 @@ GLADSTONE_HD bool meets_stop(StopView const& view, Medium const& medium, Tracing
 
 }  // namespace detail
 
-/// The ray from a point to a place of the aim plane.
+/// Returns the ray from a point to a position on the aim plane.
 GLADSTONE_HD inline Ray<double> ray_to_aim(CameraView<double> const& camera, Vec3d point, Vec2d aim) {
   return {point, normalized(camera.aim_plane.point_outwards({aim.x, aim.y, 0}) - point)};
 }
 
-/// What a point sees of the stop in paraxial light, without a medium.
+/// Returns the paraxial entrance pupil as seen from a point, without medium.
 GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
   Vec3d const q = view.pose.point_inwards(point);
   double const distance = view.front - q.z - view.window_shift;
@@ -130,22 +134,25 @@ GLADSTONE_HD inline AimMap paraxial_aim(StopView const& view, Vec3d point) {
 
 inline constexpr int rim_rays = 8;
 
-/// Moves the aims of eight rays until they meet the stop's rim at equal angles, the first on its x axis, and gives the
-/// map through them. The ellipse nearest to them stands for derivatives, so that a turn leaves of what is wrong the
-/// share that the pupil's aberration is of the pupil.
-/// @param map begins with the one to start from @return false: there are no such rays
+/// Finds the aim points of eight rays that meet the edge of the stop at equal angles, the first on its x axis, and fits
+/// the map through them.
+/// Uses a quasi-Newton iteration with the best-fitting ellipse in place of derivatives, so that each iteration reduces
+/// the residual by about the ratio of pupil aberration to pupil size.
+/// @param map  start value; receives the result
+/// @return false if a ray is lost or the iteration does not converge
 template <class Medium>
 GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                               Vec3d point, AimMap& map) {
   constexpr int most_turns = 16;
-  constexpr double settled = 1e-7;  // of the radius; what the last turn leaves is less by far
+  constexpr double settled =
+      1e-7;  // relative to the pupil radius; the residual after the last iteration is far smaller
   Vec2d aim[rim_rays], miss[rim_rays];
   for (int k = 0; k < rim_rays; ++k) aim[k] = map.at(point_of_circle(1.0, static_cast<double>(k) / rim_rays));
   double change = 1;
   GLADSTONE_RAY_BY_RAY
   for (int turn = 0; !(change <= settled); ++turn) {
     if (turn == most_turns) return false;
-    Vec2d a{}, b{}, by_a{}, by_b{};  // the ellipse, and where its axes come to in the stop
+    Vec2d a{}, b{}, by_a{}, by_b{};  // best-fitting ellipse on the aim plane, and its axes mapped to the stop
     GLADSTONE_RAY_BY_RAY
     for (int k = 0; k < rim_rays; ++k) {
       Vec2d met;
@@ -180,16 +187,16 @@ GLADSTONE_HD bool fit_to_stop(StopView const& view, Medium const& medium, Tracin
   return true;
 }
 
-/// Where rays of a point are to be sent so that they fill the stop and nothing else, through a medium or without. Eight
-/// rays just within the rim must pass the camera, and eight just beyond it must not.
-/// @param filled begins with the map to start from
-/// @return false where rays do otherwise: in media that change much within the cone, and where more than one rim
-/// bounds the light
+/// Finds the map of rays that fill the stop exactly, with or without medium. As a check, eight rays just inside the
+/// edge must pass the camera and eight just outside must be vignetted.
+/// @param filled  start value of the map; receives the result
+/// @return false if the check fails: in media that vary strongly within the light cone, and where more than one
+/// aperture limits the light
 template <class Medium>
 GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingOptions<double> const& options,
                             Vec3d point, FilledStop& filled) {
   if (!fit_to_stop(view, medium, options, point, filled.map)) return false;
-  Vec2d first{}, sum{};  // of where rays of the rim end, from the first of them
+  Vec2d first{}, sum{};  // edge rays on the sensor, relative to the first [px]
   double squares = 0;
   GLADSTONE_RAY_BY_RAY
   for (int k = 0; k < 2 * rim_rays; ++k) {
@@ -207,7 +214,7 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
     filled.high = {p.x > filled.high.x ? p.x : filled.high.x, p.y > filled.high.y ? p.y : filled.high.y};
   }
   filled.spread2 = 0.25 * (squares / rim_rays - dot(sum, sum) / (rim_rays * rim_rays));
-  // a hair's breadth inside, so that rounding clips no ray
+  // Shrink the map by 1e-7, so that rounding vignettes no ray.
   double inside = 1;
   for (int m = 0; m < AimMap::orders; ++m) {
     inside *= 1 - 1e-7;
@@ -217,15 +224,15 @@ GLADSTONE_HD bool fill_stop(StopView const& view, Medium const& medium, TracingO
   return true;
 }
 
-/// The whole pixel that a source's sums count from [px].
+/// Returns the whole-pixel position to which a source's sums are relative [px].
 GLADSTONE_HD inline Vec2d origin_of(FilledStop const& filled) {
   using std::floor;
   Vec2d const middle = 0.5 * (filled.low + filled.high);
   return {floor(middle.x + 0.5), floor(middle.y + 0.5)};
 }
 
-/// The ray of source i to a place of the aim plane. @param area of the plane that it stands for, times the number of
-/// rays [m^2]
+/// Returns the ray of source i to a position on the aim plane.
+/// @param area  area of the aim plane that the ray represents, times the number of rays [m^2]
 template <class Sources>
 GLADSTONE_HD AimedRay<double> ray_to_plane(Sources const& sources, Pose<double> const& plane, Vec2d place, double area,
                                            std::uint64_t i) {
@@ -233,7 +240,7 @@ GLADSTONE_HD AimedRay<double> ray_to_plane(Sources const& sources, Pose<double> 
   return ray_to(sources, there, i, {}, {});
 }
 
-/// The ray of source i to a place of the unit disc that a map sends to the plane.
+/// Returns the ray of source i to the image of a point of the unit disc under a map to the aim plane.
 template <class Sources>
 GLADSTONE_HD AimedRay<double> ray_to(Sources const& sources, Pose<double> const& plane, AimMap const& map,
                                      std::uint64_t i, Vec2d at) {

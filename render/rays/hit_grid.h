@@ -8,28 +8,29 @@
 
 namespace gladstone {
 
-/// Gathers the light of many rays with one Gaussian spot on the CPU, by a HitSpline. A ray costs sixteen additions
-/// instead of a spot. The grid is made of square tiles, as many as the rays of a source reach.
+/// Accumulates the light of many rays with the same Gaussian PSF on the CPU by a HitSpline. A ray costs sixteen
+/// additions instead of the evaluation of a PSF. The grid consists of square tiles that are allocated where rays land.
 class HitGrid {
  public:
   explicit HitGrid(GaussianSpot<double> const& spot);
 
-  /// Whether gathering so many rays pays, and their spot is wide enough for a grid of sensible size.
+  /// Returns true if this method is faster for the given number of rays and the PSF is wide enough for a grid of
+  /// moderate size.
   static bool pays(double sigma, std::uint64_t rays);
 
-  /// Adds a ray's light at p [px]; a tile in whose place it needs another is sent to the image first.
+  /// Adds the light of a ray at p [px]. A tile that occupies the slot of the required one is first added to the image.
   void deposit(Vec2d p, double weight, LightImage* image, double light_per_weight);
-  /// Adds what has been gathered to the image (if any) and clears the grid.
+  /// Adds all tiles to the image (unless null) and clears them.
   void flush(LightImage* image, double light_per_weight);
 
  private:
   static constexpr int tile_px = 16, pad_px = 1;
-  static constexpr int slots = 8;  ///< tiles along either axis that are held at a time
+  static constexpr int slots = 8;  ///< number of tiles along either axis that are stored at a time
 
   struct Tile {
-    Vec2<int> at{0, 0};                    ///< tiles from the first
-    NodeRange columns{0, 0}, lines{0, 0};  ///< touched part
-    std::vector<double> light;             ///< empty until it is needed
+    Vec2<int> at{0, 0};                    ///< position in tiles relative to the first tile
+    NodeRange columns{0, 0}, lines{0, 0};  ///< range of used nodes
+    std::vector<double> light;             ///< light at the nodes; empty until first used
 
     bool touched() const { return columns.high > columns.low; }
   };
@@ -37,9 +38,9 @@ class HitGrid {
 
   HitSpline spline_;
   HitSplineView view_;
-  int side_;           ///< of a tile [nodes]
-  bool empty_ = true;  ///< nothing has been gathered
-  Vec2<int> first_{};  ///< pixel of tile (0, 0), which has the first ray in its middle
+  int side_;           ///< nodes along a tile's side
+  bool empty_ = true;  ///< no light has been added
+  Vec2<int> first_{};  ///< pixel of tile (0, 0), which is centred on the first ray
   Tile tiles_[slots * slots];
   std::vector<double> rows_seen_;
 };

@@ -6,21 +6,21 @@
 
 #include "render/sensor/diffraction_spot.h"
 
-/// Light of many rays with one Gaussian spot, on every device: hits are dealt to the nodes of a fine grid by cubic
-/// B-spline weights, and the grid is blurred once by spot and pixels.
+/// Fast summation of many rays with the same Gaussian PSF, for CPU and GPU: hits are distributed over the nodes of a
+/// fine grid with cubic B-spline weights, and the grid is convolved once with PSF and pixel area.
 ///
-/// What a pixel sees of a hit, as a function of its place, is interpolated by the splines that the hits are dealt to:
-/// to h^4/384 of its fourth derivative (de Boor, A Practical Guide to Splines), 1.4 over sigma^4. Three nodes a sigma
-/// leave 5e-5 of a ray's light to a pixel at worst, a fifth of a grey level of 12 bits, and less of any pixel that rays
-/// at many places light.
+/// The method interpolates the light of a hit on a pixel, as a function of the hit's position, by cubic splines. The
+/// error is h^4/384 times the fourth derivative (de Boor, A Practical Guide to Splines), which is at most 1.4 /
+/// sigma^4. With three nodes per sigma, the error per pixel is at most 5e-5 of a ray's light, a fifth of a grey level
+/// at 12 bits, and less for pixels lit by rays at many positions.
 namespace gladstone {
 
-/// The nodes that a hit is dealt to along one axis, and their shares of it.
+/// The four nodes over which a hit is distributed along one axis, and their weights.
 struct DealtHit {
   int first;
   double share[4];
 
-  /// @param u the hit's place in nodes
+  /// @param u  position of the hit, in node spacings
   GLADSTONE_HD explicit DealtHit(double u) {
     using std::floor;
     double const whole = floor(u), t = u - whole, s = 1 - t;
@@ -32,25 +32,28 @@ struct DealtHit {
   }
 };
 
-/// A range of nodes along one axis; node 0 lies in the middle of pixel 0.
+/// Range of nodes along one axis. Node 0 is at the centre of pixel 0.
 struct NodeRange {
   int low, high;  ///< [low, high)
 };
 
-/// What pixels see of light at the nodes, along one axis.
+/// Light of a node on the pixels along one axis: a non-owning view.
 struct HitSplineView {
-  double const* share = nullptr;  ///< by the node's place from the pixel's middle, from -reach() to reach()
-  int per_px = 1;                 ///< nodes a pixel
-  int reach_px = 0;               ///< furthest pixel that a node lights, and one more
+  double const* share =
+      nullptr;       ///< weight by the node's position relative to the pixel centre, from -reach() to reach()
+  int per_px = 1;    ///< nodes per pixel
+  int reach_px = 0;  ///< distance to the farthest pixel that a node illuminates, plus one [px]
 
   GLADSTONE_HD int reach() const { return reach_px * per_px; }
   GLADSTONE_HD int count() const { return 2 * reach() + 1; }
-  /// Pixels that a range of nodes lights. @pre nodes.low >= 0
+  /// Returns the first pixel that a range of nodes illuminates, and below, the number of pixels.
+  /// @pre nodes.low >= 0
   GLADSTONE_HD int first_pixel(NodeRange nodes) const { return nodes.low / per_px - reach_px; }
   GLADSTONE_HD int pixels(NodeRange nodes) const {
     return (nodes.high - 1) / per_px + reach_px + 1 - first_pixel(nodes);
   }
-  /// What a pixel sees of the light of a range of nodes, of which the first value is node 0's.
+  /// Returns the light on a pixel from a range of nodes.
+  /// @param light  values of all nodes, from node 0 on
   template <class Light>
   GLADSTONE_HD double seen(int pixel, NodeRange nodes, Light const* light, int stride) const {
     int const middle = pixel * per_px;
@@ -63,17 +66,17 @@ struct HitSplineView {
   }
 };
 
-/// Threads that do one thing together; on the CPU it is one.
+/// Group of cooperating threads: a single one on the CPU.
 struct OneLane {
   int rank() const { return 0; }
   int size() const { return 1; }
   void sync() const {}
 };
 
-/// Blurs the light of a square of nodes by the spot and the pixels: along rows, then along columns.
-/// @param side of the square, in nodes @param rows_seen room for a number for every line of the square and pixel of a
-/// row
-/// @param pixel called as (column, row, light) once for every pixel that they light
+/// Convolves the light of a square of nodes with PSF and pixel area, first along rows, then along columns.
+/// @param side  nodes along the square's side
+/// @param rows_seen  work space: one number per line of nodes and pixel of a row
+/// @param pixel  called once as (column, row, light) for every illuminated pixel
 template <class Group, class Light, class Pixel>
 GLADSTONE_HD void blur_hits(Group const& group, HitSplineView const& spline, NodeRange columns, NodeRange lines,
                             Light const* light, int side, double* rows_seen, Pixel&& pixel) {
@@ -90,11 +93,11 @@ GLADSTONE_HD void blur_hits(Group const& group, HitSplineView const& spline, Nod
   }
 }
 
-/// Owner of what a view shows.
+/// Owner of the weights of a HitSplineView.
 class HitSpline {
  public:
   explicit HitSpline(GaussianSpot<double> const& spot);
-  /// Whether so wide a spot [px] needs no more nodes than a grid of sensible size has.
+  /// Returns true if a PSF of standard deviation sigma [px] is wide enough for at most 24 nodes per pixel.
   static bool serves(double sigma);
   HitSplineView view() const { return {share_.data(), per_px_, reach_px_}; }
 

@@ -11,38 +11,39 @@
 
 namespace gladstone {
 
-/// What all particles of a scene share: with a sharp rim of the stop for rays that fill it, and with smooth ones for
-/// rays that are clipped, by their numbers.
+/// Parameters of all particles of a scene: with a sharp edge of the stop for rays that fill it, and with smoothed
+/// edges, whose width depends on the ray number, for rays that are vignetted there.
 struct ParticleLaunches {
   RaysLaunch sharp;
   RaysLadder ladder;
 
-  /// @param spot nothing where there are no images
+  /// @param spot  point spread function; a default SpotView if no images are rendered
   ParticleLaunches(Scene const& scene, SpotView const& spot, RenderImages images)
       : sharp(scene, spot, StopRim::sharp),
         ladder(RaysLadder::of_rules(scene, RaysLaunch(scene, spot, StopRim::smooth), images)) {}
 
-  /// The step that a particle begins at whose rays fill the stop. @param light of its image @param spread2 as
-  /// FilledStop's
+  /// Returns the first step of the ladder for a particle whose rays fill the stop.
+  /// @param light  light of the particle's image
+  /// @param spread2  as FilledStop::spread2 [px^2]
   std::size_t step_filled(double light, double spread2) const {
     RaysLaunch const& least = ladder[0];
     RaysSent const sent = least.rule.view() ? RaysSent::by_rule : RaysSent::clipped;
     return ladder.at_least(rays_for_spread(ladder.goal(), sent, light, spread2, static_cast<double>(least.rays)));
   }
-  /// The step that a particle begins at whose rays are clipped.
+  /// Returns the first step of the ladder for a particle whose rays are vignetted at the stop.
   std::size_t step_clipped() const { return ladder.at_least(least_clipped); }
-  static constexpr double least_clipped = 32;  ///< rays: fewer have too wide a rim
+  static constexpr double least_clipped = 32;  ///< minimum number of rays; with fewer, the smoothed edge is too wide
 };
 
-/// Traces the rays of particles, one particle at a time: the medium stands before both frames, and each frame has a
-/// place and light of its own. Both frames share random keys, so that a particle that has hardly moved has sent its
-/// rays to the same places of the lens.
+/// Traces the rays of particles, one particle at a time, with the medium in both frames and a particle position and
+/// light for each frame. Both frames use the same random keys, so that a particle that has hardly moved sends its rays
+/// to the same points of the lens.
 ///
-/// Where the rays that fill the stop can be told beforehand (filled_stop.h), just these are sent: their light is known
-/// without any, and they differ by what medium and lens do to them alone, so that few are enough. Elsewhere rays go to
-/// a wider disc and are clipped at the stop, as a dot's. Where more rays turn out to be needed, light is taken back and
-/// all begin again.
-/// @tparam Sources ParticleSources of one pulse
+/// If the rays that fill the stop can be determined beforehand (filled_stop.h), only these are sent: their total light
+/// is known, and their positions depend on medium and lens alone, so few rays suffice. Otherwise rays are sent to a
+/// larger disc and vignetted at the stop, as for dots. If more rays are required, the deposited light is subtracted and
+/// the particle is traced again.
+/// @tparam Sources  ParticleSources of one pulse
 template <class Sources, class Medium>
 class ParticleTracer {
  public:
@@ -58,9 +59,11 @@ class ParticleTracer {
     for (auto& light : light_) light.emplace(launch_->spot);
   }
 
-  /// @param images null: its light is not sent anywhere @param light_per_photon of an image
-  /// @param least step to begin at, should it need fewer rays
-  /// @return its truth; NaN at a pulse that does not light it, or where no ray of it gets through
+  /// Traces a particle with an adaptive number of rays.
+  /// @param images  image of each frame; null: light is not deposited
+  /// @param light_per_photon  light of an image per photon
+  /// @param least  minimum step of the ladder
+  /// @return its truth; NaN at a pulse that does not illuminate it or if no ray passes
   ParticleSeen trace(std::uint64_t particle, LightImage* const (&images)[frame_count], double light_per_photon,
                      std::size_t least = 0) {
     key_ = pulses_[0].key(particle);
@@ -88,23 +91,23 @@ class ParticleTracer {
     return {source_truth(seen_, scramblings, origin_), source_truth(ambient_, scramblings, origin_)};
   }
 
-  /// The step that the last particle came to, and its rays.
+  /// Step of the ladder that the last particle used, and its number of rays.
   std::size_t step() const { return static_cast<std::size_t>(launch_ - &launches_.ladder[0]); }
   std::uint64_t rays() const { return launch_->rays; }
   StatusCounts const& statuses() const { return statuses_; }
-  /// The widest that any particle was aimed beyond the stop [m].
+  /// Largest margin by which a particle's rays were aimed beyond the stop [m].
   double largest_margin() const { return largest_margin_; }
 
  private:
   static constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
-  /// Rays that go side by side, as SourceTracer's.
+  /// Number of rays traced together, as in SourceTracer.
   static constexpr int side_by_side = bends ? 2 : 4;
 
-  /// How rays are sent at one pulse.
+  /// Target of a particle's rays at one pulse.
   struct Aim {
     enum class Sent { not_at_all, filled, wide };
     Sent sent = Sent::not_at_all;
-    FilledStop straight, bent;  ///< without the medium, and with it
+    FilledStop straight, bent;  ///< without and with the medium
     SourceAim wide;
   };
 
@@ -114,9 +117,10 @@ class ParticleTracer {
   }
   double light_per_weight() const { return light_per_photon_ / static_cast<double>(launch_->rays); }
 
-  /// Aims at both pulses. @return the step to begin with
+  /// Aims at both pulses.
+  /// @return the first step of the ladder
   std::size_t aim(std::uint64_t particle) {
-    bool placed = false;  // the origin is known, from the first pulse that lights it
+    bool placed = false;  // whether the origin is set, by the first pulse that illuminates the particle
     std::size_t step = 0;
     for (int frame = 0; frame < frame_count; ++frame) {
       Aim& aim = aims_[frame];
@@ -141,7 +145,8 @@ class ParticleTracer {
     return step;
   }
 
-  /// Aims at the very stop, with and without the medium. @return false: it is not known where rays go
+  /// Aims exactly at the stop, with and without the medium.
+  /// @return false if this fails, or for chief rays
   bool fill(Vec3d place, Aim& aim) const {
     if (launch_->camera.chief_rays_only()) return false;
     aim.straight.map = paraxial_aim(stop_, place);
@@ -153,7 +158,8 @@ class ParticleTracer {
     return true;
   }
 
-  /// @param sign of the light that is laid down
+  /// Traces all rays of a particle.
+  /// @param sign  sign of the deposited light; -1 subtracts it
   void trace_all(std::uint64_t particle, LightImage* const (&images)[frame_count], double sign) {
     std::fill_n(seen_, most_scramblings, RaySums{});
     std::fill_n(ambient_, most_scramblings, RaySums{});
@@ -183,8 +189,8 @@ class ParticleTracer {
     if (with_images_) light_[frame]->finish();
   }
 
-  /// Sends rays to a disc about the stop, the same with and without the medium; where a ray is bent further than the
-  /// disc is wide, its light is taken back and all begin again, wider.
+  /// Sends rays to a disc larger than the stop, the same with and without the medium. If a ray is deflected by more
+  /// than the margin of the disc, its light is subtracted and all rays are traced again with a larger margin.
   void trace_wide(int frame, std::uint64_t particle, LightImage* image, double sign) {
     SourceAim& aim = aims_[frame].wide;
     auto const trace = [&](double of_light) {
@@ -216,7 +222,8 @@ class ParticleTracer {
     }
   }
 
-  /// Calls some(rays, places on the unit disc) for all rays. @param rule none: by points of a sequence
+  /// Calls some(rays, points of the unit disc) for groups of all rays.
+  /// @param rule  cubature rule; empty: points of a Sobol or random sequence
   template <class Some>
   void all_rays(StopRuleView const& rule, Some&& some) {
     std::uint64_t ray = 0;
@@ -235,7 +242,8 @@ class ParticleTracer {
     some(ray, to);
   }
 
-  /// @param aimed gives the AimedRay to a place of the unit disc
+  /// Traces N rays through a medium and the camera.
+  /// @param aimed  returns the AimedRay to a point of the unit disc
   template <int N, class Aimed, class Through>
   void trace_through(Aimed const& aimed, StopPlace const (&to)[N], CameraView<double> const& view,
                      Through const& medium, RayHit<double> (&hit)[N]) const {
@@ -268,7 +276,7 @@ class ParticleTracer {
   }
 
   ParticleLaunches const& launches_;
-  RaysLaunch const* launch_ = nullptr;  ///< of the present step
+  RaysLaunch const* launch_ = nullptr;  ///< launch of the current step
   Sources pulses_[frame_count];
   Medium const& medium_;
   CameraView<double> view_;
@@ -277,9 +285,9 @@ class ParticleTracer {
   std::optional<RayLight> light_[frame_count];
   RaySums seen_[most_scramblings], ambient_[most_scramblings];
   Aim aims_[frame_count];
-  std::uint64_t key_ = 0;  ///< of the particle's random numbers
+  std::uint64_t key_ = 0;  ///< key of the particle's random numbers
   double light_per_photon_ = 0;
-  Vec2d origin_{};  ///< whole pixel that sums count from [px]
+  Vec2d origin_{};  ///< whole-pixel position to which sums are relative [px]
   StatusCounts statuses_{};
   double largest_shift2_ = 0, largest_margin_ = 0;
 };

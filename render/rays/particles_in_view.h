@@ -7,16 +7,19 @@
 
 namespace gladstone {
 
-/// Whether light of each particle can reach the sensor or its neighbourhood at either pulse. A particle is left out
-/// only if its image, at both pulses, lies farther from the sensor than the sum of
-/// - the first interrogation window, whose truth may be asked for (Setup::view_margin_px),
-/// - its disc of confusion, by rays to the rim of the stop without the medium, half as wide again, and the spot,
-/// - the medium's displacement: that of the probing rays on the lens plane (Scene::pupil_margin) times twice the
-///   ratio of the longest way back to a particle and the shortest way on to the lens, from any place in the medium, and
-///   twice at most. A turn by an angle moves the image by the former way and the ray at the lens by the latter,
+/// Returns, for each particle, whether its light can reach the sensor or its neighbourhood at either pulse.
+/// A particle is excluded only if at both pulses it is not illuminated or its image is farther from the sensor than the
+/// sum of
+/// - the first interrogation window, for which the truth may be requested (Setup::view_margin_px),
+/// - its circle of confusion, from rays to the edge of the stop without medium, times 1.5, and the half width of the
+///   PSF,
+/// - the displacement by the medium: the largest deflection of the probe rays on the lens plane (Scene::pupil_margin),
+///   times twice the ratio of the longest distance from the medium back to a particle to the shortest distance on to
+///   the lens, at most 2. A deflection by an angle shifts the image in proportion to the former distance and the ray at
+///   the lens in proportion to the latter,
 /// - 8 px.
-/// Through lenslets all count.
-/// @param scene planned: step and pupil margin are known
+/// Through lenslets, all particles are included.
+/// @param scene  planned: step and pupil margin are known
 std::vector<char> particles_near_view(Scene const& scene, Particles const& particles);
 
 }  // namespace gladstone

@@ -6,30 +6,33 @@
 #include "render/rays/source_truth.h"
 #include "render/scene/ray_plan.h"
 
-/// How many rays a source needs: from itself alone, and from what the camera makes of light.
+/// Number of rays that a source requires, determined from the source itself and the camera's exposure alone.
 namespace gladstone {
 
-/// How rays are sent, which says how fast their errors fall.
+/// How a source's rays are placed, which determines how fast their errors decrease.
 enum class RaysSent {
-  by_rule,  ///< to the nodes of a rule that fill the stop (stop_rule.h)
-  clipped,  ///< to points of a sequence over a wider disc
+  by_rule,  ///< at the nodes of a cubature rule that fill the stop (stop_rule.h)
+  clipped,  ///< at the points of a sequence over a disc larger than the stop
 };
 
-/// What is asked of a source's light and truth.
+/// Required accuracy of a source's light and truth.
 struct RayGoal {
-  double level = 0;         ///< light of one grey level; 0: no image is asked for
-  double brightest_at = 0;  ///< grey levels of the brightest pixel
-  double spot2 = 0;         ///< square of the radius of what a ray leaves, as a smooth spot [px^2]
-  double most = 1;          ///< rays of a source
+  double level = 0;         ///< light of one grey level; 0: no image is required
+  double brightest_at = 0;  ///< grey levels of the brightest pixel of the image
+  double spot2 = 0;         ///< squared radius of the PSF, as a smooth function [px^2]
+  double most = 1;          ///< maximum number of rays per source
 
-  /// About the light of the brightest pixel of a source. @param spread2 variance of its rays' places along an axis
+  /// Estimates the light in the brightest pixel of a source's image.
+  /// @param light  total light of the source
+  /// @param spread2  variance of its ray hits along an axis [px^2]
   GLADSTONE_HD double peak(double light, double spread2) const {
     double const pixels = 2 * pi * (spot2 + spread2);
     return pixels > 1 ? light / pixels : light;
   }
-  /// What its light may be off by, rms over its lit pixels, over its peak. Half a level for a source as bright as the
-  /// camera is exposed for, and in proportion to the root of its light: of however many that lie over each other, short
-  /// of saturation, the squares of errors then add up to half a level's.
+  /// Returns the allowed error of a source's image, rms over its lit pixels, relative to its peak [1].
+  /// It is half a grey level for a source as bright as the image's brightest pixel and decreases with the square root
+  /// of the light of fainter ones: the squared errors of overlapping sources then add up to half a level, short of
+  /// saturation.
   GLADSTONE_HD double allowed(double peak) const {
     using std::sqrt;
     double const share = peak / (brightest_at * level);
@@ -37,19 +40,21 @@ struct RayGoal {
   }
 };
 
-/// What a rule of n nodes leaves of a picture, rms over lit pixels and over its peak, for rays that fill a disc: a
-/// spot's Taylor series, integrated to degree 2 sqrt(n) - 1. Measured with discs of 0.05 to 4 times the spot's radius,
-/// spots of 0.1 to 1.5 px and 4 to 1024 nodes: within a factor of 3, or a class of numbers.
-/// @param ratio2 variance of the rays' places along an axis, over spot2
+/// Returns true if a cubature rule with n nodes meets the allowed image error (rms over lit pixels, relative to the
+/// peak), for rays that fill a disc.
+/// The rule integrates the Taylor series of the PSF exactly to degree 2 sqrt(n) - 1. Empirical, for discs of 0.05 to 4
+/// times the PSF's radius, PSFs of 0.1 to 1.5 px and 4 to 1024 nodes: correct within a factor of 3, or one step of n.
+/// @param ratio2  variance of the hits along an axis over the PSF's squared radius (spot2) [1]
 GLADSTONE_HD inline bool rule_serves(double n, double ratio2, double allowed) {
   using std::log;
   using std::sqrt;
   return sqrt(n) * log(ratio2 / (5 + 0.085 * n)) <= log(allowed);
 }
 
-/// What n rays to scrambled points leave of a picture, as above: for few of them the error of a variance, for many that
-/// of their number within a spot's area. Measured with discs of 0.1 to 24 times the spot's radius, dots of 0 to 6 px,
-/// 32 to 16,384 rays: within a factor of 3.
+/// Estimates the image error of n rays at scrambled points, as in rule_serves(): for few rays the error of their
+/// variance, for many that of the number of rays within the PSF's area.
+/// Empirical, for discs of 0.1 to 24 times the PSF's radius, dots of 0 to 6 px and 32 to 16,384 rays: correct within a
+/// factor of 3.
 GLADSTONE_HD inline double left_by_points(double n, double ratio2) {
   using std::pow;
   double const within = n / (1 + ratio2 / 4);
@@ -58,7 +63,8 @@ GLADSTONE_HD inline double left_by_points(double n, double ratio2) {
   return left < 1 ? left : 1.0;
 }
 
-/// Rays that the spread of a source's image asks for. @param n to begin with
+/// Returns the number of rays that the spread of a source's hits requires.
+/// @param n  start value, which is quadrupled (rule) or doubled (points)
 GLADSTONE_HD inline double rays_for_spread(RayGoal const& goal, RaysSent sent, double light, double spread2, double n) {
   if (!(goal.level > 0 && light > 0)) return n;
   double const allowed = goal.allowed(goal.peak(light, spread2)), ratio2 = spread2 / goal.spot2;
@@ -70,20 +76,23 @@ GLADSTONE_HD inline double rays_for_spread(RayGoal const& goal, RaysSent sent, d
   return n;
 }
 
-/// What is known of a source before its rays are traced, in either frame.
+/// Properties of a source's rays known before they are traced, for each image.
 struct RimSpread {
-  double spread2[frame_count] = {};          ///< as FilledStop's, of rays that go by a rule
-  bool clipped[frame_count] = {true, true};  ///< rays go to a wider disc than passes; none may get through
+  double spread2[frame_count] = {};          ///< as FilledStop::spread2, for rays placed by a rule [px^2]
+  bool clipped[frame_count] = {true, true};  ///< rays are sent to a disc larger than the stop and may all be vignetted
 };
 
-/// Rays that a source asks for by what its rays have come to: the scatter of its displacement between scramblings, that
-/// of its light, and the spread of its image; `rays` where these are enough. One rule after the other is tried, since
-/// errors fall at once or not at all; the scatter of points is taken to fall as 1/n.
+/// Returns the number of rays that a source requires according to its traced rays: the scatter of its displacement and
+/// of its light between scramblings, and the spread of its image. Returns `rays` if these suffice.
+/// For cubature rules, the next larger rule is requested, since their errors vanish abruptly with n; the variance of
+/// points is assumed to decrease as 1/n.
 ///
-/// Turning a rule of one ring or two does not tell what it leaves of aberrations, which are the same all round. Spread
-/// as it was found beside that of the rim tells: these differ by all of what one ring leaves, and by more than four
-/// times what two do (double Gauss and achromat, f/4 to f/11); four rings leave nothing.
-/// @param of the scramblings @param light_per_weight of images
+/// Rotating a rule of one or two rings does not reveal its error from rotationally symmetric aberrations. This is
+/// estimated from the difference between the measured spread and that of the edge rays, which is as large as the error
+/// of one ring and more than four times that of two (double Gauss and achromat, f/4 to f/11); the error of four rings
+/// is negligible.
+/// @param of  sums of the scramblings
+/// @param light_per_weight  light in the image per unit of ray weight
 GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpread const& rim, RaySums const* of,
                                       int scramblings, double rays, double light_per_weight) {
   using std::pow;
@@ -97,7 +106,7 @@ GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpr
   for (int i = 0; i < scramblings; ++i) {
     all += of[i];
     for (int frame = 0; frame < frame_count; ++frame) {
-      // what no ray shows is not known to be dark
+      // If no ray passes, the source may still not be dark.
       if (rim.clipped[frame] && !(of[i].hits[frame].weight > 0)) ask(4 * rays);
     }
   }
@@ -125,7 +134,7 @@ GLADSTONE_HD inline double rays_asked(RayGoal const& goal, RaysSent sent, RimSpr
       double const apart = of[i].hits[frame].weight - hits.weight / scramblings;
       squares += apart * apart;
     }
-    // rms over lit pixels is 0.4 to 0.7 of the peak
+    // The rms over lit pixels is 0.4 to 0.7 of the peak.
     double const excess = 0.7 * sqrt(error2_factor(scramblings) * squares) / (hits.weight * allowed);
     if (excess > 1) ask(by_rule ? 4 * rays : rays * pow(excess, 1 / 1.5));
   }

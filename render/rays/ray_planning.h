@@ -2,26 +2,29 @@
 
 #include "render/scene/ray_plan.h"
 
-/// The plans of ray_plan.h for any scene, by trace_ray alone.
+/// The plans of ray_plan.h for any scene, by ray tracing alone.
 namespace gladstone {
 
-/// choose_step() by chief rays of all dots, and chief and rim rays of those that change most. Sets step and margin.
+/// Runs choose_step() with chief rays of all dots and with chief and edge rays of those that change most. Sets the
+/// scene's step and pupil margin.
 StepPlan plan_step_by_rays(Scene& scene);
 
-/// Errors at the scene's present number of rays, of all sources alike, measured with up to `most`, of which more
-/// scatter no more than by chance.
+/// Measures the errors of all sources at the scene's current, non-adaptive number of rays. At most `most` rays per
+/// source are traced; the errors of more are extrapolated as n^-1/2.
 RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most = 4096);
 
-/// What every source's number of rays is chosen by: the light of a grey level, at the bit depth or at 12 bits if that
-/// is coarser. Where "auto" is to expose the camera, a sample of sources tells the light of the brightest pixel.
+/// Determines the criteria by which the ray number of each source is chosen: the light of a grey level at the camera's
+/// bit depth, 12 bits at most. For "auto" exposure, the light of the brightest pixel is measured on a sample of
+/// sources.
 RaysByNeed need_of(Scene const& scene);
 
-/// Keeps a given number of rays for all sources. Otherwise every source takes what it needs (ray_need.h) for 1e-3 px in
-/// its displacement and half a grey level in images, as far as most_rays_of_source(); it hangs on no other source,
-/// but for the exposure that all share. A sample of them, traced with other random numbers, tells the errors that this
-/// leaves. Sets the scene's rays.
+/// Plans the number of rays and sets it in the scene.
+/// A number given in the setup applies to all sources. Otherwise the number is adaptive (ray_need.h): each source has
+/// as many rays as it requires for 1e-3 px in its displacement and half a grey level in images, up to
+/// most_rays_of_source(). Apart from the common exposure, it is independent of other sources. The remaining errors are
+/// measured on a sample traced with other random numbers.
 RaysPlan plan_rays_by_rays(Scene& scene);
-/// The same for what is known of the exposure.
+/// Like plan_rays_by_rays(scene), adaptive with known criteria.
 RaysPlan plan_rays_by_rays(Scene& scene, RaysByNeed const& need);
 
 }  // namespace gladstone

@@ -7,24 +7,27 @@
 
 namespace gladstone {
 
-/// Integrals of grad n along a straight ray, of its components across the camera's axis.
+/// Integrals along a straight ray of the components of grad n perpendicular to the camera's axis.
 struct AcrossAxis {
   Vec3d plain{};                       ///< [1]
-  Vec3d levered{};                     ///< each slice times its way along the axis from where the ray starts [m]
-  double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 along the axis [m]
+  Vec3d levered{};                     ///< each slice times its distance along the axis from the ray's start [m]
+  double refractivity = 0, depth = 0;  ///< integrals of n - 1 and of 1 over the distance along the axis [m]
 };
 
-/// What theory says of sources seen by any camera: Eq. 9 of Rajendran et al. with the deflection and the lever along
-/// the chief ray, both as the camera's axis sees them, times the derivative of the camera's projection in the dots'
-/// plane. Of a thin lens on the Z axis it is the paper's formula, M Z_D / (n_0 p) times the integral of grad n over z.
+/// Small-angle theory for any camera: Eq. 9 of Rajendran et al. (2019) with deflection and lever along the chief ray,
+/// both relative to the camera's axis, times the derivative of the camera's projection in the dots' plane. For a thin
+/// lens on the Z axis, this is the paper's formula, M Z_D / (n_0 p) times the integral of grad n over z.
 class RayTheory {
  public:
   static constexpr int all_rings = 40;
-  /// @param launch how its rays are aimed @param shape,extended of the sources; others are points
-  /// @param most_rings of the rule over the stop: fewer where a rough average will do
+  /// @param launch  determines how rays are aimed
+  /// @param shape  shape of extended sources
+  /// @param extended  false: point sources
+  /// @param most_rings  maximum number of rings of the rule over the stop; fewer give an approximate average
   RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape shape, bool extended, int most_rings = all_rings);
 
-  /// Of one source: along its chief ray, with every slice's own lever, and averaged over the rays that pass the stop.
+  /// Stores the theoretical displacements of one source: along its chief ray with lever Z_D and with the lever of each
+  /// slice, and averaged over the rays that pass the stop.
   template <class Sources, class Medium>
   void record(RaysLaunch const& launch, Sources const& sources, Medium const& medium, std::uint64_t source,
               GroundTruth& truth) const {
@@ -61,11 +64,12 @@ class RayTheory {
     if (weight > 0) truth.eq9_cone_px[source] = sum / weight;
   }
 
-  /// The ray as it comes to the medium, moved along itself to the dots' plane as it is seen through windows; nothing
-  /// where it does not get there.
+  /// Returns the ray in front of the medium, extended back to the dots' plane as it appears through windows; nullopt if
+  /// the ray does not reach the medium.
   std::optional<Ray<double>> before_medium(CameraView<double> const& camera, Ray<double> ray) const;
 
-  /// @param start of the plane that levers count from
+  /// Integrates along the part of a straight ray inside the medium.
+  /// @param start  ray, starting in the plane from which levers are measured
   template <class Medium>
   AcrossAxis integrate(Medium const& medium, Ray<double> const& start) const {
     AcrossAxis sum;
@@ -80,23 +84,23 @@ class RayTheory {
     return sum;
   }
 
-  /// Way from a ray's start to the medium's mid-plane along the camera's axis [m].
+  /// Distance from a ray's start to the medium's mid-plane along the camera's axis [m].
   double lever(Ray<double> const& start) const {
     return -start.position.z / start.direction.z * dot(start.direction, axis_);
   }
-  /// What a levered integral moves the pixel by [px].
+  /// Returns the displacement of the pixel for an integral with levers [px].
   Vec2d shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d levered) const;
 
  private:
   Pose<double> plane_;
   Vec3d axis_;
   double step_, n0_;
-  double stop_share_ = 1;          ///< of the disc that a launch aims at, that the stop fills
+  double stop_share_ = 1;          ///< fraction of a launch's target area that the stop fills, as a ratio of radii [1]
   SourceCubature places_, pupil_;  ///< rules over a source and over the stop
-  double near_shift_ = 0;          ///< by which windows before the medium bring the dots nearer [m]
+  double near_shift_ = 0;          ///< apparent shift of the dots by windows in front of the medium [m]
 };
 
-/// map_field and map_strain (field_map.h) for any camera. The cone's average is that of a few rays.
+/// map_field() and map_strain() (field_map.h) for any camera. The aperture average uses a few rays only.
 FieldMap map_field_by_rays(Scene const& scene, int spacing_px);
 StrainMap map_strain_by_rays(Scene const& scene);
 

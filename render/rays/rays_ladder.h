@@ -8,23 +8,25 @@
 
 namespace gladstone {
 
-/// A scene's launches by their numbers of rays: one for all sources, or those that a source takes what it needs from.
+/// Sequence of launches with increasing numbers of rays, among which the number for each source is chosen adaptively.
+/// Contains a single launch if the number is not adaptive.
 class RaysLadder {
  public:
-  /// Points of a sequence, from 32 on, every number twice the one before. @param shared by all but for their rays
+  /// Returns a ladder of Sobol or random points: 32 rays, doubled at each step.
+  /// @param shared  launch whose parameters, except the number of rays, apply to all steps
   static RaysLadder of_points(Scene const& scene, RaysLaunch const& shared, RenderImages images);
-  /// Nodes of rules that fill the stop, every number four times the one before: from 4 on, or from 64 where more than
-  /// an ideal lens images. Points where no rule serves: behind lenslets, which cut a cone into pieces, and without a
-  /// spot.
+  /// Returns a ladder of cubature rules that fill the stop, with four times as many nodes at each step: from 4 on, or
+  /// from 64 with a prescription or windows. Returns a ladder of points where no rule is suitable: with lenslets, which
+  /// divide the light cone, for images without a PSF, for random sampling, and for non-adaptive ray numbers.
   static RaysLadder of_rules(Scene const& scene, RaysLaunch const& shared, RenderImages images);
 
   std::size_t size() const { return launches_.size(); }
   RaysLaunch const& operator[](std::size_t step) const { return launches_[step]; }
   RayGoal const& goal() const { return goal_; }
-  /// The first of so many rays; the last where none has.
+  /// Returns the first step with at least this number of rays; otherwise the last step.
   std::size_t at_least(double rays) const;
-  /// The step that a source needs by what its rays have come to at this one, which may be this one.
-  /// @param light_per_weight of images at this step
+  /// Returns the step that a source requires according to its rays at the given step; the same step if they suffice.
+  /// @param light_per_weight  light in the image per unit of ray weight at this step
   std::size_t next(std::size_t step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings,
                    double light_per_weight) const;
 

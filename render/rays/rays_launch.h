@@ -10,42 +10,45 @@
 
 namespace gladstone {
 
-/// The rim of a launch's stop.
+/// Edge of the stop in a launch.
 enum class StopRim {
-  smooth,  ///< for rays that are clipped there: as wide as their number asks for
-  sharp,   ///< as it is, for rays that fill the stop and nothing else
+  smooth,  ///< smoothed over a width that depends on the number of rays, for rays that are vignetted there
+  sharp,   ///< sharp, for rays that fill the stop exactly
 };
 
-/// What all sources of a launch share.
+/// Ray-tracing parameters shared by all sources with the same number of rays.
 struct RaysLaunch {
-  Camera camera;  ///< its stop with the rim asked for
+  Camera camera;  ///< camera; the edge of its stop as requested
   TracingOptions<double> tracing;
   BundleView<double> choice;
   SpotView spot;
   std::uint64_t rays = 1;
-  double z_b = 0;         ///< from the dots to the lens [m]
-  double light_unit = 1;  ///< of weight times source area: a fully lit pixel on the axis [m^2]
-  double point_area = 0;  ///< that a source of no size counts as: what a pixel on the axis sees [m^2]
-  StopRule rule;          ///< that rays which fill the stop go by; of no rings: by `choice`
+  double z_b = 0;         ///< distance from the dots to the lens [m]
+  double light_unit = 1;  ///< weight times source area of a fully lit pixel on the axis [m^2]
+  double point_area = 0;  ///< area attributed to a point source: that seen by a pixel on the axis [m^2]
+  StopRule rule;          ///< rule for rays that fill the stop; without rings: points by `choice`
 
   RaysLaunch(Scene const& scene, SpotView const& spot, StopRim rim = StopRim::smooth);
-  /// The same of so many rays.
+  /// Returns the same launch with another number of rays.
   RaysLaunch with_rays(std::uint64_t number) const;
 
-  /// Light of one unit of a ray's weight [fully lit px].
+  /// Returns the light per unit of ray weight [fully lit px].
   double light_per_weight(double source_area) const {
     return (source_area > 0 ? source_area : point_area) / (static_cast<double>(rays) * light_unit);
   }
-  /// What a source at a point sees of the stop.
+  /// Returns the entrance pupil as seen from a point; nullopt if no chief ray passes.
   std::optional<WorldAimDisc> sight(Vec3d middle) const { return camera.aim_disc(middle); }
-  /// Where its rays go, if it reaches so far about the point, and the medium bends rays aside by `margin` at most [m].
+  /// Returns the target area of a source's rays.
+  /// @param disc  entrance pupil as seen from the source's centre
+  /// @param reach  maximum distance of a point of the source from its centre [m]
+  /// @param margin  upper limit of the deflection by the medium on the aim plane [m]
   AimedBundle<double> bundle(WorldAimDisc const& disc, double reach, double margin) const;
-  /// The margin for a source of which the medium moved a ray so far on the aim plane [m].
-  /// @throws DataError where no bench has such a shift
+  /// Returns the margin for a source of which a ray was deflected by `shift` on the aim plane [m].
+  /// @throws DataError if no real set-up has such a deflection
   double wider_margin(double shift) const;
 
  private:
-  /// Whether the stop's rim is smoothed.
+  /// Returns true if the edge of the stop is smoothed.
   bool soft() const;
 };
 

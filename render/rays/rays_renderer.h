@@ -4,9 +4,9 @@
 
 namespace gladstone {
 
-/// The general renderer on the CPU's cores: any source through any camera, ray by ray. Every ray's spot is laid down
-/// where it lands; truth is the centroid of the rays that pass the stop in either frame, its error the scatter between
-/// independent scramblings of them.
+/// General renderer on the CPU: any source through any camera, by ray tracing.
+/// The PSF of every ray is added to the image where the ray lands. The truth is the centroid of the rays that pass the
+/// stop in each image; its error is the scatter between independent scramblings of the rays.
 class RaysRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
@@ -15,13 +15,13 @@ class RaysRenderer : public Renderer {
                              RenderImages images) override;
 };
 
-/// Displacements of sources as an ideal lens in their place would image them [px]: every ray of the actual camera that
-/// passes its stop counts, in both frames, but lands where the collinear map (Camera::ideal_project) has the image of
-/// the point of the target that it seems to come from. What the actual lens adds, defocus included, is its aberration.
-/// NaN where no ray gets through.
+/// Computes the displacements that an ideal lens in place of the actual one would produce [px].
+/// Every ray of the actual camera that passes its stop is included, in both images, but is assigned the collinear image
+/// (Camera::ideal_project) of the apparent point of origin on the target. The difference from the actual displacement
+/// is the effect of aberrations, including defocus. NaN if no ray passes.
 std::vector<Vec2d> ideal_displacements(Scene const& scene, DotPattern const& sources);
 
-/// A white target seen by the camera: light per pixel, what dark dots are taken from.
+/// Renders a white target: light per pixel, from which dark dots are subtracted.
 Image<double> white_picture(Scene const& scene);
 
 }  // namespace gladstone

@@ -17,11 +17,12 @@
 
 namespace gladstone {
 
-/// Lays down the light of one frame of one source at a time.
+/// Deposits the light of one source in one image, by a HitGrid or PSF by PSF.
 class RayLight {
  public:
   explicit RayLight(SpotView const& spot);
-  /// @param rays of the source
+  /// Starts a source.
+  /// @param rays  number of rays of the source
   void begin(LightImage* image, double light_per_weight, std::uint64_t rays);
   void deposit(Vec2d p, double weight);
   void finish();
@@ -29,22 +30,22 @@ class RayLight {
  private:
   SpotView spot_;
   LightPatch patch_;
-  std::optional<HitGrid> grid_;  ///< made when it first pays
+  std::optional<HitGrid> grid_;  ///< created when first needed
   bool by_grid_ = false;
   LightImage* image_ = nullptr;
   double light_per_weight_ = 0;
 };
 
-/// How the rays of a source are sent.
+/// Target of a source's rays.
 struct SourceAim {
-  std::optional<WorldAimDisc> disc;           ///< none: no ray of it gets through
-  Vec2d origin{};                             ///< whole pixel that its sums count from [px]
-  double margin = 0;                          ///< by which its bundle is wider than what it sees of the stop [m]
-  Vec2d low[frame_count], high[frame_count];  ///< about what is known of where they land [px]
+  std::optional<WorldAimDisc> disc;           ///< entrance pupil as seen from the source; empty: no ray passes
+  Vec2d origin{};                             ///< whole-pixel position to which sums are relative [px]
+  double margin = 0;                          ///< margin by which the target area exceeds the entrance pupil [m]
+  Vec2d low[frame_count], high[frame_count];  ///< approximate bounding box of the hits in each image [px]
 };
 
-/// Aims at what a source sees of the stop, wider by a fourth more than the medium moves its chief and rim rays on the
-/// aim plane.
+/// Aims at the entrance pupil as seen from a source, with a margin of 1.25 times the deflection of its chief and edge
+/// rays by the medium on the aim plane.
 template <class View, class Medium>
 SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& medium, Vec3d middle) {
   SourceAim aim;
@@ -71,8 +72,8 @@ SourceAim aim_at_stop(RaysLaunch const& launch, View const& view, Medium const& 
   return aim;
 }
 
-/// Traces the rays of sources, both frames by the same, one source at a time: its light and its truth.
-/// @tparam View CameraView, or another that says where rays land
+/// Traces the rays of sources, one source at a time and with the same rays in both images: computes light and truth.
+/// @tparam View  CameraView, or another view that determines where rays land
 template <class View, class Sources, class Medium>
 class SourceTracer {
  public:
@@ -82,10 +83,12 @@ class SourceTracer {
     for (auto& light : light_) light.emplace(ladder[0].spot);
   }
 
-  /// Aims a little wide at first, by what its chief and rim rays are bent, and begins with few rays. Where a ray turns
-  /// out to be bent further, or more rays are needed, its light is taken back and it begins again. So what it gives
-  /// hangs on nothing but itself.
-  /// @param images null: its light is not sent anywhere @return its truth; NaN where no ray of it gets through
+  /// Traces a source with an adaptive number of rays.
+  /// The first pass has few rays and a margin estimated from its chief and edge rays. If a ray is deflected by more
+  /// than the margin, or more rays are required, the deposited light is subtracted and the source is traced again. The
+  /// result is therefore independent of other sources.
+  /// @param images  reference and measurement image; null: light is not deposited
+  /// @return its truth; NaN if no ray passes
   DotTruth trace(std::uint64_t source, LightImage* const (&images)[frame_count]) {
     use(0);
     SourceAim aim = aim_at_stop(*launch_, view_, medium_, sources_.middle(source));
@@ -107,10 +110,10 @@ class SourceTracer {
     return source_truth(of_scramblings_, 1 << launch_->choice.scrambling_bits, aim.origin);
   }
 
-  /// The launch that the last source went by.
+  /// Launch that the last source used.
   RaysLaunch const& launch() const { return *launch_; }
   StatusCounts const& statuses() const { return statuses_; }
-  /// The widest that any source was aimed beyond the stop [m].
+  /// Largest margin by which a source's rays were aimed beyond the stop [m].
   double largest_margin() const { return largest_margin_; }
 
  private:
@@ -120,7 +123,9 @@ class SourceTracer {
     view_.elements = launch_->camera.elements.data();
   }
 
-  /// @param sign of the light that is laid down @return furthest that a ray was moved on the aim plane [m]
+  /// Traces all rays of a source.
+  /// @param sign  sign of the deposited light; -1 subtracts it
+  /// @return largest deflection of a ray on the aim plane [m]
   double trace_all(std::uint64_t source, SourceAim const& aim, LightImage* const (&images)[frame_count], double sign) {
     AimedBundle<double> const bundle = launch_->bundle(*aim.disc, sources_.reach(), aim.margin);
     double const light_per_weight = sign * launch_->light_per_weight(sources_.area());
@@ -138,12 +143,12 @@ class SourceTracer {
     return std::sqrt(largest_shift2_);
   }
 
-  /// Rays that go side by side: two across a medium, which needs the registers of both.
+  /// Number of rays traced together: two through a medium, which needs the registers of both.
   static constexpr int side_by_side = std::is_same_v<Medium, NoMedium<double>> ? 4 : 2;
 
   template <int N>
   void trace_some(AimedBundle<double> const& bundle, std::uint64_t source, std::uint64_t first, Vec2d origin) {
-    throw_if_interrupted();  // each of them may take a million steps
+    throw_if_interrupted();  // A ray may have a million steps.
     Ray<double> start[N];
     double weight[N];
     for (int i = 0; i < N; ++i) {
@@ -169,7 +174,7 @@ class SourceTracer {
 
   RaysLadder const& ladder_;
   std::size_t step_ = 0;
-  RaysLaunch const* launch_ = nullptr;  ///< of that step
+  RaysLaunch const* launch_ = nullptr;  ///< launch of the current step
   Sources sources_;
   Medium const& medium_;
   View view_;

@@ -7,7 +7,8 @@
 
 namespace gladstone {
 
-/// The truth of a source from the sums over its scramblings. @param scramblings 0: NaN, no ray of it gets through
+/// Computes the truth of a source from the sums over its scramblings.
+/// @param scramblings  number of scramblings; 0: no ray passes, the result is NaN
 GLADSTONE_HD inline DotTruth source_truth(RaySums const* of_scramblings, int scramblings, Vec2d origin) {
   using std::sqrt;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -24,10 +25,10 @@ GLADSTONE_HD inline DotTruth source_truth(RaySums const* of_scramblings, int scr
   return truth;
 }
 
-/// What a camera sees of one particle.
+/// Truth of one particle.
 struct ParticleSeen {
-  DotTruth truth;    ///< first pulse and second, through the medium
-  DotTruth ambient;  ///< the same without it
+  DotTruth truth;    ///< frames A and B, with the medium
+  DotTruth ambient;  ///< frames A and B, without the medium
 };
 
 }  // namespace gladstone

@@ -8,30 +8,31 @@
 
 namespace gladstone {
 
-/// A rule of integration over the unit disc: Gauss' in r^2 times equal angles, every other ring turned by half an angle
-/// (Stroud, Approximate Calculation of Multiple Integrals, 1971, chapter 2). With k rings of 4 k it is exact for
-/// polynomials of degree 4 k - 1. Every source turns it by an angle of its own.
+/// Cubature rule over the unit disc: Gauss-Legendre in r^2 times equal angles, with every other ring rotated by half an
+/// angular step (Stroud, Approximate Calculation of Multiple Integrals, 1971, chapter 2). With k rings of 4 k nodes, it
+/// is exact for polynomials of degree 4 k - 1. Each source rotates the rule by its own random angle.
 ///
-/// Of rays that fill the stop just what lens and medium do to them is left to integrate, smooth functions of their
-/// places: few nodes do as well as hundreds of points at random.
+/// For rays that fill the stop, the integrand is the effect of lens and medium alone, a smooth function of the position
+/// in the stop: a few nodes are as accurate as hundreds of random points.
 struct StopRuleView {
-  double const* radius2 = nullptr;  ///< of the rings
-  double const* share = nullptr;    ///< of a ring's rays, over that of equal shares
-  int rings = 0;                    ///< 0: there is no rule, rays go to points of a sequence
+  double const* radius2 = nullptr;  ///< squared radii of the rings
+  double const* share = nullptr;    ///< weight of a ring's rays relative to equal weights
+  int rings = 0;                    ///< number of rings; 0: no rule, rays are sent to points of a sequence
 
   GLADSTONE_HD explicit operator bool() const { return rings > 0; }
-  /// The angles of a ring.
+  /// Number of nodes of a ring.
   GLADSTONE_HD int angles() const { return 4 * rings; }
 };
 
-/// A place of the unit disc that a ray goes to.
+/// Point of the unit disc to which a ray is sent.
 struct StopPlace {
   Vec2d at;
-  double share = 1;  ///< of the ray, over that of equal shares
+  double share = 1;  ///< weight of the ray relative to equal weights
 };
 
-/// Where ray j of the particle of that key goes. Scramblings have every other angle, or every fourth.
-/// @param rule with as many nodes as there are rays; or none
+/// Returns the point of ray j of the particle with this key. A scrambling consists of every other node of a ring, or of
+/// every fourth.
+/// @param rule  rule with as many nodes as there are rays, or none
 GLADSTONE_HD inline StopPlace place_of_ray(StopRuleView const& rule, BundleView<double> const& choice,
                                            std::uint64_t key, std::uint64_t j) {
   using std::sqrt;
@@ -43,11 +44,11 @@ GLADSTONE_HD inline StopPlace place_of_ray(StopRuleView const& rule, BundleView<
   return {point_of_circle(sqrt(rule.radius2[ring]), turn + turned), rule.share[ring]};
 }
 
-/// Owner of what a view shows.
+/// Owner of a StopRuleView's data.
 class StopRule {
  public:
   StopRule() = default;
-  /// @pre rays is four times the square of a whole number
+  /// @pre rays is four times the square of an integer
   explicit StopRule(std::uint64_t rays);
   StopRuleView view() const { return {radius2_.data(), share_.data(), static_cast<int>(radius2_.size())}; }
 

@@ -7,7 +7,8 @@
 
 namespace gladstone {
 
-/// Calls visit(pulses, medium) with the particles at both pulses, ParticleSources by their scattering, and the medium.
+/// Calls visit(pulses, medium) with the ParticleSources of both pulses, whose type depends on the scattering, and with
+/// the medium.
 template <class Visit>
 auto with_particles(Scene const& scene, Particles const& particles, ParticleLight light, Visit&& visit) {
   LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
@@ -23,16 +24,18 @@ auto with_particles(Scene const& scene, Particles const& particles, ParticleLigh
   return with(LambertSpheres<double>{particles.diameter.data()});
 }
 
-/// A rendering whose truth is to be filled in.
+/// Returns a rendering of particles whose truth is allocated but not computed.
 Rendering empty_rendering(Particles const& particles);
 
-/// Enters what a camera sees of a particle. @param rays that it took at either pulse
+/// Stores the truth of a particle.
+/// @param rays  number of its rays at each pulse
 void set_particle(GroundTruth& truth, std::size_t particle, ParticleSeen const& seen, std::uint64_t rays);
 
-/// Counts the rays of all particles.
+/// Sums up the rays of all particles.
 void count_rays(Rendering& rendering);
 
-/// Images and truth of particles, ray by ray. Light is in units of photon_unit(), truth's flux in photons.
+/// Renders images and truth of particles by ray tracing. Light is in units of photon_unit(), the truth's flux in
+/// photons.
 Rendering trace_particles(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images);
 
 }  // namespace gladstone

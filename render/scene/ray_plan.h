@@ -56,15 +56,14 @@ struct RaysPlan {
   std::uint64_t rays_at_side_faces = 0;  ///< maximum number of rays of dots at side faces (side_faces.h); 0: as others
   int fineness = 1;                      ///< as Scene::fineness
   double truth_error_px = not_told;      ///< rms error of displacements [px]; NaN: not measured, or no ray passed
-  double image_error_levels =
-      not_told;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: not measured or none lit
-  double truth_resolution_px = 0;      ///< detection limit of truth_error_px: two standard errors at zero error [px]
-  double image_resolution_levels = 0;  ///< detection limit of image_error_levels, likewise [grey levels]
-  int bits = 0;                        ///< bit depth of the grey levels
-  bool extrapolated = false;           ///< the errors were measured with up to 4096 rays and extrapolated
-  bool converged = true;               ///< false: the errors exceed the tolerances
-  double rays_wanted = not_told;       ///< estimated rays per source that meet the tolerances; NaN: unknown or none
-  double seconds = not_told;           ///< estimated processor time of a rendering by ray_seconds() [s]
+  double image_error_levels = not_told;  ///< rms error of lit pixels, worse image [levels at `bits`]; NaN: unknown
+  double truth_resolution_px = 0;        ///< detection limit of truth_error_px: two standard errors at zero error [px]
+  double image_resolution_levels = 0;    ///< detection limit of image_error_levels, likewise [grey levels]
+  int bits = 0;                          ///< bit depth of the grey levels
+  bool extrapolated = false;             ///< the errors were measured with up to 4096 rays and extrapolated
+  bool converged = true;                 ///< false: the errors exceed the tolerances
+  double rays_wanted = not_told;         ///< estimated rays per source that meet the tolerances; NaN: unknown or none
+  double seconds = not_told;             ///< estimated processor time of a rendering by ray_seconds() [s]
 
   std::optional<SideFaceErrors> side_faces;  ///< for the fast renderer; empty: no dot in view is at a side face
 
