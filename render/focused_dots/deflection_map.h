@@ -10,44 +10,49 @@
 
 namespace gladstone {
 
-/// Whether a scene's dots may have a deflection table, as far as its field and its view tell: made, or why not.
+/// Determines whether a deflection table can be built for a scene's dots, from the field and the view: `made`, or the
+/// reason against it.
 TableState table_state(Scene const& scene);
 
-/// Where a scene's deflection table has its nodes: at multiples of a spacing that hangs on the field, the view and the
-/// cone alone, as far as the cones of the scene's own dots and of the sources reach, but within the medium.
+/// Lattices of a scene's deflection table. Nodes are at multiples of a spacing that depends on field, view and light
+/// cone only. The lattices cover the cones of the scene's own dots and of the given sources, as far as they are within
+/// the medium.
 struct DeflectionPlan {
-  /// Shifts that a table has room for unless told otherwise, in radii of the stop.
+  /// Default for the largest distance of an aim point from the pupil's centre that the table covers, in radii of the
+  /// stop.
   static constexpr double usual_aim = 0.25;
 
-  DeflectionTable table;  ///< without its values
+  DeflectionTable table;  ///< the table without values
   TableState state = TableState::no_sources;
   bool wanted() const { return state == TableState::made; }
 
   DeflectionPlan() = default;
-  /// @param farthest_aim point of the pupil, from its middle, that a dot's cone may lie about [m]
+  /// @param farthest_aim  largest distance of the centre of a dot's light cone from the pupil's centre [m]
   DeflectionPlan(FocusedDots const& dots, DotPattern const& sources, double farthest_aim);
-  /// Whether the other plan's table is the same to the last bit: its nodes, its rays' way, and the medium, by its
-  /// owner.
+  /// Returns true if the table of the other plan is identical to the last bit: the same nodes, ray geometry and medium
+  /// (by its owner).
   bool same_table(DeflectionPlan const& other) const;
 
  private:
-  std::vector<double> numbers_;  ///< all that the table's values depend on, beside the medium
+  std::vector<double> numbers_;  ///< all numbers, besides the medium, on which the table's values depend
   std::shared_ptr<void const> medium_;
 };
 
-/// Memory that the table of a setup's dots will take, before anything is built [bytes]: an estimate that a field which
-/// ends within the view makes too large. Opens a file to see its grid. @throws DataError for one that cannot be read
+/// Estimates the memory of the deflection table of a setup's dots before anything is built [bytes]; too large for a
+/// field that ends within the view. Opens a file to read the size of its grid.
+/// @throws DataError for a file that cannot be read
 double table_bytes_needed(Setup const& setup);
 
-/// A scene's deflection table in the host's memory.
+/// Deflection table of a scene in host memory.
 class DeflectionMap {
  public:
-  /// Traces the table's rays on all cores. @throws Interrupted
+  /// Traces the table's rays on all CPU cores.
+  /// @throws Interrupted
   DeflectionMap(FocusedDots const& dots, DeflectionPlan const& plan);
-  DeflectionMap(DeflectionMap const&) = delete;  // the table points into the values
+  DeflectionMap(DeflectionMap const&) = delete;  // the table points into values_
   DeflectionMap& operator=(DeflectionMap const&) = delete;
 
-  /// exists() only where it was wanted.
+  /// The table; exists() is false if the plan has none.
   DeflectionTable const& table() const { return table_; }
 
  private:
@@ -55,27 +60,28 @@ class DeflectionMap {
   std::vector<std::byte> values_;
 };
 
-/// A renderer's last table, for those who render one scene several times: its dots, and truth at vectors round by
-/// round.
-/// @tparam Map DeflectionMap, or a device's
+/// Cache of a renderer's last deflection table, for repeated renderings of one scene: its dots, and the truth at the
+/// vectors of each correlation pass.
+/// @tparam Map  DeflectionMap, or that of a device
 template <class Map>
 class LastDeflections {
  public:
-  /// The table of a scene; valid until the next call. @param more what a Map takes beside dots and plan
+  /// Returns the table of a scene, which is valid until the next call.
+  /// @param more  further arguments of Map's constructor
   template <class... More>
   DeflectionTable table(FocusedDots const& dots, DotPattern const& sources, double farthest_aim, More const&... more) {
     DeflectionPlan plan(dots, sources, farthest_aim);
     state_ = plan.state;
     if (!plan.wanted()) return plan.table;
     if (!map_ || !plan.same_table(plan_)) {
-      map_.reset();  // first gives its memory back
+      map_.reset();  // Free the old table before the new one is allocated.
       map_ = std::make_unique<Map>(dots, plan, more...);
       plan_ = std::move(plan);
     }
     return map_->table();
   }
   void forget() { map_.reset(); }
-  /// Of the last table that was asked for.
+  /// State of the last table requested.
   TableState state() const { return state_; }
 
  private:

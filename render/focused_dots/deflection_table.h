@@ -9,11 +9,11 @@
 
 namespace gladstone {
 
-/// What a ray meets on a bench whose lens images the target sharply: wherever it passes the lens, it lands on the image
-/// of the point of the target that it seems to come from.
+/// Set-up whose lens images the target sharply: wherever a ray passes the lens, it lands on the image of its apparent
+/// point of origin on the target.
 struct BenchView {
-  double plane_z = 0, lens_z = 0;  ///< of the target and of the lens [m]
-  double px_per_metre = 0;         ///< of the target [px/m]
+  double plane_z = 0, lens_z = 0;  ///< Z of the target and of the lens [m]
+  double px_per_metre = 0;         ///< image scale: pixels per metre on the target [px/m]
   TracingOptions<double> tracing;
 
   GLADSTONE_HD Ray<double> straight_ray(Vec2d from, Vec2d pupil) const {
@@ -21,14 +21,16 @@ struct BenchView {
   }
 };
 
-/// What the medium does to a ray, as the camera sees it.
+/// Effect of the medium on a ray as seen by the camera.
 struct Deflection {
-  Vec2d displacement;                   ///< on the sensor [px]
-  Vec2d shift;                          ///< on the lens plane [m]
-  RayStatus status = RayStatus::alive;  ///< or how it was lost on its way to the lens: NaN then
+  Vec2d displacement;                   ///< displacement on the sensor [px]; NaN if the ray is lost
+  Vec2d shift;                          ///< deflection on the lens plane [m]; NaN if the ray is lost
+  RayStatus status = RayStatus::alive;  ///< alive, or the cause of the loss before the lens
 };
 
-/// What the medium does to N rays, side by side. @param from on the target @param pupil of straight rays [m]
+/// Computes the effect of the medium on N rays, traced together.
+/// @param from  starting points on the target [m]
+/// @param pupil  intersections of the undeflected rays with the lens plane [m]
 template <int N, class Medium>
 GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d const (&from)[N], Vec2d const (&pupil)[N],
                           Deflection (&out)[N]) {
@@ -56,12 +58,13 @@ GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d co
   }
 }
 
-/// A square lattice of a plane whose nodes lie at multiples of its spacing, wherever it begins, and cubic Lagrange
-/// polynomials through the sixteen nodes about a point (at its edges beside the point): what it says of a point further
-/// inside hangs on nothing else.
+/// Square lattice with nodes at integer multiples of its spacing, and bicubic Lagrange interpolation from the 4 x 4
+/// nodes around a point (near an edge, from the outermost four). In the interior, interpolated values do not depend on
+/// the extent of the lattice.
 struct SquareLattice {
-  Vec2<int> first{0, 0};  ///< multiples of the spacing at which node (0, 0) lies
-  double spacing = 1;     ///< [m]
+  Vec2<int> first{0, 0};  ///< position of node (0, 0) in multiples of the spacing
+  double spacing = 1;     ///< node spacing [m]
+  /// reciprocal of the spacing [1/m]
   double per_metre = 1;
   int columns = 0;
   int rows = 0;
@@ -70,20 +73,20 @@ struct SquareLattice {
   GLADSTONE_HD Vec2d node(int column, int row) const {
     return {(first.x + column) * spacing, (first.y + row) * spacing};
   }
-  /// Whether it may be asked within `reach` of a point in either direction.
+  /// Returns true if the lattice contains the square of half side `reach` around a point.
   GLADSTONE_HD bool covers(Vec2d middle, double reach) const {
     return (middle.x - reach) * per_metre >= first.x && (middle.y - reach) * per_metre >= first.y &&
            (middle.x + reach) * per_metre <= first.x + columns - 1 &&
            (middle.y + reach) * per_metre <= first.y + rows - 1;
   }
 
-  /// The nodes about a point and their weights along both axes.
+  /// The 4 x 4 nodes around a point and their weights along both axes.
   struct Stencil {
     long long corner;
     int columns;
     double x[4], y[4];
   };
-  /// A place beyond the lattice is extrapolated to.
+  /// Returns the stencil of a point; a point outside the lattice is extrapolated.
   GLADSTONE_HD Stencil about(Vec2d q) const {
     double const u = q.x * per_metre, v = q.y * per_metre;
     int const column = inside(u, first.x, columns), row = inside(v, first.y, rows);
@@ -96,13 +99,14 @@ struct SquareLattice {
   }
 
  private:
-  /// The node before a place, in multiples of the spacing, that has one before it and two behind.
+  /// Returns the node below a position, in multiples of the spacing, limited to nodes that have one node below and two
+  /// above.
   GLADSTONE_HD static int inside(double at, int first_node, int count) {
     using std::floor;
     int const low = first_node + 1, high = first_node + count - 3;
     return at < low ? low : (at >= high ? high : static_cast<int>(floor(at)));
   }
-  /// Of the nodes -1, 0, 1, 2 at t (Abramowitz & Stegun 25.2.13).
+  /// Computes the Lagrange weights of the nodes -1, 0, 1, 2 at t (Abramowitz & Stegun 25.2.13).
   GLADSTONE_HD static void weigh(double t, double (&weights)[4]) {
     double const left = (1.0 / 6) * t * (t - 1), right = 0.5 * (t + 1) * (t - 2);
     weights[0] = left * (2 - t);
@@ -112,7 +116,8 @@ struct SquareLattice {
   }
 };
 
-/// Value interpolated from a lattice's nodes. @tparam Sum of weights times nodes
+/// Interpolates a value from the nodes of a lattice.
+/// @tparam Sum  type of the sum of weights times nodes
 template <class Sum, class Node>
 GLADSTONE_HD Sum interpolate(SquareLattice::Stencil const& stencil, Node const* nodes) {
   Sum sum{};
@@ -125,7 +130,7 @@ GLADSTONE_HD Sum interpolate(SquareLattice::Stencil const& stencil, Node const* 
   return sum;
 }
 
-/// How something changes with the point of the pupil: per metre along x and y.
+/// Derivatives of a vector with respect to the pupil point along x and y [1/m].
 struct PupilSlopes {
   Vec2d by_x, by_y;
 
@@ -139,7 +144,7 @@ struct PupilSlopes {
   GLADSTONE_HD PupilSlopes& operator+=(PupilSlopes const& o) { return *this = *this + o; }
 };
 
-/// A vector as a table keeps it, to be read at once.
+/// Vector in a table, aligned so that it is loaded by one instruction.
 struct alignas(16) TableVector {
   double x, y;
 
@@ -147,7 +152,7 @@ struct alignas(16) TableVector {
   GLADSTONE_HD friend Vec2d operator*(double scale, TableVector const& v) { return {scale * v.x, scale * v.y}; }
 };
 
-/// Slopes as a table keeps them: what is a correction does with single precision, and half the memory to read, at once.
+/// Slopes in a table, aligned for one load. Single precision suffices for a correction and halves the memory traffic.
 struct alignas(16) TableSlopes {
   Vec2<float> by_x, by_y;
 
@@ -160,23 +165,23 @@ struct alignas(16) TableSlopes {
   }
 };
 
-/// The deflections of rays through the mid-plane of the medium, to first order in the point of the pupil that they run
-/// to: what a ray does hangs on where it crosses the mid-plane, and little on its direction. A view.
+/// Deflections of rays as a function of their intersection q with the mid-plane of the medium, to first order in the
+/// pupil point. A ray's deflection depends mainly on q and weakly on its direction. A non-owning view.
 struct DeflectionTable {
-  SquareLattice straight;  ///< rays to the middle of the pupil
-  SquareLattice sloping;   ///< the slopes, which are corrections
-  double way = 0;          ///< from the target to the mid-plane, as a share of the way to the lens [1]
-  double pupil_step = 0;   ///< for the slopes' differences [m]
-  Vec2d low, high;         ///< side faces of the medium [m]
-  double face_ways[2]{};   ///< as `way`, of its faces across the axis
+  SquareLattice straight;  ///< lattice of rays to the pupil's centre
+  SquareLattice sloping;   ///< lattice of the slopes, which are corrections
+  double way = 0;          ///< distance target to mid-plane over distance target to lens [1]
+  double pupil_step = 0;   ///< step in the pupil for the finite differences of the slopes [m]
+  Vec2d low, high;         ///< bounds of the medium in X and Y [m]
+  double face_ways[2]{};   ///< like `way`, for the two faces of the medium normal to Z
 
-  /// [rows][columns] of the lattices, as in Deflection; NaN where a ray does not reach the lens; null: no table
+  /// [rows][columns] of the lattices, as in Deflection; NaN if a ray does not reach the lens; null: no table
   TableVector const* displacements = nullptr;
   TableVector const* shifts = nullptr;
   TableSlopes const* displacement_slopes = nullptr;
   TableSlopes const* shift_slopes = nullptr;
 
-  /// Memory for its values, as one piece, and where they stand there.
+  /// Pointers to the values in one contiguous block of memory.
   struct Values {
     TableVector *displacements, *shifts;
     TableSlopes *displacement_slopes, *shift_slopes;
@@ -186,7 +191,7 @@ struct DeflectionTable {
     auto* const slopes = reinterpret_cast<TableSlopes*>(vectors + 2 * straight.size());
     return {vectors, vectors + straight.size(), slopes, slopes + sloping.size()};
   }
-  /// The table whose values stand there.
+  /// Returns the table with these values.
   DeflectionTable with(Values const& values) const {
     DeflectionTable table = *this;
     table.displacements = values.displacements;
@@ -196,22 +201,23 @@ struct DeflectionTable {
     return table;
   }
   GLADSTONE_HD bool exists() const { return displacements != nullptr; }
-  /// Memory that its values take [bytes].
+  /// Memory of the values [bytes].
   std::size_t bytes() const {
     return 2 * (static_cast<std::size_t>(straight.size()) * sizeof(TableVector) +
                 static_cast<std::size_t>(sloping.size()) * sizeof(TableSlopes));
   }
-  /// Whether it holds all rays from within `half` of a point of the target to within `radius` of one of the pupil.
+  /// Returns true if the table contains all rays from within `half` of a point on the target to within `radius` of a
+  /// point in the pupil.
   GLADSTONE_HD bool covers(Vec2d on_target, double half, Vec2d pupil, double radius) const {
     Vec2d const middle = crossing(on_target, pupil);
     double const reach = (1 - way) * half + way * radius;
     return exists() && straight.covers(middle, reach) && sloping.covers(middle, reach);
   }
-  /// Whether no straight ray from within `half` of a point of the target to within `pupil` of the axis meets the
-  /// medium.
+  /// Returns true if no straight ray from within `half` of a point on the target to within `pupil` of the axis meets
+  /// the medium.
   GLADSTONE_HD bool beside(Vec2d on_target, double half, double pupil) const {
     bool left = true, right = true, below = true, above = true;
-    for (int face = 0; face < 2; ++face) {  // a cone is furthest out at one of its ends
+    for (int face = 0; face < 2; ++face) {  // A cone extends farthest at one of its ends.
       double const share = face_ways[face], reach = (1 - share) * half + share * pupil;
       Vec2d const middle = (1 - share) * on_target;
       left = left && middle.x + reach < low.x;
@@ -221,7 +227,8 @@ struct DeflectionTable {
     }
     return left || right || below || above;
   }
-  /// Where the straight ray from a point of the target to one of the pupil crosses the mid-plane [m].
+  /// Returns the intersection with the mid-plane of the straight ray between a point on the target and one in the pupil
+  /// [m].
   GLADSTONE_HD Vec2d crossing(Vec2d on_target, Vec2d pupil) const { return (1 - way) * on_target + way * pupil; }
   GLADSTONE_HD Vec2d displacement(Vec2d q, Vec2d pupil) const {
     return interpolate<Vec2d>(straight.about(q), displacements) +
@@ -231,13 +238,14 @@ struct DeflectionTable {
     return interpolate<Vec2d>(straight.about(q), shifts) +
            interpolate<PupilSlopes>(sloping.about(q), shift_slopes).at(pupil);
   }
-  /// The rays that make it are traced by fours: those of the straight lattice, then four about the pupil for every node
-  /// of the slopes', along +x, -x, +y and -y.
+  /// Number of groups of four rays from which the table is built: first the rays of the straight lattice, then four
+  /// rays for every node of the slopes, at the pupil points +x, -x, +y and -y.
   GLADSTONE_HD long long straight_fours() const { return (straight.size() + 3) / 4; }
   GLADSTONE_HD long long fours() const { return straight_fours() + sloping.size(); }
 };
 
-/// Traces four of the rays that make a table. @tparam Four lanes that share them, each with `abreast` side by side
+/// Traces group `which` of four rays of a table and stores their results.
+/// @tparam Four  lanes that share the four rays; each traces `abreast` of them together
 template <class Four, class Medium>
 GLADSTONE_HD void trace_four(Four const& four, BenchView const& bench, Medium const& medium,
                              DeflectionTable const& table, DeflectionTable::Values const& out, long long which) {
@@ -265,7 +273,7 @@ GLADSTONE_HD void trace_four(Four const& four, BenchView const& bench, Medium co
     }
     return;
   }
-  // slopes by central differences
+  // Compute the slopes by central differences.
   double const scale = 0.5 / table.pupil_step;
   auto const slopes = [&](Vec2d Deflection::*what) {
     Vec2d sides[4];

@@ -3,18 +3,19 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-/// How displacements spread over a dot's cone, and how that changes with the place on the dot.
+/// Distribution of displacements over a dot's light cone, and its variation over the area of the dot.
 namespace gladstone {
 
-/// Moments of a distribution of displacements up to fourth order about some origin: sums of weight x^a y^b.
+/// Moments of a distribution of displacements about an origin up to fourth order: sums of weight x^a y^b.
 struct DisplacementMoments {
   static constexpr int order = 4;
   static constexpr int count = 15;
   double of[count] = {};
 
-  /// Place of x^a y^b: by total order, then by the power of y.
+  /// Index of x^a y^b: sorted by total order, then by the power of y.
   GLADSTONE_HD static constexpr int at(int a, int b) { return (a + b) * (a + b + 1) / 2 + b; }
 
+  /// Total order of the moment with this index.
   GLADSTONE_HD static constexpr int order_of(int moment) {
     return (moment > 0) + (moment > 2) + (moment > 5) + (moment > 9);
   }
@@ -31,14 +32,15 @@ struct DisplacementMoments {
   }
 };
 
-/// Places on a source at which its cone is integrated, and what makes a quadratic function of the place of the results.
+/// Points on a source at which its cone is integrated, and the linear map from the results to a quadratic polynomial of
+/// the position on the source.
 struct PlaceRule {
-  static constexpr int terms = 6;  ///< 1, x, y, x^2, x y, y^2
+  static constexpr int terms = 6;  ///< terms of the polynomial: 1, x, y, x^2, x y, y^2
   static constexpr int most_places = 9;
   int count = 0;
-  Vec2d places[most_places];  ///< in units of the half size, y downwards
+  Vec2d places[most_places];  ///< points in units of the half size, y downwards
   double weights[most_places];
-  double fit[terms][most_places];  ///< coefficient of a term = sum of fit times the values at the places
+  double fit[terms][most_places];  ///< coefficient of a term = sum over points of fit times the value there
 
   GLADSTONE_HD static void basis(Vec2d place, double (&value)[terms]) {
     value[0] = 1;
@@ -50,16 +52,18 @@ struct PlaceRule {
   }
 };
 
-/// Moments as a function of the place on the source.
+/// Moments as a quadratic polynomial of the position on the source.
 struct MomentField {
   double coefficient[DisplacementMoments::count][PlaceRule::terms];
 
-  /// A coefficient. @param moments at the places of the rule
+  /// Computes one coefficient.
+  /// @param moments  moments at the points of the rule
   GLADSTONE_HD static double fitted(PlaceRule const& rule, DisplacementMoments const* moments, int moment, int term) {
     double sum = 0;
     for (int place = 0; place < rule.count; ++place) sum += rule.fit[term][place] * moments[place].of[moment];
     return sum;
   }
+  /// Returns a moment at a position on the source.
   GLADSTONE_HD double value(int moment, Vec2d place) const {
     double basis[PlaceRule::terms];
     PlaceRule::basis(place, basis);

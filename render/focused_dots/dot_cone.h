@@ -6,17 +6,20 @@
 #include "render/optics/aperture_stop.h"
 #include "render/scene/truth_error.h"
 
-/// The cone of a dot's rays: the deflection table says what each does, a few traced ones correct it. Integrals over the
-/// cone are then as good as their rule, which follows waves of three of the field's finest lengths, in cones up to some
-/// hundred of them wide.
+/// Light cone of a dot: the deflection table provides the deflection of each ray, and a few traced rays correct it. The
+/// integrals over the cone are then as accurate as their cubature rule, which resolves waves of three times the field's
+/// finest length, in cones up to a few hundred of these lengths wide.
 namespace gladstone {
 
-/// Points of a cone's cross-section, in units of the stop's radius, on rings that share their directions.
+/// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
+  /// radius in units of the stop's radius
   double radius;
-  double weight;  ///< share of the area
+  double weight;  ///< fraction of the area
+  /// index of the direction
   int direction;
 };
+/// Cubature rule over a light cone's cross-section.
 struct ConeRule {
   static constexpr int most_directions = 256;
   ConePoint const* points = nullptr;
@@ -25,25 +28,28 @@ struct ConeRule {
   int direction_count = 0;
   bool fine = false;  ///< twice as fine as usual
 
-  // where a cone has no simple edge: points of equal weights all over the disc of CorrectedCone::reach
+  // Rule for a cone without a simple edge: points of equal weight over the whole disc of radius CorrectedCone::reach.
   Vec2d const* scattered = nullptr;
   int scattered_count = 0;
-  double smoothing = 0;  ///< of the stop's edge, as ApertureStop::edge
+  double smoothing = 0;  ///< width of the smoothed edge of the stop, as ApertureStop::edge
 
-  /// Points that a cone is integrated over at each place. @param simple_edge of the stop, as seen from all of them
+  /// Number of nodes over which a cone is integrated at each point of the source.
+  /// @param simple_edge  whether the edge of the stop is single-valued as seen from all of these points
   GLADSTONE_HD int points_of(bool simple_edge) const { return simple_edge ? count : scattered_count; }
 };
 
-/// What the traced rays of a dot say of the table: sums over rays.
+/// Comparison of a dot's traced rays with the deflection table: sums over rays.
 struct TableCheck {
   double rays = 0;
-  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< traced minus table [m]; times the stop's point [m^2]
-  double square = 0;                          ///< |stop's point|^2 [m^2]
-  Vec2d traced{}, miss{};                     ///< displacements, and by what they are more than the table's [px]
-  double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of the traced ones and the table's [px^2]
-  Vec2d miss2{};                              ///< squares of `miss`, by component [px^2]
+  Vec2d shift{}, shift_by_x{},
+      shift_by_y{};        ///< traced minus tabulated shift [m]; times the components of the stop point [m^2]
+  double square = 0;       ///< |stop point|^2 [m^2]
+  Vec2d traced{}, miss{};  ///< traced displacement; traced minus tabulated displacement [px]
+  double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of traced and tabulated displacements [px^2]
+  Vec2d miss2{};                              ///< squares of the components of `miss` [px^2]
 
-  /// @param at of the stop, from its middle [m]
+  /// Adds a ray.
+  /// @param at  point of the stop, relative to the centre of the cone [m]
   GLADSTONE_HD void add(Vec2d at, Deflection const& found, Deflection const& expected) {
     Vec2d const off = found.shift - expected.shift, aside = found.displacement - expected.displacement;
     rays += 1;
@@ -57,7 +63,7 @@ struct TableCheck {
     add_products(traced2, found.displacement);
     add_products(expected2, expected.displacement);
   }
-  /// Calls visit(this member, the other's) for every number.
+  /// Calls visit(number, index) for every number of this object.
   template <class Visit>
   GLADSTONE_HD void each_number(Visit&& visit) {
     static_assert(sizeof(TableCheck) == numbers * sizeof(double));
@@ -79,12 +85,14 @@ struct TableCheck {
   }
 };
 
-/// How well the displacement of a dot is known, by component [px^2].
+/// Accuracy of a dot's displacement, by component [px^2].
 struct CheckErrors {
-  Vec2d scatter2;  ///< square of the standard error of what the rays correct the table by
-  Vec2d miss2;     ///< variance from ray to ray of what the table is off by
+  Vec2d scatter2;  ///< squared standard error of the mean correction by the traced rays
+  Vec2d miss2;     ///< variance between rays of the table's error
 };
-/// From the scatter between independent scramblings, as displacement_error2(). @param all their sum
+/// Computes the errors from the scatter between independent scramblings, as displacement_error2().
+/// @param of  sums of each scrambling
+/// @param all  sum over all scramblings
 GLADSTONE_HD inline CheckErrors check_errors(TableCheck const* of, int scramblings, TableCheck const& all) {
   Vec2d const miss = all.miss / all.rays;
   Vec2d scatter2{};
@@ -93,15 +101,18 @@ GLADSTONE_HD inline CheckErrors check_errors(TableCheck const* of, int scramblin
   return {error2_factor(scramblings) * scatter2, {miss2.x > 0 ? miss2.x : 0, miss2.y > 0 ? miss2.y : 0}};
 }
 
-/// The cone of a dot's rays by the table, corrected to agree with the traced rays on average.
+/// Light cone of a dot by the deflection table, corrected to agree with the traced rays on average.
 class CorrectedCone {
  public:
-  /// Rays further from the aim than so many radii of the stop are not looked at; a table has to cover those that come
-  /// to the stop in fields that widen cones no more than by a tenth, and extrapolates to others.
+  /// Radii in units of the stop's radius: rays farther from the aim than `reach` are ignored; a table must cover those
+  /// up to `covered`, which reach the stop in fields that widen the cone by no more than a tenth, and is extrapolated
+  /// beyond.
   static constexpr double reach = 1.25, covered = 1.1;
 
-  /// @param distance target to lens plane [m] @param centre of the dot [m] @param aim point of the pupil about which
-  /// the cone lies: what the medium makes of the ray there arrives at the stop's middle [m]
+  /// @param distance  from target to lens plane [m]
+  /// @param centre  centre of the dot [m]
+  /// @param aim  point of the pupil about which the cone is centred: the medium deflects the ray to this point into the
+  ///   centre of the stop [m]
   GLADSTONE_HD CorrectedCone(DeflectionTable const& table, double stop_radius, double distance, Vec2d centre, Vec2d aim,
                              TableCheck const& check)
       : table_(table),
@@ -109,11 +120,11 @@ class CorrectedCone {
         per_distance2_(1 / (distance * distance)),
         centre_(centre),
         aim_(aim) {
-    if (!(check.rays > 0)) return;  // nothing deflects its rays
+    if (!(check.rays > 0)) return;  // no deflection
     shift_ = check.shift / check.rays;
     origin_ = check.traced / check.rays;
     miss_ = check.miss / check.rays;
-    if (check.rays < fewest_rays) return;  // a handful of rays tells the mean, not how it varies
+    if (check.rays < fewest_rays) return;  // A few rays determine the mean, but not its variation over the cone.
     shift_by_x_ = (2 / check.square) * check.shift_by_x;
     shift_by_y_ = (2 / check.square) * check.shift_by_y;
     Vec2d const guess = origin_ - miss_;
@@ -122,18 +133,18 @@ class CorrectedCone {
     widening_[2] = (check.traced2[2] - check.expected2[2]) / check.rays - origin_.y * origin_.y + guess.y * guess.y;
   }
 
-  /// Mean displacement of the traced rays: where moments count from [px].
+  /// Mean displacement of the traced rays, to which moments are relative [px].
   GLADSTONE_HD Vec2d origin() const { return origin_; }
   GLADSTONE_HD double stop_radius() const { return stop_radius_; }
-  /// The point of the pupil that lies so far from the aim.
+  /// Returns the pupil point at this offset from the aim [m].
   GLADSTONE_HD Vec2d pupil(Vec2d from_aim) const { return aim_ + from_aim; }
 
-  /// Distance from the aim, in a direction, of the ray from a place of the source that arrives at the stop's edge [m];
-  /// NaN where light crosses the edge more than once, or further out than `reach`.
-  /// @param offset of the place from the dot's centre [m]
+  /// Returns the distance from the aim, in a given direction, of the ray that arrives at the edge of the stop [m]; NaN
+  /// if light crosses the edge more than once, or farther out than `reach`.
+  /// @param offset  starting point of the ray relative to the dot's centre [m]
   GLADSTONE_HD double rim(Vec2d offset, Vec2d direction) const {
     using std::abs;
-    // where shifts change little within their own length two looks do, as if their change went on (Aitken)
+    // Where the shift varies little over its own length, two fixed-point iterations with Aitken extrapolation suffice.
     double const first = arriving(offset, direction, stop_radius_);
     if (!(first > 0 && first <= reach * stop_radius_)) return undefined();
     double const second = arriving(offset, direction, first);
@@ -146,27 +157,27 @@ class CorrectedCone {
     return radius <= reach * stop_radius_ ? radius : undefined();
   }
 
-  /// Displacement of a ray, counted from origin() [px].
+  /// Returns the displacement of a ray, relative to origin() [px].
   GLADSTONE_HD Vec2d displacement(Vec2d offset, Vec2d from_aim) const {
     if (!table_.exists()) return {};
     Vec2d const to = pupil(from_aim);
     return table_.displacement(table_.crossing(centre_ + offset, to), to) + miss_ - origin_;
   }
-  /// Where a ray meets the stop's plane, from the stop's middle [m].
+  /// Returns the intersection of a ray with the stop's plane, relative to the centre of the stop [m].
   GLADSTONE_HD Vec2d arrival(Vec2d offset, Vec2d from_aim) const {
     Vec2d const to = pupil(from_aim);
     if (!table_.exists()) return to;
     return to + table_.shift(table_.crossing(centre_ + offset, to), to) + shift_ + from_aim.x * shift_by_x_ +
            from_aim.y * shift_by_y_;
   }
-  /// cos^4 of the angle at which a ray leaves the target.
+  /// Returns cos^4 of the ray's angle at the target.
   GLADSTONE_HD double lambert(Vec2d offset, Vec2d pupil_point) const {
     Vec2d const across = pupil_point - centre_ - offset;
     double const spread = 1 + dot(across, across) * per_distance2_;
     return 1 / (spread * spread);
   }
-  /// Makes sums over the cone from a place shares of what the reference frame shows of it, with the width that the rays
-  /// have.
+  /// Normalises sums over the cone from one point of the source by its light in the reference image, and adds the
+  /// difference in width between the traced and the tabulated rays.
   GLADSTONE_HD void finish(DisplacementMoments& moments, double without_medium) const {
     double const scale = 1 / without_medium;
     for (double& m : moments.of) m *= scale;
@@ -174,21 +185,21 @@ class CorrectedCone {
   }
 
  private:
-  static constexpr double settled = 1e-6;    ///< of the stop's radius
-  static constexpr double fewest_rays = 16;  ///< that say how the table is off across the cone
+  static constexpr double settled = 1e-6;    ///< relative to the stop's radius
+  static constexpr double fewest_rays = 16;  ///< minimum number of rays to determine the variation of the table's error
   DeflectionTable table_;
   double stop_radius_, per_distance2_;
   Vec2d centre_, aim_, shift_{}, shift_by_x_{}, shift_by_y_{}, origin_{}, miss_{};
   double widening_[3] = {};
 
-  /// Radius at which a ray would have to be sent to arrive at the stop's edge, bent as one at `radius` is.
+  /// Returns the radius at which a ray arrives at the edge of the stop if it is shifted like the ray at `radius` [m].
   GLADSTONE_HD double arriving(Vec2d offset, Vec2d direction, double radius) const {
     using std::sqrt;
     Vec2d const moved = arrival(offset, radius * direction) - radius * direction;
     double const along = dot(moved, direction);
     return sqrt(stop_radius_ * stop_radius_ - dot(moved, moved) + along * along) - along;
   }
-  /// Looks along the direction as far as `reach`, and closes in on the one place where the edge is crossed.
+  /// Finds the radius by a scan up to `reach` followed by regula falsi; NaN unless the edge is crossed exactly once.
   GLADSTONE_HD double searched_rim(Vec2d offset, Vec2d direction) const {
     constexpr int looks = 12;
     double const margin = (reach - 1) * stop_radius_, step = 2 * margin / looks;
@@ -203,7 +214,7 @@ class CorrectedCone {
     }
     if (!(low > 0) || !(high > 0)) return undefined();
     for (int iteration = 0; iteration < 30 && high - low > settled * stop_radius_; ++iteration) {
-      // regula falsi, kept off the ends so that both close in
+      // Regula falsi, limited to 5 to 95 % of the interval so that both ends converge.
       double const share = below / (below - above);
       double const inner = share < 0.05 ? 0.05 : (share > 0.95 ? 0.95 : share);
       double const radius = low + inner * (high - low), here = outside(radius);
@@ -213,22 +224,24 @@ class CorrectedCone {
         high = radius, above = here;
       }
     }
-    // the secant's root, which does not jump where rounding changes the number of iterations
+    // Return the root of the secant, which is continuous where rounding changes the number of iterations.
     return low + below / (below - above) * (high - low);
   }
   GLADSTONE_HD static double undefined() { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
-/// What one point of the rule stands for.
+/// Contribution of one node of a cone's rule.
 struct ConeLight {
-  Vec2d displacement;     ///< counted from the cone's origin [px]
-  double weight;          ///< of the light that arrives in the flow
-  double without_medium;  ///< and in the reference frame
+  Vec2d displacement;     ///< displacement relative to the cone's origin [px]
+  double weight;          ///< light in the measurement image
+  double without_medium;  ///< light in the reference image
 };
 
-/// @param rims of the rule's directions, from a place of the source: the points fill what they enclose; null where the
-/// stop's edge has no single rim as seen from the source, near a caustic: they fill all that is looked at, and the
-/// stop's edge is smoothed as it is for rays
+/// Evaluates a node of the rule.
+/// @param offset  point of the source relative to the dot's centre [m]
+/// @param rims  radii of the stop's edge in the rule's directions, as seen from that point: the nodes fill the area
+///   inside. Null if the edge is not single-valued, near a caustic: the points then fill the disc of radius `reach`,
+///   and the edge of the stop is smoothed as for rays
 GLADSTONE_HD inline ConeLight cone_light(CorrectedCone const& cone, ConeRule const& rule, int point, Vec2d offset,
                                          double const* rims) {
   if (!rims) {

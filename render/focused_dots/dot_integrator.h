@@ -8,10 +8,10 @@
 namespace gladstone {
 
 struct SeenDot : DotCone, DotFound {
-  double farthest_aim = 0;  ///< as DotAim::farthest
+  double farthest_aim = 0;  ///< as DotAim::farthest [m]
 };
 
-/// A lane by itself that checks a dot's rays, two side by side.
+/// Single lane that checks a dot's rays against the table, two traced together.
 struct CheckingLane : OneLane {
   static constexpr int abreast = 2;
   int scramblings = 1;
@@ -26,14 +26,15 @@ struct CheckingLane : OneLane {
   }
 };
 
-/// Works out dots on the CPU, one at a time, one object a thread. Sums have one order: the same on any number of
-/// threads.
+/// Renders dots on the CPU, one at a time; each thread has its own object. Sums have a fixed order, so results do not
+/// depend on the number of threads.
 class DotIntegrator {
  public:
-  /// @param model outlives the integrator
+  /// @param model  must outlive the integrator
   explicit DotIntegrator(DotModel const& model);
 
-  /// Traces the dot's rays and integrates its cone. Of one that is left nothing counts but that. @throws Interrupted
+  /// Traces the dot's rays and integrates its light cone. For a fallback dot, only its kind is valid.
+  /// @throws Interrupted
   template <class Medium>
   SeenDot const& see(Medium const& medium, Vec2d centre, double radiance) {
     seen_ = {};
@@ -42,16 +43,18 @@ class DotIntegrator {
     if (seen_.kind != DotKind::left) integrate();
     return seen_;
   }
-  /// Lays down its light in both frames. @pre it is not left, and the model's images of moments are worked out
+  /// Renders the dot's light in both images.
+  /// @pre it is not a fallback dot, and the model's moment images are computed
   void lay_down(LightImage* const (&images)[frame_count]);
 
-  /// The cone of the dot that was seen last.
+  /// Light cone of the last dot.
   CorrectedCone cone() const { return cone_of(model_, seen_); }
   StatusCounts const& statuses() const { return lane_.statuses; }
 
  private:
   void integrate();
-  /// @param moved that the light is on average [px]
+  /// Renders the light point by point.
+  /// @param moved  mean displacement of the light [px]
   template <int orders>
   void lay_down_points(std::size_t frame, Vec2d moved);
 
@@ -60,8 +63,8 @@ class DotIntegrator {
   SeenDot seen_;
   CheckingLane lane_;
   std::vector<double> rims_;
-  ConeIntegral whole_;             ///< points into the rims
-  std::vector<ConeLight> points_;  ///< of the cone, of all places
+  ConeIntegral whole_;             ///< refers to rims_
+  std::vector<ConeLight> points_;  ///< nodes of the cone, for all points of the source
   std::vector<unsigned short> order_;
   SquareSums<1> squares_;
 };

@@ -8,18 +8,19 @@
 
 namespace gladstone {
 
-/// A patch that takes the light of narrow and wide dots, too.
+/// Pixel buffer that also accumulates the light of narrow and wide dots.
 class DotPatch : public LightPatch {
  public:
-  /// @param images of the squares of displacement that it is to hold, or none
+  /// @param images  moment images, which determine the minimum size of the buffer; may be empty
   DotPatch(SpotView const& spot, MomentImages const& images)
       : LightPatch(spot, images.half), of_square_(static_cast<std::size_t>(images.stride)) {}
 
-  /// The image that light goes to from now on, or none.
+  /// Sets the image to which the light is added from now on, or null.
   void begin(LightImage* image) { image_ = image; }
   static double units_per_weight() { return 1; }
 
-  /// Adds a spot. @param fill (row, column, line) adds to a row's light from a column on
+  /// Adds the footprint of a PSF.
+  /// @param fill  (row, column, line) adds the light of a row, from a column on, to `line`
   template <int pixels, class Fill>
   void add(OneLane, Footprint const& spot, Fill const& fill) {
     double* const corner = reach(spot, image_, 1);
@@ -29,7 +30,8 @@ class DotPatch : public LightPatch {
       for (int i = 0; i < spot.width; ++i) corner[row * side() + i] += line[i];
     }
   }
-  /// Takes pixels of a square row by row, from `first` on, and adds it once it has the last of them.
+  /// Receives pixels of a square's image in row order, from `first` on, and adds the image when the last pixel is
+  /// received.
   template <int pixels>
   void add_run(Footprint const& square, int first, double const (&light)[pixels]) {
     std::copy_n(light, pixels, of_square_.data() + first);
@@ -44,7 +46,7 @@ class DotPatch : public LightPatch {
 
  private:
   LightImage* image_ = nullptr;
-  std::vector<double> of_square_;  ///< light of a square of displacement
+  std::vector<double> of_square_;  ///< light of one square of displacement
 };
 
 }  // namespace gladstone

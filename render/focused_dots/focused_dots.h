@@ -9,15 +9,16 @@
 
 namespace gladstone {
 
-/// A scene that the fast renderer may take: flat discs (or squares) in focus of an ideal thin lens with a stop, on the
-/// axis and square to it, a Gaussian spot. There the reference image is known in closed form, and one table of
-/// deflections serves all dots (DotModel); nowhere else. Renderer and tables take it, and only focused_dots() gives it.
-/// It looks at the scene, which must outlive it, and sees what is planned there later.
+/// Scene that the fast renderer supports: flat discs or squares in focus of an ideal thin lens with a stop, on and
+/// perpendicular to the axis, with a Gaussian PSF. Only then is the reference image known in closed form and a single
+/// deflection table valid for all dots (DotModel).
+/// Required as an argument by renderer and tables; created by focused_dots() only. Refers to the scene, which must
+/// outlive it, including later changes of its plans.
 class FocusedDots {
  public:
   Scene const& scene() const { return *scene_; }
   BenchView bench() const;
-  /// What Eq. 9 takes.
+  /// Parameters of small-angle theory (Eq. 9).
   TheoryModel theory_model() const;
 
  private:
@@ -27,14 +28,16 @@ class FocusedDots {
   Scene const* scene_;
 };
 
-/// Why a setup is none of these; empty: it is.
+/// Returns the reason why the fast renderer does not support a setup; empty if it does.
 std::string reason_against_focused_dots(Setup const& setup);
 
-/// The one door to the fast renderer. It stays shut, too, to fields so fine beside the view that their table would take
-/// too much time and memory, and to dots that are wide beside what the field changes on.
+/// Returns the scene for the fast renderer; nullopt if it is not supported. Besides the conditions of
+/// reason_against_focused_dots(), fields that are so fine compared with the view that the table would need too much
+/// time and memory, dots that are wide compared with the field's length scale, and too wide a PSF are not supported.
 std::optional<FocusedDots> focused_dots(Scene const& scene);
 
-/// What rendering focused dots takes beside images, field and dots, for check_memory(); before anything is built.
+/// Returns the memory requirements of the fast renderer beyond images, field and dots, for check_memory(), before
+/// anything is built.
 std::vector<MemoryNeed> focused_dots_memory(Setup const& setup);
 
 }  // namespace gladstone

@@ -7,8 +7,8 @@
 
 namespace gladstone {
 
-/// The fast renderer on the CPU's cores. Dots whose cones the table does not cover, or that get lost or fold in the
-/// medium, are left (Rendering::left): without truth or light.
+/// Fast renderer on the CPU. Dots whose light cone is not covered by the table, is folded, or loses rays in the medium
+/// are fallback dots (Rendering::left), without truth or light.
 class FocusedDotsRenderer : public Renderer {
  public:
   std::string device() const override { return "cpu"; }
@@ -19,13 +19,13 @@ class FocusedDotsRenderer : public Renderer {
   LastDeflections<DeflectionMap> deflections_;
 };
 
-/// Renders by a table with room for usual bends, and again by a larger one where a dot is aimed at beyond it: what
-/// render() is on every device. A table's size changes nothing of the dots that it covers.
-/// @param trace one try, with a table that has room for such aims [m]
+/// Renders with a deflection table of default size, and again with a larger one if a dot's aim point is outside it.
+/// Implements render() on every device. The size of a table does not change the results of dots that it covers.
+/// @param trace  renders once with a table that covers aim points up to a given distance from the axis [m]
 Rendering render_within_table(Scene const& scene, std::function<TracingPass(double farthest_aim)> const& trace);
 
-/// A white target seen by the camera: light per pixel, cos^4 of the angle to the axis. What dark dots are taken from;
-/// the flow does not change it, since radiance is conserved along rays.
+/// Renders a white target: light per pixel, cos^4 of the angle to the axis. Dark dots are subtracted from it. It is the
+/// same in both images, since radiance is conserved along rays.
 Image<double> white_light(Scene const& scene);
 
 }  // namespace gladstone

@@ -7,27 +7,29 @@
 #include "render/focused_dots/displacement_moments.h"
 #include "render/focused_dots/spot_factors.h"
 
-/// Light of dots whose displacements spread over several widths of a spot: they are sorted into squares, within each of
-/// which a few moments tell the light (Hermite series, as in the fast Gauss transform of Greengard & Strain 1991). The
-/// squares' middles lie on a lattice that divides the sensor's pixels, so that what a moment does to the image of a
-/// source is the same for all dots, and worked out once.
+/// Light of dots whose displacements spread over several widths of the PSF. The displacements are sorted into squares,
+/// and the light of each square is computed from a few moments (Hermite series, as in the fast Gauss transform of
+/// Greengard & Strain 1991). The squares' centres are on a lattice that subdivides the sensor's pixels, so that the
+/// image of a source for each moment is the same for all dots and is computed once.
 namespace gladstone {
 
-/// The lattice of squares on the sensor, by its side. It lies a little aside of the pixels, whose middles and edges are
-/// where displacements of nothing put the points of regular targets: no two devices round those to different squares.
+/// Lattice of squares on the sensor. It is offset from the pixels by `aside`: dots of regular targets with zero
+/// displacement fall on pixel centres and edges, where different devices could otherwise round them into different
+/// squares.
 struct MomentLattice {
-  static constexpr double aside = 0.01;  ///< middle of square 0 [px]
-  int per_pixel = 1;                     ///< squares along a pixel's side
-  int pixels = 1;                        ///< or pixels along a square's side; one of the two is 1
+  static constexpr double aside = 0.01;  ///< position of the centre of square 0 [px]
+  int per_pixel = 1;                     ///< number of squares along a pixel's side
+  int pixels = 1;                        ///< number of pixels along a square's side; this or per_pixel is 1
 
-  /// With squares no larger than `side` [px].
+  /// Returns the lattice with the largest squares whose side does not exceed `side` [px].
   GLADSTONE_HD static MomentLattice no_coarser(double side) {
     if (side >= 1) return {1, static_cast<int>(side)};
     return {static_cast<int>(std::ceil(1 / side)), 1};
   }
   GLADSTONE_HD double side() const { return static_cast<double>(pixels) / per_pixel; }
   GLADSTONE_HD double per_side() const { return static_cast<double>(per_pixel) / pixels; }
-  /// Where the middle of a square lies along an axis: a pixel, and which of per_pixel places about the pixel's middle.
+  /// Position of a square's centre along an axis: a pixel, and one of per_pixel positions (phases) about the pixel's
+  /// centre.
   GLADSTONE_HD int pixel(int square) const {
     int const shifted = square + per_pixel / 2;
     int const down = shifted / per_pixel - (shifted % per_pixel < 0 ? 1 : 0);
@@ -37,35 +39,34 @@ struct MomentLattice {
     int const rest = (square + per_pixel / 2) % per_pixel;
     return rest < 0 ? rest + per_pixel : rest;
   }
-  /// From the pixel's middle to the square's [px].
-  GLADSTONE_HD double offset(int phase) const {
-    int const from_middle = phase - per_pixel / 2;
-    return static_cast<double>(from_middle) / per_pixel + aside;
-  }
+  /// Distance from the pixel's centre to the square's [px].
+  GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
 };
 
-/// A dot's squares of displacement, counted from the one at its middle: those of the sensor or, where they would be too
-/// many, larger ones about every second or fourth of these along either axis.
+/// Squares into which a dot's displacements are sorted, counted from the one at zero displacement: those of the
+/// sensor's lattice or, if there would be too many, squares two or four times as wide.
 struct DotSquares {
   static constexpr int most_step = 4;
   MomentLattice lattice;
-  int step = 1;           ///< squares of the sensor from one to the next
-  Vec2<int> first{0, 0};  ///< of the sensor's squares: the dot's square (0, 0)
-  Vec2d zero{};           ///< displacement zero, from that square's middle [px]
+  int step = 1;           ///< side of a square in squares of the sensor's lattice
+  Vec2<int> first{0, 0};  ///< sensor's square at the dot's square (0, 0)
+  Vec2d zero{};           ///< zero displacement relative to that square's centre [px]
 
-  /// @param origin image of the dot displaced by zero [px]
+  /// @param origin  image position of the dot at zero displacement [px]
+  /// @param squares_apart  side of a square in squares of the sensor's lattice
   GLADSTONE_HD DotSquares(MomentLattice const& of_sensor, Vec2d origin, int squares_apart)
       : lattice(of_sensor), step(squares_apart) {
     using std::floor;
     auto const nearest = [per_side = lattice.per_side()](double p) {
       double const at = floor(p * per_side + 0.5);
-      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // beyond, displacements are too far from it to be sorted
+      return at < -1e7 ? -1e7 : (at > 1e7 ? 1e7 : at);  // farther displacements are not sorted
     };
     origin = origin - Vec2d{MomentLattice::aside, MomentLattice::aside};
     Vec2d const at{nearest(origin.x), nearest(origin.y)};
     first = {static_cast<int>(at.x), static_cast<int>(at.y)};
     zero = origin - lattice.side() * at;
   }
+  /// Returns the square that contains a displacement.
   GLADSTONE_HD Vec2<int> square_of(Vec2d displacement) const {
     using std::floor;
     auto const cell = [per_side = lattice.per_side() / step](double d) {
@@ -74,21 +75,21 @@ struct DotSquares {
     };
     return {cell(displacement.x + zero.x), cell(displacement.y + zero.y)};
   }
-  /// A displacement counted from a square's middle [px].
+  /// Returns a displacement relative to a square's centre [px].
   GLADSTONE_HD Vec2d from_middle(Vec2d displacement, Vec2<int> square) const {
     double const side = step * lattice.side();
     return displacement + zero - Vec2d{side * square.x, side * square.y};
   }
-  /// The sensor's square at the middle of one of the dot's.
+  /// Returns the sensor's square at the centre of one of the dot's squares.
   GLADSTONE_HD Vec2<int> on_sensor(Vec2<int> square) const { return first + step * square; }
-  /// Of its middle on its pixel: y times per_pixel plus x.
+  /// Returns the two-dimensional phase of a square's centre: phase along y times per_pixel plus phase along x.
   GLADSTONE_HD int phase(Vec2<int> square) const {
     Vec2<int> const at = on_sensor(square);
     return lattice.phase(at.y) * lattice.per_pixel + lattice.phase(at.x);
   }
 };
 
-/// What displacements spread over [px].
+/// Bounding box of displacements [px].
 struct Extent {
   Vec2d low{1e300, 1e300}, high{-1e300, -1e300};
 
@@ -102,9 +103,9 @@ struct Extent {
   }
 };
 
-/// The squares that a distribution of displacements spans.
+/// Range of squares that a distribution of displacements covers.
 struct SquareRange {
-  static constexpr int most = 576;  ///< that it pays to go through one by one
+  static constexpr int most = 576;  ///< maximum number of squares that are processed one by one
   Vec2<int> low{0, 0}, high{0, 0};
 
   GLADSTONE_HD int columns() const { return high.x - low.x + 1; }
@@ -114,7 +115,7 @@ struct SquareRange {
   GLADSTONE_HD Vec2<int> square(int index) const { return {low.x + index % columns(), low.y + index / columns()}; }
 };
 
-/// A dot's squares and which of them its displacements span: the smallest squares that are few.
+/// The smallest squares of a dot of which its displacements cover no more than SquareRange::most, and their range.
 struct SpannedSquares {
   DotSquares squares;
   SquareRange range;
@@ -137,55 +138,60 @@ struct SpannedSquares {
   }
 };
 
-/// Images of a source, one for each moment of its displacements within a square and each term of the place on the
-/// source, for each place of the square's middle on its pixel. A view.
+/// Images of a source: one for each phase of a square's centre, each moment of the displacements within the square, and
+/// each term of the polynomial in the position on the source. A non-owning view.
 struct MomentImages {
   MomentLattice lattice;
-  int half = 0;                    ///< pixels to each side of the square's
-  int terms = 0;                   ///< of the place: PlaceRule::terms, or 1 for a point; 0: there are no images
-  int stride = 0;                  ///< from one image to the next
+  int half = 0;                    ///< half width of an image, without its middle pixel [px]
+  int terms = 0;                   ///< number of terms: PlaceRule::terms, or 1 for a point; 0: no images
+  int stride = 0;                  ///< distance between images in `values`
   double const* values = nullptr;  ///< [phase y][phase x][moment][term][row, column]
 
-  /// Of a source as wide as 2 half_px under a Gaussian spot, values still to be worked out; none where they would take
-  /// too much memory. @param side most of a square [px] @param terms 6, or 1 for a point
+  /// Plans the images of a source with a Gaussian PSF; `values` remain to be computed. Returns an empty plan if they
+  /// would need more than 64 MiB or the PSF is too wide.
+  /// @param half_px  half size of the source's image [px]
+  /// @param side  maximum side of a square [px]
+  /// @param terms  6, or 1 for a point
   static MomentImages plan(double half_px, GaussianSpot<double> const& spot, double side, int terms);
 
-  static constexpr int pad = 16;  ///< stride is a multiple of it
-  /// Numbers that the factors of a point take.
+  static constexpr int pad = 16;  ///< `stride` is a multiple of this
+  /// Number of PSF factors of one point.
   GLADSTONE_HD static constexpr int factors(int pitch) { return 2 * (DisplacementMoments::order + 1) * pitch; }
 
   GLADSTONE_HD bool exist() const { return terms > 0; }
   GLADSTONE_HD int width() const { return 2 * half + 1; }
   GLADSTONE_HD int count() const { return DisplacementMoments::count * terms; }
   GLADSTONE_HD int phases() const { return lattice.per_pixel * lattice.per_pixel; }
-  /// Middle of a phase's squares, from their pixel's [px]. @param phase y times per_pixel plus x
+  /// Returns the centre of the squares of a phase relative to the pixel's centre [px].
+  /// @param phase  phase along y times per_pixel plus phase along x
   GLADSTONE_HD Vec2d middle(int phase) const {
     return {lattice.offset(phase % lattice.per_pixel), lattice.offset(phase / lattice.per_pixel)};
   }
   std::size_t size() const {
     return static_cast<std::size_t>(phases()) * static_cast<std::size_t>(count()) * static_cast<std::size_t>(stride);
   }
-  /// Pixels that the light of one of the sensor's squares falls on.
+  /// Returns the pixels that are lit by one of the sensor's squares.
   GLADSTONE_HD Footprint footprint(Vec2<int> square) const {
     return {lattice.pixel(square.x) - half, lattice.pixel(square.y) - half, width()};
   }
-  /// The first image of a phase.
+  /// Returns the first image of a phase.
   GLADSTONE_HD double const* of_phase(int phase) const {
     return values + static_cast<std::size_t>(phase) * count() * stride;
   }
 };
 
-/// Points of a unit disc (or square) with weights of sum one, as a view.
+/// Points of a unit disc or square with weights of sum one: a non-owning view.
 struct CubatureView {
-  Vec2d const* points = nullptr;  ///< in units of the half size
+  Vec2d const* points = nullptr;  ///< points in units of the half size
   double const* weights = nullptr;
   int count = 0;
 };
 
-/// Adds what a source's points leave in the images of one phase and some moments, by a group of lanes.
-/// @tparam pixels that a lane works out side by side: a spot's width and more, row by row, or 1
-/// @tparam moments from `begin` on @param first of the phase and moment `begin`
-/// @param room for the factors of so many points at a time
+/// Adds the contributions of a source's points to the images of one phase and some moments, by a group of lanes.
+/// @tparam pixels  number of pixels that a lane processes together: at least the width of the PSF (row by row), or 1
+/// @tparam moments  number of moments, from `begin` on
+/// @param first  image of the phase and of moment `begin`
+/// @param room  work space for the factors of `points` points
 template <int pixels, int moments, class Group>
 GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, CubatureView const& source,
                                 double half_px, GaussianSpot<double> const& spot, int phase, int begin, double* first,
@@ -230,7 +236,8 @@ GLADSTONE_HD void add_to_images(Group const& group, MomentImages const& images, 
   }
 }
 
-/// Works out a plan's images, on all cores. @param source in units of half_px, with weights of sum one
+/// Computes the images of a plan on all CPU cores.
+/// @param source  points in units of half_px, with weights of sum one
 std::vector<double> make_moment_images(MomentImages const& plan, CubatureView const& source, double half_px,
                                        GaussianSpot<double> const& spot);
 

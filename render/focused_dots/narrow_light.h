@@ -3,22 +3,24 @@
 #include "render/focused_dots/dot_model.h"
 #include "render/focused_dots/spot_factors.h"
 
-/// Light of a source's disc, point by point, by a group of lanes (OneLane, or a device's).
+/// Light of a source's disc, computed point by point by a group of lanes (OneLane, or a device's).
 namespace gladstone {
 
-/// Numbers that a team needs for a point.
+/// Work space of a team for one point, in numbers.
 GLADSTONE_HD constexpr int point_numbers(int orders, int pitch) {
   return 2 * orders * pitch + DisplacementMoments::count;
 }
 
-/// Lays down a source's disc with the spots that moments of displacement make of its points. A team takes some points
-/// at a time: first the spots' factors along both axes, then what of the rows stands with an order along x, then their
-/// pixels.
-/// @tparam orders of displacement, plus one: 1 where nothing is displaced
-/// @tparam pixels that a lane works out side by side: 1, or a spot's whole width and more, so that every loop keeps to
-/// vector registers
-/// @param origin image of the source's centre where the moments count from [px] @param field of the moments, or null
-/// @param room for a team's numbers @param points of the source that it has room for
+/// Renders a source's disc: each of its points contributes the PSF convolved with the distribution of displacements, by
+/// their moments. A team processes some points at a time: first the factors of their PSFs along both axes, then for
+/// each order along x the sum over orders along y, then their pixels.
+/// @tparam orders  order of the displacement moments plus one; 1: no displacement
+/// @tparam pixels  number of pixels that a lane processes together: 1, or at least the width of the PSF, so that all
+/// loops use whole vector registers
+/// @param origin  image of the source's centre, to which the moments are relative [px]
+/// @param field  moments as a function of the position on the source, or null
+/// @param room  work space of a team
+/// @param points  number of points for which there is work space
 template <int orders, int pixels, class Group, class Patch>
 GLADSTONE_HD void lay_down_points(Group const& group, DotModel const& model, Vec2d origin, double light,
                                   MomentField const* field, Patch& patch, double* room, int points) {
@@ -28,11 +30,11 @@ GLADSTONE_HD void lay_down_points(Group const& group, DotModel const& model, Vec
   int const width = 2 * spot.half_width() + 1, pitch = pixels > 1 ? pixels : width + 1;
   auto const team = group.team();
   auto const eight = team.eight();
-  if (!(abs(origin.x) < 1e8 && abs(origin.y) < 1e8)) return;  // beyond any image
+  if (!(abs(origin.x) < 1e8 && abs(origin.y) < 1e8)) return;  // outside any image
   CubatureView const& source = model.source;
   double const units = light * patch.units_per_weight();
   auto const at_point = [&](int i) { return origin + model.half_size_px() * source.points[i]; };
-  // numbers of a point: [axis][order][pixel], then its moments
+  // Numbers of a point: [axis][order][pixel], then its moments.
   int const apart = point_numbers(orders, pitch);
   for (int first = team.index() * points; first < source.count; first += team.count() * points) {
     int const here = source.count - first < points ? source.count - first : points;

@@ -4,10 +4,11 @@
 
 namespace gladstone {
 
-/// The threads that work on a dot together: on the CPU one lane by itself, which is every group at once. A device's
-/// block splits into teams, which take a place or some points of the source each, and those into groups of eight.
-/// What is written for them runs on both: lanes take every size()-th piece of work from their own on, sync() before
-/// they read what others wrote, and get sums in one order.
+/// Group of threads that process a dot together: on the CPU a single lane, which represents groups of all levels. On a
+/// device, a block of threads is divided into teams, each of which processes a point of the source rule or some points
+/// of the source, and teams into groups of eight.
+/// Code for such groups runs on both: a lane processes every size()-th item from its own index on, calls sync() before
+/// it reads results of others, and obtains sums in a fixed order.
 struct OneLane {
   static constexpr bool alone = true;
   static constexpr int lane() { return 0; }
@@ -16,7 +17,7 @@ struct OneLane {
   static void sync_team() {}
   static void poll() { throw_if_interrupted(); }
 
-  // parts of the group, and which of how many of them this lane is in
+  // Parts of the group: index of this lane's part, and number of parts.
   OneLane team() const { return {}; }
   OneLane eight() const { return {}; }
   static constexpr int index() { return 0; }
@@ -32,21 +33,22 @@ struct OneLane {
   }
   static bool all(bool value) { return value; }
   static bool any(bool value) { return value; }
-  /// The next place in a list that lanes add to in any order.
+  /// Returns the next free position in a list to which lanes add in any order.
   static int take(int& listed) { return listed++; }
-  /// How many lanes below have the same key, and how many lanes have.
+  /// Number of lower lanes with the same key, and of all lanes with the same key.
   struct Same {
     int before, all;
   };
   static Same same(int) { return {0, 1}; }
-  /// Sum over the lanes below. @param all receives that over all lanes
+  /// Returns the sum over the lower lanes.
+  /// @param all  receives the sum over all lanes
   static int sum_below(int value, int& all) {
     all = value;
     return 0;
   }
 };
 
-/// Numbers in which a spot's row is held: whole vectors, whose ends add zeros beyond its last pixel.
+/// Length of the array for a row of the PSF: a multiple of the vector width; elements beyond the last pixel are zero.
 constexpr int most_lanes = 48;
 constexpr int lanes_for(int width) {
   for (int const lanes : {8, 12, 16, 24}) {
@@ -54,7 +56,7 @@ constexpr int lanes_for(int width) {
   }
   return most_lanes;
 }
-/// Calls body<lanes>(), so that the compiler knows them and a row takes whole vectors.
+/// Calls body<lanes>() with the row length as a compile-time constant, so that the compiler uses whole vectors.
 template <class Body>
 void with_lanes(int width, Body const& body) {
   switch (lanes_for(width)) {

@@ -8,10 +8,10 @@
 
 namespace gladstone {
 
-/// Who works out the images of moments: here, or a device, which has only their plan.
+/// Where the moment images are computed: on the host, or on a device, which requires only their plan.
 enum class MomentImagesBy { host, device };
 
-/// A scene's model with the rules that it integrates by.
+/// Imaging model of a scene's dots together with the cubature rules that it refers to.
 struct OwnedDotModel {
   DotModel model;
   SourceCubature source;
@@ -19,8 +19,9 @@ struct OwnedDotModel {
   std::vector<ConePoint> cone_points;
   std::vector<Vec2d> cone_directions, cone_scattered;
 
-  /// @param sources its dots, or others @param table of the scene, kept by the caller @param with_images false: no
-  /// images of moments are worked out
+  /// @param sources  the scene's dots, or others
+  /// @param table  deflection table of the scene; must outlive the model
+  /// @param with_images  false: moment images are not computed
   OwnedDotModel(FocusedDots const& dots, DotPattern const& sources, DeflectionTable const& table, bool with_images,
                 MomentImagesBy by = MomentImagesBy::host);
   OwnedDotModel(OwnedDotModel const&) = delete;  // the model points into the rules

@@ -5,11 +5,13 @@
 
 namespace gladstone {
 
-/// Factors of the spots of some points along both axes, as GaussianSpot::taylor_shares, by a group of lanes: eight work
-/// out an axis' edges, of which pixels are the differences; one by itself takes whole vectors of them.
-/// @param at_point the i-th point's place [px]
-/// @param room receives [point][axis][order][pitch]; on one lane zeros beyond the spot's last pixel
-/// @param pitch the spot's width and one more, or what a lane works out side by side @param apart from point to point
+/// Computes the PSF factors of some points along both axes, as GaussianSpot::taylor_shares(), by a group of lanes.
+/// Eight lanes compute the values at the pixel edges of one axis, whose differences are the pixels; a single lane (CPU)
+/// processes whole vectors of pixels.
+/// @param at_point  returns the position of the i-th point [px]
+/// @param room  receives [point][axis][order][pitch]; on a single lane with zeros beyond the last pixel of the PSF
+/// @param pitch  width of the PSF plus one, or the number of pixels that a lane processes together
+/// @param apart  distance between points in `room`
 template <int orders, class Group, class Place>
 GLADSTONE_HD void spot_factors(Group const& group, GaussianSpot<double> const& spot, Place const& at_point, int points,
                                int pitch, int apart, double* room) {

@@ -39,10 +39,9 @@ struct NodeRange {
 
 /// Light of a node on the pixels along one axis: a non-owning view.
 struct HitSplineView {
-  double const* share =
-      nullptr;       ///< weight by the node's position relative to the pixel centre, from -reach() to reach()
-  int per_px = 1;    ///< nodes per pixel
-  int reach_px = 0;  ///< distance to the farthest pixel that a node illuminates, plus one [px]
+  double const* share = nullptr;  ///< weights by node position from the pixel centre, -reach() to reach()
+  int per_px = 1;                 ///< nodes per pixel
+  int reach_px = 0;               ///< distance to the farthest pixel that a node illuminates, plus one [px]
 
   GLADSTONE_HD int reach() const { return reach_px * per_px; }
   GLADSTONE_HD int count() const { return 2 * reach() + 1; }

@@ -9,7 +9,7 @@
 /// Number of rays that a source requires, determined from the source itself and the camera's exposure alone.
 namespace gladstone {
 
-/// How a source's rays are placed, which determines how fast their errors decrease.
+/// Placement of a source's rays. Determines how fast their errors decrease with the number of rays.
 enum class RaysSent {
   by_rule,  ///< at the nodes of a cubature rule that fill the stop (stop_rule.h)
   clipped,  ///< at the points of a sequence over a disc larger than the stop
