@@ -16,7 +16,7 @@ namespace {
 
 constexpr int bundle_rays = 500;
 
-/// Points of the aim disc that rays of a point pass on their way to the sensor, about the aim plane's origin [m].
+/// Returns the aim points of rays from a point that reach the sensor, relative to the aim plane's origin [m].
 std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
   auto const disc = camera.aim_disc(point);
   std::vector<Vec3d> aims;
@@ -36,8 +36,10 @@ std::vector<Vec3d> aims_of_bundle(Camera const& camera, Vec3d point) {
   return aims;
 }
 
-/// Where the rays of a point through a camera, whose lens is moved along its axis, come closest together: from the
-/// sensor's plane, which moves with the lens [m].
+/// Returns the best focus of the rays from a point, for a camera whose lens is moved along its axis [m]. The focus is
+/// measured from the sensor's plane, which moves with the lens.
+/// @param windows  number of leading elements (window faces) that do not move
+/// @param moved  displacement of the lens [m]
 template <class T>
 T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, Vec3<T> const& point, T const& moved) {
   Vec3<T> const by = moved * in_scalar<T>(camera.pose.z);
@@ -68,14 +70,14 @@ T narrowest(Camera const& camera, int windows, std::vector<Vec3d> const& aims, V
   return spot_of(places, slopes).best_focus;
 }
 
-/// By how much the best focus misses the sensor's place, for a lens that is moved along its axis.
+/// Residual for the solver: distance of the best focus from the fixed sensor, for a lens moved along its axis.
 struct FocusMiss {
   Camera const& camera;
   int windows;
   std::vector<Vec3d> const& aims;
   Vec3d point;
-  bool point_moves;  ///< with the lens, where the setup gives its distance from there
-  double z_sensor;   ///< [m]
+  bool point_moves;  ///< the point has a fixed distance from the lens
+  double z_sensor;   ///< position of the fixed sensor [m]
 
   template <class T>
   bool operator()(T const* moved_mm, T* miss_mm) const {
@@ -89,10 +91,10 @@ struct FocusMiss {
   }
 };
 
-/// Where the lens would stand if light were paraxial: the front principal plane [m].
+/// Returns the position of the lens in the paraxial approximation: Z of the front principal plane [m].
 double paraxial_place(Setup const& setup) {
   double const f = setup.lens.focal_length, z_sensor = *setup.z_sensor;
-  double shift = 0, apart = 0;  // of what windows bring nearer; from front to rear principal plane
+  double shift = 0, apart = 0;  // apparent shift by windows; distance from front to rear principal plane
   for (WindowSetup const& window : setup.windows) shift += window.shift();
   if (setup.lens.prescription) {
     Lens const& lens = *setup.lens.prescription;
@@ -103,7 +105,7 @@ double paraxial_place(Setup const& setup) {
     double const u = setup.focus_distance() - shift;
     return z_sensor - apart - 1 / (1 / f - 1 / u);
   }
-  // u + v is known and 1/u + 1/v = 1/f: the smaller v
+  // Given u + v, solve 1/u + 1/v = 1/f for the smaller v.
   double const sum = z_sensor + (setup.lens.focus == Focus::target ? setup.z_d : 0.0) - apart - shift;
   double const square = sum * sum - 4 * sum * f;
   if (!(square > 0)) {
@@ -128,7 +130,7 @@ void place_lens_by_sensor(Setup& setup) {
   }
   bool const chief = std::isinf(setup.lens.f_number);
   if (chief || (!setup.lens.prescription && setup.windows.empty())) return;
-  // once more from where it ends: rays are then aimed from the lens' very place
+  // The second pass aims the rays from the final position of the lens.
   for (int pass = 0; pass < 2; ++pass) {
     Camera const camera = build_camera(setup);
     Vec3d const point = camera.pose.origin - setup.focus_distance() * camera.pose.z;
@@ -140,7 +142,7 @@ void place_lens_by_sensor(Setup& setup) {
     solver.options.max_num_iterations = 30;
     solver.options.gradient_tolerance = solver.options.function_tolerance = 0;
     solver.options.parameter_tolerance = 1e-14;
-    solver.options.cost_threshold = 1e-24;  // of squared millimetres
+    solver.options.cost_threshold = 1e-24;  // [mm^2]
     Eigen::Matrix<double, 1, 1> moved = Eigen::Matrix<double, 1, 1>::Zero();
     auto const& summary = solver.Solve(Function(miss), &moved);
     constexpr double near_enough = 1e-7;  // [mm]

@@ -12,9 +12,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double sharp = 0;  // rim of a stop
+constexpr double sharp = 0;  // edge of a stop
 
-/// The window's two faces, in the order that light along +Z meets them.
+/// Appends a window's two faces, in the order of light along +Z.
 void append_window(Camera& camera, WindowSetup const& window, bool fresnel) {
   Pose<double> const middle = window.pose();
   ShapedSurface<double, Quadric<double>> face;
@@ -39,7 +39,7 @@ void append_thin_lens(Camera& camera, Setup const& setup) {
   camera.elements.push_back(PosedThinLens<double>{camera.pose, setup.lens.focal_length});
 }
 
-/// The surfaces of a prescription; a stop that is no glass becomes one whose rim can be smoothed.
+/// Appends the surfaces of a prescription. A plane stop without glass becomes a PosedStop, whose edge can be smoothed.
 void append_prescription(Camera& camera, Setup const& setup) {
   Lens const& lens = *setup.lens.prescription;
   bool const chief = std::isinf(setup.lens.f_number);
@@ -59,22 +59,23 @@ void append_prescription(Camera& camera, Setup const& setup) {
   }
 }
 
-/// Puts lenslets where the sensor stood, and the sensor behind them.
+/// Places lenslets at the position of the sensor, and the sensor behind them.
 void append_lenslets(Camera& camera, LensletSetup const& lenslets) {
   camera.elements.push_back(
       LensletArray<double>{camera.sensor.pose, lenslets.pitch, lenslets.focal_length, lenslets.layout});
   camera.sensor.pose = camera.sensor.pose.moved({0, 0, lenslets.to_sensor});
 }
 
-/// Tilts of the sensor that image a plane, whose normal in the camera's frame is given, sharply all over: with the
-/// plane at z = -Z + a . (x, y) the image plane is z' = z_i - M a . (x', y') (collinear map).
+/// Returns the tilt of the sensor that images a plane sharply everywhere (collinear map): the object plane z = -Z + a .
+/// (x, y) has the image plane z' = z_i - M a . (x', y') [rad].
+/// @param normal  normal of the object plane in the camera's frame
 Vec2d scheimpflug_tilt(Vec3d normal, double magnification) {
   Vec2d const a{-normal.x / normal.z, -normal.y / normal.z};
   Vec3d const tilted = normalized(Vec3d{magnification * a.x, magnification * a.y, 1});
   return {std::atan2(-tilted.y, tilted.z), std::asin(tilted.x)};
 }
 
-/// Where a pixel of the setup's camera sees the dots' plane [m].
+/// Returns the point of the dots' plane that a pixel sees [m].
 Vec2d seen_place(Camera const& camera, Setup const& setup, Vec2d pixel) {
   auto const seen = camera.unproject(pixel, Pose<double>{{0, 0, -setup.z_d}});
   if (!seen) throw DataError("camera.pose", "its picture reaches beyond the dots' plane; turn the camera less");
@@ -113,7 +114,7 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
   double const target = setup.z_b() + paraxial.front, shift = paraxial.window_shift;
   double const focus = setup.focus_distance() + paraxial.front - shift;
   RayTransfer const& m = paraxial.whole;
-  double const image = -(m.a * focus + m.b) / (m.c * focus + m.d);  // behind the last surface
+  double const image = -(m.a * focus + m.b) / (m.c * focus + m.d);  // distance behind the last surface
   double const slope = paraxial.chief_slope(target), height = 1 + slope * (target - shift);
   double const magnification = std::abs(m.a * height + m.b * slope + image * (m.c * height + m.d * slope));
   ImagingGeometry imaging;
@@ -126,7 +127,8 @@ ImagingGeometry paraxial_imaging(Setup const& setup, ParaxialCamera const& parax
 
 namespace {
 
-/// Width and height about target_centre() of the dots that a rectangle of the picture shows [px, m].
+/// Returns width and height, centred on target_centre(), of the dots' plane seen in a rectangle of the image [m].
+/// @param first,last  opposite corners of the rectangle [px]
 Vec2d seen_extent(Setup const& setup, Vec2d first, Vec2d last) {
   Camera const camera = build_camera(setup);
   Vec2d const centre = setup.target_centre();
@@ -148,7 +150,7 @@ Vec2d posed_extent(Setup const& setup) {
   double const margin = setup.view_margin_px;
   Vec2d const seen =
       seen_extent(setup, {-margin, -margin}, {setup.camera.columns + margin, setup.camera.rows + margin});
-  // in whole micrometres, so that the resolved setup, which holds mm, gives the same dots to the last bit
+  // Round up to whole micrometres, so that the resolved setup, which stores mm, reproduces the dots to the last bit.
   auto const in_mm = [](double metres) { return std::ceil(metres / unit::micrometre) * 1e-3; };
   return Vec2d{in_mm(seen.x), in_mm(seen.y)} * unit::millimetre;
 }
@@ -161,7 +163,7 @@ double posed_pixel_size(Setup const& setup) {
 }
 
 double posed_view_area(Setup const& setup) {
-  constexpr int pieces = 4;  // of an edge, which distortion curves
+  constexpr int pieces = 4;  // segments per edge, which distortion curves
   Camera const camera = build_camera(setup);
   double const width = setup.camera.columns, height = setup.camera.rows;
   std::vector<Vec2d> outline;
@@ -200,7 +202,7 @@ Camera build_camera(Setup const& setup) {
   RayTransfer const& m = paraxial.whole;
   double image = -(m.a * focus + m.b) / (m.c * focus + m.d);
   if (thin && setup.windows.empty()) image = setup.imaging().image_distance;
-  if (!(image > 0) || !std::isfinite(image)) {  // reduced, t/n: mirrors turn the sign of both
+  if (!(image > 0) || !std::isfinite(image)) {  // reduced distance t/n: mirrors reverse both signs
     throw DataError("lens", "the plane in focus has no real image behind it; check lens.focus and the geometry");
   }
   Pose<double> behind = paraxial.behind;

@@ -10,8 +10,8 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_dot_px = 3;  // narrower ones are found, but their centres hang on where pixels lie
-constexpr double least_gap_px = 4;  // between dots, for their background
+constexpr double least_dot_px = 3;  // [px]; the centres of smaller dots depend on the pixel phase
+constexpr double least_gap_px = 4;  // minimum gap between dots [px], to detect the background
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void cross_check_calibration(Setup const& setup, SetupTable root, std::vector<st
   SetupTable calibration = root.table("calibration");
   double const mm = unit::millimetre, nearest = *std::max_element(setup.planes.begin(), setup.planes.end());
   double const least = setup.lens.prescription ? 0.0 : setup.lens.focal_length;
-  double const front = setup.lens.prescription ? paraxial_camera(setup).front : 0.0;  // of its glass
+  double const front = setup.lens.prescription ? paraxial_camera(setup).front : 0.0;  // first vertex of a prescription
   if (double const way = plane_setup(setup, nearest).z_b() + front; !(way > least)) {
     calibration.problem("planes_mm",
                         fmt::format("has the plane Z = {:.6g} mm, {:.6g} mm before the lens (within its focal length, "

@@ -10,16 +10,18 @@
 namespace gladstone {
 namespace {
 
-constexpr int rim_points = 8;  // of the stop, that a source's sight of it is found by
+constexpr int rim_points = 8;  // points on the edge of the stop by which the entrance pupil is found
 
-/// Takes a ray through an element, vignetted or not. @return false where it is lost
+/// Traces a ray through an element, ignoring vignetting.
+/// @return false if the ray is lost
 bool go_on(CameraElement<double> const& element, Ray<double>& ray) {
   RayAccount<double> account;
   RayStatus const status = element.visit([&](auto const& held) { return held.interact(ray, account); });
   return status == RayStatus::alive || status == RayStatus::vignetted;
 }
 
-/// Lenslets show many small pictures of the stop; where a camera sees a point is what its lens makes of it.
+/// Returns true for lenslets. They form many small images of the stop; the image position of a point is that of the
+/// main lens.
 bool is_lenslet_array(CameraElement<double> const& element) {
   return element.visit(
       [](auto const& held) { return std::is_same_v<std::decay_t<decltype(held)>, LensletArray<double>>; });
@@ -108,7 +110,7 @@ std::optional<Vec2d> Camera::project(Vec3d point) const {
 }
 
 double Camera::place_step(Pose<double> const& plane) const {
-  // about a pixel: small beside what distortion changes on, large beside rounding
+  // About a pixel: small compared with the length scale of distortion, large compared with rounding errors.
   double const focal = 1 / std::max(std::abs(paraxial.whole.c), 1e-3);
   return sensor.pitch * std::max(1.0, length(plane.origin - pose.origin) / focal);
 }
@@ -118,7 +120,8 @@ bool Camera::differentiate(Vec2d aim, Pose<double> const& plane, SeenPoint& seen
   auto const point = [&](double dx, double dy) {
     return plane.point_outwards({seen.place.x + dx, seen.place.y + dy, 0});
   };
-  // pixel and place in the stop by the point and by the aim; the chief ray keeps its place in the stop
+  // Derivatives of pixel and stop position with respect to object point and aim; the chief ray remains at its stop
+  // position.
   Sight by[4];
   for (int k = 0; k < 4; ++k) {
     Vec2d const move = (k < 2 ? h : aim_step) * Vec2d{k % 2 == 0 ? 1.0 : 0.0, k % 2 == 0 ? 0.0 : 1.0};
@@ -150,7 +153,7 @@ std::optional<SeenPoint> Camera::see(Vec2d place, Pose<double> const& plane) con
 }
 
 std::optional<SeenPoint> Camera::unproject(Vec2d pixel, Pose<double> const& plane) const {
-  // where the axis meets the plane
+  // Start where the camera's axis meets the plane.
   Ray<double> const axis = plane.inwards(Ray<double>{pose.origin, -1.0 * pose.z});
   if (!(std::abs(axis.direction.z) > 0)) return std::nullopt;
   double const way = -axis.position.z / axis.direction.z;
@@ -171,7 +174,7 @@ std::optional<SeenPoint> Camera::find_place(Vec2d pixel, Pose<double> const& pla
     if (determinant == 0) return std::nullopt;
     Vec2d const change{(miss.x * seen->by_y.y - miss.y * seen->by_y.x) / determinant,
                        (seen->by_x.x * miss.y - seen->by_x.y * miss.x) / determinant};
-    // half a step, and half of that, where the whole one leaves the field or gains nothing
+    // Halve the step until it stays within the field and reduces the error.
     bool better = false;
     for (double share = 1; share > 1e-3 && !better; share /= 2) {
       auto const there = pixel_of(place + share * change);
@@ -192,7 +195,7 @@ std::optional<SeenPoint> Camera::find_place_and_aim(Vec2d pixel, Pose<double> co
   Vec2d aim = *found;
   auto here = sight(point(place), aim);
   if (!here) return std::nullopt;
-  // Newton's method for place and aim together: the ray is to meet the stop's centre and the pixel
+  // Newton's method for position and aim together: the ray must meet the stop's centre and the pixel.
   double const h = place_step(plane), unit_in_stop = in_stop_unit();
   auto const miss_of = [&](Sight const& s) {
     return std::hypot(length(s.in_stop) / unit_in_stop, length(s.pixel - pixel));
@@ -250,7 +253,7 @@ std::optional<WorldAimDisc> Camera::aim_disc(Vec3d source) const {
 Vec2d Camera::ideal_project(Vec3d point) const {
   Vec3d const q = pose.point_inwards(point);
   double const distance = paraxial.front - q.z, slope = paraxial.chief_slope(distance);
-  double const height = 1 + slope * (distance - paraxial.window_shift);  // at the front, over that of the point
+  double const height = 1 + slope * (distance - paraxial.window_shift);  // at the first surface, per object height
   double const out = paraxial.whole.a * height + paraxial.whole.b * slope;
   double const out_slope = paraxial.whole.c * height + paraxial.whole.d * slope;
   Ray<double> const leaving{{out * q.x, out * q.y, 0}, {out_slope * q.x, out_slope * q.y, paraxial.forwards}};

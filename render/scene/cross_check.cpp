@@ -14,12 +14,12 @@
 namespace gladstone {
 namespace {
 
-constexpr double widest_spot_px = 200;   // between first zeros; f/64 gives about 10 px
-constexpr double widest_airy_px = 60;    // its table takes 0.2 GB then
-constexpr double finest_pitch = 0.5e-6;  // [m] no camera's pixels are finer
-constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air takes a half space
+constexpr double widest_spot_px = 200;   // between first zeros [px]; f/64 gives about 10 px
+constexpr double widest_airy_px = 60;    // the table needs 0.2 GB at this size
+constexpr double finest_pitch = 0.5e-6;  // no camera has smaller pixels [m]
+constexpr double fastest_lens = 0.5;     // f-number at which an aplanatic lens in air accepts a half space
 
-/// Builds a camera that no closed form describes, to see whether it makes a picture of the dots.
+/// Builds a camera without closed form to check that it forms an image of the dots.
 bool cross_check_camera(Setup const& setup, SetupTable root) {
   try {
     build_camera(setup);
@@ -35,7 +35,8 @@ bool cross_check_camera(Setup const& setup, SetupTable root) {
   return false;
 }
 
-/// Refuses views and targets that reach further off the axis than a lens sees: chief rays from there never end.
+/// Reports views and targets that extend farther off the axis than a lens can image: no chief rays are found from
+/// there.
 void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, SetupTable root) {
   double const widest = 2 * setup.farthest_off_axis(), mm = unit::millimetre;
   if (std::max(view.x, view.y) > widest) {
@@ -52,7 +53,7 @@ void cross_check_extents(Setup const& setup, Vec2d view, SetupTable target, Setu
   }
 }
 
-/// Warns of read noise that is cut off at black.
+/// Warns of read noise that is clipped at zero.
 void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
   if (double const clipped = clipped_at_black(setup.camera); clipped > 0.05) {
     NoiseSetup const& noise = setup.camera.noise;
@@ -65,7 +66,7 @@ void cross_check_noise(Setup const& setup, std::vector<std::string>& warnings) {
   }
 }
 
-/// Warns of lenslets whose pictures of the stop run into each other: their f-number is to be the lens' own, or smaller
+/// Warns of lenslets whose images of the stop overlap. To avoid this, their f-number must not exceed that of the lens
 /// (Ng et al., Stanford Tech Report CTSR 2005-02, section 3.1).
 void cross_check_lenslets(Setup const& setup, std::vector<std::string>& warnings) {
   ImagingGeometry const imaging = setup.imaging();
@@ -79,7 +80,7 @@ void cross_check_lenslets(Setup const& setup, std::vector<std::string>& warnings
                   setup.lens.f_number * picture / setup.lenslets->pitch));
 }
 
-/// Whether lens and camera make an image of the dots at all.
+/// Checks that lens and camera form an image of the dots.
 bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
@@ -108,7 +109,7 @@ bool cross_check_lens(Setup const& setup, SetupTable root, std::vector<std::stri
   return true;
 }
 
-/// Refuses diffraction spots in which nothing could be seen.
+/// Reports diffraction PSFs that are too wide to resolve anything.
 void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens, SetupTable root) {
   double const widest_px = setup.lens.spot == SpotModel::airy ? widest_airy_px : widest_spot_px;
   if (diffraction_px > widest_px && setup.camera.pixel_pitch < finest_pitch) {
@@ -124,7 +125,7 @@ void cross_check_spot(Setup const& setup, double diffraction_px, SetupTable lens
   }
 }
 
-/// The target's size and the look of its dots.
+/// Checks the target's size and the size and polarity of its dots.
 void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::string>& warnings) {
   double const mm = unit::millimetre;
   SetupTable lens = root.table("lens"), target = root.table("target");
@@ -162,7 +163,7 @@ void cross_check_target(Setup const& setup, SetupTable root, std::vector<std::st
   }
 }
 
-/// The number of random or regular dots.
+/// Checks the number of random or regular dots.
 void cross_check_dot_count(Setup const& setup, SetupTable target) {
   double const mm = unit::millimetre;
   double const count = setup.dot_count();
@@ -197,7 +198,7 @@ std::string metres_hint(double length) {
 
 std::vector<std::string> cross_check(Setup const& setup, SetupTable root) {
   std::vector<std::string> warnings = setup.warnings;
-  if (!cross_check_lens(setup, root, warnings)) return warnings;  // everything else needs a picture
+  if (!cross_check_lens(setup, root, warnings)) return warnings;  // all other checks require an image
   if (setup.calibration()) {
     cross_check_noise(setup, warnings);
     cross_check_spot(setup, setup.spot_diameter_px(), root.table("lens"), root);

@@ -10,30 +10,30 @@
 namespace gladstone {
 namespace {
 
-constexpr double negligible_loss = 0.01;  // of a field's displacement, cut off by a thickness that the user chose
-constexpr double noticeable_loss = 1e-4;  // cut off where the user chose none: 1e-4 px in a pixel, as truth is good to
+constexpr double negligible_loss = 0.01;  // tolerated truncation of the displacement, given thickness
+constexpr double noticeable_loss = 1e-4;  // the same for "auto": 1e-4 px at 1 px, as accurate as the truth
 
-/// Half width and height of what dots' rays cross of the medium [m].
+/// Returns half the width and height of the region of the medium that the dots' rays cross [m].
 Vec2d half_extent_at_medium(Setup const& setup) {
   Vec2d const target = setup.target_extent();
   double const pupil = setup.imaging().entrance_pupil / 2;
   Vec2d half{};
   for (double const z : {-setup.medium.thickness / 2, setup.medium.thickness / 2}) {
-    double const way = (setup.z_d + z) / setup.z_b();  // from the dots to the lens
+    double const way = (setup.z_d + z) / setup.z_b();  // fraction of the distance from the dots to the lens
     half.x = std::max(half.x, target.x / 2 * (1 - way) + pupil * way);
     half.y = std::max(half.y, target.y / 2 * (1 - way) + pupil * way);
   }
   return half;
 }
 
-/// What messages tell of a field's densities.
+/// Density range of a field, for error messages.
 struct FieldDensities {
   DensityRange range;
-  char const* key;     ///< that they follow from
-  bool endless_range;  ///< negative somewhere, whatever the field's strength
+  char const* key;     ///< key that determines the range
+  bool endless_range;  ///< negative at some distance, whatever the field's strength
 };
 
-/// Of a field in closed form; of the ambient where there is none.
+/// Returns the range of a closed-form field; for other fields, the ambient density.
 FieldDensities field_densities(Setup const& setup) {
   double const ambient = setup.medium.ambient_density;
   if (setup.medium.field.kind != FieldKind::closed_form) return {{ambient, ambient}, "kind", false};
@@ -45,7 +45,8 @@ FieldDensities field_densities(Setup const& setup) {
       closed_form_of(setup.medium));
 }
 
-/// The key of the length on which a field changes. @pre there is a field
+/// Returns the key of the field's length scale.
+/// @pre there is a field
 std::string length_key(FieldSetup const& field) {
   if (field.kind == FieldKind::file) return field.spacing ? "spacing_mm" : "file";
   return std::visit([](auto const& form) { return std::string(form.length_key); }, field.form);

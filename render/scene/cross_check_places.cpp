@@ -9,13 +9,13 @@
 #include "render/scene/build_camera.h"
 #include "render/scene/setup_checks.h"
 
-/// What stands where between the dots and the lens: nothing may stand within another.
+/// Checks that no objects between the dots and the lens overlap.
 namespace gladstone {
 namespace {
 
-constexpr double touching = 1e-9;  // [m] faces may touch
+constexpr double touching = 1e-9;  // tolerance for faces in contact [m]
 
-/// Along Z, of a medium whose ends the setup tells (those of a volume stand in its file).
+/// Ends of the medium along Z, if the setup determines them (those of a volume are stored in its file).
 struct MediumEnds {
   double first, last;  ///< [m]
 };
@@ -26,10 +26,11 @@ std::optional<MediumEnds> medium_ends(Setup const& setup) {
   return MediumEnds{centre - half, centre + half};
 }
 
-/// Where light meets the camera: the first vertex of its lens, or its principal plane where it has no surfaces.
+/// Returns the point where the camera's axis enters the camera: the first vertex of its lens, or its principal plane if
+/// it has no surfaces [m].
 Vec3d front_of(Setup const& setup) { return setup.camera_pose().point_outwards({0, 0, paraxial_camera(setup).front}); }
 
-/// The camera's axis, by its way from the lens' front, negative before it [m].
+/// The camera's axis; distances along it are measured from the lens' front, negative in front of it [m].
 struct CameraAxis {
   Vec3d front, along;
 
@@ -37,7 +38,7 @@ struct CameraAxis {
   double meets_plane(double z) const { return meets({0, 0, z}, {0, 0, 1}); }
 };
 
-/// One of the things that light meets, and where along the camera's axis.
+/// An object on the light path and its extent along the camera's axis.
 struct OnTheWay {
   std::string name;
   double enters, leaves;  ///< [m]
@@ -73,7 +74,7 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
   if (setup.windows.empty()) return;
   CameraAxis const axis{front_of(setup), setup.camera_pose().z};
   double const infinite = std::numeric_limits<double>::infinity();
-  std::vector<OnTheWay> way;  // in the order light is to meet them
+  std::vector<OnTheWay> way;  // in the required order of the light path
   if (!setup.piv) way.push_back({"the dots", axis.meets_plane(-setup.z_d), axis.meets_plane(-setup.z_d), false});
   for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {
     for (std::size_t i = 0; i < setup.windows.size(); ++i) {
@@ -91,7 +92,7 @@ void cross_check_windows(Setup const& setup, SetupTable root) {
     }
   }
   way.push_back({"the lens", 0, infinite, false});
-  OnTheWay const* last = &way.front();  // what reaches furthest so far
+  OnTheWay const* last = &way.front();  // object that extends farthest so far
   for (OnTheWay const& next : way) {
     if (&next != last && next.enters < last->leaves - touching && (next.window || last->window)) {
       root.problem("window", fmt::format("light is to meet {} and then {}, but along the camera's axis the one begins "

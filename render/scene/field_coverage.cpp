@@ -11,13 +11,14 @@ namespace gladstone {
 namespace {
 
 constexpr double least_share = 0.1;
-// Lengths in metres or micrometres, taken for millimetres, are off by 1000; on a logarithmic scale this is nearer to
-// that than to a field that fits the view within a factor of ten.
+// Lengths in metres or micrometres that are read as millimetres are wrong by a factor of 1000. On a logarithmic scale,
+// 300 is closer to 1000 than to the factor of ten up to which a field is considered to fit the view.
 constexpr double another_unit = 300;
 
-constexpr double noticeable_jump = 0.2;  // at a side face, as a share of the field's range
+constexpr double noticeable_jump = 0.2;  // discontinuity at a side face as a fraction of the field's range
 
-/// Root mean square of n - 1 less the ambient's over a face across an axis.
+/// Returns the rms difference between n - 1 on a face of the field and the ambient value.
+/// @param axis  axis normal to the face
 double face_difference(BuiltMedium const& medium, Bounds<double> const& box, int axis, bool high, double ambient) {
   constexpr int samples = 16;
   int const a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -28,7 +29,7 @@ double face_difference(BuiltMedium const& medium, Bounds<double> const& box, int
   for (int i = 0; i < samples; ++i) {
     for (int j = 0; j < samples; ++j) {
       Vec3d place{};
-      place[axis] = between(axis, high ? 1 - 1e-9 : 1e-9);  // within the field, whatever the rounding
+      place[axis] = between(axis, high ? 1 - 1e-9 : 1e-9);  // just inside the field, despite rounding
       place[a] = between(a, (i + 0.5) / samples);
       place[b] = between(b, (j + 0.5) / samples);
       double const seen =

@@ -72,13 +72,14 @@ StrainMap strain_of(Image<Vec2d> const& displacement, int spacing_px) {
 
 namespace {
 
-/// A node of a lattice within a disc about node (0, 0), with its share of the disc.
+/// Lattice node within a disc centred on node (0, 0), and its fraction of the disc's area.
 struct DiscNode {
   int column, row;
   double share;
 };
 
-/// @param radius in spacings of the lattice; at the rim nodes count in part. Sum of the shares 1
+/// Returns the nodes of a disc; nodes at its edge have partial weight. The weights sum to 1.
+/// @param radius  radius in units of the lattice spacing
 std::vector<DiscNode> disc_nodes(double radius) {
   std::vector<DiscNode> nodes;
   int const reach = static_cast<int>(std::ceil(radius));
@@ -99,13 +100,13 @@ std::vector<DiscNode> disc_nodes(double radius) {
 
 StrainMap map_strain(Scene const& scene) {
   CameraSetup const& camera = scene.setup.camera;
-  // the cone smooths what lies between the points of a coarse lattice; chief rays see everything
+  // The cone average smooths structures between the points of a coarse lattice; chief rays resolve all structures.
   bool const chief = scene.chief_rays_only();
   int const larger = std::max(camera.columns, camera.rows);
   int const spacing_px = chief ? std::max(1, larger / 512) : std::max(4, larger / 128);
   int const columns = std::max(3, camera.columns / spacing_px), rows = std::max(3, camera.rows / spacing_px);
 
-  // the disc of the target whose chief rays cross the medium's mid-plane where a point's cone does
+  // Radius of the target region whose chief rays cross the medium's mid-plane within a dot's light cone.
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
   double const plane_z = -scene.setup.z_d, middle = 0.5 * (box.low.z + box.high.z);
   double const lever = (middle - plane_z) / (scene.setup.z_a - middle);
@@ -113,7 +114,7 @@ StrainMap map_strain(Scene const& scene) {
   double const radius_px = chief ? 0 : lever * scene.imaging.entrance_pupil / 2 * px;
   double const finest_px = (1 + lever) * scene.medium.finest * px;
 
-  // a lattice so many times finer that it resolves disc or field
+  // Refine the lattice for the chief rays so that it resolves the cone or the field.
   double const resolved_px = std::max(radius_px / 3, finest_px);
   int const finer =
       chief || !(resolved_px > 0) ? 1 : std::clamp(static_cast<int>(std::ceil(spacing_px / resolved_px)), 1, 8);

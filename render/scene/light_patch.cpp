@@ -6,7 +6,8 @@
 namespace gladstone {
 namespace {
 
-/// Pixels that a spot about p reaches. @pre p is within the range of int
+/// Returns the pixels that a PSF centred at p covers.
+/// @pre p is within the range of int
 Footprint footprint(Vec2d p, int half) {
   return {static_cast<int>(std::floor(p.x + 0.5)) - half, static_cast<int>(std::floor(p.y + 0.5)) - half, 2 * half + 1};
 }

@@ -19,7 +19,7 @@ double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t
   if (light_ == ParticleLight::equal) return 1;
   if (scene_.setup.piv->particles.scattering == ParticleScattering::gaussian) {
     double const d = scene_.particles.diameter[particle];
-    return d * d / 16;  // of its disc, over all directions
+    return d * d / 16;  // geometric cross-section over the full solid angle [m^2/sr]
   }
   LightWave<double> const wave = sheet_.wave(place, pulse);
   if (scene_.mie) return mie_.cross_section(particle, direction, wave);
@@ -29,7 +29,7 @@ double LightThroughLens::cross_section(Vec3d place, Vec3d direction, std::size_t
 double LightThroughLens::operator()(Vec3d place, std::size_t particle, int pulse) const {
   Vec3d const way = scene_.camera.aim_plane.origin - place;
   double const far = length(way), pupil = scene_.imaging.entrance_pupil;
-  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // chief rays are worth a square metre
+  double const area = pupil > 0 ? pi / 4 * pupil * pupil : 1.0;  // for chief rays, an area of one square metre
   double const facing = std::abs(dot(scene_.camera.aim_plane.z, way)) / far;
   return cross_section(place, way / far, particle, pulse) * area * facing / (far * far);
 }

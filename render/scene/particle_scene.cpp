@@ -15,13 +15,13 @@ namespace gladstone {
 namespace {
 
 constexpr double path_tolerance_px = 1e-5;
-constexpr double bending_margin = 0.02;       // by which media may turn light on its way to the lens [rad]
-constexpr double scattering_contrast = 1e-3;  // of the index: what seeds a gas has 0.3 and more
-constexpr double lit_share = 0.5;             // of the volume: less is worth a word
-constexpr double kept_pairs = 0.75;           // that lose little: Keane & Adrian's rule of a quarter
+constexpr double bending_margin = 0.02;       // maximum deflection by media on the way to the lens [rad]
+constexpr double scattering_contrast = 1e-3;  // minimum index difference; seeding particles in gas have 0.3 or more
+constexpr double lit_share = 0.5;             // illuminated fraction of the volume below which a warning is issued
+constexpr double kept_pairs = 0.75;           // minimum fraction of paired particles: Keane & Adrian's one-quarter rule
 
-/// Share of the particles' volume that the camera sees: of places that an additive recurrence spreads evenly over X and
-/// Y (Roberts 2018: powers of the real root of x^3 = x + 1), another one over Z.
+/// Returns the fraction of the particles' volume that the camera sees, sampled by low-discrepancy points: an additive
+/// recurrence in X and Y (Roberts 2018: powers of the real root of x^3 = x + 1) and another one in Z.
 double seen_share(Setup const& setup) {
   constexpr int places = 1 << 14;
   constexpr double root = 1.32471795724474602596, along_z = 0.41421356237309504880;
@@ -43,7 +43,7 @@ double seen_share(Setup const& setup) {
   return static_cast<double>(std::count(seen.begin(), seen.end(), 1)) / places;
 }
 
-/// Angles that the camera sees the particles' light under.
+/// Returns the range of scattering angles of light from all particles to the lens.
 AngleInterval seen_angles(Scene const& scene) {
   LaserSheet<double> const sheet = laser_sheet<double>(scene.setup.piv->laser);
   AngleInterval angles{pi, 0};
@@ -60,14 +60,15 @@ AngleInterval seen_angles(Scene const& scene) {
   return {std::max(0.0, angles.least), std::min(pi, angles.most)};
 }
 
-/// Distance of the volume from a sheet's middle plane at a pulse, 0 where it cuts through it [m].
+/// Returns the distance of the volume from a sheet's middle plane at a pulse [m]; 0 if they intersect.
 double sheet_beside(ParticleSetup const& particles, Pose<double> const& sheet) {
   Vec3d const half = 0.5 * *particles.volume, n = sheet.z;
   double const reach = std::abs(n.x) * half.x + std::abs(n.y) * half.y + std::abs(n.z) * half.z;
   return std::max(0.0, std::abs(dot(particles.center - sheet.origin, n)) - reach);
 }
 
-/// Refuses a file's velocity that ends inside the particles' volume. What cannot be read is left to those who read it.
+/// Reports a velocity file that ends inside the particles' volume. A file that cannot be read is ignored; its reader
+/// reports it.
 void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
   ParticleSetup const& particles = setup.piv->particles;
   if (!particles.volume) return;
@@ -90,8 +91,8 @@ void cross_check_velocity_file(Setup const& setup, SetupTable flow) {
   }
 }
 
-/// Of particles whose own image is half as wide as spot or pixel and more: quadrature (Adrian & Yao 1985) makes that an
-/// eighth of the picture's width. Empty: there is none.
+/// Returns a warning if the geometric image of a particle is at least half as wide as PSF or pixel: added in quadrature
+/// (Adrian & Yao 1985), it enlarges the image's diameter by an eighth. Empty otherwise.
 std::string warning_of_wide_particles(Scene const& scene) {
   std::vector<double> const& diameter = scene.particles.diameter;
   if (diameter.empty()) return {};
@@ -104,16 +105,17 @@ std::string warning_of_wide_particles(Scene const& scene) {
       widest / unit::micrometre, px, point_px);
 }
 
-/// Of a volume that ends within the view. Empty: it fills the view, is not given, or no particle is in view at all.
+/// Returns a warning if the volume ends within the view. Empty if it fills the view, is not given, or no particle is in
+/// view.
 std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& census) {
-  constexpr int along = 16;            // places of the view, along either side
-  constexpr double negligible = 0.01;  // share of them
+  constexpr int along = 16;            // points of the view along each side
+  constexpr double negligible = 0.01;  // fraction of these points
   ParticleSetup const& particles = scene.setup.piv->particles;
   if (!particles.volume || census.in_view == 0) return {};
   Pose<double> const plane = scene.sheet_plane();
   CameraSetup const& camera = scene.setup.camera;
   double const thickness = scene.setup.piv->laser.thickness;
-  // places of the sheet's middle plane count as within the volume where it ends inside the sheet
+  // If the volume ends inside the sheet, points of the sheet's middle plane are regarded as inside the volume.
   Vec3d const half =
       0.5 * *particles.volume + thickness * Vec3d{std::abs(plane.z.x), std::abs(plane.z.y), std::abs(plane.z.z)};
   std::vector<char> outside(static_cast<std::size_t>(along) * along);
@@ -134,18 +136,18 @@ std::string warning_of_small_volume(Scene const& scene, ParticleCensus const& ce
       100 * share, camera.columns * scene.setup.pixel_size() * 1e3, camera.rows * scene.setup.pixel_size() * 1e3);
 }
 
-/// Of a volume that is mostly outside the light: less than a thousandth of that in the sheet's middle. Empty: it is
-/// not.
+/// Returns a warning if most of the volume is dark, with less than a thousandth of the light in the sheet's middle.
+/// Empty otherwise.
 std::string warning_of_dark_volume(Scene const& scene) {
   PivSetup const& piv = *scene.setup.piv;
   if (!piv.particles.volume) return {};
   Pose<double> const sheet = laser_sheet<double>(piv.laser).pose[0];
   Vec3d const half = 0.5 * *piv.particles.volume, n = sheet.z;
-  double half_depth = HUGE_VAL;  // of the volume along the sheet's normal, through its centre
+  double half_depth = HUGE_VAL;  // half depth of the volume along the sheet's normal, through its centre
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(n[axis]) > 1e-9) half_depth = std::min(half_depth, half[axis] / std::abs(n[axis]));
   }
-  // exp(-8 z^2 / w^2) is a thousandth at z = 0.93 w
+  // exp(-8 z^2 / w^2) is a thousandth at z = 0.93 w.
   double const reach = (piv.laser.profile == SheetProfile::gaussian ? 0.93 : 0.5) * piv.laser.thickness;
   double const offset = dot(sheet.origin - piv.particles.center, n);
   double const lit = std::max(0.0, std::min(half_depth, offset + reach) - std::max(-half_depth, offset - reach));
@@ -158,7 +160,7 @@ std::string warning_of_dark_volume(Scene const& scene) {
       100 * (1 - share), 2 * reach / unit::millimetre);
 }
 
-/// Of a flow that moves no image by as much as correlation resolves, though it does move. Empty: there is none.
+/// Returns a warning if the flow moves particles, but no image by as much as correlation resolves. Empty otherwise.
 std::string warning_of_small_displacements(Scene const& scene, ParticleCensus const& census) {
   if (census.in_view == 0 || !(census.largest_px > 0) || census.largest_px >= measurable_displacement_px) return {};
   return fmt::format(

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t sampled_sources = 32;
 constexpr int sampled_rays = 256;
 
-/// What light meets: elements, the medium among them, and the sensor.
+/// Indices of the elements, including the medium, and of the sensor along the light path.
 struct Places {
   int medium, sensor;
 
@@ -31,7 +31,7 @@ struct End {
   auto operator<=>(End const&) const = default;
 };
 
-/// Where a ray ends before it reaches the sensor's plane; nothing where it does.
+/// Returns the element at which a ray ends before the sensor's plane, and the cause; nullopt if it reaches the plane.
 template <class Medium>
 std::optional<End> end_of(CameraView<double> const& camera, Medium const& medium, TracingOptions<double> const& options,
                           Ray<double> ray) {
@@ -56,7 +56,7 @@ std::optional<End> end_of(CameraView<double> const& camera, Medium const& medium
   return std::nullopt;
 }
 
-/// Names of the places, in the order of build_camera().
+/// Returns the names of the elements, in the order of build_camera().
 std::vector<std::string> names_of(Scene const& scene) {
   std::vector<std::string> names;
   for (WindowSide const side : {WindowSide::target, WindowSide::camera}) {

@@ -41,7 +41,7 @@ double Probe::largest_shift() const { return shift.empty() ? 0.0 : *std::max_ele
 
 StepPlan choose_step(Scene const& scene,
                      std::function<void(double step, std::function<void(StepProbes const&)> const&)> const& prepare) {
-  // the step is kept in mm, so that a setup file holds exactly the number used
+  // The step is stored in mm, so that a setup file contains exactly the number used.
   StepPlan plan;
   std::optional<double> const given = scene.setup.medium.step_mm;
   bool const empty = std::holds_alternative<NoMedium<double>>(scene.medium.view);
@@ -77,7 +77,7 @@ void use_step(Scene& scene, StepPlan const& plan) {
 }
 
 double ray_seconds(Scene const& scene) {
-  // emission, lens and sums; a step of the flow ray; a pixel that a spot is spread over; a surface of a lens [s]
+  // Times [s]: emission, lens and sums; a step of the ray through the medium; a pixel of the PSF; a lens surface.
   constexpr double a_ray = 0.6e-6, a_step = 0.12e-6, a_pixel = 1.4e-9, a_surface = 60e-9;
   std::optional<AiryTable> airy;
   double const width = 2 * make_spot(scene, airy).half_width() + 1;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// What dots look like on average in one frame: sums over a dot's pixels.
+/// Average properties of the dots in one image: sums over the pixels of a dot.
 struct MeanDot {
-  double light = 0, square = 0;  ///< of the light and of its square
-  double variance = 0, lit = 0;  ///< over lit pixels: of the light's variance, and their number
+  double light = 0, square = 0;  ///< sum of the light and of its square
+  double variance = 0, lit = 0;  ///< sum over lit pixels of the light's variance, and their number
 };
 
 }  // namespace
@@ -49,7 +49,7 @@ int plan_bits(CameraSetup const& camera) { return std::min(camera.bit_depth, 12)
 GreyLevels::GreyLevels(CameraSetup const& camera, double dots_a_pixel)
     : density(dots_a_pixel), bits(plan_bits(camera)) {
   double const full_scale = std::pow(2.0, bits) - 1;
-  // a given exposure fixes the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale
+  // A given exposure determines the light of a grey level; "auto" puts the brightest pixel at 90 % of full scale.
   level = camera.exposure_e ? camera.noise.full_well_e / *camera.exposure_e / full_scale : 0.0;
   at_peak = 0.9 * full_scale;
 }
@@ -62,7 +62,7 @@ double GreyLevels::error(Scatter const& scatter) const {
 Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& levels,
                         std::function<Sampled(std::size_t dot, int scrambling)> const& sample) {
   struct PerDot {
-    std::vector<double> mean, variance;  // of the light
+    std::vector<double> mean, variance;  // of each pixel's light
   };
   Scatter scatter;
   scatter.displacements.resize(dots.size());
@@ -101,10 +101,10 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
     MeanDot& sums = frames[frame];
     sum_over_frame(frame, [&](double mean, double variance) {
       sums.light += share * mean;
-      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // of one scrambling
+      sums.square += share * (mean * mean + variance * (1 - 1.0 / plan_scramblings));  // for a single scrambling
       scatter.brightest = std::max(scatter.brightest, mean);
     });
-    // many dots at random overlap to a level of this mean and variance (Campbell's theorem)
+    // Light of randomly overlapping dots: mean plus three standard deviations (Campbell's theorem).
     double const overlapping = levels.density * sums.light + 3 * std::sqrt(levels.density * sums.square);
     scatter.brightest = std::max(scatter.brightest, overlapping);
   }
@@ -117,7 +117,8 @@ Scatter measure_scatter(std::vector<std::size_t> const& dots, GreyLevels const& 
       sums.variance += share * variance;
       sums.lit += share;
     });
-    // the share of a picture that n dots a pixel light with k pixels each is 1 - exp(-n k); they add their variances
+    // With n dots per pixel of k lit pixels each, the lit fraction of the image is 1 - exp(-n k). Variances of
+    // overlapping dots add up.
     double const density = levels.density;
     double const pixels = density > 0 ? -std::expm1(-density * sums.lit) / density : sums.lit;
     if (pixels > 0) scatter.light_variance = std::fmax(scatter.light_variance, sums.variance / pixels);

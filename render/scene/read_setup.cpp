@@ -52,10 +52,11 @@ RenderSetup read_render_setup(SetupTable table) {
   return setup;
 }
 
-constexpr double automatic_reach = 0.99;  // of the way to dots and lens, that a thickness of "auto" may take
+constexpr double automatic_reach = 0.99;  // limit of an "auto" half thickness over the distance to dots or lens
 
-/// Gives medium.thickness the depth of the field's volume, whatever thickness_mm says. @return false where the field is
-/// as deep as thickness_mm (a slab, a plane that is extruded), or the file cannot be read, which its reader reports
+/// Sets medium.thickness to the depth of the field's volume, regardless of thickness_mm.
+/// @return false if the thickness follows from thickness_mm (slab, extruded plane), or the file cannot be read, which
+/// its reader reports
 bool take_depth_of_volume(Setup& setup, SetupTable medium) {
   MediumSetup& slab = setup.medium;
   if (!has_own_depth(slab.field) || (slab.second_field && !has_own_depth(*slab.second_field))) return false;
@@ -77,8 +78,8 @@ bool take_depth_of_volume(Setup& setup, SetupTable medium) {
   return true;
 }
 
-/// Sets the one depth of the medium that every command uses, and writes it into the resolved setup: a volume's own; for
-/// thickness_mm = "auto" that of the slab, which for a field with a size ends short of the dots and the lens.
+/// Sets the thickness of the medium that all commands use and writes it into the resolved setup: the depth of a volume
+/// or, for thickness_mm = "auto", that of the slab, which for a field of finite size ends in front of dots and lens.
 void resolve_thickness(Setup& setup, SetupTable medium) {
   MediumSetup& slab = setup.medium;
   if (take_depth_of_volume(setup, medium) || !slab.automatic_thickness) return;
@@ -91,7 +92,7 @@ void resolve_thickness(Setup& setup, SetupTable medium) {
   medium.resolve("thickness_mm", thickness_mm);
 }
 
-/// Table [camera.pose]: where the camera stands and looks.
+/// Reads table [camera.pose]: position and direction of the camera.
 std::optional<Pose<double>> read_pose(SetupTable table) {
   if (!table.present()) return std::nullopt;
   Range const place{-1e9, 1e9};
@@ -128,7 +129,7 @@ std::optional<Pose<double>> read_pose(SetupTable table) {
   return pose;
 }
 
-/// The camera's place: z_a_mm, z_front_mm, z_sensor_mm or a pose.
+/// Reads the camera's position: z_a_mm, z_front_mm, z_sensor_mm or a pose.
 void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   SetupTable pose = camera.table("pose");
   setup.pose = read_pose(pose);
@@ -140,7 +141,7 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
     return;
   }
   bool const thin = setup.lens.file.empty();
-  if (geometry.has("z_sensor_mm")) {  // the lens is placed once it is known
+  if (geometry.has("z_sensor_mm")) {  // the lens is positioned after it is read
     for (char const* key : {"z_a_mm", "z_front_mm"}) {
       geometry.refuse(key, "stands beside z_sensor_mm (one of them places the lens); remove one");
     }
@@ -156,10 +157,10 @@ void read_place(Setup& setup, SetupTable camera, SetupTable geometry) {
   setup.z_a = geometry.number("z_front_mm", 700.0, Range::positive(1e9)) * unit::millimetre;
 }
 
-/// Finds what windows are made of. Problems go to the keys `glass`.
+/// Looks up the glasses of the windows. Problems are recorded at the keys `glass`.
 void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& glasses,
                          std::vector<std::string>& warnings) {
-  std::vector<SetupTable> tables = root.tables("window");  // those that the windows were read from
+  std::vector<SetupTable> tables = root.tables("window");  // tables from which the windows were read
   double const wavelength = setup.medium.wavelength;
   for (std::size_t i = 0; i < setup.windows.size(); ++i) {
     WindowSetup& window = setup.windows[i];
@@ -171,20 +172,20 @@ void find_window_glasses(Setup& setup, SetupTable root, GlassCatalogue const& gl
       window.index = glass.index(wavelength);
       if (setup.lens.transmittance == Transmittance::glass) window.absorption = glass.absorption(wavelength);
     } catch (DataError const& error) {
-      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // which puts the place before it
+      tables[i].problem("glass", std::string(error.what()).substr(where.size() + 2));  // without place
     }
   }
 }
 
-/// Makes lens and windows ready at the setup's wavelength, and finds the principal plane of a lens that is placed by
-/// its first vertex.
+/// Prepares lens and windows for the setup's wavelength, and determines the principal plane of a lens that is
+/// positioned by its first vertex.
 void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warnings) {
   SetupTable lens = root.table("lens"), geometry = root.table("geometry");
   GlassCatalogue const glasses = read_glasses(setup.lens, lens);
   warnings.insert(warnings.end(), glasses.warnings().begin(), glasses.warnings().end());
   if (!setup.lens.file.empty()) {
     std::optional<double> object_distance;
-    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is the first vertex' so far
+    if (geometry.has("z_front_mm")) object_distance = setup.focus_distance();  // z_a is that of the vertex
     build_prescription(setup.lens, lens, glasses, setup.medium.wavelength, object_distance, warnings);
   }
   if (setup.lens.prescription) {
@@ -203,7 +204,7 @@ void build_optics(Setup& setup, SetupTable root, std::vector<std::string>& warni
   find_window_glasses(setup, root, glasses, warnings);
 }
 
-/// Moves the lens to where it focuses on a sensor that stands where the setup says.
+/// Positions the lens such that it is focused on a sensor at a given position.
 void focus_on_sensor(Setup& setup, SetupTable geometry) {
   if (!setup.z_sensor) return;
   bool const known = setup.lens.file.empty() || setup.lens.prescription;
@@ -230,7 +231,7 @@ void read_calibration(Setup& setup, SetupTable root) {
   root.refuse("target", "is of BOS (a calibration's dots are those of [calibration]); remove it");
 }
 
-/// The front of a medium of kind normal_shock, for the flow.
+/// Returns the shock front of a medium of kind normal_shock, for the flow.
 std::optional<ShockPlane> shock_plane(FieldSetup const& field) {
   auto const* const shock = field.closed_form<NormalShock<double>>();
   if (!shock) return std::nullopt;

@@ -5,7 +5,7 @@
 namespace gladstone {
 namespace {
 
-/// Grey levels as a correlator takes them, the very numbers that the picture's file holds.
+/// Converts a recorded image to the grey levels that correlation reads, identical to those in the image file.
 Image<double> grey_levels(Recording const& recording) {
   Image<double> levels(recording.image.columns(), recording.image.rows());
   std::copy(recording.image.begin(), recording.image.end(), levels.begin());

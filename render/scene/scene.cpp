@@ -22,16 +22,17 @@ namespace {
 
 double gigabytes(double bytes) { return bytes / 1e9; }
 
-/// Lowest density of a file's field [kg/m^3]. @pre its quantity is density
+/// Returns the lowest density of a field file [kg/m^3].
+/// @pre its quantity is density
 double lowest_density(MediumSetup const& setup, BuiltMedium const& medium) {
   auto const lowest = [&]<class Stored>(Stored) {
     return std::static_pointer_cast<RefractiveIndexVolume<Stored> const>(medium.owner)->lowest();
   };
   return (setup.field.extrude ? lowest(double{}) : lowest(float{})) /
-         setup.gladstone_dale;  // as build_medium stores it
+         setup.gladstone_dale;  // stored by build_medium in this type
 }
 
-/// Refuses a file with densities below zero, which no gas has, with their count and the first place.
+/// Reports negative densities in a field file, with their number and the first position.
 void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium) {
   FieldSetup const& field = setup.field;
   if (field.kind != FieldKind::file || field.quantity != FieldQuantity::density) return;
@@ -57,7 +58,7 @@ void refuse_negative_density(MediumSetup const& setup, BuiltMedium const& medium
                               source->name(), count, grid.size(), first, lowest));
 }
 
-/// Puts a target's dots into a scene.
+/// Adds the dots of a target to a scene.
 void add_dots(Scene& scene) {
   Setup const& setup = scene.setup;
   double const diameter = setup.target.kind == TargetKind::image ? 0.0 : setup.dot_diameter();
@@ -202,7 +203,7 @@ Scene build_scene(Setup const& setup, BuiltMedium const* medium) {
   scene.setup = setup;
   scene.imaging = setup.imaging();
   scene.camera = build_camera(setup);
-  if (!setup.on_bench()) {  // with the actual sensor
+  if (!setup.on_bench()) {  // use the actual sensor position
     if (auto const axis = scene.camera.unproject(scene.camera.sensor.axis_pixel(), scene.target_plane())) {
       double const area = std::abs(axis->by_x.x * axis->by_y.y - axis->by_x.y * axis->by_y.x);  // [px^2/m^2]
       scene.imaging.magnification = setup.camera.pixel_pitch * std::sqrt(area);

@@ -38,7 +38,7 @@ Vec2d Setup::axis_on_target() const {
 Vec2d Setup::target_extent() const {
   if (target.extent_m) return *target.extent_m;
   if (pose || camera.tilted()) return posed_extent(*this);
-  // through mm, so that the resolved setup, which holds mm, gives the same dots to the last bit
+  // Compute in mm, so that the resolved setup, which stores mm, reproduces the dots to the last bit.
   double const px_mm = camera.pixel_pitch / imaging().magnification / unit::millimetre;
   Vec2d const view_mm{(camera.columns + 2.0 * view_margin_px) * px_mm, (camera.rows + 2.0 * view_margin_px) * px_mm};
   return view_mm * unit::millimetre + beyond_view();
@@ -90,7 +90,7 @@ double Setup::spot_e2_diameter_px() const {
 
 double Setup::defocus_diameter_px() const {
   ImagingGeometry const geometry = imaging();
-  // a point at the distance Z, seen through a lens that is focused at F, is a disc of M_F D_a |Z - F| / Z
+  // The image of a point at distance Z by a lens focused at F is a disc of diameter M_F D_a |Z - F| / Z.
   double const focus = focus_distance(), magnification = geometry.image_distance / focus;
   return magnification * geometry.entrance_pupil * std::abs(z_b() - focus) / z_b() / camera.pixel_pitch;
 }

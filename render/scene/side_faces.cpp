@@ -3,13 +3,13 @@
 namespace gladstone {
 namespace {
 
-/// The rays of a source at one plane across the axis.
+/// Cross-section of a source's light cone normal to the axis.
 struct Disc {
   Vec2d middle;
   double radius;  ///< [m]
 };
 
-/// Where a range of one coordinate lies about those that the medium fills.
+/// Position of the cone's range of one coordinate relative to that of the medium.
 struct Sides {
   bool inside = true, below = true, above = true;
 
@@ -27,10 +27,10 @@ std::vector<std::size_t> sources_at_side_faces(Scene const& scene, DotPattern co
   std::vector<std::size_t> found;
   if (std::holds_alternative<NoMedium<double>>(scene.medium.view)) return found;
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
-  // a tenth for the smoothed rim of the stop
+  // Enlarge the pupil by a tenth for the smoothed edge of the stop.
   double const way = scene.setup.z_b(), pupil = 1.1 * scene.imaging.entrance_pupil / 2 + scene.pupil_margin;
   for (std::size_t i = 0; i < sources.centre.size(); ++i) {
-    // a cone is widest and furthest out at one of its ends
+    // A cone is widest and farthest out at one of its ends.
     Sides along_x, along_y;
     for (double const z : {box.low.z, box.high.z}) {
       double const share = (z + scene.setup.z_d) / way;

@@ -35,7 +35,7 @@ SourceCubature SourceCubature::radon() {
 
 SourceCubature SourceCubature::make(SourceShape shape, double half_size_px, double spot_px) {
   if (half_size_px == 0) return {{{0, 0}}, {1.0}};
-  // the finest thing that the source's outline is blurred by is the spot
+  // The outline of the source is blurred by the PSF, the shortest length scale.
   double const fineness = half_size_px / std::clamp(spot_px, 0.05, 2.0);
   if (shape == SourceShape::disc) {
     return disc(std::clamp(static_cast<int>(std::ceil(fineness)) + 2, 3, 64), 6,

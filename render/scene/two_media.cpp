@@ -10,10 +10,10 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t sampled = 256;  // particles whose scatter is measured
-constexpr std::size_t keys = 4;       // that it is measured over
+constexpr std::size_t sampled = 256;  // number of particles whose scatter is measured
+constexpr std::size_t keys = 4;       // number of random keys over which it is measured
 
-/// Some of many particles, spread evenly over the list, and the scene whose particles they are.
+/// Returns a sample of particles, spread evenly over the list.
 Particles some_of(Particles const& all) {
   std::size_t const count = std::min(all.size(), sampled);
   Particles some = all;
@@ -22,7 +22,7 @@ Particles some_of(Particles const& all) {
   return some;
 }
 
-/// Displacements, from the first medium's first pulse to the second one's second.
+/// Returns the displacements from the first pulse in the first medium to the second pulse in the second medium [px].
 std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& second) {
   std::vector<Vec2d> found(first.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -31,8 +31,9 @@ std::vector<Vec2d> displacements(GroundTruth const& first, GroundTruth const& se
   return found;
 }
 
-/// Standard error of a displacement, rms over some particles and components; NaN: unknown. What particles scatter does
-/// not matter to it, so that their numbers need not be those that the scattering knows.
+/// Estimates the standard error of a displacement, rms over a sample of particles and both components [px]; NaN:
+/// unknown. Particles are traced with equal light, since the scattering of the sampled particles is not needed and
+/// their indices do not match those of scene.mie.
 double standard_error(Renderer& renderer, Scene const& scene, Particles const& particles) {
   Particles const some = some_of(particles);
   std::array<std::vector<Vec2d>, keys> found;
