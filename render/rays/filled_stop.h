@@ -73,8 +73,7 @@ struct AimMap {
 
 /// Rays of one point that fill the stop exactly.
 struct FilledStop {
-  /// maps the unit disc to the aim plane
-  AimMap map;
+  AimMap map;           ///< maps the unit disc to the aim plane
   Vec2d low{}, high{};  ///< bounding box of the edge rays on the sensor [px]
   double spread2 = 0;   ///< variance along an axis of the hits, for rays that fill a disc with this edge [px^2]
 };

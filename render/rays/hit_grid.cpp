@@ -6,13 +6,13 @@
 namespace gladstone {
 namespace {
 
-constexpr std::uint64_t fewest_rays = 192;  // beyond which blurring the grid takes less time than their spots
+constexpr std::uint64_t fewest_rays = 192;  // number of rays above which the grid is faster than individual PSFs
 
 }  // namespace
 
 bool HitGrid::pays(double sigma, std::uint64_t rays) { return rays >= fewest_rays && HitSpline::serves(sigma); }
 
-// node 0 is a pad before the tile, and a hit at its end reaches two nodes beyond
+// Node 0 is in a margin in front of the tile; a hit at the tile's end reaches two nodes beyond it.
 HitGrid::HitGrid(GaussianSpot<double> const& spot)
     : spline_(spot), view_(spline_.view()), side_((pad_px + tile_px) * view_.per_px + 3) {
   rows_seen_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(view_.pixels({0, side_})));

@@ -12,7 +12,8 @@ bool HitSpline::serves(double sigma) { return sigma * most_nodes_a_pixel >= node
 
 HitSpline::HitSpline(GaussianSpot<double> const& spot)
     : per_px_(std::max(2, static_cast<int>(std::ceil(nodes_a_sigma / spot.sigma)))), reach_px_(spot.half_width() + 2) {
-  // coefficients of the spline through what a pixel sees of hits at the nodes, (c[-1] + 4 c[0] + c[1]) / 6 = s[0]
+  // Coefficients c of the spline that interpolates the light s of a pixel for hits at the nodes: (c[-1] + 4 c[0] +
+  // c[1]) / 6 = s[0].
   int const reach = reach_px_ * per_px_, count = 2 * reach + 1;
   std::vector<double> upper(static_cast<std::size_t>(count));
   share_.resize(upper.size());

@@ -12,11 +12,12 @@ namespace gladstone {
 namespace {
 
 constexpr double spare_px = 8;
-constexpr double within_rim = 0.9;  // of what a particle sees of the stop: rays that pass it
+constexpr double within_rim = 0.9;  // radius of the tested rays relative to the entrance pupil, so that they pass
 constexpr double blur_factor = 1.5, shift_factor = 2, lever_factor = 2;
 
-/// Largest displacement of an image over the displacement of its rays on the lens plane, in the object plane [1]: a
-/// turn at z counts by its way back to the particle there, by that on to the lens here; twice as much.
+/// Returns the upper limit of the displacement of an image in the object plane over the deflection of its rays on the
+/// lens plane [1]. A deflection at z displaces the image in proportion to the distance back to the particle, and the
+/// ray at the lens in proportion to the distance on to the lens; a safety factor of two is included.
 double image_shift_per_lens_shift(Scene const& scene, Particles const& particles) {
   if (scene.setup.pose || particles.size() == 0) return shift_factor;
   Bounds<double> const box = std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
@@ -29,8 +30,8 @@ double image_shift_per_lens_shift(Scene const& scene, Particles const& particles
   return std::min(shift_factor, lever_factor * back / onward);
 }
 
-/// Whether the image of a point reaches a sensor that is larger by a margin all around. True where its chief ray is not
-/// known.
+/// Returns true if the image of a point reaches a sensor enlarged by a margin on all sides, or if no chief ray is
+/// found.
 bool reaches(Camera const& camera, Vec3d place, double margin_px) {
   std::optional<Vec2d> const chief = camera.project(place);
   if (!chief) return true;

@@ -16,10 +16,10 @@ namespace {
 
 constexpr double not_in_picture = std::numeric_limits<double>::quiet_NaN();
 
-/// Widest that windows are made for what images are wide and move, each.
+/// Maximum contribution to the size of pixel windows of both the width and the displacement of images [px].
 constexpr double most_window_px = 100;
 
-/// Rays from the middle of a source to points of the unit disc that its aim disc is.
+/// Rays from the centre of a source, as points of the unit disc that is mapped to its entrance pupil.
 std::vector<Vec2d> const chief_ray{{0, 0}};
 std::vector<Vec2d> const cone{{0, 0}, {0.95, 0}, {0, 0.95}, {-0.95, 0}, {0, -0.95}};
 
@@ -62,7 +62,7 @@ Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::
   return probe;
 }
 
-/// Measures a scene's errors at its present number of rays.
+/// Measures the errors of a scene at its current number of rays.
 class RayErrors {
  public:
   explicit RayErrors(Scene const& scene)
@@ -72,7 +72,7 @@ class RayErrors {
     levels_ =
         GreyLevels(camera, static_cast<double>(in_view.size()) / (static_cast<double>(camera.columns) * camera.rows));
     sample_ = choose_sample(in_view, plan_sample_dots);
-    double farthest = 0;  // from a window's middle, of what a dot is seen at in either frame
+    double farthest = 0;  // largest distance of an image from its window's centre in either frame [px]
     for (std::size_t const dot : sample_) {
       Vec2d at = scene.setup.piv
                      ? scene.camera.project(scene.source_place(dot)).value_or(Vec2d{not_in_picture, not_in_picture})
@@ -107,7 +107,7 @@ class RayErrors {
     brightest_ = scatter.brightest;
     return plan;
   }
-  /// Light of the brightest pixel of the last measurement.
+  /// Light of the brightest pixel in the last measurement.
   double brightest() const { return brightest_; }
 
  private:
@@ -118,14 +118,15 @@ class RayErrors {
               top = static_cast<int>(std::floor(at.y)) - side_ / 2;
     auto const change = [&](RaysLaunch& launch) {
       launch.choice.seed = repeat_seed(launch.choice.seed, 1000003u + static_cast<std::uint64_t>(scrambling));
-      // pixels are counted from the window's corner: the sensor's own first pixel moves, its axis does not
+      // Pixels are counted from the window's corner: the sensor's first pixel is moved, its axis is not.
       launch.camera.sensor.columns -= 2 * left;
       launch.camera.sensor.rows -= 2 * top;
     };
     LightImage frames[frame_count] = {{side_, side_}, {side_, side_}};
     LightImage* const images[frame_count] = {&frames[0], &frames[1]};
     std::uint64_t rays = 0;
-    // every other one by the next finer rule: what turning a rule leaves as it is shows as scatter, too
+    // Every other scrambling uses the next finer rule: errors that a rotation of the rule does not reveal then appear
+    // as scatter.
     bool const finer = scrambling % 2 == 1;
     DotTruth const truth = scene_.setup.piv ? particle(change, sample_[place], images, finer, rays)
                                             : dot(change, sample_[place], images, rays);
@@ -173,7 +174,7 @@ class RayErrors {
                           });
   }
 
-  /// Where the chief ray of a source ends in the flow [px].
+  /// Returns the pixel position of a source's chief ray in the measurement image [px].
   std::optional<Vec2d> place_in_flow(std::size_t source) const {
     Vec3d const start = scene_.setup.piv ? scene_.particles.place[1][source] : scene_.source_place(source);
     auto const disc = scene_.camera.aim_disc(start);
@@ -188,7 +189,7 @@ class RayErrors {
     return reaches_sensor_plane(hit.status) ? std::optional(hit.pixel) : std::nullopt;
   }
 
-  /// Width of the sample's images without diffraction and medium [px].
+  /// Returns the largest width of the sample's images without diffraction and medium [px].
   double widest_image_px() const {
     double widest = 0;
     CameraView<double> const camera = scene_.camera.view();
@@ -214,8 +215,8 @@ class RayErrors {
   SpotView spot_;
   GreyLevels levels_;
   std::vector<std::size_t> sample_;
-  std::vector<Vec2d> at_;             // where they lie in the picture [px]
-  std::vector<std::uint64_t> taken_;  // rays, by place and scrambling
+  std::vector<Vec2d> at_;             // positions in the image, centred between both frames [px]
+  std::vector<std::uint64_t> taken_;  // number of rays by position and scrambling
   double brightest_ = 0;
   int side_ = 0;
 };
@@ -255,7 +256,7 @@ RaysPlan measure_rays_by_rays(Scene const& scene, std::uint64_t most) {
 }
 
 RaysByNeed need_of(Scene const& scene) {
-  constexpr std::uint64_t rays = 64;  // brightest pixels are told to some percent, levels likewise
+  constexpr std::uint64_t rays = 64;  // accuracy of a few percent for the brightest pixel and thus for a grey level
   CameraSetup const& camera = scene.setup.camera;
   double const full_scale = std::pow(2.0, plan_bits(camera)) - 1;
   RaysByNeed need;
@@ -297,7 +298,7 @@ RaysPlan plan_rays_by_rays(Scene& scene, RaysByNeed const& need) {
   plan.seconds = measured.seconds;
   plan.converged = plan.excess() <= 1;
   plan.rays_wanted = static_cast<double>(plan.rays);
-  // points of a sequence where rough media or rims are integrated: errors fall as n^-0.75 or faster
+  // For sequences of points and rough media or edges, errors decrease as n^-0.75 or faster.
   if (!plan.converged) plan.rays_wanted *= std::exp2(std::ceil(std::log2(plan.excess()) / 0.75));
   return plan;
 }

@@ -16,7 +16,7 @@ RayTheory::RayTheory(Scene const& scene, RaysLaunch const& launch, SourceShape s
   }
   pupil_ = {{{0, 0}}, {1.0}};
   if (launch.camera.chief_rays_only()) return;
-  // rings and directions enough for waves of three of the field's finest lengths across the cone
+  // Use enough rings and directions for waves of three times the field's finest length across the cone.
   double const radius = scene.imaging.entrance_pupil / 2 * scene.setup.z_d / scene.setup.z_b();
   double const lengths = scene.medium.finest > 0 ? radius / scene.medium.finest : 0;
   int const rings = std::min(most_rings, static_cast<int>(std::ceil(0.35 * lengths)) + 4);
@@ -37,7 +37,7 @@ std::optional<Ray<double>> RayTheory::before_medium(CameraView<double> const& ca
 }
 
 Vec2d RayTheory::shift(SeenPoint const& seen, Ray<double> const& ray, Vec3d levered) const {
-  // dots appear displaced against grad n; along the ray into their plane
+  // Dots appear displaced against grad n; project the displacement along the ray onto their plane.
   Vec3d const across = (-1 / n0_) * levered;
   Vec3d const moved = across - (across.z / ray.direction.z) * ray.direction;
   return seen.moved({moved.x, moved.y});

@@ -8,12 +8,14 @@
 namespace gladstone {
 namespace {
 
-/// Whether more than an ideal lens images: rays do not fill a disc evenly then.
+/// Returns true if the optics have aberrations (prescription or windows), so that rays do not fill a disc evenly.
 bool aberrates(Setup const& setup) { return setup.lens.prescription || !setup.windows.empty(); }
 
-/// The square of the radius of a smooth spot that a rule's errors fall with as with this one: wide ones and the pixel's
-/// own add up; pixels are not smooth, and of narrow ones' own there is as much as twice the spot's. Half of it where
-/// aberrations crowd rays together (double Gauss at f/4: errors of 16 to 1024 nodes fall as with a spot so narrow).
+/// Returns the squared radius of an equivalent smooth PSF, with which the errors of a cubature rule decrease as with
+/// the actual PSF [px^2].
+/// For wide PSFs, the variances of PSF and pixel add up; for narrow ones, the discontinuous pixel contributes at most
+/// as much as the PSF. Aberrations concentrate rays, which is equivalent to half the squared radius (double Gauss at
+/// f/4, 16 to 1024 nodes).
 double smooth_spot2(Scene const& scene) {
   constexpr double least = 0.05, of_pixel = 1.0 / 12;
   double const airy = SpotSize{scene.spot_scale_px()}.matched_sigma();

@@ -20,7 +20,7 @@ RaysLaunch::RaysLaunch(Scene const& scene, SpotView const& shown, StopRim rim)
   choice.sampling = scene.setup.render.sampling;
   choice.scrambling_bits = scrambling_bits(rays);
   if (rim == StopRim::smooth && !camera.chief_rays_only()) camera.smooth_stop(scene.stop_edge());
-  // the light of a pixel on the axis: the area that it sees times the cosine and the solid angle that it sees it by
+  // Light of a pixel on the axis: the area that it sees times the cosine and the solid angle of its light cone.
   auto const seen = camera.unproject(camera.sensor.axis_pixel(), scene.target_plane());
   if (!seen) throw DataError("lens", "the camera's axis meets no place of the dots' plane; check the geometry");
   point_area = 1 / std::abs(seen->by_x.x * seen->by_y.y - seen->by_x.y * seen->by_y.x);
@@ -53,7 +53,7 @@ bool RaysLaunch::soft() const {
 
 AimedBundle<double> RaysLaunch::bundle(WorldAimDisc const& disc, double reach, double margin) const {
   if (camera.chief_rays_only()) return {disc.centre, {}, {}, camera.aim_plane.z, choice};
-  // semi-axes: singular values of (a b), from their sums of squares and their product
+  // Semi-axes are the singular values of (a b), computed from their sum of squares and their product.
   double const squares = dot(disc.a, disc.a) + dot(disc.b, disc.b), area = length(cross(disc.a, disc.b));
   double const smaller = std::sqrt(0.5 * (squares - std::sqrt(std::max(0.0, squares * squares - 4 * area * area))));
   double const rim = soft() ? std::sqrt(1 + Scene::stop_edge(static_cast<double>(rays)) / 2) : 1;

@@ -29,7 +29,7 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
     targets[frame] = &images[frame].emplace(scene.setup.camera.columns, scene.setup.camera.rows);
   }
   RayTheory const model(scene, launch, sources.shape, sources.half_size > 0);
-  bool const one_path = scene.chief_rays_only() && sources.half_size == 0;  // of all rays of a source
+  bool const one_path = scene.chief_rays_only() && sources.half_size == 0;  // all rays of a source are identical
   double margin = 0;
   std::mutex merge;
   Progress progress(spot ? "tracing rays" : "tracing truth", count);
@@ -57,11 +57,11 @@ Rendering trace_all(Scene& scene, DotPattern const& sources, Medium const& mediu
   return pass.finish();
 }
 
-/// A camera whose rays land where an ideal lens in its place would image what they seem to come from.
+/// Camera whose rays land where an ideal lens in its place would image their apparent point of origin.
 struct IdealView : CameraView<double> {
   Camera const* camera;
-  double plane_z;  ///< of the target [m]
-  double seen_z;   ///< where it is seen through the windows before the medium [m]
+  double plane_z;  ///< Z of the target [m]
+  double seen_z;   ///< apparent Z of the target through the windows in front of the medium [m]
 };
 
 template <int N>
@@ -78,7 +78,7 @@ void finish_rays(IdealView const& view, Ray<double> (&ray)[N], RayAccount<double
   }
 }
 
-/// Turns the light of bright dots into what is left of a white target.
+/// Subtracts the light of bright dots from a white target.
 void take_from_white(Scene const& scene, LightPair& light) {
   Image<double> const white = white_picture(scene);
   for (Image<double>* frame : {&light.reference, &light.flow}) {
