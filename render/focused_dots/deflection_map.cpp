@@ -11,28 +11,30 @@
 namespace gladstone {
 namespace {
 
-constexpr double most_rays = 1e8;     // of a table
-constexpr double cheap_rays = 2.5e5;  // that a table of twice as many nodes may take
-constexpr double fine_rays = 2.5e7;   // the same, where fineness is asked for
-constexpr double fewest_nodes = 12;   // along either axis of the view
-constexpr double slope_reach = 0.6;   // of the stop's radius: where the pupil's points are on average
-constexpr double leaning = 2;         // radii of the stop: rays further out are not looked for at a field's sides
+constexpr double most_rays = 1e8;     // maximum number of rays of a table
+constexpr double cheap_rays = 2.5e5;  // maximum number of rays of a table with twice the node density
+constexpr double fine_rays = 2.5e7;   // the same if a finer table is requested
+constexpr double fewest_nodes = 12;   // minimum number of nodes along either axis of the view
+constexpr double slope_reach = 0.6;  // pupil points for the slopes, in radii of the stop: the mean radius of its points
+constexpr double leaning = 2;        // in radii of the stop: rays farther out are ignored at a field's sides
 
-/// A lane that traces four rays side by side.
+/// Lane that traces four rays together.
 struct FourAbreast : OneLane {
   static constexpr int abreast = 4;
   static Vec2d of_lane(int, Vec2d value) { return value; }
 };
 
-/// How densely a table's nodes lie.
+/// Node density of a deflection table.
 struct NodeDensity {
-  double spacing;  ///< of the straight lattice [m]
-  int coarseness;  ///< the slopes' spacing over that
+  double spacing;  ///< node spacing of the straight lattice [m]
+  int coarseness;  ///< spacing of the slopes' lattice over `spacing`
 
-  /// A grid's table has a node a cell, a wave twenty-four a wavelength; its slopes, which are corrections, half as
-  /// many; twice as many of both, and as many slopes, where they are cheap or asked for. A field that is smooth over
-  /// all of the view has no fewer nodes than polynomials need.
-  /// @param finest of the medium @param extent of the mid-plane that the view's cones cross [m]
+  /// Chooses the node density: one node per cell for a field on a grid, six per finest length (24 per wavelength) for a
+  /// closed form, and half as many per axis for the slopes, which are corrections. If affordable or requested, twice as
+  /// many nodes per axis, with slopes at each. A field that varies little over the view has at least `fewest_nodes`
+  /// nodes along each axis.
+  /// @param finest  finest length scale of the medium [m]
+  /// @param extent  part of the mid-plane that the light cones of the view cross [m]
   static NodeDensity choose(double finest, bool grid, Vec2d extent, int fineness) {
     double const spacing = std::min(grid ? finest : finest / 6, std::min(extent.x, extent.y) / fewest_nodes);
     NodeDensity const fine{spacing / 2, 1}, usual{spacing, 2};
@@ -45,12 +47,12 @@ struct NodeDensity {
   }
 };
 
-/// How far from where the ray to the aim crosses the mid-plane a dot's others do [m].
+/// Returns the largest distance on the mid-plane between the ray to the aim and the other rays of a dot's cone [m].
 double cone_reach(double way, double half_size, double stop) {
   return (1 - way) * 1.5 * half_size + way * CorrectedCone::reach * stop;
 }
 
-/// The mid-plane that the cones of all of the view cross [m].
+/// Returns the extent of the mid-plane that the light cones of the whole view cross [m].
 Vec2d crossed_extent(Setup const& setup, double way) {
   double const stop = setup.imaging().entrance_pupil / 2;
   double const beyond = 2 * (cone_reach(way, setup.dot_diameter() / 2, stop) + way * DeflectionPlan::usual_aim * stop);
@@ -58,7 +60,8 @@ Vec2d crossed_extent(Setup const& setup, double way) {
   return {(1 - way) * extent.x + beyond, (1 - way) * extent.y + beyond};
 }
 
-/// The way to the medium's mid-plane as a share of that to the lens. @param bounds the medium's
+/// Returns the distance to the medium's mid-plane as a fraction of that to the lens.
+/// @param bounds  bounds of the medium
 double way_to(Bounds<double> const& bounds, Setup const& setup) {
   return (0.5 * (bounds.low.z + bounds.high.z) + setup.z_d) / setup.z_b();
 }
@@ -71,7 +74,7 @@ Bounds<double> bounds_of(Scene const& scene) {
   return std::visit([](auto const& medium) { return medium.bounds(); }, scene.medium.view);
 }
 
-/// The multiples of a spacing within a rectangle; few or none where it is small.
+/// Returns the lattice of all multiples of a spacing within a rectangle; it may have few nodes or none.
 SquareLattice lattice_within(double spacing, Vec2d low, Vec2d high) {
   SquareLattice lattice;
   lattice.spacing = spacing;
@@ -101,7 +104,7 @@ TableState table_state(Scene const& scene) {
     return TableState::no_medium;
   }
   double const way = way_to(bounds_of(scene), scene.setup), stop = scene.imaging.entrance_pupil / 2;
-  // a source's cone is integrated from a few places of it: it must not change much between them
+  // A source's cone is integrated at a few points of the source and must not vary much between them.
   if ((1 - way) * scene.dots.half_size > 0.5 * std::max(scene.medium.finest, way * stop)) {
     return TableState::dots_too_wide;
   }
@@ -115,7 +118,7 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   state = table_state(scene);
   if (state == TableState::no_medium) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    table.low = table.high = {infinity, infinity};  // all is beside it
+    table.low = table.high = {infinity, infinity};  // all rays miss the medium
     return;
   }
   if (sources.centre.empty()) state = TableState::no_sources;
@@ -132,7 +135,8 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
         ((face == 0 ? bounds.low.z : bounds.high.z) - bench.plane_z) / (bench.lens_z - bench.plane_z);
   }
 
-  // what the sources' cones cover of the mid-plane, as far as rays to all of the pupil cross the medium's whole depth
+  // Part of the mid-plane that the sources' cones cross, limited to where rays to the whole pupil cross the medium's
+  // full depth.
   Vec2d low = sources.centre.front(), high = low;
   for (DotPattern const* const pattern : {&sources, &scene.dots}) {
     for (Vec2d const c : pattern->centre) {
@@ -147,7 +151,7 @@ DeflectionPlan::DeflectionPlan(FocusedDots const& dots, DotPattern const& source
   low = (1 - way) * low - Vec2d{reach, reach};
   high = (1 - way) * high + Vec2d{reach, reach};
   double const to_lens = (1 - way) * (bench.lens_z - bench.plane_z), half_depth = 0.5 * (bounds.high.z - bounds.low.z);
-  // rays through q meet the faces up to half_depth (|q| + leaning stop) / to_lens beside it
+  // Rays through q meet the faces at up to half_depth (|q| + leaning stop) / to_lens from q.
   double const lean = half_depth / to_lens, aside = lean * leaning * stop;
   auto const inside = [&](double side) { return (side - aside) / (side > aside ? 1 + lean : 1 - lean); };
   low = {std::max(low.x, -inside(-bounds.low.x)), std::max(low.y, -inside(-bounds.low.y))};

@@ -64,8 +64,7 @@ GLADSTONE_HD void deflect(BenchView const& bench, Medium const& medium, Vec2d co
 struct SquareLattice {
   Vec2<int> first{0, 0};  ///< position of node (0, 0) in multiples of the spacing
   double spacing = 1;     ///< node spacing [m]
-  /// reciprocal of the spacing [1/m]
-  double per_metre = 1;
+  double per_metre = 1;   ///< reciprocal of the spacing [1/m]
   int columns = 0;
   int rows = 0;
 

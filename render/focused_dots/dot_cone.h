@@ -13,11 +13,9 @@ namespace gladstone {
 
 /// Node of a cone's cross-section, on rings that share their directions.
 struct ConePoint {
-  /// radius in units of the stop's radius
-  double radius;
+  double radius;  ///< radius in units of the stop's radius
   double weight;  ///< fraction of the area
-  /// index of the direction
-  int direction;
+  int direction;  ///< index of the direction
 };
 /// Cubature rule over a light cone's cross-section.
 struct ConeRule {
@@ -41,10 +39,9 @@ struct ConeRule {
 /// Comparison of a dot's traced rays with the deflection table: sums over rays.
 struct TableCheck {
   double rays = 0;
-  Vec2d shift{}, shift_by_x{},
-      shift_by_y{};        ///< traced minus tabulated shift [m]; times the components of the stop point [m^2]
-  double square = 0;       ///< |stop point|^2 [m^2]
-  Vec2d traced{}, miss{};  ///< traced displacement; traced minus tabulated displacement [px]
+  Vec2d shift{}, shift_by_x{}, shift_by_y{};  ///< traced minus tabulated [m]; times stop point [m^2]
+  double square = 0;                          ///< |stop point|^2 [m^2]
+  Vec2d traced{}, miss{};                     ///< traced displacement; traced minus tabulated displacement [px]
   double traced2[3] = {}, expected2[3] = {};  ///< products xx, xy, yy of traced and tabulated displacements [px^2]
   Vec2d miss2{};                              ///< squares of the components of `miss` [px^2]
 
@@ -144,7 +141,7 @@ class CorrectedCone {
   /// @param offset  starting point of the ray relative to the dot's centre [m]
   GLADSTONE_HD double rim(Vec2d offset, Vec2d direction) const {
     using std::abs;
-    // Where the shift varies little over its own length, two fixed-point iterations with Aitken extrapolation suffice.
+    // If the shift varies little over its own length, two fixed-point iterations with Aitken extrapolation suffice.
     double const first = arriving(offset, direction, stop_radius_);
     if (!(first > 0 && first <= reach * stop_radius_)) return undefined();
     double const second = arriving(offset, direction, first);

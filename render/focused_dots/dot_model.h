@@ -32,9 +32,8 @@ struct DotModel {
   Vec2d axis_px{};            ///< intersection of the optical axis with the sensor [px]
   int columns = 0, rows = 0;  ///< size of the sensor [px]
   double source_half = 0;     ///< radius of a dot, or half the side of a pixel of an image target [m]
-  /// radius of the entrance pupil [m]
-  double stop_radius = 1;  ///< [m]
-  double dot_light = 0;    ///< light of a white dot, without cos^4 [fully lit px]
+  double stop_radius = 1;     ///< radius of the entrance pupil [m]
+  double dot_light = 0;       ///< light of a white dot, without cos^4 [fully lit px]
   BenchView bench;
   GaussianSpot<double> spot;
   CubatureView source;

@@ -59,7 +59,7 @@ TracingPass trace_all(FocusedDots const& dots, DotPattern const& sources, Medium
   return pass;
 }
 
-/// Turns the light that bright dots send into what the target's polarity says: dark dots are taken from a white target.
+/// Subtracts the light of the dots from that of a white target if the dots are dark.
 void apply_polarity(Scene const& scene, LightPair& light) {
   if (scene.setup.target.polarity != Polarity::dark) return;
   Image<double> const white = white_light(scene);

@@ -10,7 +10,8 @@ MomentImages MomentImages::plan(double half_px, GaussianSpot<double> const& spot
   constexpr std::size_t most_bytes = std::size_t{64} << 20;
   MomentImages images;
   images.lattice = MomentLattice::no_coarser(side);
-  // the source's points lie up to half a pixel further out than seen from the pixel's middle, spots about their pixels
+  // The source's centre is up to half a pixel, plus `aside`, from the centre of the image; PSF footprints are centred
+  // on whole pixels.
   images.half = static_cast<int>(std::ceil(half_px + 0.5 + MomentLattice::aside)) + spot.half_width();
   images.terms = terms;
   int const reach = 2 * spot.half_width() + 1;

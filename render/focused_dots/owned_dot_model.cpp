@@ -12,11 +12,11 @@ namespace gladstone {
 
 namespace {
 
-constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more tell no more of the table
-constexpr std::uint64_t most_chosen_rays = 256;                    ///< of a dot, by "auto"
+constexpr std::uint64_t most_given_rays = std::uint64_t{1} << 24;  ///< more do not reduce the table's error
+constexpr std::uint64_t most_chosen_rays = 256;                    ///< maximum number of rays per dot for "auto"
 
-/// Place along a curve that keeps neighbours in the unit disc together (Morton 1966): what is looked up one after the
-/// other, or side by side on a device, then lies together in memory.
+/// Returns the position along a space-filling curve (Morton 1966) that keeps neighbouring points of the unit disc
+/// together, so that consecutive or parallel look-ups access adjacent memory.
 unsigned z_order(Vec2d p) {
   auto const x = static_cast<unsigned>(128 * (p.x + 1)), y = static_cast<unsigned>(128 * (p.y + 1));
   unsigned order = 0;
@@ -24,9 +24,11 @@ unsigned z_order(Vec2d p) {
   return order;
 }
 
-/// Rings at Gauss-Legendre radii, fewer directions on the inner ones; enough of both for waves of three of the field's
-/// finest lengths.
-/// @param radius of the cone, in those lengths @param fineness of the rule @param times as many rings and directions
+/// Creates a rule with rings at Gauss-Legendre radii and fewer directions on the inner ones. Resolves waves of three
+/// times the field's finest length.
+/// @param radius  radius of the cone in units of the finest length
+/// @param fineness  refinement factor of the rule
+/// @param times  further refinement factor of rings and directions
 void make_cone_rule(double radius, int fineness, int times, std::vector<ConePoint>& points,
                     std::vector<Vec2d>& directions) {
   times *= fineness;
@@ -47,7 +49,7 @@ void make_cone_rule(double radius, int fineness, int times, std::vector<ConePoin
   });
 }
 
-/// A sunflower's points, those that lie together side by side.
+/// Returns the points of a sunflower spiral, sorted such that neighbours are adjacent in memory.
 std::vector<Vec2d> scattered_points(int count) {
   std::vector<Vec2d> points;
   for (int k = 0; k < count; ++k) points.push_back(sunflower(k, count));
@@ -55,7 +57,8 @@ std::vector<Vec2d> scattered_points(int count) {
   return points;
 }
 
-/// The places: exact for polynomials of degree 5, so that the least-squares quadratic is that of the whole source.
+/// Creates the rule over a source. It is exact for polynomials of degree 5, so that the least-squares quadratic over
+/// its points equals that over the whole source.
 PlaceRule make_place_rule(bool extended, SourceShape shape) {
   PlaceRule rule{};
   SourceCubature const places = !extended                    ? SourceCubature{{{0, 0}}, {1.0}}
@@ -80,7 +83,7 @@ PlaceRule make_place_rule(bool extended, SourceShape shape) {
   return rule;
 }
 
-/// Light of a white dot on the axis [fully lit px]; a point sends as much as a disc of one square pixel.
+/// Returns the light of a white dot on the axis [fully lit px]; that of a point equals a disc of one pixel's area.
 double light_of_dot(double half_size_px, SourceShape shape) {
   if (half_size_px == 0) return 1;
   return (shape == SourceShape::disc ? pi : 4) * half_size_px * half_size_px;
@@ -101,7 +104,7 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
   double const half_px = model.half_size_px();
   model.dot_light = light_of_dot(half_px, sources.shape);
   model.table = table;
-  // a closed form's finest length is no cell but the whole of a wave's slope
+  // The finest length of a closed form is not a grid cell but the length of a wave's whole slope.
   bool const closed_form = scene.medium.grid.nodes[0] <= 1;
   model.cone.fine = closed_form || scene.fineness > 1;
   double const radius = scene.medium.finest > 0 ? table.way * model.stop_radius / scene.medium.finest : 0;
@@ -118,7 +121,7 @@ OwnedDotModel::OwnedDotModel(FocusedDots const& dots, DotPattern const& sources,
 
   bool const given = scene.setup.render.rays_per_dot.has_value();
   std::uint64_t const asked = std::min(scene.rays_per_dot, most_given_rays);
-  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;  // a warp's
+  std::uint64_t const wanted = given ? asked : (std::max<std::uint64_t>(asked, 1) + 31) / 32 * 32;  // whole warps
   model.choice.seed = scene.setup.render.seed;
   model.choice.scrambling_bits = scrambling_bits(wanted);
   model.shape = sources.shape;

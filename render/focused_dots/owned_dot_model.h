@@ -8,7 +8,7 @@
 
 namespace gladstone {
 
-/// Where the moment images are computed: on the host, or on a device, which requires only their plan.
+/// Device on which the moment images are computed: the host, or another one that requires only their plan.
 enum class MomentImagesBy { host, device };
 
 /// Imaging model of a scene's dots together with the cubature rules that it refers to.

@@ -2,32 +2,33 @@
 
 #include "render/focused_dots/cone_integral.h"
 
-/// Light of a dot whose displacements are sorted into squares (MomentImages), by a group of lanes (OneLane, or a
-/// device's).
+/// Light of a dot whose displacements are sorted into squares (MomentImages), computed by a group of lanes (OneLane, or
+/// a device's).
 namespace gladstone {
 
-/// What a group's lanes have in common while they do. @tparam abreast squares whose light is worked out together
+/// Work space shared by a group's lanes.
+/// @tparam abreast  number of squares whose light is computed together
 template <int abreast>
 struct SquareSums {
   SquareRange range;
-  int listed;                                                      ///< squares that light falls on
-  unsigned short list[SquareRange::most];                          ///< their indices
-  unsigned short ends[PlaceRule::most_places][SquareRange::most];  ///< of a square's points among a place's in order
+  int listed;                                                      ///< number of squares that contain light
+  unsigned short list[SquareRange::most];                          ///< indices of these squares
+  unsigned short ends[PlaceRule::most_places][SquareRange::most];  ///< end of each square's points in the sorted order
   DisplacementMoments moments[abreast][PlaceRule::most_places];
-  double shares[DisplacementMoments::count * PlaceRule::terms][abreast];  ///< of the images in a square's light
+  double shares[DisplacementMoments::count * PlaceRule::terms][abreast];  ///< weights of the images
 
   GLADSTONE_HD int begin(int place, int square) const { return square > 0 ? ends[place][square - 1] : 0; }
 };
 
-/// The points of a wide cone.
+/// Nodes of a wide dot's light cone.
 struct ConePoints {
   ConeLight* light;       ///< [place][count]
-  unsigned short* order;  ///< [place][count]: by square
+  unsigned short* order;  ///< [place][count] nodes sorted by square
   int count;
 };
 
-/// Puts a place's points in the order of their squares, by a team; within a square they stay in their order.
-/// @param ends receives where each square's points end
+/// Sorts the nodes of one point of the source by their squares, by a team. The order within a square is retained.
+/// @param ends  receives the end of each square's nodes
 template <class Team>
 GLADSTONE_HD void sort_points(Team const& team, DotSquares const& squares, SquareRange const& range,
                               ConeLight const* light, int count, unsigned short* order, unsigned short* ends) {
@@ -63,7 +64,8 @@ GLADSTONE_HD void sort_points(Team const& team, DotSquares const& squares, Squar
   });
 }
 
-/// Lists the squares that light falls on, in any order. @param phase of theirs, or -1 for all
+/// Lists the squares that contain light, in any order.
+/// @param phase  only squares of this phase; -1: all
 template <class Group, class Sums>
 GLADSTONE_HD void list_squares(Group const& group, DotModel const& model, DotSquares const& squares, int phase,
                                Sums& sums) {
@@ -80,8 +82,10 @@ GLADSTONE_HD void list_squares(Group const& group, DotModel const& model, DotSqu
   group.sync();
 }
 
-/// Moments of some squares' displacements at each place of the source, eight lanes to a square and place.
-/// @param list of squares, `here` of them
+/// Computes the moments of the displacements in some squares at each point of the source, with eight lanes per square
+/// and point.
+/// @param list  squares
+/// @param here  number of squares
 template <class Group, class Sums>
 GLADSTONE_HD void sum_squares(Group const& group, DotModel const& model, CorrectedCone const& cone,
                               double const* without_medium, DotSquares const& squares, ConePoints const& points,
@@ -108,8 +112,9 @@ GLADSTONE_HD void sum_squares(Group const& group, DotModel const& model, Correct
   group.sync();
 }
 
-/// Adds the light of some squares, all of one phase, to the patch. @tparam pixels that a lane works out side by side
-/// @pre sums.shares are theirs
+/// Adds the light of some squares of the same phase to the patch.
+/// @tparam pixels  number of pixels that a lane processes together
+/// @pre sums.shares are those of these squares
 template <int pixels, class Group, int abreast, class Patch>
 GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, DotSquares const& squares,
                               unsigned short const* list, int here, SquareSums<abreast> const& sums, Patch& patch) {
@@ -132,12 +137,13 @@ GLADSTONE_HD void add_squares(Group const& group, MomentImages const& images, Do
       if (first < all && which < here) {
         patch.add_run(images.footprint(squares.on_sensor(sums.range.square(list[which]))), first, light[which]);
       }
-      group.sync_team();  // squares overlap
+      group.sync_team();  // footprints of squares overlap
     }
   }
 }
 
-/// Lays down the light of a wide cone. @tparam pixels that a lane works out side by side
+/// Renders the light of a wide dot.
+/// @tparam pixels  number of pixels that a lane processes together
 template <int pixels, class Group, int abreast, class Patch>
 GLADSTONE_HD void lay_down_squares(Group const& group, DotModel const& model, DotCone const& dot,
                                    CorrectedCone const& cone, ConeIntegral const& whole, ConePoints const& points,
@@ -154,7 +160,7 @@ GLADSTONE_HD void lay_down_squares(Group const& group, DotModel const& model, Do
   }
   group.sync();
   double const units = dot.light * patch.units_per_weight();
-  // one square at a time has its own phase
+  // Squares are processed by phase, or regardless of phase if only one is processed at a time.
   for (int phase = abreast > 1 ? 0 : -1; phase < (abreast > 1 ? images.phases() : 0); ++phase) {
     list_squares(group, model, squares, phase, sums);
     for (int first = 0; first < sums.listed; first += abreast) {

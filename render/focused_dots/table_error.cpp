@@ -17,17 +17,18 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t place_count = 16;
-constexpr int traced_rays = 8192, tabled_rays = 65536;  ///< a scrambling
-constexpr double worth_more_rays = 0.7;                 ///< of the error with a quarter of them
+constexpr int traced_rays = 8192, tabled_rays = 65536;  ///< rays per scrambling
+constexpr double worth_more_rays = 0.7;                 ///< required ratio of errors on quadrupling the rays
 
-/// The bits of a whole number mirrored at the point (van der Corput 1935).
+/// Returns the van der Corput sequence in base 2 (1935): the bits of i mirrored at the binary point.
 double mirrored(std::size_t i) {
   double found = 0;
   for (double digit = 0.5; i > 0; i /= 2, digit /= 2) found += digit * static_cast<double>(i % 2);
   return found;
 }
 
-/// A white dot of a scene by itself, in windows of pixels about where each frame has it.
+/// Rendering of a single white dot in pixel windows around its image in each frame, and the differences of independent
+/// samples of traced rays.
 class LoneDot {
  public:
   LoneDot(Scene const& scene, Vec2d place, int side) : scene_(alone(scene, place)) {
@@ -47,7 +48,7 @@ class LoneDot {
     for (int scrambling = 0; scrambling < plan_scramblings; ++scrambling) {
       LightImage beside(side, side);
       Sampled& off = off_[scrambling];
-      off.light.resize(as_seen_.light.size());  // nothing in the reference frame
+      off.light.resize(as_seen_.light.size());  // no difference in the reference image
       if (seen_.kind == DotKind::still) continue;
       std::visit([&](auto const& medium) { off.displacement = trace(medium, scrambling, beside); }, scene_.medium.view);
       Image<double> const light = beside.to_light();
@@ -59,7 +60,7 @@ class LoneDot {
 
   bool left() const { return seen_.kind == DotKind::left; }
 
-  /// One of the four samples of Scatter: the dot as it is seen, and `share` times what some rays find beside it.
+  /// Returns one of the four samples of Scatter: the rendered dot plus `share` times the difference of a ray sample.
   Sampled sample(int scrambling, double share) const {
     Sampled sampled = as_seen_;
     Sampled const& off = off_[scrambling];
@@ -76,7 +77,8 @@ class LoneDot {
     return copy;
   }
 
-  /// Sees the dot anew, pixels counted from the corner of a window about so far from its place, and takes one frame.
+  /// Renders the dot again in a window centred at the given distance from its undisplaced image, with pixels counted
+  /// from the window's corner, and stores one frame.
   void take_frame(std::size_t frame, int side, Vec2d moved) {
     Vec2d const centre = scene_.dots.centre[0], at = owned_->model.to_pixel(centre) + moved;
     int const half = side / 2;
@@ -91,8 +93,9 @@ class LoneDot {
     as_seen_.light.insert(as_seen_.light.end(), light.begin(), light.end());
   }
 
-  /// By what truth [px] and the light in the flow would be more by rays of another choice alone. Many rays are told by
-  /// the table where they land, and some of them, traced, by what they land beside that.
+  /// Computes the differences of the true displacement [px] and of the light in the measurement image between a sample
+  /// of rays and the dot as rendered. Many rays land as the table predicts, and some of them are also traced to correct
+  /// the prediction (control variate).
   template <class Medium>
   Vec2d trace(Medium const& medium, int scrambling, LightImage& image) {
     DotModel const& model = owned_->model;
@@ -164,7 +167,7 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   plan.rays = scene.rays_per_dot;
   plan.fineness = scene.fineness;
   double const px = scene.imaging.magnification / scene.setup.camera.pixel_pitch;
-  double const pitch_px = 2 * scene.dots.half_size * px;  // of a picture's pixels, which lie side by side
+  double const pitch_px = 2 * scene.dots.half_size * px;  // pitch of an image target's pixels, which are adjacent
   GreyLevels const levels(scene.setup.camera, scene.dots.shape == SourceShape::square ? 1 / (pitch_px * pitch_px) : 0);
   plan.bits = levels.bits;
   int const side =
@@ -180,10 +183,11 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   if (lone.empty()) return plan;
   std::vector<std::size_t> places(lone.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
-  // Four samples that lie s (e + noise) to either side in turn have the variance 4 s^2 e^2 / 3 + s^2 noise^2, with this
-  // s e^2 and noise; four to one side that of the noise alone. Where e is 0 the two differ by the product of two sums
-  // of two samples over 3, of mean 0 and standard deviation 2 s^2 noise^2 / 3; over n independent values a sqrt(n)th of
-  // it. A resolution is what two of these make. The pixels of a dot count as one value.
+  // Let the four samples deviate from the rendered dot by s (e + noise), with e the error, s^2 = 3/4 and alternating
+  // sign. Their variance is 4 s^2 e^2 / 3 + s^2 noise^2; with equal signs it is that of the noise alone, so the
+  // difference is e^2. For e = 0, the two estimates differ by the product of two sums of two samples over 3, with mean
+  // 0 and standard deviation 2 s^2 noise^2 / 3, divided by sqrt(n) for n independent values. The squared detection
+  // limit is twice this value. The pixels of a dot count as one value.
   double const share = std::sqrt(0.75);
   auto const scatter_of = [&](double odd) {
     return measure_scatter(places, levels, [&](std::size_t dot, int scrambling) {
@@ -192,7 +196,7 @@ RaysPlan measure_table_error(FocusedDots const& dots) {
   };
   Scatter off = scatter_of(-share);
   Scatter const noise = scatter_of(share);
-  auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN stays
+  auto const less = [](double all, double by_chance) { return std::max(all - by_chance, 0.0); };  // NaN is retained
   auto const resolved = [](double by_chance, double n) { return std::sqrt(4.0 / 3 / std::sqrt(n) * by_chance); };
   auto const dot_count = static_cast<double>(lone.size());
   double const chance = mean_variance(noise.displacements);
@@ -215,7 +219,7 @@ double table_seconds(FocusedDots const& dots) {
 
 RaysPlan plan_rays(FocusedDots const& dots) {
   if (auto const given = given_rays(dots.scene().setup)) return *given;
-  Scene searched = dots.scene();  // at one fineness and number of rays after the other
+  Scene searched = dots.scene();  // copy in which fineness and number of rays are varied
   FocusedDots const here = focused_dots(searched).value();
   searched.rays_per_dot = 32;
   searched.fineness = 1;
@@ -231,7 +235,7 @@ RaysPlan plan_rays(FocusedDots const& dots) {
     }
     if (searched.fineness == 1) {
       searched.fineness = 2;
-    } else {  // more rays do not mend what a table leaves
+    } else {  // More rays do not reduce the error of the table itself.
       if (searched.rays_per_dot >= 512 || plan.excess() > worth_more_rays * last) return plan;
       last = plan.excess();
       searched.rays_per_dot *= 4;

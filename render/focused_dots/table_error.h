@@ -3,29 +3,32 @@
 #include "render/focused_dots/focused_dots.h"
 #include "render/scene/ray_plan.h"
 
-/// What a deflection table leaves of truth and images, and how many rays a dot take to correct it. The scene stays as
-/// it is.
+/// Error of truth and images due to the deflection table, and the number of rays per dot that correct it. The scene is
+/// not changed.
 namespace gladstone {
 
-/// White dots at 16 places spread over the view, the same whatever dots a scene has: no two in the same sixteenth of
-/// its width or height.
+/// Returns white dots at 16 positions spread over the view, independent of the scene's dots. No two are in the same
+/// sixteenth of the view's width or height.
 DotPattern measured_places(Scene const& scene);
 
-/// Errors of truth and images at the scene's present number of rays, measured: the dots of measured_places, each by a
-/// table of its own, which is the scene's where it lies, are set beside four times 65,536 rays of another choice each;
-/// the table tells where these go, and 8192 of each are traced and tell what it is off by for all. What those scatter
-/// by is taken off. Levels are those of a picture of single dots (of squares side by side for a picture's). Places that
-/// the table does not cover do not count.
+/// Measures the errors of truth and images at the scene's current number of rays.
+/// Each of the dots of measured_places() is rendered with its own deflection table, identical to the scene's where they
+/// overlap, and compared with four independent samples of 65,536 rays. The table predicts where these land, and 8192
+/// rays of each sample are traced to correct the prediction (control variate). The scatter of the samples is
+/// subtracted.
+/// Grey levels refer to the image of a single dot or, for an image target, of adjacent squares. Positions that the
+/// table does not cover are ignored.
 RaysPlan measure_table_error(FocusedDots const& dots);
 
-/// The rays that every dot takes to correct the table, and how fine table and rules are: a given number of rays, else
-/// 32. Where truth is not known to be within 1e-3 px rms and images within half a grey level, table and rules twice as
-/// fine; then 128 or 512 rays, as long as they take a third off the error. Dots that still scatter take up to 256
-/// (DotModel). Says what it is off by then, and whether that is enough (`converged`).
+/// Plans the number of rays per dot that correct the table, and the fineness of table and rules.
+/// A number given in the setup is used unchanged. Otherwise the plan starts with 32 rays. If the errors exceed 1e-3 px
+/// rms in the truth or half a grey level in images, table and rules are refined by a factor of two; then 128 and 512
+/// rays are tried, as long as each step reduces the error by at least 30 %. Dots with large scatter use up to 256 rays
+/// (DotModel). The plan states the remaining errors and whether they meet the tolerances (`converged`).
 RaysPlan plan_rays(FocusedDots const& dots);
 
-/// Processor time that the deflection table of a scene's dots and the measurement of its error take [s], as
-/// ray_seconds() counts it. A table takes the same rays for a hundred dots as for thousands.
+/// Estimates the processor time of a scene's deflection table and of the measurement of its error by ray_seconds() [s].
+/// The table has the same number of rays for a hundred dots as for thousands.
 double table_seconds(FocusedDots const& dots);
 
 }  // namespace gladstone

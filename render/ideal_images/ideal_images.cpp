@@ -11,7 +11,7 @@ Vec2d IdealImages::project(Vec3d place) const {
   return {0.5 * (camera.columns - 1) + scale * place.x, 0.5 * (camera.rows - 1) - scale * place.y};
 }
 
-// The image of a point at the distance Z - z from the lens, in front of the plane in focus at Z by z, is a disc of
+// Circle of confusion of a point at distance Z - z from the lens, z in front of the plane in focus at Z: a disc of
 // diameter M D |z| / (Z - z) on the sensor (exact for a thin lens; Olsen & Adrian 2000).
 double IdealImages::largest_blur_px(Particles const& particles) const {
   double most = 0;

@@ -7,17 +7,18 @@
 
 namespace gladstone {
 
-/// A scene whose particles have ideal images: in focus of an ideal thin lens with a stop, on the axis and square to it,
-/// with nothing in the way and a Gaussian spot. Such an image is that spot about the pinhole's projection of the
-/// particle, integrated over pixels, as generators of PIV images have it (Raffel et al. 2018, section 3; Lecordier &
-/// Westerweel 2004); no rays are needed. What a particle's place in the depth of the sheet blurs is left out: see
-/// largest_blur_px(). Only ideal_images() gives it; it looks at the scene, which must outlive it.
+/// Scene whose particles have ideal images: in focus of an ideal thin lens with a stop, on and perpendicular to the
+/// axis, without windows or medium, with a Gaussian PSF.
+/// The image of a particle is the PSF centred on its pinhole projection and integrated over pixels, as in other PIV
+/// image generators (Raffel et al. 2018, section 3; Lecordier & Westerweel 2004), without ray tracing. Defocus due to
+/// the particle's depth in the sheet is neglected: see largest_blur_px(). Created by ideal_images() only; refers to the
+/// scene, which must outlive it.
 class IdealImages {
  public:
   Scene const& scene() const { return *scene_; }
-  /// Where a particle is seen [px].
+  /// Returns the image position of a point [px].
   Vec2d project(Vec3d place) const;
-  /// Diameter of the disc of confusion of the particle that is furthest out of focus of all that are lit [px].
+  /// Returns the diameter of the circle of confusion of the illuminated particle that is farthest out of focus [px].
   double largest_blur_px(Particles const& particles) const;
 
  private:
@@ -27,14 +28,15 @@ class IdealImages {
   Scene const* scene_;
 };
 
-/// Why a setup is none of these; empty: it is.
+/// Returns the reason why the particles of a setup do not have ideal images; empty if they do.
 std::string reason_against_ideal_images(Setup const& setup);
 
-/// The one door to ideal images.
+/// Returns the scene for ideal images; nullopt if its particles do not have ideal images.
 std::optional<IdealImages> ideal_images(Scene const& scene);
 
-/// Images and truth of particles by formula, the scene's own or virtual ones: light in units of photon_unit(), that
-/// of a particle by what it sends to the lens' middle; truth without error. The same bits on any number of threads.
+/// Renders images and truth of particles (the scene's own or virtual ones) by formula.
+/// Light is in units of photon_unit(); that of a particle follows from its intensity towards the lens' centre. The
+/// truth has no error. The result is bitwise identical for any number of threads.
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images);
 

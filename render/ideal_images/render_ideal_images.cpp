@@ -12,17 +12,17 @@ namespace gladstone {
 namespace {
 
 constexpr int frames = 2;
-constexpr int band_rows = 64;  // of a picture that one thread draws at a time
+constexpr int band_rows = 64;  // rows of an image that one thread renders at a time
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A particle's image: where, and how much light.
+/// Position and light of a particle's image.
 struct Spot {
-  Vec2d at;          ///< [px]
+  Vec2d at;          ///< position on the sensor [px]
   double light = 0;  ///< in units of photon_unit()
 };
 
-/// The numbers of the spots that reach into every band of a picture's rows, in rising order: each band's sums have one
-/// order, whoever draws it.
+/// Indices of the particle images that overlap each band of image rows, in ascending order. Sums within a band
+/// therefore have a fixed order, independent of the thread that renders it.
 class Bands {
  public:
   Bands(std::vector<Spot> const& spots, int rows, int half)
@@ -52,7 +52,7 @@ class Bands {
   std::vector<std::uint32_t> listed_;
 };
 
-/// Adds the spots of a band to its rows.
+/// Adds the particle images of a band to its rows.
 void draw_band(std::vector<Spot> const& spots, Bands const& bands, std::size_t band, GaussianSpot<double> const& shape,
                Image<double>& image) {
   int const half = shape.half_width(), width = 2 * half + 1;
@@ -84,7 +84,7 @@ Image<double> draw(std::vector<Spot> const& spots, Scene const& scene) {
   return image;
 }
 
-/// Truth of particles whose images are these, with light in photons.
+/// Returns the truth of particles with given image positions, and light in photons.
 GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, frames> const& spots) {
   GroundTruth truth;
   truth.resize(particles.size());
@@ -113,7 +113,7 @@ GroundTruth truth_of(Particles const& particles, std::array<std::vector<Spot>, f
 
 Rendering render_ideal_images(IdealImages const& ideal, Particles const& particles, ParticleLight light,
                               RenderImages images) {
-  keep_freed_memory();  // a pair after the other: pages took a third of the time
+  keep_freed_memory();  // Retain freed memory: for successive pairs, page faults took a third of the time.
   Scene const& scene = ideal.scene();
   LightThroughLens const through_lens(scene, light);
   std::array<std::vector<Spot>, frames> spots;

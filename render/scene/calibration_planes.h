@@ -25,7 +25,7 @@ struct Pinhole {
 
 /// Returns the pinhole camera that is equivalent to a setup's ideal thin lens. For a tilted sensor, its z axis is the
 /// sensor's normal, and (cx, cy) is where the normal through the lens meets the sensor.
-/// @return nullopt if there is no equivalent: for a prescription, windows or lenslets, and for a tilted sensor with
+/// @return nullopt without an equivalent: for a prescription, windows or lenslets, and for a tilted sensor with
 /// distortion, whose centre of distortion is not (cx, cy)
 std::optional<Pinhole> pinhole_of(Setup const& setup, Camera const& camera);
 
