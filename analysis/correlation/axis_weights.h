@@ -8,13 +8,13 @@
 
 namespace gladstone {
 
-/// The weights of all windows of a grid along one axis, as a kernel reads them.
+/// Non-owning view of the weights of all windows of a grid along one axis, for host and device.
 struct AxisWeightsView {
   int size;                        ///< side of a window's support, twice the nominal window [px]
-  int first_px;                    ///< image position where the support of window 0 begins
-  int spacing_px;                  ///< and how far on the next begins
-  float const* weights;            ///< `size` for each window, 0 outside the image
-  double const* autocorrelations;  ///< lags() for each window
+  int first_px;                    ///< image position of the first pixel of the support of window 0
+  int spacing_px;                  ///< distance between the supports of neighbouring windows [px]
+  float const* weights;            ///< [window][size], 0 outside the image
+  double const* autocorrelations;  ///< [window][lags(size)]
   double const* sums;              ///< sum of the weights of each window
 
   GLADSTONE_HD static constexpr int lags(int size) { return size / 4 + 2; }
@@ -25,23 +25,23 @@ struct AxisWeightsView {
   GLADSTONE_HD double autocorrelation(int window, int lag) const {
     return autocorrelations[static_cast<long long>(window) * lags(size) + (lag < 0 ? -lag : lag)];
   }
-  /// That over its value at no lag: what a correlation plane falls off by.
+  /// Relative decrease of a correlation plane with the shift: autocorrelation of the weights over its value at lag 0.
   GLADSTONE_HD double fall_off(int window, int lag) const {
     return autocorrelation(window, lag) / autocorrelation(window, 0);
   }
 };
 
-/// The weights of the windows along one axis, cut off at the image's border, and their autocorrelation.
+/// Weights of the windows of a grid along one axis, cut off at the image border, and their autocorrelations.
 class AxisWeights {
  public:
-  /// @param image_length along this axis [px]
+  /// @param image_length  size of the image along this axis [px]
   AxisWeights(InterrogationGrid const& grid, GridAxis axis, int image_length, WindowWeighting weighting)
       : size_(2 * grid.window_px), first_px_(grid.first_px(axis) - grid.window_px / 2), spacing_px_(grid.spacing_px) {
     int const windows = grid.windows(axis);
     int const lags = AxisWeightsView::lags(size_);
     weights_.reserve(static_cast<std::size_t>(windows) * size_);
     autocorrelations_.reserve(static_cast<std::size_t>(windows) * lags);
-    int whole_one = -1;  // a window that no border cuts: the others are like it
+    int whole_one = -1;  // first window that is not cut off at a border; all such windows have equal weights
     for (int k = 0; k < windows; ++k) {
       int const first = first_px_ + k * spacing_px_;
       bool const whole = first >= 0 && first + size_ <= image_length;

@@ -8,38 +8,40 @@
 
 namespace gladstone {
 
-/// Standard cross-correlation of weighted, mean-free windows.
+/// Standard cross-correlation of weighted windows without their mean.
 std::vector<WindowCorrelation> correlate_scc(InterrogationJob const& job);
-/// Robust phase correlation: the phase of the cross spectrum alone, weighted by the spectrum of particle images of 2.8
-/// px. Eckstein & Vlachos, Meas. Sci. Technol. 20 (2009) 055401, eqs. 10 and 11.
+/// Robust phase correlation: the phase of the cross spectrum, weighted by the spectrum of particle images of 2.8 px
+/// diameter. Eckstein & Vlachos, Meas. Sci. Technol. 20 (2009) 055401, Eqs. 10 and 11.
 std::vector<WindowCorrelation> correlate_rpc(InterrogationJob const& job);
-/// Symmetric phase-only filter: the cross spectrum over the root of its magnitude. Wernet, Exp. Fluids 38 (2005) 601.
+/// Symmetric phase-only filter: the cross spectrum divided by the square root of its magnitude. Wernet, Exp. Fluids 38
+/// (2005) 601.
 std::vector<WindowCorrelation> correlate_spc(InterrogationJob const& job);
-/// Zero-padded normalised correlation: at each shift over the energies of what both windows then have in common.
-/// Raffel et al., Particle Image Velocimetry (2018), eq. 5.6; with the product of both weights as weight.
+/// Zero-padded normalised correlation: the plane is divided, at each shift, by the energies of both windows in their
+/// region of overlap. Raffel et al., Particle Image Velocimetry (2018), Eq. 5.6, weighted by the product of both window
+/// weights.
 std::vector<WindowCorrelation> correlate_zncc(InterrogationJob const& job);
-/// Minimum quadratic difference: either frame's window against the whole other frame around it; the plane is
-/// 1 - sum w (A - B)^2 / sum w (A^2 + B^2), with both sums over the two comparisons. The maximum of one comparison is
-/// that of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465, over the energies, and belongs to where
-/// the dots of the frame are whose window it is; both together belong to the mid-position, and exchanged frames give
-/// the negative displacement.
+/// Minimum quadratic difference: the window of each frame is compared with the whole of the other frame around it. The
+/// plane is 1 - sum w (A - B)^2 / sum w (A^2 + B^2), where both sums run over the two comparisons.
+/// The maximum of one comparison is that of the tracking function of Gui & Merzkirch, Exp. Fluids 21 (1996) 465,
+/// normalised by the energies; it belongs to the dot positions in the frame of the window. The two together belong to
+/// the mid-position, and exchanging the frames reverses the sign of the displacement.
 std::vector<WindowCorrelation> correlate_mqd(InterrogationJob const& job);
-/// The planes of scc by OpenCV's transforms in double precision: the reference that others are compared with.
+/// Standard cross-correlation by OpenCV's Fourier transforms in double precision: reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job);
 
-/// One way of measuring displacement: by windows, or pixel by pixel.
+/// Displacement measurement method: either correlation of windows or optical flow.
 struct CorrelationMethod {
   char const* name;
   CorrelateWindows correlate = nullptr;
-  EstimateFlow optical_flow = nullptr;  ///< instead of correlating windows
-  bool on_gpu = false;                  ///< whether the correlator of CUDA has it, too
-  bool in_ensembles = true;             ///< whether it heeds a job's ensemble
+  EstimateFlow optical_flow = nullptr;  ///< estimator used instead of the correlation of windows
+  bool on_gpu = false;                  ///< whether the CUDA correlator supports it
+  bool in_ensembles = true;             ///< whether it supports InterrogationJob::ensemble
 };
 
-/// Every method.
+/// Returns all methods.
 std::span<CorrelationMethod const> all_correlation_methods();
 
-/// The method of that name. @pre it is known
+/// Returns the method of that name. @pre name is one of correlation_methods()
 CorrelationMethod const& correlation_method(std::string const& name);
 
 }  // namespace gladstone

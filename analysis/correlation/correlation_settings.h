@@ -9,38 +9,39 @@
 
 namespace gladstone {
 
-/// Table [correlate] of a setup: how displacement is measured.
+/// Table [correlate] of a setup: parameters of the displacement measurement.
 struct CorrelationSettings {
-  std::vector<int> window_px{64, 32, 24, 20};  ///< nominal window of every pass [px]; even, 4 .. 512, never growing
-  double overlap = 0.6;                        ///< part of a window shared with the next, [0, 0.95]
-  std::string method = "scc";                  ///< a name of correlation_methods()
-  std::string subpixel = "gauss3";             ///< a name of subpixel_fits()
+  std::vector<int> window_px{64, 32, 24, 20};  ///< nominal window of each pass [px]; even, 4 .. 512, not increasing
+  double overlap = 0.6;                        ///< fraction of the window side shared with the next window, [0, 0.95]
+  std::string method = "scc";                  ///< one of correlation_methods()
+  std::string subpixel = "gauss3";             ///< one of subpixel_fits()
   std::string weighting = "gaussian";          ///< "gaussian" over twice the window, or "uniform" over the window
   std::string deformation =
-      "quintic";         ///< of the images between passes: B-splines, "cubic" or "quintic", or a windowed "sinc"
-  int final_passes = 1;  ///< times the last pass is run, 1 .. 5; more sharpen detail and noise alike
-  std::optional<double> max_displacement_px;     ///< largest along either axis, (0, 512]; none: what the windows permit
-  std::optional<double> median_threshold = 2.0;  ///< normalised median residual of a spurious vector; none: no test
+      "quintic";         ///< interpolation of the deformed images: B-spline, "cubic" or "quintic", or windowed "sinc"
+  int final_passes = 1;  ///< number of times that the last pass is run, 1 .. 5; more sharpen both detail and noise
+  std::optional<double> max_displacement_px;     ///< largest displacement along either axis, (0, 512]; none: limited by
+                                                 ///< the window sizes only
+  std::optional<double> median_threshold = 2.0;  ///< median residual above which a vector is spurious; none: no test
   double median_epsilon_px = 0.2;                ///< noise level in that residual [px]
-  /// The same of whole displacements, of vectors of the last of several passes that correlate worse than their
-  /// neighbours; none: no test
+  /// Normalised median residual of the total displacement above which a vector is spurious if its window also
+  /// correlates worse than its neighbours. Applied in the last of several passes; none: no test.
   std::optional<double> displacement_threshold = 2.0;
-  std::optional<double> least_peak_ratio;   ///< below it a vector of the last pass is spurious, >= 1; none: no test
-  std::optional<double> least_correlation;  ///< the same for the coefficient of its peak, 0 .. 1
-  bool replace = true;                      ///< spurious vectors of the last pass; else they are invalid
-  /// How sigma_px is estimated: a name of uncertainty_methods(), or "none".
+  std::optional<double> least_peak_ratio;   ///< lowest peak ratio of a vector of the last pass, >= 1; none: no test
+  std::optional<double> least_correlation;  ///< lowest correlation coefficient of its peak, [0, 1]; none: no test
+  bool replace = true;  ///< true: spurious vectors of the last pass are replaced; false: they are invalid
+  /// Estimator of sigma_px: one of uncertainty_methods(), or "none".
   std::string uncertainty = "none";
-  /// Peak ratio from which a vector of the first pass may differ from its neighbours (is_trusted()); none: no vector
-  /// may
+  /// Peak ratio from which a vector of the first pass may deviate from its neighbours, see is_trusted(); none: no
+  /// vector may.
   std::optional<double> trusted_peak_ratio = 2.0;
-  FramePreparation preparation;  ///< what is done to the frames before; correlators take them as they then are
+  FramePreparation preparation;  ///< preprocessing; correlators expect preprocessed frames
 };
 
 /// Reads the table [correlate]; problems are collected in its document.
 CorrelationSettings read_correlation_settings(SetupTable table);
 
-/// Why these settings do not suit an image of that size (a window larger than the image), as
-/// "problem (why); suggestion"; empty where they do.
+/// Checks that the windows fit into an image of the given size. Returns the problem as "problem (reason); suggestion";
+/// empty if there is none.
 std::string window_problem(CorrelationSettings const& settings, int columns, int rows);
 
 }  // namespace gladstone

@@ -12,34 +12,36 @@
 
 namespace gladstone {
 
-/// Measures the displacement between two images.
+/// Measures the displacement field between two images.
 class Correlator {
  public:
   virtual ~Correlator() = default;
-  /// @param reference, flow grey levels, of equal size; pixels that are not finite are masked out
-  /// @return one vector per window of final_grid(): displacement = flow - reference [px], belonging to the
-  /// mid-position;
-  ///         NaN where the status is masked (half the window unknown) or invalid (no signal, or spurious without a
-  ///         sound neighbour). sigma_px is empty but where a device estimates it along with the vectors. The same bits
-  ///         for any number of threads.
-  /// @throws DataError where the sizes differ or a window does not fit, Interrupted
+  /// Measures the displacement from frame A to frame B.
+  /// @param reference, flow  grey levels of frame A and frame B, of equal size; pixels that are not finite are masked
+  /// @return one vector per window of final_grid(), in px: u to the right, v downwards, at the mid-position between the
+  /// frames; NaN if its status is masked (more than half of the window is unknown) or invalid (no signal, or spurious
+  /// and not replaced). sigma_px is empty unless the correlator's device estimates it together with the vectors. The
+  /// result is bitwise the same for any number of threads.
+  /// @throws DataError if the sizes differ or a window does not fit into the image; Interrupted
   virtual DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const = 0;
-  /// The same for frames wherever they are kept; those that are on the correlator's own device stay there.
+  /// Like correlate(), for frames in host or device memory. Frames on the correlator's own device are not copied to the
+  /// host.
   virtual DisplacementField correlate_pair(FramePair const& frames) const {
     return correlate(frames.reference(), frames.flow());
   }
 };
 
-/// Names of the methods that make_correlator knows.
+/// Returns the names accepted as CorrelationSettings::method.
 std::vector<std::string> correlation_methods();
 
-/// The correlator that the settings ask for. @pre settings.method is one of correlation_methods()
+/// Creates the correlator for the CPU that the settings select. @pre settings.method is one of correlation_methods()
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
-/// What these settings ask for that the correlator of CUDA does not have, as `method = "spc"`; empty: it has all.
+/// Returns the first setting that the CUDA correlator does not support, such as `method = "spc"`; empty if it supports
+/// all.
 std::string missing_on_gpu(CorrelationSettings const& settings);
 
-/// The windows of the last pass, where the vectors stand.
+/// Returns the window grid of the last pass; the vectors are at the window centres.
 InterrogationGrid final_grid(CorrelationSettings const& settings, int columns, int rows);
 
 }  // namespace gladstone

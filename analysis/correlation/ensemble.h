@@ -9,17 +9,19 @@
 
 namespace gladstone {
 
-/// Many pairs of one displacement, by their number from 0; each is asked for once a pass.
+/// Sequence of image pairs with a common displacement field, indexed from 0. Each pair is requested once per pass.
 struct PairSequence {
   std::size_t size = 0;
   std::function<HostFrames(std::size_t pair)> frames;
 };
 
-/// The one displacement of all pairs: each pass finds the peaks of the mean of their correlation planes, so that few
-/// particles, or noise, that leave no peak in a single pair do no harm. What differs from pair to pair is averaged, and
-/// broadens the peak. Meinhart, Wereley & Santiago, J. Fluids Eng. 122 (2000) 285.
-/// @return as Correlator::correlate, on the CPU
-/// @throws DataError where sizes differ or a window does not fit, or method or uncertainty are of single pairs alone
+/// Measures the displacement field common to all pairs (ensemble correlation). Each pass finds the peaks in the mean of
+/// the pairs' correlation planes, so that few particles or strong noise in single pairs are tolerated. Displacements
+/// that differ between pairs are averaged and broaden the peak. Meinhart, Wereley & Santiago, J. Fluids Eng. 122 (2000)
+/// 285.
+/// @return like Correlator::correlate(); computed on the CPU
+/// @throws DataError if sizes differ, a window does not fit into the image, or the method or the uncertainty estimator
+/// applies to single pairs only
 DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSettings const& settings);
 
 }  // namespace gladstone

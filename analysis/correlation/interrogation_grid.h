@@ -9,24 +9,24 @@
 
 namespace gladstone {
 
-/// Along the columns of an image (x), or along its rows (y).
+/// Image axis: along the columns (x) or along the rows (y).
 enum class GridAxis { x, y };
 
-/// Where the interrogation windows of one pass lie: square windows of nominal size window_px, every one inside the
-/// image. Vector i stands at column i % columns, row i / columns.
+/// Grid of the square interrogation windows of one pass, all of them inside the image. Vector i belongs to grid column
+/// i % columns and grid row i / columns.
 struct InterrogationGrid {
-  int window_px = 0;   ///< nominal window size
-  int spacing_px = 1;  ///< distance of neighbouring windows
-  int columns = 0;     ///< windows in a row; 0 where the image is smaller than a window
+  int window_px = 0;   ///< nominal side of a window [px]
+  int spacing_px = 1;  ///< distance between the centres of neighbouring windows [px]
+  int columns = 0;     ///< windows per row; 0 if the image is smaller than a window
   int rows = 0;
-  int first_x_px = 0;  ///< image column where the first window begins
-  int first_y_px = 0;  ///< image row where the first window begins
+  int first_x_px = 0;  ///< image column of the first pixel of the first window
+  int first_y_px = 0;  ///< image row of the first pixel of the first window
 
   GLADSTONE_HD std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   GLADSTONE_HD int windows(GridAxis axis) const { return axis == GridAxis::x ? columns : rows; }
   GLADSTONE_HD int first_px(GridAxis axis) const { return axis == GridAxis::x ? first_x_px : first_y_px; }
-  /// Centre of the windows of grid column (or row) `index` along its axis [px]: (window_px - 1)/2 from the window's
-  /// first pixel, hence half-integer for the even windows we use.
+  /// Returns the centre of the windows in grid column (or row) `index` along its axis [px]: (window_px - 1)/2 from the
+  /// window's first pixel, a half-integer because window sizes are even.
   GLADSTONE_HD double centre(GridAxis axis, int index) const {
     return first_px(axis) + 0.5 * (window_px - 1) + static_cast<double>(index) * spacing_px;
   }
@@ -35,12 +35,12 @@ struct InterrogationGrid {
             centre(GridAxis::y, static_cast<int>(vector / static_cast<std::size_t>(columns)))};
   }
 
-  /// Columns (or rows) first .. last of a grid.
+  /// Range of grid columns (or rows), both limits included.
   struct Range {
     int first, last;
   };
-  /// The columns (or rows) whose windows' centres are nearest to a place: one, or two that are equally near.
-  /// @pre size() > 0
+  /// Returns the grid columns (or rows) whose window centres are nearest to a position: one, or two if they are equally
+  /// near. @pre size() > 0
   GLADSTONE_HD Range nearest(GridAxis axis, double position_px) const {
     using std::ceil;
     using std::floor;
@@ -51,14 +51,15 @@ struct InterrogationGrid {
   }
 };
 
-/// Distance of neighbouring windows [px], whole.
+/// Returns the distance between neighbouring windows, rounded to whole pixels, at least 1 [px].
 inline int grid_spacing_px(int window_px, double overlap) {
   int const spacing = static_cast<int>(std::lround(window_px * (1.0 - overlap)));
   return spacing > 1 ? spacing : 1;
 }
 
-/// The grid of the vectors on an image of the given size: the first window on pixels 0 .. window_px - 1 of either axis.
-/// @param overlap fraction of a window that it shares with the next, [0, 1); the spacing is rounded to whole pixels
+/// Creates the grid of the last pass, on which the vectors are reported. Its first window starts at pixel (0, 0).
+/// @param overlap  fraction of the window side shared by neighbouring windows, [0, 1); the spacing is rounded to whole
+/// pixels
 inline InterrogationGrid make_interrogation_grid(int image_columns, int image_rows, int window_px, double overlap) {
   GLADSTONE_EXPECTS(window_px > 0 && overlap >= 0.0 && overlap < 1.0);
   InterrogationGrid grid;
@@ -70,10 +71,10 @@ inline InterrogationGrid make_interrogation_grid(int image_columns, int image_ro
   return grid;
 }
 
-/// The same with as much of the image on the left as on the right, and above as below, so that a mirrored image has the
-/// mirrored windows. They begin at whole pixels, and what they leave over must be an even number of them: along an axis
-/// where it is odd there is one window less, or the spacing is smaller by one pixel on both. Of one window alone the
-/// middle may still be half a pixel off.
+/// Creates a grid centred on the image, so that a mirrored image has mirrored windows.
+/// Windows start at whole pixels, so the unused margin along each axis must be an even number of pixels. If it is odd
+/// along either axis and the spacing is even, the spacing is reduced by one pixel on both axes; an axis whose margin is
+/// still odd loses one window. With a single window along an axis, the grid may be half a pixel off centre.
 inline InterrogationGrid make_centred_grid(int image_columns, int image_rows, int window_px, double overlap) {
   InterrogationGrid grid = make_interrogation_grid(image_columns, image_rows, window_px, overlap);
   if (grid.size() == 0) return grid;

@@ -13,19 +13,21 @@ namespace gladstone {
 
 class PlaneSums;
 
-/// One pass over a pair: all windows of a grid are to be correlated.
+/// Task of one pass: correlate all windows of a grid on one pair of images.
 struct InterrogationJob {
   ImagePair const& pair;
   InterrogationGrid const& grid;
   WindowWeighting weighting = WindowWeighting::gaussian;
-  int search_radius_px = 1;  ///< largest shift looked for along either axis, at most half a window
+  int search_radius_px = 1;  ///< largest shift searched along either axis, at most half a window [px]
   SubpixelFit fit = fit_gauss3;
-  std::string label{};  ///< of the progress bar
-  /// Of an ensemble: receives the planes of this pair, and gives the peaks of all so far; null: the pair by itself.
+  std::string label{};  ///< label of the progress bar
+  /// Accumulator of an ensemble: it adds the planes of this pair and returns the mean over all pairs so far, from which
+  /// the peaks are taken. Null: the pair is correlated by itself.
   PlaneSums* ensemble = nullptr;
 };
 
-/// One result a window of the grid; the same bits for any number of threads.
+/// Correlates all windows of a job and returns one result per window of the grid, bitwise the same for any number of
+/// threads.
 using CorrelateWindows = std::vector<WindowCorrelation> (*)(InterrogationJob const& job);
 
 }  // namespace gladstone

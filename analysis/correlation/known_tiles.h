@@ -7,7 +7,7 @@
 
 namespace gladstone {
 
-/// Tells quickly whether a rectangle of the image is known throughout.
+/// Coarse map of fully known image tiles, for fast tests of whether all pixels of a rectangle are known.
 class KnownTiles {
  public:
   explicit KnownTiles(ImagePair const& pair) : columns_((pair.columns + tile - 1) / tile) {
@@ -21,7 +21,8 @@ class KnownTiles {
     });
   }
 
-  /// @pre the rectangle lies inside the image; it may be empty
+  /// Returns true if all tiles that the rectangle touches are fully known. @pre the rectangle is inside the image; it
+  /// may be empty
   bool all_known(int first_x, int first_y, int end_x, int end_y) const {
     if (known_.empty()) return true;
     for (int j = first_y / tile; j * tile < end_y; ++j)

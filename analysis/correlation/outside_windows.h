@@ -6,11 +6,11 @@
 
 namespace gladstone {
 
-/// Tells windows that left the frames from masked ones: a pass deforms the frames by what is known so far, and takes
-/// from beyond their rims what nobody knows. Vectors of status masked become invalid (VectorReason::outside) where
-/// more of the window's pixels, moved by half the displacement around it to either side, lie outside the frames than
-/// on pixels that are not finite; all of them where every pixel is finite.
-/// @param field what a correlator gave for the frames with these settings
+/// Changes the status of masked vectors whose windows were moved out of the frames to invalid (VectorReason::outside).
+/// Passes deform the frames by the predictor, so that pixels from beyond the borders count as unknown.
+/// A vector is changed if, with its window shifted by half the surrounding displacement in each frame, more of its
+/// pixels are outside the frames than on non-finite pixels; if all pixels are finite, all masked vectors are changed.
+/// @param field  result of a correlator for these frames and settings
 void name_windows_outside(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

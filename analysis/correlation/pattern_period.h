@@ -7,19 +7,20 @@
 
 namespace gladstone {
 
-/// A pattern that repeats.
+/// Period of a repeating pattern.
 struct PatternPeriod {
-  double pitch_px;  ///< shortest shift by which it matches itself
-  double height;    ///< of the autocorrelation there over that at no shift, noise aside
+  double pitch_px;  ///< shortest shift at which the pattern matches itself [px]
+  double height;    ///< autocorrelation at that shift over that at shift 0, without the contribution of noise [1]
 };
 
-/// The period of a pattern, from the autocorrelation of up to sixteen windows of twice the first pass' size, at least
-/// 128 px, so that few dots do not match by chance. A window repeats where a side peak is nearly as high as the main
-/// one (nearly_as_high). Noise, which stands on the sample at no shift alone, is kept out by comparing them one pixel
-/// from their middles along the axes: at the samples of the main peak, on the Gaussian through those of the side peak.
-/// Points of one pixel have nothing there, and are compared at their middles.
-/// @return nothing where fewer than a quarter of the windows repeat within twice the first pass' search range: a shift
-///         by less than that leads from one displacement within it to another
+/// Determines the period of a pattern from the autocorrelation of up to sixteen windows of twice the first pass'
+/// window, at least 128 px, so that a few dots do not match by coincidence.
+/// A window repeats if a side peak is at least nearly_as_high times the main peak. Uncorrelated noise affects only the
+/// sample at shift 0, so the peaks are also compared one pixel from their centres along the axes: the samples of the
+/// main peak with the Gaussian fitted to the side peak. Dots of one pixel have no signal there, and are compared at the
+/// peak centres.
+/// @return nullopt if fewer than a quarter of the windows repeat within twice the search range of the first pass; a
+/// smaller period makes displacements within the search range ambiguous
 std::optional<PatternPeriod> pattern_period(Image<double> const& image, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -6,17 +6,17 @@
 #include "analysis/correlation/subpixel_peak.h"
 #include "render/base/host_device.h"
 
-/// The peaks of a correlation plane, for the CPU and for CUDA's kernels. They are ranked by their height between the
-/// samples: the sample of a peak half a pixel off is 12 % lower (Gaussian of 1 px) along either axis, so that an alias
-/// of a regular pattern, or any other peak, would win by lying nearer to a whole pixel.
+/// Peaks of a correlation plane, for the CPU and the CUDA kernels. Peaks are ranked by their interpolated heights: the
+/// highest sample of a peak half a pixel off the samples is 12 % lower (Gaussian of 1 px) along each axis, so that
+/// ranking by samples would favour peaks near whole pixels, for example aliases of a regular pattern.
 namespace gladstone {
 
-/// A correlation plane as an inverse transform leaves it: shift (dx, dy) at row dy mod size, column dx mod size.
+/// Correlation plane in the order of an inverse transform: shift (dx, dy) in row dy mod size, column dx mod size.
 template <class T>
 struct PlaneView {
   T const* value;
   int size;
-  int stride;  ///< values from one column to the next: 2 where two planes lie interleaved
+  int stride;  ///< distance of neighbouring columns in values: 2 for two interleaved planes
 
   /// @pre -size <= dx, dy < size
   GLADSTONE_HD T operator()(int dx, int dy) const {
@@ -26,41 +26,44 @@ struct PlaneView {
   }
 };
 
-/// A local maximum of a correlation plane.
+/// Local maximum of a correlation plane.
 template <class T>
 struct PlanePeak {
-  int x = 0;  ///< its highest sample
+  int x = 0;  ///< shift of its highest sample [px]
   int y = 0;
-  T height{};  ///< between the samples
+  T height{};  ///< interpolated height between the samples
 };
 
-/// The highest local maxima of a correlation plane.
+/// Highest local maxima of a correlation plane.
 template <class T>
 struct PeakList {
   static constexpr int capacity = 3;
-  PlanePeak<T> peak[capacity];  ///< highest first, but for what prefer_nearest() has moved to the front
+  PlanePeak<T>
+      peak[capacity];  ///< in descending order of height, except for a peak moved to the front by prefer_nearest()
   int count = 0;
 };
 
-/// Whether v, the plane's value at (x, y), is above its eight neighbours; of equal ones the first in reading order is.
+/// Returns whether v, the plane's value at (x, y), exceeds its eight neighbours; of equal samples, the first in reading
+/// order is the maximum.
 template <class Plane, class T>
 GLADSTONE_HD bool is_maximum(Plane const& plane, int x, int y, T v) {
   return v > plane(x - 1, y - 1) && v > plane(x, y - 1) && v > plane(x + 1, y - 1) && v > plane(x - 1, y) &&
          v >= plane(x + 1, y) && v >= plane(x - 1, y + 1) && v >= plane(x, y + 1) && v >= plane(x + 1, y + 1);
 }
 
-/// Most by which a peak rises above its highest sample: a Gaussian of 0.6 px, the correlation of points that fill a
-/// pixel, half a pixel off along both axes. What seems to rise more is a sample beside noise.
+/// Upper bound of a peak's interpolated height over its highest sample: the value for a Gaussian of 0.6 px (the
+/// correlation of pixel-sized points) half a pixel off along both axes. Larger ratios are caused by noise in the
+/// neighbouring samples.
 constexpr double largest_rise = 2.0;
 
-/// Where a maximum lies between the samples, and how high it is there: three points along either axis.
+/// Interpolated position and height of a maximum, from three samples along each axis.
 template <class T>
 struct RefinedPeak {
   T x, y;
   T height;
 };
 
-/// @param v the plane's value at its maximum (x, y), positive
+/// Interpolates a maximum of the plane. @param v  the plane's value at its maximum (x, y), positive
 template <class Plane, class T>
 GLADSTONE_HD RefinedPeak<T> refined_peak(Plane const& plane, int x, int y, T v) {
   using std::exp;
@@ -70,27 +73,28 @@ GLADSTONE_HD RefinedPeak<T> refined_peak(Plane const& plane, int x, int y, T v) 
   return {T(x) + across.offset, T(y) + down.offset, v * (rise < most ? rise : most)};
 }
 
-/// Whether a peak of that height is high enough for the list.
+/// Returns whether a peak of that height is high enough for the list.
 template <class T>
 GLADSTONE_HD bool can_enter(PeakList<T> const& found, T height) {
   return found.count < PeakList<T>::capacity || height > found.peak[PeakList<T>::capacity - 1].height;
 }
 
-/// Whether two peaks are less than `apart` pixels from each other on both axes: then only the higher counts.
+/// Returns whether two peaks are less than `apart` pixels from each other on both axes, so that only the higher one
+/// counts.
 template <class T>
 GLADSTONE_HD bool are_close(PlanePeak<T> const& a, PlanePeak<T> const& b, int apart = 3) {
   int const dx = a.x - b.x, dy = a.y - b.y;
   return dx < apart && -dx < apart && dy < apart && -dy < apart;
 }
 
-/// Puts a local maximum that can_enter() into the list, unless a higher one is close; lower ones that are close drop
-/// out. Maxima come in reading order.
+/// Inserts a local maximum into the list unless a higher one is close to it, and removes lower ones close to it. Maxima
+/// must be inserted in reading order. @pre can_enter(found, candidate.height)
 template <class T>
 GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate) {
   int place = 0;
   for (; place < found.count && !(candidate.height > found.peak[place].height); ++place)
     if (are_close(found.peak[place], candidate)) return;
-  // behind the higher ones; lower ones follow if they are far enough and there is room
+  // Keep the higher peaks, then the candidate, then lower peaks that are not close to it, up to the capacity.
   PeakList<T> next;
   for (int k = 0; k < place; ++k) next.peak[next.count++] = found.peak[k];
   next.peak[next.count++] = candidate;
@@ -99,13 +103,13 @@ GLADSTONE_HD void insert_peak(PeakList<T>& found, PlanePeak<T> const& candidate)
   found = next;
 }
 
-/// Two peaks are as good as equal where the lower has this part of the other's height: over the windows of a regular
-/// pattern the heights of aliases differ by that much, since each misses other dots at the window's rim and the
-/// three-point Gaussian is not their shape.
+/// Height ratio above which two peaks are considered equally high. In windows of a regular pattern, the heights of
+/// aliases differ by this much, because each alias lacks different dots at the window border and the three-point
+/// Gaussian does not match the peak shape exactly.
 constexpr double nearly_as_high = 0.9;
 
-/// Whether no higher maximum is close to a peak, so that it is not the shoulder of another. Of equal ones the first in
-/// reading order is the higher.
+/// Returns whether no higher maximum is close to a peak, so that the peak is not the shoulder of another one. Of equal
+/// maxima, the first in reading order counts as the higher.
 template <class Plane, class T>
 GLADSTONE_HD bool is_summit(Plane const& plane, int radius, PlanePeak<T> const& peak) {
   for (int y = peak.y - 2; y <= peak.y + 2; ++y)
@@ -120,9 +124,9 @@ GLADSTONE_HD bool is_summit(Plane const& plane, int radius, PlanePeak<T> const& 
   return true;
 }
 
-/// Puts the peak to the front that lies nearest to shift 0 among those nearly as high as the highest: aliases of a
-/// regular pattern are equally good, and the displacement, or what is left over by a predictor, is most likely small.
-/// @param for_each_maximum calls its argument with every positive local maximum in reading order
+/// Moves the peak nearest to shift 0 to the front of the list, among all maxima of nearly the greatest height. Aliases
+/// of a regular pattern are equally high, and the displacement, or the residual of a predictor, is most likely small.
+/// @param for_each_maximum  calls its argument with every positive local maximum in reading order
 template <class Plane, class T, class Maxima>
 GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& found, Maxima const& for_each_maximum) {
   T const enough = T(nearly_as_high) * found.peak[0].height;
@@ -146,8 +150,9 @@ GLADSTONE_HD void prefer_nearest(Plane const& plane, int radius, PeakList<T>& fo
   found.peak[0] = nearest;
 }
 
-/// Calls visit with every positive local maximum with |dx|, |dy| <= radius, in reading order, whose height could pass.
-/// @param could_pass whether a peak of at most that height is of interest
+/// Calls visit for every positive local maximum with |dx|, |dy| <= radius, in reading order, unless its height is
+/// certain to be too low.
+/// @param could_pass  returns whether a peak of at most that height is of interest
 template <class Plane, class Visit, class CouldPass>
 GLADSTONE_HD void visit_maxima(Plane const& plane, int radius, Visit const& visit, CouldPass const& could_pass) {
   for (int y = -radius; y <= radius; ++y)
@@ -159,16 +164,16 @@ GLADSTONE_HD void visit_maxima(Plane const& plane, int radius, Visit const& visi
     }
 }
 
-/// visit_maxima() of those that prefer_nearest() chooses among.
+/// Visits the maxima from which prefer_nearest() chooses.
 template <class Plane, class T, class Visit>
 GLADSTONE_HD void visit_rivals(Plane const& plane, int radius, PeakList<T> const& found, Visit const& visit) {
   T const enough = T(nearly_as_high) * found.peak[0].height;
   visit_maxima(plane, radius, visit, [enough](T height) { return height >= enough; });
 }
 
-/// Finds the positive local maxima with |dx|, |dy| <= radius that are highest between the samples; of two closer than
-/// three pixels on both axes only the higher counts, so that a ragged peak is not its own rival. Equal heights: the
-/// first in reading order. Then prefer_nearest().
+/// Finds the positive local maxima with |dx|, |dy| <= radius that have the greatest interpolated heights. Of maxima
+/// closer than three pixels on both axes only the higher counts, so that a noisy peak is not its own secondary peak; of
+/// equal heights, the first in reading order. Finally applies prefer_nearest().
 /// @pre radius + 1 < size/2
 template <class T>
 GLADSTONE_HD PeakList<T> find_peaks(PlaneView<T> plane, int radius) {

@@ -6,8 +6,8 @@
 
 namespace gladstone {
 
-/// Vertex of the parabola through (-1, left), (0, centre), (1, right), in sample distances from the centre; 0 where the
-/// three do not curve downwards. Kept within [-1, 1].
+/// Returns the vertex of the parabola through (-1, left), (0, centre), (1, right), clamped to [-1, 1], in sample
+/// distances from the centre; 0 if the parabola does not open downwards.
 template <class T>
 GLADSTONE_HD T parabola_offset(T left, T centre, T right) {
   T const curvature = left - T(2) * centre + right;
@@ -16,8 +16,8 @@ GLADSTONE_HD T parabola_offset(T left, T centre, T right) {
   return offset < T(-1) ? T(-1) : (offset > T(1) ? T(1) : offset);
 }
 
-/// Natural logarithm. On a device in single precision it is the hardware's, good to 2^-21: peaks are ranked by it, and
-/// measured in double.
+/// Natural logarithm. Device code in single precision uses the hardware function, with an error of 2^-21: peaks are
+/// ranked with it but measured in double precision.
 template <class T>
 GLADSTONE_HD T fast_log(T x) {
 #if defined(__CUDA_ARCH__)
@@ -27,17 +27,18 @@ GLADSTONE_HD T fast_log(T x) {
   return log(x);
 }
 
-/// A peak between samples along one axis.
+/// Peak position between the samples along one axis.
 template <class T>
 struct PeakBetweenSamples {
-  T offset;    ///< from the centre [sample distances]
-  T log_rise;  ///< logarithm of the height there over the centre sample [1]
+  T offset;    ///< distance from the centre sample [sample distances]
+  T log_rise;  ///< logarithm of the peak height over the centre sample [1]
 };
 
 /// Three-point Gaussian estimate of a peak between samples: exact for samples of exp(-(s - s0)^2 / (2 sigma^2)).
-/// Willert & Gharib, Exp. Fluids 10 (1991) 181. Where a neighbour is not positive there is no logarithm, and the
-/// parabola through the samples stands in.
-/// @pre centre > 0, not below left and right (a local maximum), else the offset is within [-1, 1] but means little
+/// Willert & Gharib, Exp. Fluids 10 (1991) 181. If a sample is not positive, the parabola through the samples is used
+/// instead of that through their logarithms.
+/// @pre centre > 0, and centre is not lower than left and right (a local maximum); otherwise the offset is within [-1,
+/// 1] but has no meaning
 template <class T>
 GLADSTONE_HD PeakBetweenSamples<T> gaussian_peak(T left, T centre, T right) {
   bool const positive = left > T(0) && centre > T(0) && right > T(0);

@@ -8,13 +8,13 @@
 
 namespace gladstone {
 
-/// The weighted means of both frames over every window of a job that lies in them, all their pixels taken as known.
-/// Windows overlap: the sums down a column of pixels are taken once for all windows of a row.
+/// Weighted means of both frames over each window of a job that is entirely inside the image, as if all pixels were
+/// known. Windows overlap, so the sums along pixel columns are computed once for all windows of a grid row.
 class WindowMeans {
  public:
   WindowMeans(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y);
 
-  /// Grey levels of reference and flow. @pre the window lies in the frames
+  /// Returns the mean grey levels of frame A (x) and frame B (y). @pre the window is inside the image
   Vec2<float> of(int column, int row) const { return means_[static_cast<std::size_t>(row) * columns_ + column]; }
 
  private:

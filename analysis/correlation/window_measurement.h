@@ -10,31 +10,33 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-/// What is read from one window and its correlation plane: the same functions serve the CPU and a CUDA kernel.
+/// Results of one window and the evaluation of its correlation plane, in functions shared by the CPU and the CUDA
+/// kernels.
 namespace gladstone {
 
-/// What the correlation of one window gave.
+/// Result of the correlation of one window.
 struct WindowCorrelation {
-  enum class Outcome { measured, no_signal, masked, no_peak };  ///< no_peak: none within the search range
+  enum class Outcome { measured, no_signal, masked, no_peak };  ///< no_peak: no peak within the search range
   Outcome outcome = Outcome::no_signal;
-  int peaks = 0;                 ///< candidates found, at most 3, in the order of PeakList
-  std::array<Vec2d, 3> shift{};  ///< their positions between the pixels [px]
-  /// Their heights as correlation coefficients of what the shifted windows have in common [1]: the fall-off of the
-  /// plane with the shift is divided out, so that aliases of a pattern come out alike; 1 but for noise and
-  /// interpolation.
+  int peaks = 0;                 ///< number of peaks found, at most 3, in the order of PeakList
+  std::array<Vec2d, 3> shift{};  ///< subpixel positions of the peaks [px]
+  /// Peak heights as correlation coefficients of the region where the shifted windows overlap [1]. The decrease of the
+  /// plane with the shift is divided out, so that the aliases of a periodic pattern have equal heights. They are 1
+  /// apart from noise and interpolation error.
   std::array<double, 3> coefficient{};
-  double peak_ratio = 0.0;  ///< height of the first over the higher of the others in the plane, at most 1000
+  double peak_ratio = 0.0;  ///< height of the first peak over the higher of the other peaks, at most 1000 [1]
 };
 
 constexpr double largest_peak_ratio = 1000.0;
-/// Contrast (weighted rms over that of the whole image) below which a window is rounding, not signal.
+/// Lowest contrast of a signal: weighted rms of the window over the grey-level range of the image pair. Lower values
+/// are rounding errors.
 constexpr double smallest_contrast = 1e-6;
-/// Part of a window's weight that must be on known pixels: half, less what rounding may take.
+/// Smallest fraction of a window's weight on known pixels: one half, with a margin for rounding.
 constexpr double smallest_known_part = 0.5 - 1e-5;
 
-/// The factor that makes a plane of unnormalised transforms of size^2 values a correlation coefficient; 0 where the
-/// nominal window holds no signal in one of the images.
-/// @param contrast of the whole image, in the grey levels of the energies
+/// Returns the factor that converts a plane of unnormalised transforms of size^2 values to correlation coefficients; 0
+/// if the nominal window has no signal in one of the images.
+/// @param contrast  grey-level range of the image pair, in the units of the energies
 GLADSTONE_HD inline double plane_scale(WindowEnergy<float> const& energy, float contrast, int window_px, int size) {
   using std::sqrt;
   double const least = smallest_contrast * contrast;
@@ -43,16 +45,18 @@ GLADSTONE_HD inline double plane_scale(WindowEnergy<float> const& energy, float 
   return 1.0 / (sqrt(static_cast<double>(energy.reference) * energy.flow) * size * size);
 }
 
-/// A peak's place and height.
+/// Position and height of a peak.
 struct MeasuredPeak {
-  Vec2d shift;         ///< [px]
-  double coefficient;  ///< as in WindowCorrelation [1]
+  Vec2d shift;         ///< position [px]
+  double coefficient;  ///< height, as in WindowCorrelation [1]
 };
 
-/// Measures a peak by three points along each axis; the fall-off of the plane with the shift that the weights cause is
-/// divided out before, else it would pull every peak towards zero.
-/// @param plane value at a shift (dx, dy) @param scale makes the plane a correlation coefficient
-/// @param x, y  weights along the axes, column and row their window
+/// Measures a peak by a three-point Gaussian fit along each axis. The decrease of the plane with the shift, caused by
+/// the weights, is divided out first because it biases every peak towards zero.
+/// @param plane  value at a shift (dx, dy)
+/// @param scale  factor that converts the plane to correlation coefficients
+/// @param x, y  window weights along the axes
+/// @param column, row  position of the window in the grid
 template <class Plane>
 GLADSTONE_HD MeasuredPeak measured_peak(Plane const& plane, int peak_x, int peak_y, double scale,
                                         AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
@@ -71,7 +75,8 @@ GLADSTONE_HD MeasuredPeak measured_peak(Plane const& plane, int peak_x, int peak
           scale * plane(peak_x, peak_y) * (rise < largest_rise ? rise : largest_rise) / fall_off};
 }
 
-/// Height of the first over the higher one of the other peaks. @param second, third 0 where there is none
+/// Returns the height of the first peak over that of the higher of the other two, at most largest_peak_ratio.
+/// @param second, third  0 if there is no such peak
 GLADSTONE_HD inline double peak_ratio(double first, double second, double third) {
   double const other = second > third ? second : third;
   double const ratio = first / (other > 1e-12 ? other : 1e-12);

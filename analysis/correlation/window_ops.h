@@ -6,33 +6,34 @@
 #include "render/base/units.h"
 #include "render/base/vec.h"
 
-/// What happens to one interrogation window before and after its Fourier transform, row by row, without allocation. The
-/// CPU runs it so; CUDA's kernels share the cross spectrum, the order and the refinement of peaks and their ratio, and
-/// take the sums over a window's pixels by the threads that hold them: tests compare the two window by window.
+/// Operations on one interrogation window before and after its Fourier transform, row by row and without memory
+/// allocation. The CUDA kernels use the same weights and cross spectrum, but sum over a window's pixels in parallel;
+/// tests compare both window by window.
 namespace gladstone {
 
-/// How the pixels of a window count.
+/// Weighting of the pixels of a window.
 enum class WindowWeighting {
   uniform,   ///< 1 over the nominal window
   gaussian,  ///< Gaussian over twice the nominal window
 };
 
-/// Half-width of the pixels that a window of nominal size window_px uses [px].
+/// Returns the half-width of the pixels with non-zero weight for a nominal window of window_px [px].
 template <class T>
 GLADSTONE_HD T window_half_support(WindowWeighting weighting, T window_px) {
   return weighting == WindowWeighting::gaussian ? window_px : window_px / T(2);
 }
 
-/// Side of the square of pixels that a window of nominal size window_px gives weight [px].
+/// Returns the side of the square of pixels with non-zero weight for a nominal window of window_px [px].
 GLADSTONE_HD constexpr int window_side_px(WindowWeighting weighting, int window_px) {
   return weighting == WindowWeighting::gaussian ? 2 * window_px : window_px;
 }
 
-/// Weight along one axis; the weight of a pixel is the product over both axes. The Gaussian has the area of the nominal
-/// window, exp(-pi (offset/window_px)^2), so that as many particles count (Eckstein & Vlachos, Meas. Sci. Technol. 20
-/// (2009) 055401), and is cut where it has fallen to exp(-pi) = 0.043.
-/// @param offset    distance from the window's centre [px]
-/// @param window_px nominal window size [px]
+/// Returns the weight along one axis; the weight of a pixel is the product over both axes. The Gaussian exp(-pi
+/// (offset/window_px)^2) has the same area as the nominal window, so that the effective number of particles is the same
+/// (Eckstein & Vlachos, Meas. Sci. Technol. 20 (2009) 055401). It is cut off where it has decreased to exp(-pi) =
+/// 0.043.
+/// @param offset  distance from the window's centre [px]
+/// @param window_px  nominal window size [px]
 template <class T>
 GLADSTONE_HD T axis_weight(WindowWeighting weighting, T offset, T window_px) {
   using std::exp;
@@ -43,24 +44,24 @@ GLADSTONE_HD T axis_weight(WindowWeighting weighting, T offset, T window_px) {
   return T(exp(-T(pi) * relative * relative));
 }
 
-/// One window on a pair of images. Pixel (i, j) of its support, 0 <= i, j < size, is image pixel (first_x + i,
-/// first_y + j); pixels outside [begin, end) are not in the image and have weight 0.
+/// One window on a pair of images. Pixel (i, j) of its support, 0 <= i, j < size, is image pixel (first_x + i, first_y
+/// + j); pixels outside [begin, end) are outside the image and have weight 0.
 template <class T>
 struct WindowView {
-  T const* reference;  ///< images, row by row, `columns` values in a row
+  T const* reference;  ///< grey levels of the images, row by row, `columns` values per row
   T const* flow;
-  T const* available;  ///< 1 where both images are known, 0 elsewhere; null: everywhere
+  T const* available;  ///< 1 if both images are known, otherwise 0; null: known everywhere
   int columns;
   int size;              ///< side of the support [px]
   int first_x, first_y;  ///< image position of the support's first pixel
-  int begin_x, end_x;    ///< part of the support inside the image
+  int begin_x, end_x;    ///< range of support pixels inside the image
   int begin_y, end_y;
-  int core_begin, core_end;  ///< the nominal window within the support, on either axis
+  int core_begin, core_end;  ///< range of the nominal window within the support, on either axis
   T const* weight_x;         ///< `size` weights along each axis, 0 outside the image
   T const* weight_y;
 };
 
-/// Weighted sums over a window: of 1 and of either image.
+/// Sums of the weights and of the weighted grey levels of both images over a window.
 template <class T>
 struct WindowSums {
   T weight{};
@@ -75,8 +76,8 @@ struct WindowSums {
   }
 };
 
-/// Sums over row j of a window. Partial sums run over eight interleaved lanes, so that the order of summation is
-/// fixed and the loop vectorises.
+/// Returns the sums over row j of a window. Partial sums are accumulated in eight interleaved lanes, so that the order
+/// of summation is fixed and the loop vectorises.
 template <class T>
 GLADSTONE_HD WindowSums<T> sum_row(WindowView<T> const& w, int j) {
   constexpr int lanes = 8;
@@ -117,12 +118,12 @@ GLADSTONE_HD WindowSums<T> sum_row(WindowView<T> const& w, int j) {
   return {wy * sums.weight, wy * sums.reference, wy * sums.flow};
 }
 
-/// Sums of squares of the weighted, mean-free windows.
+/// Sums of squares of the weighted windows without their mean.
 template <class T>
 struct WindowEnergy {
   T reference{};
   T flow{};
-  T core_reference{};  ///< the same over the nominal window only
+  T core_reference{};  ///< sum over the nominal window only
   T core_flow{};
 
   GLADSTONE_HD WindowEnergy& operator+=(WindowEnergy o) {
@@ -134,9 +135,10 @@ struct WindowEnergy {
   }
 };
 
-/// Writes row j of both windows, mean removed and weighted, as real (reference) and imaginary (flow) parts.
-/// @param mean_reference, mean_flow the weighted means over the window
-/// @param out `size` complex values as pairs
+/// Writes row j of both windows, mean removed and weighted, as real (reference) and imaginary (flow) parts, and returns
+/// its energy.
+/// @param mean_reference, mean_flow  weighted means over the window
+/// @param out  `size` complex values, as pairs of real and imaginary part
 template <class T>
 GLADSTONE_HD WindowEnergy<T> load_row(WindowView<T> const& w, int j, T mean_reference, T mean_flow, T* out) {
   constexpr int lanes = 8;
@@ -157,7 +159,7 @@ GLADSTONE_HD WindowEnergy<T> load_row(WindowView<T> const& w, int j, T mean_refe
       out[2 * i] *= known[i];
       out[2 * i + 1] *= known[i];
     }
-  // squares of both windows interleaved, as they lie in `out`; the core apart from its two sides
+  // Squares of both windows, interleaved as in `out`; the core is summed before the pixels on either side of it.
   auto const squares = [&](int first, int last, T& reference, T& flow) {
     T sum[lanes] = {};
     int k = 2 * first;
@@ -180,9 +182,9 @@ GLADSTONE_HD WindowEnergy<T> load_row(WindowView<T> const& w, int j, T mean_refe
   return energy;
 }
 
-/// Cross spectrum conj(A) B at wave vector k of two real windows a and b that were transformed together as a + i b:
-/// with Z the transform at k and M that at -k, A = (Z + conj M)/2 and B = (Z - conj M)/(2i). @return real and imaginary
-/// part
+/// Returns the cross spectrum conj(A) B (real and imaginary part) at wave vector k of two real windows a and b that
+/// were transformed together as a + i b. With Z the transform at k and M that at -k: A = (Z + conj M)/2 and B = (Z -
+/// conj M)/(2i).
 template <class T>
 GLADSTONE_HD Vec2<T> cross_spectrum(T z_real, T z_imaginary, T m_real, T m_imaginary) {
   return {T(0.5) * (z_real * m_imaginary + z_imaginary * m_real),

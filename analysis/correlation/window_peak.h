@@ -8,15 +8,16 @@
 
 namespace gladstone {
 
-/// What a fit makes of a peak whose highest sample is `height`.
+/// Converts a subpixel fit to a peak position and height. @param height  value of the peak's highest sample
 GLADSTONE_HD inline MeasuredPeak peak_of(PeakFit const& fit, int peak_x, int peak_y, double height) {
   double const rise = std::exp(fit.log_rise);
   return {{peak_x + fit.x, peak_y + fit.y}, height * (rise < largest_rise ? rise : largest_rise)};
 }
 
-/// Measures a peak by any subpixel fit, as measured_peak() does by three points.
-/// @param plane a correlation coefficient at a shift (dx, dy)
-/// @param x, y  weights along the axes, column and row their window
+/// Measures a peak by any subpixel fit; measured_peak() is the special case of the three-point Gaussian.
+/// @param plane  correlation coefficient at a shift (dx, dy)
+/// @param x, y  window weights along the axes
+/// @param column, row  position of the window in the grid
 template <class Fit, class Plane>
 GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int peak_x, int peak_y,
                                       AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
@@ -30,7 +31,7 @@ GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int pe
   return peak_of(fit(patch), peak_x, peak_y, patch.value[1][1]);
 }
 
-/// The same where planes do not fall off with the shift.
+/// Like fitted_peak() above, for planes that do not decrease with the shift.
 template <class Fit, class Plane>
 GLADSTONE_HD MeasuredPeak fitted_peak(Fit const& fit, Plane const& plane, int peak_x, int peak_y) {
   PeakPatch patch;
