@@ -12,12 +12,13 @@
 
 namespace gladstone {
 
-/// In place of a B-spline's degree: a windowed sinc of eight pixels, which needs no coefficients but the pixels.
+/// Pseudo-degree that selects a windowed sinc over eight pixels instead of a B-spline; its coefficients are the pixels.
 inline constexpr int windowed_sinc = 7;
 
-/// Weights of the degree + 1 B-splines that are not zero at `t` past a node, 0 <= t < 1, from the leftmost on.
-/// Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821, eq. 2.3, written out in powers of t.
-/// @tparam T a number, or several side by side @tparam Number that such are made of
+/// Computes the weights of the degree + 1 B-splines that are non-zero at a distance t after a node, 0 <= t < 1, from
+/// left to right. Unser, Aldroubi & Eden, IEEE Trans. Signal Process. 41 (1993) 821, Eq. 2.3, expanded in powers of t.
+/// @tparam T  a number or a SIMD vector of numbers
+/// @tparam Number  element type of T
 template <int degree, class T, class Number = T>
 GLADSTONE_HD void bspline_weights(T t, T* w) {
   static_assert(degree == 3 || degree == 5);
@@ -40,7 +41,7 @@ GLADSTONE_HD void bspline_weights(T t, T* w) {
   }
 }
 
-/// sin(pi d)/(pi d) for |d| <= 1 by its series, to 1e-8. @tparam T, Number as bspline_weights()
+/// sin(pi d)/(pi d) for |d| <= 1 by its series, with an error of 1e-8. @tparam T, Number as in bspline_weights()
 template <class T, class Number = T>
 GLADSTONE_HD T sinc_near_zero(T d) {
   constexpr Number pi2 = Number(9.8696044010893586);
@@ -50,13 +51,14 @@ GLADSTONE_HD T sinc_near_zero(T d) {
   return sum;
 }
 
-/// Weights of eight pixels at `t` past the fourth of them, 0 <= t < 1, by a sinc that another of four times its width
-/// windows (Lanczos; Duchon, J. Appl. Meteorol. 18 (1979) 1016), over their sum, so that constants pass unchanged.
+/// Computes the weights of eight pixels at a distance t after the fourth of them, 0 <= t < 1: a sinc multiplied by a
+/// sinc of four times its width (Lanczos window; Duchon, J. Appl. Meteorol. 18 (1979) 1016), normalised so that
+/// constants are reproduced.
 template <class T, class Number = T>
 GLADSTONE_HD void windowed_sinc_weights(T t, T* w) {
   using N = Number;
   constexpr N half_turn = N(3.14159265358979324);
-  // sin(pi (t - k)) is sin(pi t), with the sign of k's parity
+  // sin(pi (t - k)) equals sin(pi t) with the sign of the parity of k.
   T const sine = half_turn * t * sinc_near_zero<T, N>(t);
   T sum{};
   for (int i = 0; i < 8; ++i) {
@@ -71,7 +73,8 @@ GLADSTONE_HD void windowed_sinc_weights(T t, T* w) {
   for (int i = 0; i < 8; ++i) w[i] = w[i] / sum;
 }
 
-/// Weights of the degree + 1 values that count, from the leftmost on: B-splines, or for degree 7 the windowed sinc.
+/// Computes the weights of the degree + 1 coefficients at a distance t after a node, from left to right: B-splines, or
+/// the windowed sinc for degree 7.
 template <int degree, class T, class Number = T>
 GLADSTONE_HD void interpolation_weights(T t, T* w) {
   if constexpr (degree == windowed_sinc)
@@ -80,7 +83,7 @@ GLADSTONE_HD void interpolation_weights(T t, T* w) {
     bspline_weights<degree, T, Number>(t, w);
 }
 
-/// Index of the pixel that reflection at the centres of the outermost pixels puts at i.
+/// Returns the index of the pixel that is found at index i after reflection at the centres of the outermost pixels.
 GLADSTONE_HD inline int mirrored_index(int i, int count) {
   if (i >= 0 && i < count) return i;
   if (count == 1) return 0;
@@ -89,23 +92,24 @@ GLADSTONE_HD inline int mirrored_index(int i, int count) {
   return k < count ? k : period - k;
 }
 
-/// Poles of the recursive filter that turns samples into B-spline coefficients, Unser et al. (1993), table 1.
-/// @param degree 3 or 5; none for windowed_sinc
+/// Returns the poles of the recursive filter that converts samples to B-spline coefficients, Unser et al. (1993), Table
+/// 1.
+/// @param degree  3 or 5; no poles for windowed_sinc
 inline std::vector<double> bspline_poles(int degree) {
   if (degree == windowed_sinc) return {};
   if (degree == 3) return {-0.26794919243112270647};  // sqrt(3) - 2
   return {-0.43057534709997377, -0.04309628820326465};
 }
 
-/// That filter as a sum over neighbours, for devices where recursion is slow: coefficient i is the sum over k of
-/// tap |k| times sample i + k. @return the taps from k = 0 on, down to 1e-10 of the first, below what a float
-/// tells
+/// Returns the same filter as a symmetric convolution, for devices where recursion is slow: coefficient i is the sum
+/// over k of tap |k| times sample i + k.
+/// @return taps from k = 0 on; taps below 1e-10 of the first, less than the float resolution, are dropped
 inline std::vector<double> bspline_taps(int degree) {
   constexpr int most = 48;
   std::vector<double> taps(most, 0.0);
   taps[0] = 1.0;
   for (double const z : bspline_poles(degree)) {
-    // one pole: gain times z^|k|; the sum of the response is 1
+    // One pole: gain z^|k|, normalised to a sum of 1.
     double const gain = (1.0 - z) / (1.0 + z);
     std::vector<double> next(most, 0.0);
     for (int k = 0; k < most; ++k)
@@ -116,20 +120,21 @@ inline std::vector<double> bspline_taps(int degree) {
   return taps;
 }
 
-/// B-spline coefficients of an image with a margin of mirrored ones, so that evaluation needs no test at the border.
+/// Non-owning view of B-spline coefficients with a margin of mirrored ones, so that evaluation needs no border test.
 template <class T>
 struct BsplineView {
-  static constexpr int margin_before = 4;  ///< columns and rows in front of pixel 0
-  static constexpr int margin_after = 8;   ///< and behind the last one
-  static constexpr int lanes = 8;          ///< taps read per row: degree + 1 rounded up, the rest with weight 0
+  static constexpr int margin_before = 4;  ///< columns and rows before pixel 0
+  static constexpr int margin_after = 8;   ///< columns and rows after the last pixel
+  static constexpr int lanes = 8;          ///< coefficients read per row: degree + 1 rounded up, extra weights are 0
 
   T const* coefficients;
   int stride;
   int columns;
   int rows;
 
-  /// The spline at (column + dx, row + dy) [px]. Pixel and remainder come apart so that float coordinates stay exact on
-  /// large images; positions more than a pixel outside the image are moved back to its edge.
+  /// Evaluates the spline at (column + dx, row + dy) [px]. The pixel and the offset are separate arguments, so that
+  /// float coordinates remain exact on large images. Positions more than a pixel outside the image are moved back to
+  /// its edge.
   template <int degree>
   GLADSTONE_HD T sample(int column, int row, T dx, T dy) const {
     using std::floor;
@@ -149,17 +154,18 @@ struct BsplineView {
     return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
   }
 
-  /// A base pixel at most one outside the image.
+  /// Clamps the first pixel of an interval to at most one pixel outside the image.
   GLADSTONE_HD static int clamp(int base, int count) { return base < -1 ? -1 : (base > count - 1 ? count - 1 : base); }
 };
 
-/// An image as an interpolating B-spline: it passes through every pixel and has degree - 1 continuous derivatives. The
-/// image is continued by reflection at the centres of its outermost pixels. Unser et al. (1993), the recursive filter
-/// of their eqs. 3.5 to 3.9; away from the border it reproduces polynomials up to its degree.
+/// Image as an interpolating B-spline: it passes through every pixel and has degree - 1 continuous derivatives. The
+/// image is continued by reflection at the centres of its outermost pixels. The coefficients follow from the recursive
+/// filter of Unser et al. (1993), Eqs. 3.5 to 3.9; away from the border, polynomials up to the degree are reproduced.
 template <class T>
 class BsplineImage {
  public:
-  /// @param pixel value at (column, row), called once each @param degree 3, 5 or windowed_sinc
+  /// @param pixel  value at (column, row), called once for each pixel
+  /// @param degree  3, 5 or windowed_sinc
   template <class Pixel>
   BsplineImage(int columns, int rows, int degree, Pixel const& pixel)
       : columns_(columns), rows_(rows), stride_(columns + View::margin_before + View::margin_after) {
@@ -174,11 +180,12 @@ class BsplineImage {
   View view() const { return {coefficients_.data(), stride_, columns_, rows_}; }
 
  private:
-  static constexpr int block = 8;  // lines filtered together
+  static constexpr int block = 8;  // number of lines filtered together
 
   T* row(int j) { return coefficients_.data() + static_cast<std::size_t>(j + View::margin_before) * stride_; }
 
-  /// What filter_lines() leaves out: its samples come with this factor. @param count of a line
+  /// Returns the gain of the filter, which filter_lines() does not apply; its samples must be multiplied by it.
+  /// @param count  number of samples in a line
   static double filter_gain(int count, int degree) {
     double gain = 1.0;
     if (count > 1)
@@ -186,11 +193,11 @@ class BsplineImage {
     return gain;
   }
 
-  /// Turns `count` samples of `block` interleaved lines, times filter_gain(), into coefficients.
+  /// Converts `count` samples, multiplied by filter_gain(), of `block` interleaved lines to coefficients.
   static void filter_lines(double* c, int count, int degree) {
     if (count == 1) return;
     for (double const z : bspline_poles(degree)) {
-      // first causal value: the reflected signal summed until z^k is below rounding
+      // First causal coefficient: sum over the reflected signal until z^k is below rounding.
       int const horizon = static_cast<int>(std::ceil(std::log(1e-17) / std::log(std::abs(z))));
       for (int l = 0; l < block; ++l) {
         double sum = 0.0, power = 1.0;

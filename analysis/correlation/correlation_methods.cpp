@@ -7,7 +7,7 @@
 namespace gladstone {
 namespace {
 
-/// Every correlation method, one row each.
+/// Table of all correlation methods.
 constexpr std::array rows{
     CorrelationMethod{.name = "scc", .correlate = correlate_scc, .on_gpu = true},
     CorrelationMethod{.name = "rpc", .correlate = correlate_rpc, .on_gpu = true},

@@ -2,13 +2,13 @@
 
 #include <cstdint>
 
-// vectors are passed between inlined functions only: no ABI to keep
+// These vectors are passed between inlined functions only, so that their ABI does not matter.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-/// Eight numbers side by side, one of each of eight windows that are worked on together (GCC's and clang's vector
-/// types; one AVX register).
+/// SIMD vectors of eight floats, one for each of eight windows processed together (vector extensions of GCC and clang;
+/// one AVX register).
 namespace gladstone {
 
 constexpr int lane_count = 8;
@@ -22,7 +22,7 @@ struct ComplexLanes {
   FloatLanes re, im;
 };
 
-/// Eight values from memory of any alignment.
+/// Loads eight values from memory of any alignment.
 inline FloatLanes load_lanes(float const* from) {
   FloatLanes v;
   __builtin_memcpy(&v, from, sizeof v);
@@ -31,7 +31,7 @@ inline FloatLanes load_lanes(float const* from) {
 
 inline void store_lanes(float* to, FloatLanes v) { __builtin_memcpy(to, &v, sizeof v); }
 
-/// Four values of one row and, behind them, four of another.
+/// Loads four values from each of two addresses, `low` into the first four lanes.
 inline FloatLanes join_halves(float const* low, float const* high) {
   using Half = float __attribute__((vector_size(16)));
   Half a, b;
@@ -40,8 +40,8 @@ inline FloatLanes join_halves(float const* low, float const* high) {
   return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-/// Reads eight columns of eight rows: value k of row l becomes lane l of column k.
-/// @param row first of the eight values of a row by its number
+/// Loads an 8x8 block and transposes it: value k of row l becomes lane l of column k.
+/// @param row  returns the address of the eight values of a row by its number
 template <class Row>
 [[gnu::always_inline]] inline void read_columns(Row const& row, FloatLanes (&column)[lane_count]) {
   FloatLanes u[8];
@@ -60,7 +60,7 @@ template <class Row>
   for (int k = 0; k < 8; ++k) column[k] = u[k];
 }
 
-/// a where the mask is set, else b.
+/// Selects a where the mask is set, b elsewhere.
 inline FloatLanes select_lanes(IntLanes mask, FloatLanes a, FloatLanes b) {
   return reinterpret_cast<FloatLanes>((mask & reinterpret_cast<IntLanes>(a)) | (~mask & reinterpret_cast<IntLanes>(b)));
 }
@@ -81,7 +81,7 @@ inline FloatLanes smaller_lanes(FloatLanes a, FloatLanes b) {
 #endif
 }
 
-/// Bit l: whether lane l of a mask is set.
+/// Returns an integer whose bit l is set if lane l of the mask is set.
 inline unsigned bits_of_lanes(IntLanes mask) {
 #if defined(__AVX__)
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<FloatLanes>(mask)));
@@ -92,13 +92,13 @@ inline unsigned bits_of_lanes(IntLanes mask) {
 #endif
 }
 
-/// In one order.
+/// Sums the lanes in a fixed order.
 inline float sum_of_lanes(FloatLanes v) { return ((v[0] + v[4]) + (v[1] + v[5])) + ((v[2] + v[6]) + (v[3] + v[7])); }
 
-/// The largest whole numbers not above numbers below 2^31.
+/// Rounds down to integers. @pre |a| < 2^31
 inline IntLanes floor_lanes(FloatLanes a) {
   IntLanes const cut = __builtin_convertvector(a, IntLanes);
-  return cut + (a < __builtin_convertvector(cut, FloatLanes));  // a mask is -1
+  return cut + (a < __builtin_convertvector(cut, FloatLanes));  // a set mask is -1
 }
 
 inline FloatLanes root_lanes(FloatLanes a) {
@@ -107,8 +107,8 @@ inline FloatLanes root_lanes(FloatLanes a) {
   return r;
 }
 
-/// Natural logarithm of positive normal numbers, good to 2e-7 of 1 or of itself: with x = m 2^e, m in [sqrt(1/2),
-/// sqrt(2)), log m = 2 artanh((m - 1)/(m + 1)) by its series.
+/// Natural logarithm of positive normal numbers, with an error of 2e-7 (absolute or relative, whichever is larger):
+/// with x = m 2^e and m in [sqrt(1/2), sqrt(2)), log m = 2 artanh((m - 1)/(m + 1)) by its series.
 inline FloatLanes log_lanes(FloatLanes x) {
   IntLanes const bits = reinterpret_cast<IntLanes>(x);
   IntLanes const exponent = (bits - 0x3f3504f3) >> 23;
@@ -118,7 +118,7 @@ inline FloatLanes log_lanes(FloatLanes x) {
   return __builtin_convertvector(exponent, FloatLanes) * 0.69314718f + s * series;
 }
 
-/// exp(x) for |x| < 80, good to 3e-7 of itself.
+/// exp(x) for |x| < 80, with a relative error of 3e-7.
 inline FloatLanes exp_lanes(FloatLanes x) {
   FloatLanes const scaled = x * 1.44269504f;
   IntLanes const whole =

@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::size_t windows_per_chunk = 8 * lane_count;
 
-/// What one piece of the work needs; the next takes it over.
+/// Workspace of one thread for a chunk of windows; reused for later chunks.
 struct Workplace {
   LaneCorrelation correlation;
   LanePlane plane;
   VisitPlanes visit;
 };
 
-/// Workplaces that nobody works at.
+/// Idle workspaces.
 class FreeWorkplaces {
  public:
   explicit FreeWorkplaces(std::function<std::unique_ptr<Workplace>()> make) : make_(std::move(make)) {}
@@ -76,8 +76,8 @@ int LaneCorrelation::transform_size(InterrogationJob const& job, bool with_margi
 
 int plane_transform_size(WindowWeighting weighting, int window, int radius) {
   if (weighting == WindowWeighting::gaussian) return lane_fourier_size(window_side_px(weighting, window));
-  // at one pixel beyond the search range, which only the fit of a peak at its rim reads, one line of pixels would wrap:
-  // of large windows it is too small a part to lengthen the transform for
+  // One pixel beyond the search range, which is read only for the fit of a peak at the limit, one line of pixels would
+  // wrap around. For large windows this fraction is too small to justify a longer transform.
   return lane_fourier_size(window + radius + (window < 32 ? 1 : 0));
 }
 
@@ -94,8 +94,8 @@ void LaneCorrelation::correlate(FloatLanes scale, SpectrumFilter const& filter, 
   make_rows(plane);
 }
 
-/// Transforms columns, multiplies, filters and transforms back: half_ then holds, for each shift down, the spectrum
-/// along x, of which one half says all since planes are real.
+/// Transforms the columns, multiplies and filters the spectra, and transforms back. Afterwards half_ contains the
+/// spectrum along x for each vertical shift; one half of it suffices since the planes are real.
 void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& filter, int reach) {
   int const size = fourier_.size(), side = windows_.side();
   FloatLanes const half = 0.5f * scale, quarter = 0.25f * scale;
@@ -108,7 +108,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
       fourier_.forward(spectrum_.data() + mx, pitch_, side, mirror_.data(), scratch_.data());
       m = mirror_.data();
     }
-    // as cross_spectrum() has it
+    // Same formula as cross_spectrum().
     for (int ky = 0; ky < size; ++ky) {
       ComplexLanes const& a = z[ky];
       ComplexLanes const& b = m[ky == 0 ? 0 : size - ky];
@@ -123,7 +123,7 @@ void LaneCorrelation::filter_columns(FloatLanes scale, SpectrumFilter const& fil
   }
 }
 
-/// Two rows of the real planes come out of one complex transform.
+/// Computes two rows of the real planes by one complex transform.
 void LaneCorrelation::make_rows(LanePlane& plane) {
   int const size = fourier_.size(), reach = plane.reach();
   for (int dy = -reach; dy <= reach; dy += 2) {

@@ -6,7 +6,8 @@
 namespace gladstone {
 namespace {
 
-/// Eight positions beside each other in a row, (column + l + dx, row + dy), taken apart as BsplineView::sample() does.
+/// Eight adjacent positions in a row, (column + l + dx, row + dy), split into pixel and offset as in
+/// BsplineView::sample().
 template <int degree>
 struct LanePositions {
   int column, row;
@@ -20,10 +21,9 @@ struct LanePositions {
     interpolation_weights<degree, FloatLanes, float>(dy - __builtin_convertvector(whole_y, FloatLanes), weight_y);
   }
 
-  /// The spline where all lanes are moved by as many whole pixels as one of them.
-  /// @tparam opposite at (column + l - dx, row - dy): what lies t past a node lies 1 - t past the one before on the
-  /// other
-  ///                  side, with the same weights in the opposite order
+  /// Evaluates the spline in all lanes, assuming that they share the same integer displacement.
+  /// @tparam opposite  evaluates at (column + l - dx, row - dy): a position t after a node becomes 1 - t after the node
+  /// before it on the other side, with the same weights in reverse order
   template <bool opposite>
   FloatLanes sum(BsplineView<float> const& image, int base_x, int base_y) const {
     using View = BsplineView<float>;
@@ -62,7 +62,7 @@ struct LanePositions {
   }
 };
 
-/// 1 where a position lies inside an image, else 0.
+/// Returns 1 for positions inside an image, otherwise 0.
 FloatLanes inside_lanes(BsplineView<float> const& image, FloatLanes x, FloatLanes y) {
   float const right = static_cast<float>(image.columns) - 0.5f, bottom = static_cast<float>(image.rows) - 0.5f;
   return select_lanes((x >= -0.5f) & (x <= right) & (y >= -0.5f) & (y <= bottom), all_lanes(1.0f), FloatLanes{});

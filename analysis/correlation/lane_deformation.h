@@ -6,22 +6,23 @@
 
 namespace gladstone {
 
-/// A row of a deformed pair, where it is written.
+/// Output row of a deformed pair.
 struct DeformedRow {
   float* reference;
   float* flow;
   float* available;
 };
 
-/// What deformed_pixel() does, eight pixels of a row at a time: neighbours are mostly moved by the same whole pixels,
-/// and then read the same coefficients, one beside the other.
+/// SIMD version of deformed_pixel(), for eight pixels of a row at a time. Neighbouring pixels mostly share the same
+/// integer displacement and therefore read adjacent coefficients.
 struct LaneDeformation {
   BsplineView<float> reference;
   BsplineView<float> flow;
-  std::span<float const> available;  ///< 1 where both images are known, 0 elsewhere; empty: everywhere
+  std::span<float const> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
 
-  /// @param degree of the splines, 3 or 5, or windowed_sinc
-  /// @param u, v   displacement of every pixel of row j [px]
+  /// Deforms row j of both images.
+  /// @param degree  degree of the splines, 3 or 5, or windowed_sinc
+  /// @param u, v  displacement of every pixel of the row [px]
   void row(int degree, int j, std::span<float const> u, std::span<float const> v, DeformedRow const& out) const;
 };
 

@@ -11,7 +11,7 @@
 namespace gladstone {
 namespace {
 
-/// Where a pass reads or writes: complex number i, at a stride; backward transforms exchange real and imaginary parts.
+/// Input and output of a pass; backward transforms exchange real and imaginary parts.
 template <bool backward>
 ComplexLanes read_value(ComplexLanes const& v) {
   if constexpr (backward) return {v.im, v.re};
@@ -34,7 +34,7 @@ ComplexLanes operator*(ComplexLanes const& a, ComplexLanes const& w) {
   return {w.re * a.re - w.im * a.im, w.re * a.im + w.im * a.re};
 }
 
-/// The Fourier transform of `radix` numbers, in place.
+/// Transforms `radix` numbers in place.
 template <int radix>
 [[gnu::always_inline]] inline void butterfly(ComplexLanes (&v)[radix]) {
   if constexpr (radix == 2) {
@@ -55,7 +55,8 @@ template <int radix>
     v[2] = a - c;
     v[3] = b - d;
   } else if constexpr (radix == 6) {
-    // two of three, of the even and, three places on, of the odd ones: no factors between them (Good & Thomas)
+    // Prime-factor algorithm (Good & Thomas): transforms of three even and, shifted by three, three odd values need no
+    // twiddle factors between them.
     ComplexLanes even[3] = {v[0], v[2], v[4]}, odd[3] = {v[3], v[5], v[1]};
     butterfly<3>(even);
     butterfly<3>(odd);
@@ -96,13 +97,13 @@ template <int radix>
   }
 }
 
-/// The first pass of a transform of `left` values. Six and eight take fewer reads and writes than their factors; odd
-/// ones come first and meet the zeros of a padded window.
+/// Returns the radix of the first pass of a transform of `left` values. Radices 6 and 8 need less memory traffic than
+/// their factors; odd radices come first, where they encounter the zeros of a padded window.
 constexpr int radix_of(int left) {
   if (left % 24 == 0) return 6;
   for (int const radix : {3, 5})
     if (left % radix == 0) return radix;
-  if (left == 128) return 2;  // and then 8 twice; after 8 first, two passes of 4
+  if (left == 128) return 2;  // followed by two passes of radix 8; starting with 8 would require two passes of radix 4
   if (left % 8 == 0 && left != 16) return 8;
   return left % 4 == 0 ? 4 : 2;
 }
@@ -110,7 +111,7 @@ constexpr int radix_of(int left) {
 template <int n>
 using Fixed = std::integral_constant<int, n>;
 
-/// Where a pass reads and writes. @tparam Stride int, or Fixed where it is known to the compiler
+/// Input and output of a pass. @tparam Stride  int, or Fixed if known at compile time
 template <class Stride>
 struct PassView {
   ComplexLanes const* in;
@@ -119,7 +120,7 @@ struct PassView {
   ComplexLanes* out;
 };
 
-/// One pass. @tparam Groups, Stride int, or Fixed: then all distances are constants
+/// Performs one pass. @tparam Groups, Stride  int, or Fixed: all strides are then compile-time constants
 template <int radix, bool back_in, bool back_out, bool padded, class InStride, class Groups, class Stride>
 [[gnu::always_inline]] inline void run_pass(PassView<InStride> view, Groups groups, Stride stride,
                                             ComplexLanes const* twiddles) {
@@ -166,7 +167,7 @@ void run_any_pass(int radix, PassView<int> const& view, int groups, int stride, 
   }
 }
 
-/// All passes from the one on that has `left` values to go, of any size.
+/// Performs all passes of a transform of any size, from the pass with `left` remaining values on.
 template <bool backward, bool padded>
 void run_any(PassView<int> view, int size, int left, ComplexLanes* scratch, ComplexLanes const* twiddles) {
   ComplexLanes* const out = view.out;
@@ -190,7 +191,7 @@ void run_any(PassView<int> view, int size, int left, ComplexLanes* scratch, Comp
   }
 }
 
-/// The same with all distances known to the compiler, of one size.
+/// Like run_any() for one size, with all strides known at compile time.
 template <bool backward, bool padded, int size, int left, class InStride>
 void run_fixed(PassView<InStride> view, ComplexLanes* scratch, ComplexLanes const* twiddles) {
   constexpr int radix = radix_of(left), groups = left / radix, stride = size / left;
@@ -224,7 +225,7 @@ void run_inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratc
   run_fixed<true, false, size, size>(PassView<Fixed<1>>{in, {}, size, out}, scratch, twiddles);
 }
 
-/// The sizes that have code of their own: those of the default's passes, and of usual windows.
+/// Sizes with specialised code: those of the default passes and of common windows.
 struct FixedSize {
   int size;
   decltype(&run_forward<4>) forward;

@@ -6,37 +6,38 @@
 
 namespace gladstone {
 
-/// The smallest number not below `least` that LaneFourier can transform: a product of 2, 3 and 5, divisible by four.
+/// Returns the smallest size of a LaneFourier that is at least `least`: a product of 2, 3 and 5, divisible by four.
 int lane_fourier_size(int least);
 
-/// Fourier transforms along a line of eight windows side by side, without any exchange between lanes: passes of radix
-/// 2, 3, 4, 5, 6 and 8 that sort themselves (Stockham, in Cochran et al., Proc. IEEE 55 (1967) 1664). Usual sizes have
-/// code of their own, in which all distances are constants. A plan is shared by threads; what it works on is the
-/// caller's.
+/// One-dimensional Fourier transforms of eight windows in SIMD lanes, without exchange between lanes: self-sorting
+/// passes of radix 2, 3, 4, 5, 6 and 8 (Stockham, in Cochran et al., Proc. IEEE 55 (1967) 1664). Common sizes have
+/// specialised code with compile-time strides. The object is immutable and may be shared by threads; buffers belong to
+/// the caller.
 class LaneFourier {
  public:
-  /// @param size as lane_fourier_size() gives it
+  /// @param size  a result of lane_fourier_size()
   explicit LaneFourier(int size);
 
   int size() const { return size_; }
-  /// Values from row to row of a spectrum whose columns are transformed fastest: an odd number of cache lines, so that
-  /// columns do not fall on the same places of the cache.
+  /// Row stride of a spectrum for fast transforms of its columns [ComplexLanes]: an odd number of cache lines, so that
+  /// the values of a column do not map to the same cache sets.
   static constexpr int pitch(int size) { return size + 1; }
-  /// ComplexLanes that a call needs besides input and output.
+  /// Scratch memory per call, besides input and output [ComplexLanes].
   int scratch() const { return 2 * size_; }
 
-  /// out(k) = sum over x of in(x) exp(-2 pi i k x / size).
-  /// @param in         value x at in[x * in_stride]; those from `filled` on count as 0 and are not read
-  /// @param out        size() values; another array than `in`
+  /// Computes out(k) = sum over x of in(x) exp(-2 pi i k x / size).
+  /// @param in  value x at in[x * in_stride]; values from `filled` on count as 0 and are not read
+  /// @param out  size() values; must not overlap `in`
   void forward(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch) const;
-  /// The same with the opposite sign in the exponent, without the division by the size, of size() values.
+  /// Like forward() with the opposite sign in the exponent, for size() contiguous values; the result is not divided by
+  /// size().
   void inverse(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch) const;
 
  private:
   int size_;
-  std::vector<ComplexLanes> twiddles_;  ///< of each pass, radix - 1 a group
+  std::vector<ComplexLanes> twiddles_;  ///< twiddle factors of each pass, radix - 1 per group
   void (*forward_)(ComplexLanes const* in, int in_stride, int filled, ComplexLanes* out, ComplexLanes* scratch,
-                   ComplexLanes const* twiddles) = nullptr;  ///< null: none for this size
+                   ComplexLanes const* twiddles) = nullptr;  ///< specialised code; null: none for this size
   void (*inverse_)(ComplexLanes const* in, ComplexLanes* out, ComplexLanes* scratch,
                    ComplexLanes const* twiddles) = nullptr;
 };

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// Eight maxima with the samples left, right, above and below; a lane left alone is level.
+/// Samples of eight maxima and of their left, right, upper and lower neighbours. All samples of an unused lane are 1.
 struct LaneSamples {
   FloatLanes centre = all_lanes(1.0f), beside[4] = {centre, centre, centre, centre};
 
@@ -23,11 +23,11 @@ struct LaneSamples {
   }
 };
 
-/// fit_gauss3() in all lanes.
+/// SIMD version of fit_gauss3().
 struct LaneGauss3 {
   FloatLanes offset[2];  ///< along x and y [px]
-  FloatLanes rise;       ///< factor of the height there over the centre sample, largest_rise at most
-  unsigned positive;     ///< bit of a lane: whether all its samples are, else nothing above holds
+  FloatLanes rise;       ///< peak height over the centre sample, at most largest_rise [1]
+  unsigned positive;     ///< bit of a lane: all of its samples are positive; otherwise its results are invalid
 
   explicit LaneGauss3(LaneSamples const& at) {
     FloatLanes const least = 1e-30f * at.centre;
@@ -51,7 +51,7 @@ struct LaneGauss3 {
   }
 };
 
-/// Puts the heights between the samples, as refined_peak() has them, into up to eight maxima of one window.
+/// Replaces the heights of up to eight maxima of one window by the interpolated heights of refined_peak().
 void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
   LaneSamples samples;
   for (int k = 0; k < count; ++k) samples.read(k, view, peaks[k]);
@@ -62,10 +62,11 @@ void refine(LanePlaneView const& view, PlanePeak<float>* peaks, int count) {
                           : refined_peak(view, peaks[k].x, peaks[k].y, peaks[k].height).height;
 }
 
-/// Whether a maximum can be as high as `enough` between its samples. Along an axis a Gaussian through neighbours of a
-/// and b times its height rises by exp(log(a/b)^2 / (8 |log(a b)|)), at most (a b)^(-1/8) since neither is above 1; the
-/// eighth powers are compared, less what rounding may take. A neighbour that is not positive leaves largest_rise.
-/// @pre largest_rise times the maximum is as high
+/// Returns whether the interpolated height of a maximum can reach `enough`. Along an axis, a Gaussian through
+/// neighbours of relative heights a and b exceeds the sample by the factor exp(log(a/b)^2 / (8 |log(a b)|)), which is
+/// at most (a b)^(-1/8) since neither is above 1. The eighth powers are compared, with a margin for rounding. If a
+/// neighbour is not positive, largest_rise is the only bound.
+/// @pre largest_rise times the sample reaches `enough`
 bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float enough) {
   float const v = peak.height;
   if (v >= enough) return true;
@@ -77,7 +78,7 @@ bool can_reach(LanePlaneView const& view, PlanePeak<float> const& peak, float en
   return !(1.001f * fourth * fourth < beside);
 }
 
-/// Takes v into the three largest numbers so far, in all lanes or of one.
+/// Inserts v into the three largest numbers so far, for single numbers or in all lanes.
 template <class T, class Larger, class Smaller>
 void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller) {
   for (T& place : largest) {
@@ -87,7 +88,8 @@ void take_in(T (&largest)[3], T v, Larger const& larger, Smaller const& smaller)
   }
 }
 
-/// The third largest of positive numbers, the last lanes filled up with 0; 0 where there are fewer.
+/// Returns the third largest of positive numbers; 0 if there are fewer. The array must be padded with zeros to whole
+/// vectors.
 float third_largest(float const* numbers, std::size_t count) {
   FloatLanes by_lane[3]{};
   for (std::size_t k = 0; k < count; k += lane_count)
@@ -106,15 +108,15 @@ float third_largest(float const* numbers, std::size_t count) {
 LanePeaks::LanePeaks(InterrogationJob const& job, bool falls_off) : job_(job), falls_off_(falls_off) {
   std::size_t const count = static_cast<std::size_t>(2 * job.search_radius_px + 1);
   found_.resize((count + 7) / 8 * 8);
-  // no two maxima are neighbours
+  // Two maxima are never adjacent.
   std::size_t const most = (count + 1) / 2 * ((count + 1) / 2);
   for (auto& list : maxima_) list.resize(most);
   for (auto& list : heights_) list.resize(most + lane_count);
   for (auto& row : highest_) row.resize(count);
 }
 
-/// is_maximum() in all lanes: what comes before, the row above and the left neighbour, must be lower, what comes after
-/// may be as high.
+/// SIMD version of is_maximum(): the row above and the left neighbour must be lower; the right neighbour and the row
+/// below may be equal.
 void LanePeaks::find_maxima(LanePlane const& plane) {
   std::fill_n(counts_, lane_count, 0);
   int const radius = job_.search_radius_px, count = 2 * radius + 1;
@@ -135,7 +137,7 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
       IntLanes const mask = (v > before) & (v >= larger_lanes((*below)[at], row[x + 1]));
       found_[at] = static_cast<unsigned char>(bits_of_lanes(mask));
     }
-    // eight places at a time: bit 8 x + lane
+    // Process eight columns at a time: bit 8 x + lane.
     for (int first = 0; first < count; first += 8) {
       std::uint64_t bits;
       __builtin_memcpy(&bits, found_.data() + first, sizeof bits);
@@ -154,12 +156,12 @@ void LanePeaks::find_maxima(LanePlane const& plane) {
   }
 }
 
-/// The third highest sample of maxima that are not close to each other; 0 where there are fewer.
+/// Returns the third highest sample of the maxima that are not close to each other; 0 if there are fewer.
 float LanePeaks::third_highest(int lane) const {
   std::size_t const count = static_cast<std::size_t>(counts_[lane]);
   PlanePeak<float> const* const maxima = maxima_[lane].data();
   PeakList<float> highest;
-  int as_high = 0;  // more than three of equal ones
+  int as_high = 0;  // more than three if maxima are equally high
   float const third = third_largest(heights_[lane].data(), count);
   visit_high(lane, third, [&](PlanePeak<float> const& peak) {
     if (as_high++ < PeakList<float>::capacity) highest.peak[highest.count++] = peak;
@@ -172,7 +174,7 @@ float LanePeaks::third_highest(int lane) const {
   return highest.count == PeakList<float>::capacity ? highest.peak[2].height : 0.0f;
 }
 
-/// Calls visit with the maxima of a lane whose sample is at least so high, in their order.
+/// Calls visit for the maxima of a lane whose sample is at least `least`, in reading order.
 template <class Visit>
 void LanePeaks::visit_high(int lane, float least, Visit const& visit) const {
   int const count = counts_[lane];
@@ -183,14 +185,16 @@ void LanePeaks::visit_high(int lane, float least, Visit const& visit) const {
   }
 }
 
-/// find_peaks() of one window, the heights between the samples eight maxima at a time. No maximum that stays below
-/// three others can be or remove one of those three: such are left out, unless in the end there are no three as high.
+/// Ranks the peaks of one window as find_peaks() does, interpolating eight maxima at a time. A maximum lower than three
+/// others can neither be one of the three highest nor remove one of them, so that it is skipped; the search is repeated
+/// without this limit if fewer than three peaks are found above it.
 PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   LanePlaneView const view{plane, lane};
   std::fill_n(heights_[lane].data() + counts_[lane], lane_count, 0.0f);
   PeakList<float> found;
   for (float least = third_highest(lane);; least = 0.0f) {
-    float const enough = static_cast<float>(nearly_as_high) * least;  // for prefer_nearest(), too
+    float const enough = static_cast<float>(nearly_as_high) *
+                         least;  // lower limit that also includes the candidates of prefer_nearest()
     found = {};
     refined_.clear();
     visit_high(lane, enough / static_cast<float>(largest_rise), [&](PlanePeak<float> const& peak) {
@@ -209,18 +213,18 @@ PeakList<float> LanePeaks::rank(LanePlane const& plane, int lane) {
   return found;
 }
 
-/// fitted_peak() by any fit, or where a sample is not positive.
+/// Measures a peak by any subpixel fit, one lane at a time; also used if a sample is not positive.
 MeasuredPeak LanePeaks::measure(LaneCorrelation const& work, LanePlaneView const& plane, int x, int y) const {
   if (!falls_off_) return fitted_peak(job_.fit, plane, x, y);
   return fitted_peak(job_.fit, plane, x, y, work.weights_x(), work.windows().column(plane.lane), work.weights_y(),
                      work.windows().row_of(plane.lane));
 }
 
-/// Peak p of all windows.
+/// Measures peak p of all windows.
 void LanePeaks::measure_all(LaneCorrelation const& work, LanePlane const& plane, int p, PeakList<float> const* found,
                             WindowCorrelation* results) const {
   LaneSamples samples;
-  FloatLanes down[3], across[3];  // what divides the fall-off out, one pixel before to one behind the peak
+  FloatLanes down[3], across[3];  // relative decrease of the plane from one pixel before to one pixel after the peak
   for (FloatLanes* factor : {down, across}) std::fill_n(factor, 3, all_lanes(1.0f));
   for (int lane = 0; lane < lane_count; ++lane) {
     if (p >= found[lane].count) continue;

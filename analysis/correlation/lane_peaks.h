@@ -7,15 +7,16 @@
 
 namespace gladstone {
 
-/// Finds and measures the peaks of eight planes at a time: what find_peaks() finds, with the maxima looked for and
-/// refined side by side.
+/// Finds and measures the peaks of eight correlation planes in SIMD lanes, with the same results as find_peaks() and
+/// fitted_peak().
 class LanePeaks {
  public:
-  /// @param falls_off whether the planes fall off with the shift as the windows' common weight does
+  /// @param falls_off  whether the planes decrease with the shift like the autocorrelation of the weights
   LanePeaks(InterrogationJob const& job, bool falls_off);
 
-  /// @param outcome of each window so far: only those that are measured have a plane
-  /// @param results receives `count` windows
+  /// Finds and measures the peaks of the first `count` windows.
+  /// @param outcome  outcome of each window so far: only measured ones have a plane
+  /// @param results  output: `count` windows
   void pick(LaneCorrelation const& work, LanePlane const& plane, WindowCorrelation::Outcome const* outcome, int count,
             WindowCorrelation* results);
 
@@ -31,12 +32,12 @@ class LanePeaks {
 
   InterrogationJob const& job_;
   bool falls_off_;
-  std::vector<FloatLanes> highest_[3];  // of three values beside each other, of the rows above, here and below
-  std::vector<unsigned char> found_;    // of a row, one bit a lane
+  std::vector<FloatLanes> highest_[3];  // [above, here, below][column] highest of three neighbours in a row
+  std::vector<unsigned char> found_;    // maxima in a row: one bit per lane
   int counts_[lane_count] = {};
   std::vector<PlanePeak<float>> maxima_[lane_count];  // in reading order
-  std::vector<float> heights_[lane_count];            // of these, and 0 behind them
-  std::vector<PlanePeak<float>> refined_;             // those of a window whose height between the samples is known
+  std::vector<float> heights_[lane_count];            // heights of maxima_, followed by zeros
+  std::vector<PlanePeak<float>> refined_;             // maxima of one window with interpolated heights
 };
 
 }  // namespace gladstone

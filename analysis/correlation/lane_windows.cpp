@@ -7,7 +7,7 @@ namespace {
 
 int whole_lanes(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
-/// Weighted sums over the pixels of a window, gathered row by row.
+/// Weighted sums over the pixels of a window, accumulated row by row.
 struct LaneSums {
   FloatLanes weight{}, reference{}, flow{};
 
@@ -39,7 +39,7 @@ void LaneWindows::place(std::size_t begin, int count) {
     mean_reference_[lane] = source_[lane].mean_reference;
     mean_flow_[lane] = source_[lane].mean_flow;
   }
-  // windows that no border cuts have equal weights
+  // All windows inside the image have equal weights.
   if (!(whole && gathered_)) gather_weights();
   gathered_ = whole;
   reference_ = flow_ = core_reference_ = core_flow_ = FloatLanes{};
@@ -71,7 +71,7 @@ void LaneWindows::place_lane(int lane, std::size_t window) {
   source_[lane] = {pair.reference.data() + at, pair.flow.data() + at, pair.columns, means.x, means.y};
 }
 
-/// A window at the border or with unknown pixels is copied, its mean taken off and 0 where nothing is known.
+/// Copies a window at the border or with unknown pixels, subtracts its mean, and sets unknown pixels to 0.
 void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* weight_x, float const* weight_y) {
   ImagePair const& pair = job_.pair;
   int const side = side_ + 2 * margin_, left = first_x - margin_, top = first_y - margin_;
@@ -80,7 +80,7 @@ void LaneWindows::copy_lane(int lane, int first_x, int first_y, float const* wei
   float* const reference = patch_[lane].data();
   float* const flow = reference + plane;
   float* const known = flow + plane;
-  float* const weight = known + plane;  // along x, with the margin
+  float* const weight = known + plane;  // along x, including the margin
   std::copy_n(weight_x, side_, weight + margin_);
   int const begin_x = std::max(0, -left), end_x = std::min(side, pair.columns - left);
   int const begin_y = std::max(0, -top), end_y = std::min(side, pair.rows - top);
@@ -133,7 +133,7 @@ ComplexLanes term_of(FloatLanes w, FloatLanes a, FloatLanes b) {
 
 }  // namespace
 
-/// @return sums of the squares of its real and of its imaginary parts
+/// Computes a row of a term. @return sums of squares of its real and of its imaginary parts
 template <WindowTerm term>
 ComplexLanes LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   int const line = j - margin_;
@@ -155,7 +155,8 @@ ComplexLanes LaneWindows::row_of_term(int j, ComplexLanes* out) const {
   return squares;
 }
 
-/// Adds up the squares of a row of w A and w B, in the core apart. What a border cuts off has no weight.
+/// Accumulates the energies of w A and w B from a row, separately for the nominal window. Pixels outside the image have
+/// zero weight.
 void LaneWindows::gather_energies(int j, ComplexLanes const* row, ComplexLanes const& whole) {
   reference_ += whole.re;
   flow_ += whole.im;

@@ -10,35 +10,37 @@
 
 namespace gladstone {
 
-/// The two real pictures of a window whose correlation is wanted; A and B are the mean-free frames, w the weights.
+/// Pair of real images of a window to be correlated. A and B are the frames without their means, w the weights.
 enum class WindowTerm {
   frames,             ///< w A and w B
   reference_energy,   ///< w A^2 and w
   flow_energy,        ///< w and w B^2
-  search,             ///< w^2 A and B as it is, over the search range beyond the window, too
-  search_energy,      ///< w^2 and B^2 over that range
-  search_back,        ///< A as it is over that range, and w^2 B
-  search_back_energy  ///< A^2 over that range, and w^2
+  search,             ///< w^2 A, and B without weights over the window and the search range around it
+  search_energy,      ///< w^2, and B^2 over the window and the search range
+  search_back,        ///< A without weights over the window and the search range, and w^2 B
+  search_back_energy  ///< A^2 over the window and the search range, and w^2
 };
 
-/// Eight windows of a grid side by side: their pixels, weighted and with the weighted mean taken off, row by row.
+/// Pixels of eight windows of a grid in SIMD lanes, row by row, weighted and without their weighted means.
 class LaneWindows {
  public:
-  /// @param with_margin whether rows are read beyond the weights, too
+  /// @param with_margin  whether rows include the search range around the window
   LaneWindows(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y, KnownTiles const& tiles,
               WindowMeans const& means, bool with_margin);
 
-  /// Side of the pixels that a window reads [px].
+  /// Side of the square of pixels read per window [px].
   int side() const { return side_ + 2 * margin_; }
-  /// Looks up the windows begin .. begin + count - 1, and takes their means. Lanes from `count` on repeat the last.
+  /// Selects the windows begin .. begin + count - 1 and their means. Lanes from `count` on repeat the last window.
   void place(std::size_t begin, int count);
-  /// Row j of side() of all eight: reference as real, flow as imaginary parts. Energies of w A and w B are gathered on
-  /// the way of the frames and the search. `out` has room for whole lanes: side() and seven more.
+  /// Computes row j, 0 <= j < side(), of all eight windows: first image as real, second image as imaginary parts. For
+  /// the terms `frames` and `search`, the energies of w A and w B are accumulated as well.
+  /// @param out  side() values and seven more, since whole vectors are written
   void row(int j, WindowTerm term, ComplexLanes* out);
-  /// Outcome of a window that cannot be correlated; measured where it can, so far.
+  /// Returns the outcome of a window that cannot be correlated; otherwise measured.
   WindowCorrelation::Outcome outcome(int lane) const { return outcome_[lane]; }
-  /// What makes a plane of unnormalised transforms a correlation coefficient, once all rows were read; 0 where there is
-  /// nothing to correlate. @param size of the transform
+  /// Returns the factor that converts a plane of unnormalised transforms to correlation coefficients; 0 for windows
+  /// that cannot be correlated. @param size  length of the transform
+  /// @pre all rows have been read
   FloatLanes scale(int size);
   FloatLanes energy_reference() const { return reference_; }
   FloatLanes energy_flow() const { return flow_; }
@@ -63,16 +65,16 @@ class LaneWindows {
   AxisWeightsView x_, y_;
   KnownTiles const& tiles_;
   WindowMeans const& means_;
-  int offset_;  // of the pixels that count from the first of the support
+  int offset_;  // from the first pixel of the support to the first with weight
   int side_;
   int margin_ = 0;  // search range on either side
-  int padded_;      // side with the margin, up to whole lanes
+  int padded_;      // side including the margin, rounded up to whole vectors
   Source source_[lane_count];
   int column_[lane_count], row_[lane_count];
   WindowCorrelation::Outcome outcome_[lane_count];
   FloatLanes mean_reference_, mean_flow_, reference_, flow_, core_reference_, core_flow_;
-  std::vector<FloatLanes> weight_x_, weight_y_;  // along x with the margin
-  bool gathered_ = false;                        // whether weight_x_, weight_y_ are those of uncut windows in all lanes
+  std::vector<FloatLanes> weight_x_, weight_y_;  // weight_x_ includes the margin
+  bool gathered_ = false;                        // weight_x_ and weight_y_ are those of windows inside the image
   std::vector<float> patch_[lane_count];
 };
 

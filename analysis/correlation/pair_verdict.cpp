@@ -20,17 +20,18 @@
 namespace gladstone {
 namespace {
 
-/// Part of the windows with a signal that must be more than chance.
+/// Minimum fraction of the windows with a signal that must pass the decorrelation test.
 constexpr double least_correlated = 0.25;
-/// Standard deviations by which correlation must be above chance: one in 44 is, were it normally distributed.
+/// Threshold of the decorrelation test in standard deviations: exceeded with a probability of 1 in 44 for a normal
+/// distribution.
 constexpr double deviations = 2.0;
-/// Part of a measurement from which it is looked into, and from which it is spoken of.
+/// Fractions of the vectors from which a measurement is examined, and from which a warning is issued.
 constexpr double suspicious = 0.05;
 constexpr double worth_a_warning = 0.1;
 constexpr double too_many_failed = 0.2;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Fewest windows that can agree with their neighbours: one and those by which it is judged.
+/// Smallest number of windows for a median test: one and the neighbours by which it is tested.
 constexpr std::size_t fewest_windows = fewest_neighbours + 1;
 
 char const* const correlates = "correlates";
@@ -44,7 +45,7 @@ bool is_of_a_test(VectorReason reason) {
          reason == VectorReason::not_replaced;
 }
 
-/// Vectors with a signal, and parts of them.
+/// Counts of the vectors with a signal, by status and reason.
 struct Tally {
   explicit Tally(DisplacementField const& field) {
     for (std::size_t i = 0; i < field.size(); ++i) {
@@ -70,8 +71,9 @@ struct Tally {
   std::size_t signal = 0, uncorrelated = 0, beyond = 0, failed = 0, not_replaced = 0, ambiguous = 0, doubtful = 0;
 };
 
-/// Whether there are best peaks, and they are at no shift on average: of one picture twice all are, up to what float
-/// leaves of it, but for minimum quadratic differences, whose planes fall off unevenly.
+/// Returns whether the mean length of the measured displacements is at most 0.01 px. Identical frames give zero
+/// displacements apart from rounding; the tolerance is for the minimum quadratic difference, whose planes decrease
+/// asymmetrically with the shift.
 bool stands_still(DisplacementField const& field) {
   double sum = 0.0, count = 0.0;
   for (Vec2d const& raw : field.raw_px) {
@@ -82,14 +84,14 @@ bool stands_still(DisplacementField const& field) {
   return count > 0.0 && sum <= 1e-2 * count;
 }
 
-/// A mean, and how many independent windows it is of.
+/// Mean value and its number of independent windows.
 struct Mean {
   double value = 0.0;
   double windows = 0.0;
 };
 
-/// Mean correlation of the vectors up to `reach` columns and rows away from one.
-/// @param windows_per_vector that share no pixel: spacing squared over window squared
+/// Returns the mean correlation of the vectors at most `reach` columns and rows from a vector.
+/// @param windows_per_vector  independent windows per vector: squared ratio of spacing to window size
 Mean local_mean(DisplacementField const& field, std::size_t vector, int reach, double windows_per_vector) {
   int const column = static_cast<int>(vector) % field.columns, row = static_cast<int>(vector) / field.columns;
   double sum = 0.0, count = 0.0;
@@ -108,7 +110,7 @@ Image<double> upside_down(Image<double> image) {
   return image;
 }
 
-/// How far a measurement looked, in words.
+/// Description of the search range for messages.
 struct Reach {
   explicit Reach(CorrelationSettings const& settings) {
     int const range = CorrelationSchedule(settings).search_radius_px(0);
@@ -118,7 +120,7 @@ struct Reach {
     remedy = limited ? "raise it" : "use a larger first window in correlate.window_px";
   }
   std::string what;
-  std::string remedy;  ///< what makes it longer
+  std::string remedy;  ///< suggestion for a larger range
 };
 
 std::string uncorrelated_text(Tally const& tally, Reach const& reach) {
@@ -207,7 +209,7 @@ void leave_out_chance(DisplacementField& field, DisplacementField const& chance,
 
 namespace {
 
-/// Why a pair cannot be judged by its vectors; empty: it can.
+/// Returns the reason why a pair cannot be assessed by its vectors; empty: it can.
 std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& settings) {
   if (found.signal == 0) return found.known == 0 ? "no window is known" : "no window holds a signal";
   if (correlation_method(settings.method).optical_flow) return "optical flow has no correlation";
@@ -216,14 +218,14 @@ std::string reason_not_to_judge(Tally const& found, CorrelationSettings const& s
   return settings.median_threshold ? "" : "correlate.median_threshold = \"off\" leaves vectors that disagree";
 }
 
-/// What is looked into where vectors alone do not tell.
+/// Costly tests, evaluated only if the vectors alone are not conclusive.
 struct Evidence {
   std::function<bool()> same_pictures;
   std::function<std::optional<PatternPeriod>()> period;
   std::function<DisplacementField()> chance;
 };
 
-/// The verdict by what is left. @pre there is a reason to judge
+/// Returns the verdict from the remaining vectors. @pre there is no reason not to judge
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_sound)) return correlates;
   return left.nothing_left() ? "does not correlate" : "not judged: no vector passed its tests";
@@ -251,7 +253,8 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
           period->pitch_px, period->height, reach.what, 0.5 * period->pitch_px, 0.5 * period->pitch_px));
     field.verdict = fmt::format("not judged: the pattern repeats every {:.2f} px", period->pitch_px);
   } else if (found.compared > 0) {
-    // large windows that straddle a gradient have several peaks, among which the smaller ones have decided
+    // Ambiguities of earlier passes are cleared: large windows across a gradient have several peaks, among which the
+    // smaller windows of later passes have chosen.
     std::replace(field.ambiguous.begin(), field.ambiguous.end(), Ambiguity::earlier, Ambiguity::none);
     leave_out_chance(field, evidence.chance(), settings);
   }
@@ -264,7 +267,7 @@ void judge(DisplacementField& field, Evidence const& evidence, CorrelationSettin
   if (left.part(left.failed) >= too_many_failed) field.warnings.push_back(failed_text(field, left));
 }
 
-/// Each pixel as the first pair has it that knows it in both frames.
+/// Returns a pair whose pixels come from the first pair of the sequence in which they are known in both frames.
 HostFrames known_in_any(PairSequence const& pairs) {
   HostFrames const first = pairs.frames(0);
   Image<double> reference = first.reference(), flow = first.flow();

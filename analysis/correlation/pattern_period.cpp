@@ -14,7 +14,7 @@
 namespace gladstone {
 namespace {
 
-/// Windows over the whole image, four on an axis at most.
+/// Returns a grid of windows over the whole image, at most four along each axis.
 InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
   InterrogationGrid grid = make_interrogation_grid(columns, rows, window_px, 0.5);
   grid.spacing_px = std::max(grid.spacing_px, (std::max(columns, rows) - window_px + 2) / 3);
@@ -23,13 +23,13 @@ InterrogationGrid sampling_grid(int columns, int rows, int window_px) {
   return grid;
 }
 
-/// Autocorrelation planes of one window after the other, with their scratch memory.
+/// Autocorrelation planes of single windows, with their scratch memory.
 class Autocorrelation {
  public:
   explicit Autocorrelation(int size)
       : size_(size), plan_(make_fourier_plan(size)), values_(count()), spectrum_(count()) {}
 
-  /// The plane of a window of the reference; the next call overwrites it.
+  /// Returns the plane of a window of the reference; overwritten by the next call.
   PlaneView<double> of(ImagePair const& pair, AxisWeightsView const& x, int column, AxisWeightsView const& y, int row) {
     double weights = 0.0, sum = 0.0;
     auto const for_each_pixel = [&](auto const& visit) {
@@ -63,14 +63,16 @@ class Autocorrelation {
   std::vector<std::complex<double>> values_, spectrum_;
 };
 
-/// Part of a window's autocorrelation at no shift that a pattern must reach one pixel beside it, else it is not seen.
-/// Noise, whose pixels have nothing in common, scatters by 1/window_px of it there (square root of the sum of w^8 over
-/// the sum of w^4 along both axes, w the Gaussian weights), and some thousand shifts reach five times that.
+/// Detection limit: minimum autocorrelation one pixel from shift 0, relative to that at shift 0, for a pattern to be
+/// recognised. Uncorrelated pixel noise causes a scatter of 1/window_px there (square root of the sum of w^8 over the
+/// sum of w^4 along both axes, w the Gaussian weights), and the largest of some thousand shifts reaches about five
+/// times that.
 double least_seen(int window_px) { return 8.0 / window_px; }
 
-/// Geometric mean of a peak's heights one pixel from its middle along either axis, on the Gaussian of its samples: that
-/// falls by the square root of what both samples beside the highest have fallen by together.
-/// @param fall_off of the plane that the weights cause, divided out
+/// Returns the geometric mean of a peak's heights one pixel from its centre along both axes, on the Gaussian through
+/// its samples. The height there is the peak height times the square root of the product of the relative heights of the
+/// two samples next to the highest one, along each axis.
+/// @param fall_off  decrease of the plane with the shift, caused by the weights, which is divided out
 double height_beside(PlaneView<double> const& plane, PlanePeak<double> const& peak, double fall_off) {
   double const centre = plane(peak.x, peak.y);
   double const beside[4] = {plane(peak.x - 1, peak.y), plane(peak.x + 1, peak.y), plane(peak.x, peak.y - 1),

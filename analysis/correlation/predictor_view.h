@@ -7,11 +7,11 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-/// A displacement known at the nodes of a grid, at every point, per node and per point: the same functions serve the
-/// CPU and a CUDA kernel.
+/// Interpolation of a displacement given at the nodes of a grid, by functions shared by the CPU and the CUDA kernels.
 namespace gladstone {
 
-/// Weights of Keys' kernel (a = -1/2) for the nodes at -1, 0, 1, 2, for a point t past node 0.
+/// Computes the weights of Keys' kernel (a = -1/2) for the nodes -1, 0, 1, 2, at a distance t from node 0 towards node
+/// 1.
 GLADSTONE_HD inline void cubic_convolution(double t, double* w) {
   w[0] = 0.5 * t * (-1.0 + t * (2.0 - t));
   w[1] = 1.0 + 0.5 * t * t * (-5.0 + 3.0 * t);
@@ -19,7 +19,7 @@ GLADSTONE_HD inline void cubic_convolution(double t, double* w) {
   w[3] = 0.5 * t * t * (t - 1.0);
 }
 
-/// Rows and columns of ghost nodes on every side of a grid, so that they reach past the image.
+/// Returns the number of rows and columns of ghost nodes on each side of a grid that extend it beyond the image.
 inline int ghost_nodes(InterrogationGrid const& grid, int image_columns, int image_rows) {
   double const beyond =
       std::max({grid.centre(GridAxis::x, 0), image_columns - grid.centre(GridAxis::x, grid.columns - 1),
@@ -27,8 +27,8 @@ inline int ghost_nodes(InterrogationGrid const& grid, int image_columns, int ima
   return static_cast<int>(std::ceil(beyond / grid.spacing_px)) + 2;
 }
 
-/// value(k) for 0 <= k < count, on a straight line beyond; the line's slope is taken over half a window, not over
-/// noise.
+/// Returns value(k) for 0 <= k < count, and a linear extrapolation elsewhere. Its slope is taken over half a window,
+/// because a shorter baseline would amplify noise.
 template <class Value>
 GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Value const& value) {
   if (k >= 0 && k < count) return value(k);
@@ -42,7 +42,8 @@ GLADSTONE_HD Vec2d extended(InterrogationGrid const& grid, int k, int count, Val
   return value(edge) + (static_cast<double>(steps) / base) * (value(edge) - value(inner));
 }
 
-/// Node (column, row) of a grid, or of its straight continuation. @param node(k) the k-th of its grid.size()
+/// Returns node (column, row) of a grid, or of its linear extrapolation. @param node  node(k) is the k-th of
+/// grid.size() nodes
 template <class Node>
 GLADSTONE_HD Vec2d extended_node(InterrogationGrid const& grid, Node const& node, int column, int row) {
   return extended(grid, row, grid.rows, [&](int j) {
@@ -50,9 +51,9 @@ GLADSTONE_HD Vec2d extended_node(InterrogationGrid const& grid, Node const& node
   });
 }
 
-/// A displacement at the nodes of a grid with ghost nodes around it.
+/// Non-owning view of the displacement at the nodes of a grid and its ghost nodes.
 struct PredictorView {
-  /// The four nodes that count at a position along one axis.
+  /// The four nodes used at a position along one axis, and their weights.
   struct Taps {
     int first;
     double weight[4];
@@ -60,7 +61,7 @@ struct PredictorView {
 
   InterrogationGrid grid;
   int ghosts;
-  int columns;  ///< with the ghost nodes
+  int columns;  ///< including the ghost nodes
   int rows;
   Vec2d const* nodes;
 

@@ -78,7 +78,8 @@ class StandardCorrelator final : public Correlator {
             ensemble};
   }
 
-  /// @param measure gives the windows of a grid in a pass, deformed by the predictor; null: in the first, as they are
+  /// Runs all passes. @param measure  returns the windows of a grid in a pass, for frames deformed by the predictor; a
+  /// null predictor in the first pass means no deformation
   template <class Measure>
   DisplacementField run_passes(int columns, int rows, Measure const& measure) const {
     std::optional<DensePredictor> predictor;
@@ -141,7 +142,8 @@ CorrelationSchedule::CorrelationSchedule(CorrelationSettings const& settings)
 int CorrelationSchedule::search_radius_px(int pass) const {
   int const widest = windows_[pass] / (pass == 0 ? 2 : 4);
   if (pass > 0 || limit_px() >= widest) return widest;
-  // CUDA's kernels search blocks of four; what lies beyond the limit grid_vector() leaves out
+  // Round up to a multiple of four, because the CUDA kernels search blocks of four; grid_vector() rejects peaks beyond
+  // the limit.
   return std::min(widest, 4 * static_cast<int>(std::ceil(limit_px() / 4.0)));
 }
 
@@ -153,7 +155,7 @@ ValidationRule CorrelationSchedule::rule(int pass) const {
     rule.replaces = true;
   }
   if (pass > 0) rule.trusted_ratio = std::numeric_limits<double>::infinity();
-  // without a predictor the whole is what the pass found
+  // In the first pass the total displacement equals the increment, which has been tested already.
   if (pass == 0 || !is_last(pass)) rule.displacement_threshold = std::numeric_limits<double>::infinity();
   return rule;
 }
@@ -212,7 +214,7 @@ DisplacementField correlate_ensemble(PairSequence const& pairs, CorrelationSetti
 
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings) {
   static std::once_flag once;
-  std::call_once(once, keep_freed_memory);  // a pair after the other: pages took a sixth of the time of one pass
+  std::call_once(once, keep_freed_memory);  // for sequences of pairs: page faults took a sixth of the time of a pass
   return std::make_unique<StandardCorrelator>(settings);
 }
 

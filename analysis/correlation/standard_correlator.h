@@ -13,12 +13,13 @@
 
 namespace gladstone {
 
-/// Standard cross-correlation in passes: every pass deforms both images by what the one before found (validated,
-/// smoothed), correlates smaller windows, and adds what is left. The first pass looks for shifts up to half a window,
-/// the later ones up to a quarter. Only predictors are smoothed, never the result.
+/// Creates a multi-pass cross-correlator for the CPU. Each pass deforms both images by the validated and smoothed
+/// result of the previous pass, correlates smaller windows, and adds the residual displacement. The first pass searches
+/// shifts up to half a window, the later ones up to a quarter. Smoothing applies to the predictors only, not to the
+/// result.
 std::unique_ptr<Correlator> make_standard_correlator(CorrelationSettings const& settings);
 
-/// What a CPU or CUDA correlator does in which order.
+/// Sequence of passes and their parameters, common to the CPU and the CUDA correlator.
 class CorrelationSchedule {
  public:
   /// @pre at least one window and one final pass
@@ -26,25 +27,26 @@ class CorrelationSchedule {
 
   int passes() const { return static_cast<int>(windows_.size()); }
   bool is_last(int pass) const { return pass + 1 == passes(); }
-  /// Windows of a pass: the last one's where the vectors stand, the others' centred on the image, so that predictors of
-  /// mirrored frames are mirrored.
+  /// Returns the windows of a pass: the grid of the vectors for the last pass, otherwise a grid centred on the image,
+  /// so that mirrored frames have mirrored predictors.
   InterrogationGrid grid(int pass, int columns, int rows) const {
     return is_last(pass) ? make_interrogation_grid(columns, rows, windows_[pass], overlap_)
                          : make_centred_grid(columns, rows, windows_[pass], overlap_);
   }
-  /// Largest shift looked for along either axis.
+  /// Returns the largest shift searched along either axis [px].
   int search_radius_px(int pass) const;
-  /// A predictor that is off by half a pixel does no harm, one that has lost a steep gradient does: only gross errors
-  /// are taken out between passes. Only the first pass trusts windows against their neighbours: later ones look for
-  /// what is left over a few pixels far, where a chance peak has hardly room for rivals.
+  /// Returns the validation rule of a pass. Before the last pass, only gross errors are removed: a predictor error of
+  /// half a pixel is harmless, the loss of a steep gradient is not. Only in the first pass can a high peak ratio
+  /// outweigh the neighbours: later passes search a few pixels only, where a random peak rarely has competitors.
   ValidationRule rule(int pass) const;
-  /// Part of a node that smoothing takes from its neighbours on either side, along an axis (smoothed()), where a pass's
-  /// vectors become a predictor: 1/4 in the last predictor and in the frames that the result itself deforms, less on
-  /// wider grids before it, in inverse proportion to their spacing. Nodes d apart keep 1 - part (1 - cos(2 pi d/L)) of
-  /// a wave of length L: 1/4 on every grid would cost wide grids the waves that their passes are there to follow, and
-  /// their large windows have little noise to lose.
+  /// Returns the weight that smoothed() gives to a node's two neighbours along an axis when a pass's vectors become a
+  /// predictor: 1/4 for the last predictor and for the deformation of the frames by the result itself, and less on
+  /// wider grids, in inverse proportion to their spacing.
+  /// Nodes at distance d retain 1 - part (1 - cos(2 pi d/L)) of a wave of length L. A weight of 1/4 on every grid would
+  /// remove, from wide grids, the wavelengths that their passes have to follow, and their large windows have little
+  /// noise.
   double smoothing(int pass) const;
-  /// Largest displacement along either axis [px]; infinite where there is no limit but the windows'.
+  /// Largest displacement along either axis [px]; infinite: limited by the windows only.
   double limit_px() const { return last_rule_.limit_px; }
   WindowWeighting weighting() const { return weighting_; }
   int spline_degree() const { return spline_degree_; }
@@ -57,16 +59,16 @@ class CorrelationSchedule {
   int spline_degree_;
 };
 
-/// Checks that a pair of images suits the settings. @throws DataError
+/// Checks the sizes of an image pair against each other and the windows. @throws DataError
 void check_image_sizes(CorrelationSettings const& settings, int reference_columns, int reference_rows, int flow_columns,
                        int flow_rows);
 
-/// Where the pass before could not tell displacements apart: one flag for each of its vectors.
+/// Flags the vectors of the previous pass that were ambiguous.
 struct AmbiguousPlaces {
   InterrogationGrid grid;
-  char const* flag;  ///< null in the first pass
+  char const* flag;  ///< one flag per vector; null in the first pass
 
-  /// Whether one of the nearest windows was: between windows that are equally near all of them count.
+  /// Returns whether one of the windows nearest to a position is flagged; all equally near windows count.
   GLADSTONE_HD bool at(Vec2d position_px) const {
     if (flag == nullptr) return false;
     InterrogationGrid::Range const x = grid.nearest(GridAxis::x, position_px.x),
@@ -80,11 +82,11 @@ struct AmbiguousPlaces {
   }
 };
 
-/// A window's result as a vector to be validated: the first of its peaks that the limit allows, the next ones as
-/// alternatives.
-/// @param predictor that the pass was deformed by, at the window's centre [px]
+/// Converts the result of a window to a vector for validation: the first peak within the limit, with the following ones
+/// as alternatives.
+/// @param predictor  predictor of the pass at the window's centre [px]
 /// @param limit_px  largest displacement along either axis, predictor included
-/// @param ambiguous whether the pass before was, here
+/// @param ambiguous  whether the previous pass was ambiguous here
 GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2d predictor, double limit_px,
                                            bool ambiguous) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -116,9 +118,9 @@ GLADSTONE_HD inline GridVector grid_vector(WindowCorrelation const& window, Vec2
   return vector;
 }
 
-/// What a correlation tells of one vector; NaN where it is not known.
+/// Result for one vector of the field; NaN: not measured.
 struct MeasuredVector {
-  Vec2d displacement;  ///< [px]
+  Vec2d displacement;  ///< after validation; NaN unless valid or replaced [px]
   Vec2d raw;           ///< before replacement [px]
   double peak_ratio;
   double correlation;
@@ -143,11 +145,11 @@ GLADSTONE_HD inline MeasuredVector measured_vector(GridVector const& vector, Win
   return result;
 }
 
-/// The result of the last pass.
-/// @param vectors one for each of the grid's windows
+/// Converts the vectors of the last pass to a displacement field.
+/// @param vectors  one per window of the grid
 DisplacementField displacement_field(InterrogationGrid const& grid, std::span<MeasuredVector const> vectors);
 
-/// The weighting by its name. @pre "gaussian" or "uniform"
+/// Returns the weighting of that name. @pre settings.weighting is "gaussian" or "uniform"
 WindowWeighting window_weighting(CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -13,7 +13,7 @@ struct NamedFit {
   bool on_gpu = false;
 };
 
-/// Every subpixel fit, one row each.
+/// Table of all subpixel fits.
 constexpr std::array fits{
     NamedFit{"gauss3", fit_gauss3, true},
     NamedFit{"gauss2d", fit_gauss2d, true},

@@ -23,7 +23,8 @@ void validate_by(Judgement by, std::span<GridVector> vectors, int columns, Valid
   for (int const i : spurious) take_out(vectors[i], failed[i]);
   if (!rule.replaces) return;
 
-  // rounds from the rim of a spurious patch inwards; within a round only what was sound before counts
+  // Replace from the rim of a group of spurious vectors inwards; within a round, only vectors that were sound before it
+  // count.
   while (!spurious.empty()) {
     std::vector<int> left;
     std::vector<std::pair<int, VectorReplacement>> replaced;

@@ -12,8 +12,8 @@
 
 namespace gladstone {
 
-/// A vector's neighbours on its grid, at most the 3x3 around it without itself. Only compile-time indices, so that a
-/// GPU holds them in registers.
+/// Neighbours of a vector on its grid: up to eight of the surrounding 3x3. Only compile-time indices are used, so that
+/// a GPU stores the array in registers.
 template <class T>
 struct Neighbours {
   static constexpr int capacity = 8;
@@ -25,10 +25,10 @@ struct Neighbours {
       if (k == count) value[k] = v;
     ++count;
   }
-  /// Median of of(k) for k < count. @pre count > 0
+  /// Returns the median of of(k) for 0 <= k < count. @pre count > 0
   template <class Of>
   GLADSTONE_HD T median_of(Of const& of) const {
-    // sorts all places, the empty ones last, by exchanging neighbours
+    // Odd-even transposition sort; unused places are filled with infinity and end up last.
     T v[capacity];
     for (int k = 0; k < capacity; ++k) v[k] = k < count ? of(k) : std::numeric_limits<T>::infinity();
     for (int round = 0; round < capacity; ++round)
@@ -46,21 +46,22 @@ struct Neighbours {
     }
     return count % 2 == 1 ? above : (below + above) / T(2);
   }
-  /// Median of each component. @pre count > 0
+  /// Returns the median of each component. @pre count > 0
   GLADSTONE_HD Vec2<T> median() const {
     return {median_of([&](int k) { return value[k].x; }), median_of([&](int k) { return value[k].y; })};
   }
 };
 
-/// Normalised median residual of a vector, Westerweel & Scarano, Exp. Fluids 39 (2005) 1096, eq. 2: for each component
-/// the distance from the neighbours' median over (median of the neighbours' own distances + epsilon), both joined as
-/// the length of a vector. Above about 2 a vector is spurious.
-/// @param epsilon expected noise [px]
-/// @param enough  a bound that is not above this may stand for the residual: it takes less time @pre count > 0
+/// Normalised median residual of a vector, Westerweel & Scarano, Exp. Fluids 39 (2005) 1096, Eq. 2: for each component,
+/// the distance from the neighbours' median over (median distance of the neighbours from it + epsilon). Returns the
+/// length of the vector of both components. A vector is spurious above about 2.
+/// @param epsilon  expected noise [px]
+/// @param enough  if a cheap upper bound of the residual is not above this value, the bound is returned instead
+/// @pre neighbours.count > 0
 template <class T>
 GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& neighbours, T epsilon, T enough = T(0)) {
   using std::abs;
-  // a median is no farther than the farthest neighbour, and the neighbours' own distances only lower the residual
+  // The median is not farther than the farthest neighbour, and the neighbours' spread only lowers the residual.
   Vec2<T> farthest{};
   for (int k = 0; k < Neighbours<T>::capacity; ++k) {
     if (k >= neighbours.count) continue;
@@ -76,15 +77,15 @@ GLADSTONE_HD T normalised_median_residual(Vec2<T> vector, Neighbours<T> const& n
   return length(Vec2<T>{(vector.x - median.x) / (spread_x + epsilon), (vector.y - median.y) / (spread_y + epsilon)});
 }
 
-/// One vector of a grid under validation.
+/// Vector of a grid under validation.
 struct GridVector {
-  Vec2d displacement;                   ///< predictor included [px]; means nothing where masked or invalid
-  Vec2d predictor;                      ///< that the pass was deformed by, at the window's centre [px]
-  Vec2d raw;                            ///< as measured, predictor included [px]; NaN where nothing was
-  std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks, predictor included
+  Vec2d displacement;                   ///< displacement including the predictor [px]; undefined if masked or invalid
+  Vec2d predictor;                      ///< predictor of the pass at the window's centre [px]
+  Vec2d raw;                            ///< as measured, including the predictor [px]; NaN: no measurement
+  std::array<Vec2d, 2> alternatives{};  ///< displacements of the next correlation peaks, including the predictor [px]
   int alternative_count = 0;
-  double correlation = 0.0;  ///< coefficient of the peak that `raw` is [1]
-  double peak_ratio = 0.0;   ///< its height over that of the next peak; 0 where it is not the highest
+  double correlation = 0.0;  ///< coefficient of the peak that gave `raw` [1]
+  double peak_ratio = 0.0;   ///< peak ratio of that peak [1]; 0 if it is not the highest
   Ambiguity ambiguous = Ambiguity::none;
   VectorStatus status = VectorStatus::invalid;
   VectorReason reason = VectorReason::no_signal;
@@ -93,22 +94,23 @@ struct GridVector {
 
 GLADSTONE_HD inline bool is_measured(GridVector const& vector) { return vector.raw.x == vector.raw.x; }
 
-/// When a vector is spurious.
+/// Criteria for spurious vectors.
 struct ValidationRule {
-  double threshold = 2.0;      ///< of the normalised median residual
-  double epsilon_px = 0.1;     ///< its noise level
-  double trusted_ratio = 2.0;  ///< peak ratio from which a window is trusted against its neighbours
+  double threshold = 2.0;      ///< largest normalised median residual [1]
+  double epsilon_px = 0.1;     ///< noise level in the normalised median residual [px]
+  double trusted_ratio = 2.0;  ///< peak ratio from which a vector may deviate from its neighbours [1], see is_trusted()
   double limit_px = std::numeric_limits<double>::infinity();  ///< largest displacement along either axis
-  double least_peak_ratio = 0.0;   ///< below it a vector is spurious whatever its neighbours say
-  double least_correlation = 0.0;  ///< the same for the coefficient of its peak [1]
-  /// Of the residual of whole displacements (is_unlike()); infinite: no test.
+  double least_peak_ratio = 0.0;   ///< lowest peak ratio of a vector, regardless of its neighbours [1]
+  double least_correlation = 0.0;  ///< lowest correlation coefficient of its peak [1]
+  /// Largest normalised median residual of the total displacement, see is_unlike(); infinite: no test.
   double displacement_threshold = std::numeric_limits<double>::infinity();
-  bool replaces = true;  ///< spurious vectors; else they are invalid
+  bool replaces = true;  ///< true: spurious vectors are replaced; false: they are invalid
 };
 
-/// Most by which a trusted window may differ from its neighbours' median [px]. Windows that overlap share dots: did
-/// their displacements differ by more than a dot's size, 2 to 4 px, the dots of either would not agree on one peak.
-/// What differs by more and has one clear peak is something else: a speck on the window, a reflection.
+/// Largest deviation from the neighbours' median for which a high peak ratio is accepted as evidence [px]. Overlapping
+/// windows share dots: if their displacements differed by more than a dot diameter, 2 to 4 px, the dots of one window
+/// would not agree on one peak. A single clear peak with a larger deviation has another cause, such as a speck or a
+/// reflection.
 constexpr double most_trusted_px = 2.0;
 
 GLADSTONE_HD inline bool is_within(Vec2d displacement, double limit_px) {
@@ -116,9 +118,9 @@ GLADSTONE_HD inline bool is_within(Vec2d displacement, double limit_px) {
   return abs(displacement.x) <= limit_px && abs(displacement.y) <= limit_px;
 }
 
-/// The neighbours of vector i of a grid for which usable(index) holds, in reading order.
-/// @param displacement of a vector by its index
-/// @param offset       receives the neighbours' positions on the grid relative to i
+/// Returns the neighbours of vector i of a grid for which usable(index) is true, in reading order.
+/// @param displacement  value of a vector by its index
+/// @param offset  output: positions of the neighbours on the grid relative to i
 template <class Displacement, class Usable>
 GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Displacement const& displacement,
                                               Usable const& usable, Neighbours<double>& offset) {
@@ -135,10 +137,10 @@ GLADSTONE_HD Neighbours<double> neighbours_of(int i, int columns, int rows, Disp
   return result;
 }
 
-/// The neighbours less the slopes of the plane that fits them best (least squares); as they are where all lie in one
-/// line.
+/// Subtracts the slopes of the least-squares plane from the neighbours' values; returns them unchanged if all
+/// neighbours are on one line.
 GLADSTONE_HD inline Neighbours<double> without_slope(Neighbours<double> neighbours, Neighbours<double> const& offset) {
-  // normal equations with the mean taken out; the offsets are whole, so that the determinant is exact
+  // Normal equations without the mean. The offsets are integers, so the determinant is exact.
   double const n = neighbours.count;
   Vec2d sum, value_sum;
   double xx = 0.0, xy = 0.0, yy = 0.0;
@@ -164,28 +166,27 @@ GLADSTONE_HD inline Neighbours<double> without_slope(Neighbours<double> neighbou
   return neighbours;
 }
 
-/// Fewest neighbours by which a vector can be judged.
+/// Smallest number of neighbours for the median test.
 constexpr int fewest_neighbours = 3;
 
 GLADSTONE_HD inline bool is_sound(VectorStatus status) {
   return status == VectorStatus::valid || status == VectorStatus::replaced;
 }
 
-/// Whether a vector's correlation speaks for it, so that it need not agree with its neighbours: a peak that is alone,
-/// and a displacement that windows beside each other can have. Chance peaks have rivals: of those that win over the
-/// true one in noise 19 of 20 are less than twice as high as the next, of true ones in clean images 1 in 50 (windows of
-/// 16 px, five dots).
+/// Returns whether the correlation of a vector outweighs a deviation from its neighbours: its peak ratio is high, it is
+/// not ambiguous, and the deviation is at most most_trusted_px. In windows of 16 px with five dots, 19 of 20 random
+/// peaks that exceed the true peak in noise have a peak ratio below 2; of the true peaks in clean images, 1 in 50.
 GLADSTONE_HD inline bool is_trusted(GridVector const& vector, Neighbours<double> const& neighbours,
                                     ValidationRule const& rule) {
   return vector.peak_ratio >= rule.trusted_ratio && vector.ambiguous == Ambiguity::none &&
          length(vector.displacement - vector.predictor - neighbours.median()) <= most_trusted_px;
 }
 
-/// A vector's usable neighbours, as what their pass added to its predictor and as displacements.
+/// Usable neighbours of a vector: their displacements and the increments that the pass added to the predictor.
 struct Surroundings {
-  Neighbours<double> offset;  ///< on the grid; filled while the next is made
+  Neighbours<double> offset;  ///< positions on the grid relative to the vector
   Neighbours<double> increment;
-  Neighbours<double> displacement;  ///< only where some are missing
+  Neighbours<double> displacement;  ///< filled only if some of the eight neighbours are missing
 
   template <class Usable>
   GLADSTONE_HD Surroundings(GridVector const* vectors, int i, int columns, int rows, Usable const& usable)
@@ -200,9 +201,10 @@ struct Surroundings {
   GLADSTONE_HD bool is_whole() const { return increment.count == Neighbours<double>::capacity; }
 };
 
-/// Whether a displacement agrees with those around it: what the pass added does. Where neighbours are missing (at the
-/// rim), their median is off by the local gradient, and the predictor is continued from further inside: there it also
-/// agrees that agrees with the neighbours' displacements, or lies on the plane of either.
+/// Median test: returns whether a displacement agrees with its neighbours. The increments to the predictor are
+/// compared. If neighbours are missing (at the border), their median is biased by the local gradient and the predictor
+/// is extrapolated; then the displacement also agrees if it passes the test for the total displacements, or for either
+/// quantity without its slopes.
 GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surroundings const& around,
                                 ValidationRule const& rule) {
   auto const is_near = [&](Vec2d value, Neighbours<double> const& neighbours) {
@@ -215,14 +217,14 @@ GLADSTONE_HD inline bool agrees(Vec2d displacement, Vec2d predictor, Surrounding
                                 is_near(displacement, without_slope(around.displacement, around.offset)));
 }
 
-/// A window whose correlation is below this part of its neighbours' median correlates worse than they do.
+/// Fraction of the neighbours' median correlation below which a window correlates worse than they do.
 constexpr double as_correlated = 0.9;
 
-/// Whether a displacement as a whole differs from those around it, and its window correlates worse than theirs. A gross
-/// error of an earlier pass is in the predictor, and what the last pass adds to it is small: the median test of what it
-/// adds finds nothing. Gradients as steep as the grid is fine make whole displacements differ, too, but leave a window
-/// as correlated as those beside it. At the rim, where the median is off by the gradient, the neighbours less their
-/// slope must say so as well.
+/// Returns whether a total displacement deviates from its neighbours and its window also correlates worse than theirs.
+/// A gross error of an earlier pass is contained in the predictor, and the last increment is small, so that the median
+/// test of the increments does not detect it. Gradients as steep as the grid is fine cause deviating displacements,
+/// too, but no lower correlation. At the border, where the median is biased by the gradient, the test must also fail
+/// for the neighbours without their slopes.
 template <class Usable>
 GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int rows, ValidationRule const& rule,
                             Usable const& usable) {
@@ -245,11 +247,11 @@ GLADSTONE_HD bool is_unlike(GridVector const* vectors, int i, int columns, int r
   return vectors[i].correlation < as_correlated * correlation.median().x;
 }
 
-/// What vectors are judged by, one after the other: those that the first takes out no longer speak for others.
+/// Successive tests of a grid: vectors rejected by the first no longer count as neighbours in the second.
 enum class Judgement { increments, displacements };
 
-/// The test that a valid vector i fails: its peak is too low or too much like the next, or it does not agree with its
-/// valid neighbours (validate_vectors).
+/// Returns the test that a valid vector i fails: peak ratio, correlation or agreement with its valid neighbours; for
+/// Judgement::displacements, only is_unlike(). See validate_vectors().
 GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int columns, int rows,
                                            ValidationRule const& rule, Judgement by) {
   GridVector const& vector = vectors[i];
@@ -266,18 +268,19 @@ GLADSTONE_HD inline FailedTest failed_test(GridVector const* vectors, int i, int
   return stands ? FailedTest::none : FailedTest::median;
 }
 
-/// The judgements that a rule asks for.
+/// Returns the number of successive tests that a rule requires.
 GLADSTONE_HD inline int judgements(ValidationRule const& rule) {
   return rule.displacement_threshold < std::numeric_limits<double>::infinity() ? 2 : 1;
 }
 
-/// What a spurious vector is replaced by, and where it is from.
+/// Replacement of a spurious vector: its value and origin.
 struct VectorReplacement {
   Vec2d value;
   VectorReason reason;
 };
 
-/// Finds what replaces the spurious vector i. @return false where too few neighbours are sound
+/// Finds the replacement of the spurious vector i. @return false if it has fewer than fewest_neighbours sound
+/// neighbours
 GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int columns, int rows,
                                           ValidationRule const& rule, VectorReplacement& found) {
   GridVector const& vector = vectors[i];
@@ -285,7 +288,7 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   Surroundings const around(vectors, i, columns, rows, usable);
   if (around.increment.count < fewest_neighbours) return false;
   if (is_unlike(vectors, i, columns, rows, rule,
-                usable)) {  // its predictor is wrong, and so is all that was found by it
+                usable)) {  // the predictor is wrong, and so are all peaks found with it
     Neighbours<double> offset;
     Neighbours<double> const displacement = neighbours_of(
         i, columns, rows, [&](int k) { return vectors[k].displacement; }, usable, offset);
@@ -295,7 +298,7 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   found = {around.is_whole() ? vector.predictor + around.increment.median()
                              : without_slope(around.displacement, around.offset).median(),
            VectorReason::neighbours};
-  // where neighbours decide nothing no other peak is better, nor where even this one is too low
+  // Without a median test secondary peaks cannot be judged; and if the main peak is too low, they are as well.
   if (!(rule.threshold < std::numeric_limits<double>::infinity()) || vector.correlation < rule.least_correlation)
     return true;
   for (int k = vector.alternative_count - 1; k >= 0; --k)
@@ -304,7 +307,7 @@ GLADSTONE_HD inline bool find_replacement(GridVector const* vectors, int i, int 
   return true;
 }
 
-/// Takes a spurious vector out, and puts what replaces it in its place. The limit binds replacements, too.
+/// take_out() marks a vector as spurious; replace() stores its replacement, which is invalid beyond the limit.
 GLADSTONE_HD inline void take_out(GridVector& vector, FailedTest failed) {
   vector.status = VectorStatus::invalid;
   vector.reason = VectorReason::not_replaced;
@@ -318,7 +321,7 @@ GLADSTONE_HD inline void replace(GridVector& vector, VectorReplacement const& by
   if (!allowed) vector.failed = FailedTest::none;
 }
 
-/// Finds what fills the unknown node i from the known around it. @return false where there is none
+/// Finds the value of the unknown node i as the median of its known neighbours. @return false if it has none
 template <class Known>
 GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows, Known const& known, Vec2d& value) {
   Neighbours<double> offset;
@@ -329,26 +332,25 @@ GLADSTONE_HD bool find_filling(Vec2d const* nodes, int i, int columns, int rows,
   return true;
 }
 
-/// The middle of three nodes in a line after averaging. @param part of its value that comes from the two others
+/// Weighted mean of three nodes in a line. @param part  total weight of the two outer nodes
 GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, double part) {
   return 0.5 * part * (before + after) + (1.0 - part) * middle;
 }
 
-/// Finds spurious vectors among the valid ones of a grid, row by row, and replaces them: by the next correlation peak
-/// that agrees with the sound neighbours, else by their median (status replaced); where too few neighbours are sound,
-/// the median is beyond the limit, or the rule says not to replace, invalid. What is judged is what a pass adds to its
-/// predictor: there steep gradients are already taken off; at the rim, where the predictor is continued from further
-/// inside, also the sum (agrees()), and the median there is that of the displacements less their plane. A vector with
-/// fewer than three neighbours is left as it is, and so is one whose window is_trusted(): where structures are as fine
-/// as the grid, the median cuts their crests off. Then, where the rule says so, whole displacements are judged alike
-/// (is_unlike()). The result does not depend on any order.
+/// Finds spurious vectors among the valid ones of a grid, and replaces them.
+/// The increments to the predictor are tested, which no longer contain steep gradients; see agrees() for the border. A
+/// spurious vector is replaced by the highest secondary peak that agrees with the sound neighbours, otherwise by their
+/// median; its status becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
+/// the rule does not allow replacements. Vectors with fewer than three neighbours and those accepted by is_trusted()
+/// remain unchanged: the median would clip the maxima of structures as fine as the grid. Then, if the rule requires it,
+/// total displacements are tested by is_unlike(). The result does not depend on the order of the vectors.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
-/// Displacement at every node, for a predictor: masked and invalid ones are filled from their neighbours' medians, from
-/// the rim inwards; zero everywhere where the grid has no vector at all.
+/// Returns the displacement at every node, for a predictor. Masked and invalid nodes are filled with the median of
+/// their neighbours, from the border of each gap inwards; all values are zero if the grid has no sound vector.
 std::vector<Vec2d> filled_displacement(std::span<GridVector const> vectors, int columns);
 
-/// A light 3x3 average, smoothed() along each axis, left out across the rim, so that linear fields pass unchanged.
+/// Smooths the nodes by smoothed() along each axis, except across the border, so that linear fields remain unchanged.
 std::vector<Vec2d> smoothed_displacement(std::span<Vec2d const> nodes, int columns, double part);
 
 }  // namespace gladstone

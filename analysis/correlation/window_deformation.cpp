@@ -15,18 +15,18 @@ namespace {
 constexpr std::size_t rows_per_chunk = 8;
 constexpr std::size_t pixels_per_chunk = std::size_t{1} << 16;
 
-/// The extremes of finite grey levels.
+/// Range of the finite grey levels of an image.
 struct GreyLevels {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
-  bool gaps = false;  ///< whether some are not finite
+  bool gaps = false;  ///< true if some levels are not finite
 
   void include(GreyLevels const& other) {
     low = std::min(low, other.low);
     high = std::max(high, other.high);
     gaps = gaps || other.gaps;
   }
-  /// Takes `level` off the values, scales them, and looks at them on the way.
+  /// Writes (value - level) * scale for each value and extends the range by the values.
   void take(double const* values, std::size_t count, double level, double scale, float* out) {
     constexpr std::size_t lanes = 16;
     double least[lanes], most[lanes], zero[lanes] = {};
@@ -35,7 +35,7 @@ struct GreyLevels {
     auto const look = [&](double value, std::size_t l) {
       least[l] = value < least[l] ? value : least[l];
       most[l] = value > most[l] ? value : most[l];
-      zero[l] += value - value;  // NaN from the first on that is not finite
+      zero[l] += value - value;  // NaN if any value is not finite
     };
     std::size_t i = 0;
     for (; i + lanes <= count; i += lanes)
@@ -49,7 +49,7 @@ struct GreyLevels {
     }
     GreyLevels seen;
     for (std::size_t l = 0; l < lanes; ++l) seen.include({least[l], most[l], !(zero[l] == 0.0)});
-    if (seen.gaps) {  // the extremes may be infinite: once more, of the finite ones
+    if (seen.gaps) {  // The extremes may be infinite: repeat with the finite values only.
       seen = {.gaps = true};
       for (i = 0; i < count; ++i)
         if (std::isfinite(values[i])) seen.include({values[i], values[i]});
@@ -58,9 +58,10 @@ struct GreyLevels {
   }
 };
 
-/// Some thousand grey levels, evenly taken.
+/// Returns the range of about 4096 evenly spaced pixels of each frame.
 GreyLevels some_levels(Image<double> const& reference, Image<double> const& flow) {
-  std::size_t const step = std::max<std::size_t>(1, reference.size() / 4096) | 1;  // odd: not always the same column
+  std::size_t const step =
+      std::max<std::size_t>(1, reference.size() / 4096) | 1;  // odd, so that samples are not always in the same columns
   GreyLevels some;
   for (std::size_t i = 0; i < reference.size(); i += step)
     for (double const value : {reference.data()[i], flow.data()[i]})
@@ -68,13 +69,13 @@ GreyLevels some_levels(Image<double> const& reference, Image<double> const& flow
   return some;
 }
 
-/// The power of two that brings a range of levels to 1 .. 2; 1 where there is none.
+/// Returns the power of two that scales a range of levels to 1 .. 2; 1 if the range is zero or not finite.
 double scale_of(double range) {
   bool const any = range > 0.0 && std::isfinite(range);
   return any ? std::ldexp(1.0, std::clamp(-std::ilogb(range), -1000, 1000)) : 1.0;
 }
 
-/// Puts a level where pixels are not finite, and notes which are.
+/// Replaces non-finite pixels by a level, and marks the pixels that are known in both frames.
 void fill_gaps(ImagePair& pair, Image<double> const& reference, Image<double> const& flow, float level) {
   pair.available.resize(reference.size());
   for (std::size_t i = 0; i < reference.size(); ++i) {
@@ -92,10 +93,10 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   ImagePair pair;
   pair.columns = reference.columns();
   pair.rows = reference.rows();
-  // a level between the extremes, taken off in double, keeps faint contrast on a bright ground in float; a power of
-  // two, which changes no digit, brings contrasts near 1, so that products of four levels stay within float's range,
-  // and the terms of energies beside weights in one transform. Some levels tell both: all might differ by more, which
-  // does no harm up to a hundredfold.
+  // Subtracting a mid-range level in double preserves faint contrast on a bright background in float. Scaling by a
+  // power of two, which is exact, brings the contrast near 1, so that products of four levels do not overflow, and
+  // energies and weights are of similar magnitude in a joint transform. Both values are estimated from a sample of
+  // pixels; the full range may be up to a hundred times larger.
   GreyLevels const some = some_levels(reference, flow);
   bool const any = some.low <= some.high;
   double const level = any ? 0.5 * (some.low + some.high) : 0.0;
@@ -119,7 +120,7 @@ ImagePair make_image_pair(Image<double> const& reference, Image<double> const& f
   double const range = all.low <= all.high ? all.high - all.low : 0.0;
   if (!(range * scale <= 2.0 * most_beyond) || (range > 0.0 && range * scale < 1.0)) scale = take_all(scale_of(range));
   pair.contrast = static_cast<float>(range * scale);
-  // of all levels, whichever was taken off
+  // middle of the full range, relative to the subtracted level
   float const middle = range > 0.0 ? static_cast<float>((0.5 * (all.low + all.high) - level) * scale) : 0.0f;
   if (all.gaps) fill_gaps(pair, reference, flow, middle);
   return pair;
@@ -153,7 +154,7 @@ void DensePredictor::row(int image_row, std::span<float> u, std::span<float> v) 
     line_u[i] = static_cast<float>(sum.x);
     line_v[i] = static_cast<float>(sum.y);
   }
-  // between two nodes the same four count
+  // All pixels between two nodes use the same four nodes.
   std::size_t const all = column_first_.size();
   for (std::size_t begin = 0, end = 0; begin < all; begin = end) {
     int const first = column_first_[begin];

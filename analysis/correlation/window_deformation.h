@@ -13,25 +13,28 @@
 
 namespace gladstone {
 
-/// Two images as a correlation pass reads them, row by row, with their joint grey level removed.
+/// Image pair in the form used by a correlation pass: row by row, in float, with a common grey level subtracted and
+/// scaled by a power of two.
 struct ImagePair {
   int columns = 0;
   int rows = 0;
   UnsetVector<float> reference;
   UnsetVector<float> flow;
-  UnsetVector<float> available;  ///< 1 where both are known, 0 elsewhere; empty: everywhere
-  float contrast = 0.0f;         ///< largest minus smallest grey level of the two images
+  UnsetVector<float> available;  ///< 1 if both images are known, otherwise 0; empty: known everywhere
+  float contrast = 0.0f;         ///< scaled range of the grey levels of both images
 };
 
-/// A displacement known at the nodes of a grid, at every pixel: cubic convolution (Keys, IEEE Trans. ASSP 29 (1981)
-/// 1153) between the nodes, straight lines beyond the outermost, so that linear fields are reproduced everywhere.
+/// Interpolates a displacement from the nodes of a grid to every pixel: cubic convolution (Keys, IEEE Trans. ASSP 29
+/// (1981) 1153) between the nodes, linear extrapolation beyond the outermost, so that linear fields are reproduced
+/// everywhere.
 class DensePredictor {
  public:
-  /// @param nodes displacement [px] at grid.centre(i), all finite; grid.size() of them
+  /// @param nodes  displacement at grid.centre(i) [px], grid.size() finite values
   DensePredictor(InterrogationGrid const& grid, std::span<Vec2d const> nodes, int image_columns, int image_rows);
 
   Vec2d at(Vec2d position_px) const { return view().at(position_px); }
-  /// Displacement at every pixel centre of an image row. @param u, v one value per column
+  /// Computes the displacement at every pixel centre of an image row.
+  /// @param u, v  output: one value per column [px]
   void row(int image_row, std::span<float> u, std::span<float> v) const;
 
   PredictorView view() const { return {grid_, ghosts_, columns_, rows_, nodes_.data()}; }
@@ -39,21 +42,21 @@ class DensePredictor {
  private:
   InterrogationGrid grid_;
   int ghosts_;
-  int columns_;  // with the ghost nodes
+  int columns_;  // including the ghost nodes
   int rows_;
   std::vector<Vec2d> nodes_;
-  std::vector<int> column_first_;         // of the four nodes that count at a pixel column
-  std::vector<float> column_weights_[4];  // of each of them, for every pixel column
+  std::vector<int> column_first_;         // [image column] first of the four nodes
+  std::vector<float> column_weights_[4];  // [node][image column]
 };
 
-/// One pixel of a deformed pair.
+/// Pixel of a deformed pair.
 struct DeformedPixel {
   float reference;
   float flow;
   float available;
 };
 
-/// Whether (x, y) [px] is known: 1 inside an image where known(column, row) of the nearest pixel is, else 0.
+/// Returns known(column, row) of the pixel nearest to (x, y) [px]; 0 outside the image.
 template <class Known>
 GLADSTONE_HD float known_at(float x, float y, int columns, int rows, Known const& known) {
   auto const nearest = [](float position, int count) {
@@ -65,9 +68,9 @@ GLADSTONE_HD float known_at(float x, float y, int columns, int rows, Known const
   return inside ? known(nearest(x, columns), nearest(y, rows)) : 0.0f;
 }
 
-/// Pixel (i, j) of reference(x - d/2) and flow(x + d/2).
-/// @param u, v  the displacement d there [px]
-/// @param known 1 where both original images are known at a pixel (column, row), 0 elsewhere
+/// Returns pixel (i, j) of reference(x - d/2) and flow(x + d/2).
+/// @param u, v  displacement d at the pixel [px]
+/// @param known  returns 1 if both original images are known at a pixel (column, row), otherwise 0
 template <int degree, class Known>
 GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, BsplineView<float> const& flow, int i,
                                           int j, float u, float v, Known const& known) {
@@ -80,19 +83,20 @@ GLADSTONE_HD DeformedPixel deformed_pixel(BsplineView<float> const& reference, B
           in_reference < in_flow ? in_reference : in_flow};
 }
 
-/// Deforms both images of a pair by half a displacement each, in opposite directions (Scarano, Meas. Sci. Technol. 13
-/// (2002) R1; Wereley & Meinhart, Exp. Fluids 31 (2001) 258): a pattern that moved by exactly the predictor coincides
-/// in the two deformed images, and what is left over is measured at mid-position, to second order in time.
+/// Deforms both images of a pair by half the displacement each, in opposite directions (Scarano, Meas. Sci. Technol. 13
+/// (2002) R1; Wereley & Meinhart, Exp. Fluids 31 (2001) 258). A pattern displaced by exactly the predictor coincides in
+/// both deformed images. The residual displacement belongs to the mid-position and is second-order accurate in time.
 class PairDeformer {
  public:
-  /// @param degree of the B-spline, 3 or 5, or windowed_sinc. Pixels that are not finite count as unknown.
+  /// Pixels that are not finite count as unknown.
+  /// @param degree  degree of the B-spline, 3 or 5, or windowed_sinc
   PairDeformer(Image<double> const& reference, Image<double> const& flow, int degree);
 
-  /// The pair: reference(x - d(x)/2) and flow(x + d(x)/2) with d the predictor [px].
+  /// Returns the deformed pair reference(x - d(x)/2) and flow(x + d(x)/2), with d the predictor [px].
   ImagePair deform(DensePredictor const& predictor) const;
-  /// The same into a pair that may hold an earlier one: its memory is used again.
+  /// Like deform() above, reusing the memory of an earlier result.
   void deform(DensePredictor const& predictor, ImagePair& pair) const;
-  /// The pair as it was taken.
+  /// Pair without deformation.
   ImagePair const& original() const { return original_; }
 
  private:
@@ -102,7 +106,8 @@ class PairDeformer {
   BsplineImage<float> flow_;
 };
 
-/// The pair as it was taken.
+/// Converts two images to an ImagePair without deformation. Pixels that are not finite are filled with the mid-range
+/// level and marked as unknown.
 ImagePair make_image_pair(Image<double> const& reference, Image<double> const& flow);
 
 }  // namespace gladstone

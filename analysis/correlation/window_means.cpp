@@ -6,7 +6,7 @@
 namespace gladstone {
 namespace {
 
-/// sum[i] += weight value[i]. @pre count is a multiple of lane_count
+/// Adds weight * value[i] to sum[i]. @pre count is a multiple of lane_count
 void add_row(float weight, float const* value, float* sum, int count) {
   for (int i = 0; i < count; i += lane_count)
     store_lanes(sum + i, load_lanes(sum + i) + weight * load_lanes(value + i));

@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// sum ln sigma + e^2/(2 sigma^2) and, where wanted, its derivatives.
+/// Returns the negative log-likelihood sum ln sigma + e^2/(2 sigma^2), and optionally its derivatives.
 double unlikelihood(std::span<UncertaintySample const> samples, Eigen::VectorXd const& c, Eigen::VectorXd* gradient,
                     Eigen::MatrixXd* curvature) {
   double sum = 0.0;
@@ -74,7 +74,7 @@ UncertaintyCombination fit_combination(std::span<UncertaintySample const> sample
                                        std::vector<std::string> const& methods) {
   GLADSTONE_EXPECTS(samples.size() > methods.size());
   Eigen::Index const size = static_cast<Eigen::Index>(methods.size()) + 1;
-  // from the mean of all logarithms on, at the scale that is right for them
+  // Start from the mean of all logarithms, with the optimal scale for it.
   Eigen::VectorXd c = Eigen::VectorXd::Constant(size, 1.0 / static_cast<double>(methods.size())), gradient;
   c(0) = 0.0;
   double squares = 0.0;

@@ -7,13 +7,13 @@
 
 #include "render/base/vec.h"
 
-/// One uncertainty from several: what they tell together, learnt where errors are known.
+/// Combination of several uncertainty estimates into one, calibrated with known errors.
 namespace gladstone {
 
-/// ln sigma = constant + sum over methods of weight times ln sigma of the method [px]. Rajendran, Bhattacharya, Bane &
-/// Vlachos, Meas. Sci. Technol. 32 (2021) 104002, combine methods by weights too, which they find anew in every window
-/// by perturbing its images; ours are learnt once from errors that are known, and the sum is of logarithms, so that
-/// sigma stays positive and a scale that is wrong by a factor does no harm.
+/// Log-linear combination: ln sigma = constant + sum over methods of weight times ln sigma of the method [px].
+/// Rajendran, Bhattacharya, Bane & Vlachos, Meas. Sci. Technol. 32 (2021) 104002, also use a weighted combination, but
+/// determine the weights for every window by perturbing its images. Here they are fitted once to known errors, and
+/// logarithms are summed, so that sigma is positive and a method's constant scale error is compensated.
 struct UncertaintyCombination {
   double constant = 0.0;
   struct Term {
@@ -22,32 +22,33 @@ struct UncertaintyCombination {
   };
   std::vector<Term> terms;
 
-  /// A term that is not finite is left out, and the others' weights grow by one factor until their sum is what it was:
-  /// a sigma that all methods scale alike then still scales so. NaN where the weights that are left add up to nothing.
-  /// @param log_sigma of the terms, in their order
+  /// Returns the combined ln sigma. Terms that are not finite are omitted, and the remaining weights are multiplied by
+  /// a common factor that restores their sum; a factor common to all methods' sigma then has the same effect as before.
+  /// NaN if the remaining weights do not have a positive sum.
+  /// @param log_sigma  ln sigma of each method, in the order of `terms`
   double log_sigma(std::span<double const> log_sigma) const;
 };
 
-/// Reads "term,coefficient" lines, the first of them the header, "constant" among the terms.
-/// @pre every line is of that form
+/// Parses lines of the form "term,coefficient" after a header line; the term "constant" is the constant.
+/// @pre every line has this form
 UncertaintyCombination parse_combination(std::string_view text);
 
-/// The combination that data/uncertainty/combination.csv holds, built into the program.
+/// Returns the combination of data/uncertainty/combination.csv, which is compiled into the program.
 UncertaintyCombination const& shipped_combination();
 
-/// What a combination is learnt from: a component of a vector.
+/// Training sample of the combination: one component of a vector.
 struct UncertaintySample {
-  std::vector<double> log_sigma;  ///< by every method that is combined
+  std::vector<double> log_sigma;  ///< ln sigma by every method [px]
   double error_px;
 };
 
-/// The constant and weights under which the errors are likeliest, if they are normal with the combined sigma: the
-/// minimum of sum ln sigma + e^2/(2 sigma^2), which is convex in them, by Newton's method.
-/// @pre more samples than methods, some error is not zero
+/// Fits the constant and the weights by maximum likelihood, for normally distributed errors with the combined sigma:
+/// minimises sum ln sigma + e^2/(2 sigma^2), which is convex in the coefficients, by Newton's method.
+/// @pre more samples than methods; at least one error is not zero
 UncertaintyCombination fit_combination(std::span<UncertaintySample const> samples,
                                        std::vector<std::string> const& methods);
 
-/// "term,coefficient" lines that parse_combination() reads.
+/// Returns a header and "term,coefficient" lines in the format of parse_combination().
 std::string combination_text(UncertaintyCombination const& combination);
 
 }  // namespace gladstone

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t windows_per_piece = 64;
 
-/// The pixels of a window, eight of a row at a time.
+/// Pixels of a window, eight of a row at a time.
 struct LanePixels {
   ImagePair const& pair;
-  float scale;                     ///< of grey levels
-  std::vector<float> const& axis;  ///< weights along either axis, zeros behind the window up to a multiple of eight
-  int first_x, first_y;            ///< where the window begins in the image
+  float scale;                     ///< factor applied to grey levels
+  std::vector<float> const& axis;  ///< weights along either axis, followed by zeros up to a multiple of eight
+  int first_x, first_y;            ///< image position of the window's first pixel
 
   MatchedPixels<FloatLanes> at(int x, int row) const {
     int const column = first_x + x, image_row = first_y + row;
@@ -31,7 +31,7 @@ struct LanePixels {
   }
 
  private:
-  /// The same across the image's border.
+  /// Returns the pixels at a position that extends beyond the image; those outside have weight 0.
   MatchedPixels<FloatLanes> cut_off(int column, long long from, FloatLanes weight) const {
     MatchedPixels<FloatLanes> pixels{};
     for (int l = 0; l < lane_count; ++l) {
@@ -45,7 +45,7 @@ struct LanePixels {
   }
 };
 
-/// @param memory WindowStatistics::values(side)
+/// Computes the sums over one window. @param memory  scratch memory of WindowStatistics::values(side) floats
 StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<float>& memory) {
   WindowStatistics<EightColumns> const window{memory.data(), side, 0, 1};
   window.clear();
@@ -57,7 +57,7 @@ StatisticsSums sums_of_window(LanePixels const& pixels, int side, std::vector<fl
   return sums;
 }
 
-/// A power of two that brings grey levels near 1, so that their fourth powers are numbers, too.
+/// Returns a power of two that scales grey levels to about 1, so that their fourth powers do not overflow.
 float scale_of(float contrast) { return contrast > 0.0f ? std::ldexp(1.0f, -std::ilogb(contrast)) : 1.0f; }
 
 }  // namespace

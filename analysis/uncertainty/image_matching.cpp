@@ -8,7 +8,8 @@
 namespace gladstone {
 namespace {
 
-/// Fewest dots besides one, on the mean of a window and its neighbours, whose scatter says something.
+/// Minimum degrees of freedom (dots minus one), averaged over a window and its neighbours, for an estimate of the
+/// scatter.
 constexpr double least_freedom = 0.25;
 
 }  // namespace
@@ -29,7 +30,7 @@ std::vector<Vec2d> image_matching(UncertaintyInput const& input) {
       weights += weight;
       squares += weight * Vec2d{disparity.x * disparity.x, disparity.y * disparity.y};
     }
-    // the mean disparity is what the frames were matched by: of N disparities N - 1 are free
+    // The frames were matched by the mean disparity, which leaves N - 1 degrees of freedom for N disparities.
     freedom[i] = number[i] - 1.0;
     u[i] = number[i] * squares.x / weights;
     v[i] = number[i] * squares.y / weights;

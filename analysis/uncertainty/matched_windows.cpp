@@ -43,7 +43,7 @@ void take_window(ImagePair const& pair, int first_x, int first_y, std::vector<fl
     energy_reference += static_cast<double>(w * window.reference[k]) * (w * window.reference[k]);
     energy_flow += static_cast<double>(w * window.flow[k]) * (w * window.flow[k]);
   }
-  // what the lamp gave more in one frame is no difference between them
+  // Illumination differences between the frames do not count as differences of the pattern.
   if (!(energy_flow > 0.0)) return;
   float const gain = static_cast<float>(std::sqrt(energy_reference / energy_flow));
   for (float& value : window.flow) value *= gain;

@@ -8,22 +8,22 @@
 
 namespace gladstone {
 
-/// What the windows of the last pass have in common.
+/// Size and weights common to the windows of the last pass.
 struct WindowShape {
-  int side;                 ///< pixels along an axis
-  std::vector<float> axis;  ///< weights along either; zeros behind them, up to a multiple of eight
+  int side;                 ///< side of the support [px]
+  std::vector<float> axis;  ///< weights along either axis, followed by zeros up to a multiple of eight
 };
 WindowShape window_shape(CorrelationSettings const& settings, InterrogationGrid const& grid);
 
-/// Where in the image a vector's window begins.
+/// Returns the image position of the first pixel of a vector's window [px].
 Vec2<int> first_pixel(InterrogationGrid const& grid, std::size_t vector, int side);
 
-/// The pixels of one window of matched frames, row by row.
+/// Pixels of one window of the matched frames, row by row.
 struct MatchedWindow {
-  int side;                      ///< pixels along an axis
-  std::vector<float> reference;  ///< less the weighted mean; 0 outside the image
-  std::vector<float> flow;       ///< likewise, and made as bright as the reference: equal sums of squares, weighted
-  std::vector<float> weight;     ///< that the correlator puts on either frame; 0 outside the image and where unknown
+  int side;                      ///< side of the support [px]
+  std::vector<float> reference;  ///< grey levels minus the weighted mean; 0 where the weight is 0
+  std::vector<float> flow;       ///< likewise, scaled to the same weighted sum of squares as the reference
+  std::vector<float> weight;     ///< weights of the correlator on either frame; 0 outside the image and where unknown
 
   std::size_t at(int i, int j) const { return static_cast<std::size_t>(j) * side + i; }
 };
@@ -32,10 +32,10 @@ struct MatchedWindow {
 void visit_matched_windows(UncertaintyInput const& input,
                            std::function<void(std::size_t vector, MatchedWindow const& window)> const& visit);
 
-/// mean_of_neighbours() of every value.
+/// Applies mean_of_neighbours() to every value.
 std::vector<double> averaged_over_neighbours(std::vector<double> const& values, InterrogationGrid const& grid);
 
-/// Standard uncertainties from the variances along both axes, averaged so [px].
+/// Returns the standard uncertainties from the variances along both axes, averaged over neighbours [px].
 std::vector<Vec2d> sigma_of_variances(std::vector<double> const& u, std::vector<double> const& v,
                                       InterrogationGrid const& grid);
 

@@ -9,13 +9,14 @@
 namespace gladstone {
 namespace {
 
-/// The number of dots stands for the mutual information of the authors, who fit both to synthetic images; this factor
-/// is fitted to the errors of default passes over dots of 3 px at 5 % noise.
+/// Empirical factor, fitted to the errors of the default passes for dots of 3 px at 5 % noise. The number of dots
+/// replaces the mutual information of the authors, who fit both to synthetic images.
 constexpr double calibration = 0.22;
-/// Least variance of a displacement [px^2]: peaks of clean images are as narrow as the filter, or narrower by rounding.
+/// Lower bound of the displacement variance [px^2]: peaks of noise-free images are as narrow as the filter, or narrower
+/// by rounding.
 constexpr double least_variance = 1e-4;
 
-/// Variance of a Gaussian through three samples, at most 16 px^2; NaN where they have none.
+/// Returns the variance of the Gaussian through three samples, at most 16 px^2; NaN if a sample is not positive.
 double variance_of_peak(double before, double centre, double after) {
   if (!(before > 0.0 && after > 0.0 && centre > 0.0)) return std::numeric_limits<double>::quiet_NaN();
   double const curvature = 2.0 * std::log(centre) - std::log(before) - std::log(after);
@@ -28,7 +29,7 @@ std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   double const of_filter = robust_phase_diameter_px * robust_phase_diameter_px / 8.0;
   std::vector<double> u(input.field.size(), nan), v = u;
-  // what is left over by the matched frames is small: the peak is the highest value about no shift
+  // The residual displacement of matched frames is small, so that the peak is the highest value near shift 0.
   InterrogationJob const job{input.matched, input.grid, window_weighting(input.settings), 2, fit_gauss3, "uncertainty"};
   visit_planes(job, {make_robust_phase_plane}, [&] {
     return [&](std::size_t first, int count, LaneCorrelation&, LanePlane& plane) {

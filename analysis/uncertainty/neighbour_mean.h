@@ -4,8 +4,10 @@
 
 namespace gladstone {
 
-/// Mean of a value on a grid and its neighbours that are known, 3 x 3: variances that a few particles gave scatter.
-/// @param value of grid column and row, NaN where it is not known @return NaN where (column, row) itself is not
+/// Returns the mean of the known values in the 3 x 3 neighbourhood of a grid position. Averaging reduces the scatter of
+/// variances that are estimated from a few particles.
+/// @param value  value(column, row), NaN: unknown
+/// @return NaN if the value at (column, row) itself is unknown
 template <class Value>
 GLADSTONE_HD double mean_of_neighbours(int column, int row, int columns, int rows, Value const& value) {
   double const own = value(column, row);

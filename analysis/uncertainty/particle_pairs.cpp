@@ -7,10 +7,10 @@
 namespace gladstone {
 namespace {
 
-/// Pixels on either side of a dot's own that are compared: all of dots up to 5 px.
+/// Half width of the compared square of pixels around a dot's maximum: covers dots up to 5 px.
 constexpr int reach = 2;
 
-/// Whether a frame has a maximum at most a pixel from (i, j).
+/// Returns whether a frame has a positive maximum at most a pixel from (i, j).
 bool has_dot(MatchedWindow const& w, std::vector<float> const& frame, int i, int j) {
   int x = i, y = j;
   for (int dy = -1; dy <= 1; ++dy)
@@ -26,9 +26,9 @@ bool has_dot(MatchedWindow const& w, std::vector<float> const& frame, int i, int
   return centre > 0.0f;
 }
 
-/// How far a dot at (i, j) stands in the flow frame from where it does in the reference: the shift that takes one
-/// frame's pixels around it to the other's with the least squares of what remains, to first order. Neighbours' light,
-/// which both frames have, adds nothing where frames are equal. Nothing where noise leaves no slopes in common.
+/// Returns the disparity of a dot at (i, j): the shift from frame A to frame B that minimises the sum of squared
+/// differences of the surrounding pixels, to first order. Light of neighbouring dots, present in both frames, does not
+/// contribute if the frames are equal. Returns nullopt if noise dominates the gradients or the disparity exceeds 1 px.
 std::optional<Vec2d> disparity_of_dot(MatchedWindow const& w, int i, int j) {
   auto const slope = [&](std::vector<float> const& frame, int x, int y) {
     return 0.5 * Vec2d{frame[w.at(x + 1, y)] - frame[w.at(x - 1, y)], frame[w.at(x, y + 1)] - frame[w.at(x, y - 1)]};
@@ -37,13 +37,14 @@ std::optional<Vec2d> disparity_of_dot(MatchedWindow const& w, int i, int j) {
   double xx = 0.0, xy = 0.0, yy = 0.0, by_x = 0.0, by_y = 0.0;
   for (int y = j - reach; y <= j + reach; ++y)
     for (int x = i - reach; x <= i + reach; ++x) {
-      // each frame's noise squared would pass for slopes; that of one frame times that of the other does not
+      // Multiply gradients of different frames: the squared gradient of one frame contains its squared noise, the
+      // product does not.
       Vec2d const a = slope(w.reference, x, y), b = slope(w.flow, x, y);
       xx += a.x * b.x;
       xy += 0.5 * (a.x * b.y + a.y * b.x);
       yy += a.y * b.y;
-      // a difference over two pixels is the derivative averaged over these (Simpson), and so must be what it is held
-      // against
+      // A central difference over two pixels is the derivative averaged over them, so the frame difference is averaged
+      // in the same way (Simpson's rule).
       double const here = 4.0 * difference(x, y);
       by_x += 0.5 * (a.x + b.x) * (difference(x - 1, y) + here + difference(x + 1, y)) / 6.0;
       by_y += 0.5 * (a.y + b.y) * (difference(x, y - 1) + here + difference(x, y + 1)) / 6.0;

@@ -6,23 +6,24 @@
 
 namespace gladstone {
 
-/// One dot seen in both matched frames.
+/// Dot that is visible in both matched frames.
 struct ParticleImagePair {
-  Vec2d disparity;  ///< its place in the flow frame minus that in the reference [px]
-  double weight;    ///< product of both images there, times the square of the window's weight
+  Vec2d disparity;  ///< position in frame B minus that in frame A (reference) [px]
+  double weight;    ///< product of both images at the dot, times the squared weight of the window
 };
 
-/// Dots of a window: maxima of the product of both frames, each with a maximum of either frame at most a pixel away,
-/// set apart by least squares of the pixels around. Sciacchitano et al. (2013, section 2) place either maximum by three
-/// points, which of dots that are flat on top, and of dots in their neighbours' light, find noise.
+/// Finds the dots of a window: maxima of the product of both frames with a maximum of each frame at most a pixel away.
+/// Their disparity is determined by a least-squares fit to the surrounding pixels. Sciacchitano et al. (2013, section
+/// 2) instead locate each maximum by three points, which is dominated by noise for flat-topped or overlapping dots.
 void find_particle_pairs(MatchedWindow const& window, std::vector<ParticleImagePair>& pairs);
 
-/// Leaves out pairs whose disparity along either axis is further from the median than 3.5 deviations, which 1.4826
-/// times the median distance from it stands for: where dots overlap, the maxima of the frames may belong to different
-/// ones. Normal disparities lose 1 % of their variance by it, at 2.5 deviations 9 %.
+/// Removes outliers: pairs whose disparity along either axis deviates from the median by more than 3.5 standard
+/// deviations, estimated as 1.4826 times the median absolute deviation. They arise if dots overlap and the maxima in
+/// both frames belong to different dots. For normally distributed disparities, this reduces the variance by 1 % (9 % at
+/// 2.5 standard deviations).
 void leave_out_mismatches(std::vector<ParticleImagePair>& pairs);
 
-/// How many dots of equal weight scatter as much as these: (sum c)^2 / sum c^2.
+/// Returns the equivalent number of dots with equal weights c: (sum c)^2 / sum c^2.
 double effective_number(std::vector<ParticleImagePair> const& pairs);
 
 }  // namespace gladstone

@@ -4,14 +4,13 @@
 
 namespace gladstone {
 
-/// How many times larger the random error of a vector is after all passes than that of the last windows alone. A pass
-/// measures what is left of frames that the pass before deformed, noise of dots included: with the windows' response
-/// H_k(f), the Fourier transform of their squared weights, and the predictor's P_k(f), that of its smoothing
-/// (CorrelationSchedule::smoothing()) and its cubic convolution between nodes, the noise of dots comes out filtered by
-/// A_0 = H_0, A_k = H_k + (1 - H_k) P_(k-1) A_(k-1) (the recursion of Schrijer & Scarano, Exp. Fluids 45 (2008) 927,
-/// with windows that differ), and its variance is that of white noise, integral |A|^2 over integral |H|^2 of the last
-/// pass. What folds over at the predictor's nodes is left out. 1 for a single pass, and for optical flow, which has
-/// none.
+/// Returns the ratio of a vector's random error after all passes to that of a single pass with the last windows.
+/// Each pass measures the residual between frames deformed by the previous pass, including the noise of that pass. With
+/// the response H_k(f) of the windows (Fourier transform of their squared weights) and P_k(f) of the predictor
+/// (CorrelationSchedule::smoothing() and cubic convolution), the noise is filtered by A_0 = H_0, A_k = H_k + (1 - H_k)
+/// P_(k-1) A_(k-1) (recursion of Schrijer & Scarano, Exp. Fluids 45 (2008) 927, with windows that differ between
+/// passes). The squared result is integral |A|^2 over integral |H|^2 of the last pass, for white noise; aliasing at the
+/// predictor's nodes is neglected. The result is 1 for a single pass and for optical flow, which has no passes.
 double amplification_of_passes(CorrelationSettings const& settings);
 
 }  // namespace gladstone

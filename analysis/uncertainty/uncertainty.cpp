@@ -18,10 +18,10 @@ namespace {
 struct NamedUncertainty {
   char const* name;
   UncertaintyMethod estimate;
-  bool on_gpu = false;  ///< whether the correlator of CUDA has it, too
+  bool on_gpu = false;  ///< whether the CUDA correlator supports it
 };
 
-/// Every uncertainty method, one row each.
+/// Table of all uncertainty methods.
 constexpr std::array uncertainties{
     NamedUncertainty{"correlation_statistics", correlation_statistics, true},
     NamedUncertainty{"image_matching", image_matching},
@@ -30,7 +30,7 @@ constexpr std::array uncertainties{
     NamedUncertainty{"combination", combined_uncertainty},
 };
 
-/// Both frames deformed by the whole field, its gaps filled.
+/// Deforms both frames by the whole field, with gaps filled.
 ImagePair matched_frames(DisplacementField const& field, InterrogationGrid const& grid, FramePair const& frames,
                          CorrelationSchedule const& schedule) {
   std::vector<GridVector> vectors(field.size());

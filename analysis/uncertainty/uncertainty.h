@@ -12,56 +12,62 @@
 
 namespace gladstone {
 
-/// A measurement whose uncertainty is asked for.
+/// Input of an uncertainty estimate.
 struct UncertaintyInput {
   DisplacementField const& field;
-  ImagePair const& matched;  ///< both frames deformed by the field, so that they coincide but for errors
+  ImagePair const& matched;  ///< both frames deformed by the field, so that they coincide except for errors
   InterrogationGrid const& grid;
   CorrelationSettings const& settings;
 };
 
-/// Standard uncertainty of each vector of the field [px]; NaN where it cannot be told.
+/// Estimates the standard uncertainty of each vector of the field [px]; NaN: no estimate.
 using UncertaintyMethod = std::vector<Vec2d> (*)(UncertaintyInput const& input);
 
-/// From the sums whose difference shows that a correlation peak is not symmetric: they vanish but for noise, whose
-/// variance is that of their terms and of the terms' covariance with their neighbours. Wieneke, Meas. Sci. Technol. 26
-/// (2015) 074002, eqs. 6 to 12, the sums rearranged so that covariances reach no farther than those of pixels' noise,
-/// times amplification_of_passes(). No factor is fitted.
+/// Estimates the uncertainty from the asymmetry of the correlation peak (correlation statistics). The difference
+/// between the correlation on both sides of the peak vanishes except for noise; its variance follows from its terms and
+/// their covariance with neighbouring pixels. Wieneke, Meas. Sci. Technol. 26 (2015) 074002, Eqs. 6 to 12, with the
+/// sums rearranged so that covariances extend no farther than those of the pixel noise, times
+/// amplification_of_passes(). Contains no fitted factor.
 std::vector<Vec2d> correlation_statistics(UncertaintyInput const& input);
-/// From the distances of paired particle images in the matched frames: their scatter over the root of their number.
-/// Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302, eqs. 5 to 8, the scatter about zero, of a
-/// window's dots and its neighbours', times amplification_of_passes(). Their mean is not counted besides: frames that
-/// were matched by the vectors themselves leave none but by the scatter. No factor is fitted.
+/// Estimates the uncertainty from the disparities of paired particle images in the matched frames: their scatter
+/// divided by the square root of their number. Sciacchitano, Wieneke & Scarano, Meas. Sci. Technol. 24 (2013) 045302,
+/// Eqs. 5 to 8, with the scatter about zero of the dots of a window and its neighbours, times
+/// amplification_of_passes(). The mean disparity is not added, because frames matched by the vectors themselves have
+/// none apart from the scatter. Contains no fitted factor.
 std::vector<Vec2d> image_matching(UncertaintyInput const& input);
-/// From the ratio Q of the highest correlation peak to the next: sigma^2 = (a Q^-b)^2 + c^2, the form of Charonko &
-/// Vlachos, Meas. Sci. Technol. 24 (2013) 065301, eq. 10, without its term for gross errors.
+/// Estimates the uncertainty from the ratio Q of the highest to the second highest correlation peak: sigma^2 = (a
+/// Q^-b)^2 + c^2, the form of Charonko & Vlachos, Meas. Sci. Technol. 24 (2013) 065301, Eq. 10, without its term for
+/// gross errors.
 std::vector<Vec2d> peak_ratio_uncertainty(UncertaintyInput const& input);
-/// From the width of the displacements' probability, which the phase correlation's peak is once the filter's width is
-/// taken off, over the root of the number of particle images. Bhattacharya, Charonko & Vlachos, Meas. Sci. Technol. 29
-/// (2018) 115301, eqs. 6 to 11.
+/// Estimates the uncertainty from the width of the probability distribution of the displacement, divided by the square
+/// root of the number of particle images. The distribution is the peak of the phase correlation minus the width of its
+/// filter. Bhattacharya, Charonko & Vlachos, Meas. Sci. Technol. 29 (2018) 115301, Eqs. 6 to 11.
 std::vector<Vec2d> moment_of_correlation(UncertaintyInput const& input);
 
-/// From the methods before, by weights that were learnt where errors are known: shipped_combination(). Where one of
-/// them tells nothing the others do: UncertaintyCombination::log_sigma().
+/// Combines the methods above with the weights of shipped_combination(). For methods without an estimate see
+/// UncertaintyCombination::log_sigma().
 std::vector<Vec2d> combined_uncertainty(UncertaintyInput const& input);
 
-/// Names of the methods, in the order of their table, without "none".
+/// Returns the names of the methods, without "none".
 std::vector<std::string> uncertainty_methods();
 
-/// Whether the correlator of CUDA estimates it along with the vectors, too. @param method one of these, or "none"
+/// Returns whether the CUDA correlator estimates the uncertainty together with the vectors.
+/// @param method  one of uncertainty_methods(), or "none"
 bool uncertainty_on_gpu(std::string const& method);
 
-/// What is to be known of an uncertainty with these settings: the methods tell what noise does to peaks of linear
-/// correlation in frames that passes have matched, and too little of others (docs/estimators.md). Empty: nothing.
+/// Returns a warning if the uncertainty is underestimated with these settings: the methods describe the effect of noise
+/// on peaks of a linear correlation between frames that were matched in several passes (docs/estimators.md). Empty: no
+/// warning.
 std::string uncertainty_caveat(CorrelationSettings const& settings);
 
-/// Estimates field.sigma_px by settings.uncertainty; leaves the field as it is for "none". Vectors that are neither
-/// valid nor replaced get NaN, and so do replaced ones: what stands there was not measured in their window.
-/// @param field what a correlator gave for the frames with these settings
+/// Estimates field.sigma_px by settings.uncertainty; does nothing for "none". Vectors whose status is not valid get
+/// NaN: replaced vectors were not measured in their own window.
+/// @param field  result of a correlator for these frames and settings
 void estimate_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 
-/// The same after a correlator that may have estimated it along with the vectors, and the pair's verdict. What stands
-/// there stays, unless the verdict has left vectors out since: then none may rest on them, and all are estimated again.
+/// Estimates field.sigma_px if it is empty, or if the decorrelation test has invalidated vectors since. An existing
+/// estimate otherwise remains; after the test all are recomputed, because invalidated vectors must not affect the
+/// deformation of the frames.
 void complete_uncertainty(DisplacementField& field, FramePair const& frames, CorrelationSettings const& settings);
 
 }  // namespace gladstone

@@ -7,11 +7,12 @@
 #include "render/base/host_device.h"
 #include "render/base/vec.h"
 
-/// The sums over one window of matched frames that tell by how much noise moves its correlation peak, by threads that
-/// share memory: the CPU's one thread takes eight columns of pixels at a time, those of a CUDA block one each.
+/// Sums over one window of matched frames for the displacement variance by correlation statistics. They are computed by
+/// cooperating threads: one thread with eight pixel columns at a time on the CPU, threads of a block with one column
+/// each in CUDA.
 namespace gladstone {
 
-/// A column at a time.
+/// Access policy of WindowStatistics for one column at a time.
 struct OneColumn {
   using Value = float;
   static constexpr int count = 1;
@@ -20,47 +21,47 @@ struct OneColumn {
   GLADSTONE_HD static double sum(float value) { return static_cast<double>(value); }
 };
 
-/// Pixels of both frames, one of each column.
+/// Pixels of both frames in one row, for one or several columns.
 template <class Value>
 struct MatchedPixels {
-  Value weight;     ///< that the correlator puts on either frame; 0 where one is not known
-  Value reference;  ///< finite
+  Value weight;     ///< weight of the correlator on either frame; 0 if one is unknown
+  Value reference;  ///< grey levels, always finite
   Value flow;
 };
 
-/// What a window's frames are freed of: their weighted means, and what the lamp gave more in one of them.
+/// Weighted means and relative brightness of a window's frames, which are removed before the sums.
 struct WindowLevels {
-  float reference = 0.0f;  ///< means
+  float reference = 0.0f;  ///< weighted means
   float flow = 0.0f;
-  float flow_gain = 1.0f;  ///< makes the weighted squares of both, means taken off, sum to the same
+  float flow_gain = 1.0f;  ///< factor that gives the mean-free frame B the same weighted sum of squares as frame A
 };
 
 GLADSTONE_HD inline WindowLevels means_of(WindowSums<double> const& sums) {
   return {static_cast<float>(sums.reference / sums.weight), static_cast<float>(sums.flow / sums.weight), 1.0f};
 }
 
-/// @param squares of the reference and of the flow frame
+/// Returns the levels with the gain of frame B. @param squares  weighted sums of squares of frames A (x) and B (y)
 GLADSTONE_HD inline WindowLevels equally_bright(WindowLevels levels, Vec2d squares) {
   using std::sqrt;
   if (squares.y > 0.0) levels.flow_gain = static_cast<float>(sqrt(squares.x / squares.y));
   return levels;
 }
 
-/// Of a window whose frames are A = w a and B = w b, mean-free, equally bright and weighted; s = a + b, d = b - a, and
-/// q = A + B. Two values stand for the axes x and y. The terms of the difference between the correlation on either side
-/// of the peak are t_i = w_i d_i (q_(i-1) - q_(i+1))/2, and p_i = w_i (q_(i-1) - q_(i+1))/2 what each has of the
-/// frames' noise.
+/// Sums over a window with the frames A = w a and B = w b, which are mean-free, equally bright and weighted. With s = a
+/// + b, d = b - a and q = A + B, the terms of the difference between the correlation on both sides of the peak are t_i
+/// = w_i d_i (q_(i-1) - q_(i+1))/2, and the factor of the frames' noise in each term is p_i = w_i (q_(i-1) -
+/// q_(i+1))/2. Arrays contain the values for the x and y axes.
 struct StatisticsSums {
-  double centre{};      ///< of A B
-  double whole{};       ///< of w^2
-  double beside[2]{};   ///< of (A_i B_(i+1) + A_(i+1) B_i)/2
-  double overlap[2]{};  ///< of w_i w_(i+1)
-  double shares[2]{};   ///< of p^2
-  double lost[2]{};     ///< of p_i^2 p_k^2, over neighbours as below
-  double terms[2]{};    ///< of t_i t_k, over neighbours as below
+  double centre{};      ///< sum of A B
+  double whole{};       ///< sum of w^2
+  double beside[2]{};   ///< sum of (A_i B_(i+1) + A_(i+1) B_i)/2
+  double overlap[2]{};  ///< sum of w_i w_(i+1)
+  double shares[2]{};   ///< sum of p^2
+  double lost[2]{};     ///< sum of p_i^2 p_k^2 over neighbours, see WindowStatistics
+  double terms[2]{};    ///< sum of t_i t_k over neighbours, see WindowStatistics
 
   static constexpr int count = 12;
-  /// Calls visit(sum) for each, in one order.
+  /// Calls visit(sum) for each sum, in a fixed order.
   template <class Visit>
   GLADSTONE_HD void each(Visit const& visit) {
     visit(centre);
@@ -75,26 +76,26 @@ struct StatisticsSums {
   }
 };
 
-/// What one thread does for a window's sums between two barriers. No two threads write, nor one writes and another
-/// reads, the same place between two. In order, a barrier after each:
-///  1. clear(), and sum_pixels(), whose sums over all threads give the frames' means;
-///  2. sum_squares(), which make them equally bright;
+/// Contribution of one thread to the sums over a window. Calls of all threads, in this order, with a barrier after
+/// each; between barriers no two threads access the same memory unless both only read:
+///  1. clear(), and sum_pixels(), whose totals over all threads give the means;
+///  2. sum_squares(), whose totals give the gain of frame B;
 ///  3. step(n) for n = 0 .. steps(side) - 1.
-/// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are there, and
-/// multiplied with those around them in step n + 3. Products are summed over neighbours up to two pixels apart along
-/// either axis, those two apart counted by half: terms have no more in common beyond this distance than chance makes,
-/// since the spline that deforms spreads the noise of a pixel over its neighbours, and alternates from there on; what
-/// alternates from pixel to pixel cancels. Products of rows above stand for those below, too.
+/// Row n is weighted in step n, its terms are formed in step n + 2, when the rows above and below are available, and
+/// multiplied by the surrounding terms in step n + 3. Products are summed over neighbours up to two pixels apart along
+/// either axis, with weight one half at two pixels. The spline of the deformation spreads pixel noise over its
+/// neighbours; beyond two pixels the resulting covariance alternates in sign and cancels. Products with rows above are
+/// doubled to include those with rows below.
 template <class Columns>
 struct WindowStatistics {
   using Value = typename Columns::Value;
 
-  float* memory;  ///< values(side)
-  int side;       ///< of the window [px]
-  int thread;     ///< of `threads`, which take Columns::count columns each, and then the next ones
+  float* memory;  ///< values(side) floats
+  int side;       ///< side of the window [px]
+  int thread;     ///< index of this thread, 0 .. threads - 1; threads process interleaved groups of columns
   int threads;
 
-  static constexpr int margin = 8;  ///< columns of zeros on either side; terms reach two
+  static constexpr int margin = 8;  ///< columns of zeros on either side; terms use two of them
   GLADSTONE_HD static int pitch(int side) { return (side + 7) / 8 * 8 + 2 * margin; }
   GLADSTONE_HD static int values(int side) { return rows * pitch(side); }
   GLADSTONE_HD static int steps(int side) { return side + 3; }
@@ -104,8 +105,8 @@ struct WindowStatistics {
       Columns::store(memory + k, Value{});
   }
 
-  /// This thread's share of the weighted sums of both frames.
-  /// @param pixels at(x, row): the MatchedPixels of columns x .. x + Columns::count - 1, weight 0 beyond the window
+  /// Returns this thread's share of the weighted sums of both frames.
+  /// @param pixels  at(x, row): MatchedPixels of columns x .. x + Columns::count - 1, with weight 0 beyond the window
   template <class Pixels>
   GLADSTONE_HD WindowSums<double> sum_pixels(Pixels const& pixels) const {
     WindowSums<double> sums;
@@ -124,7 +125,8 @@ struct WindowStatistics {
     return sums;
   }
 
-  /// This thread's share of the weighted squares of both. @param means of both
+  /// Returns this thread's share of the weighted sums of squares of frames A (x) and B (y). @param means  means of both
+  /// frames
   template <class Pixels>
   GLADSTONE_HD Vec2d sum_squares(Pixels const& pixels, WindowLevels const& means) const {
     Vec2d sums;
@@ -142,7 +144,7 @@ struct WindowStatistics {
     return sums;
   }
 
-  /// @param sums this thread's share of them
+  /// Performs step n. @param sums  this thread's share of the sums
   template <class Pixels>
   GLADSTONE_HD void step(int n, Pixels const& pixels, WindowLevels const& levels, StatisticsSums& sums) const {
     if (n <= side) weigh_row(n, pixels, levels);
@@ -151,7 +153,7 @@ struct WindowStatistics {
   }
 
  private:
-  static constexpr int weighted_rows = 4;  ///< of each image in memory: one that is written, three that are read
+  static constexpr int weighted_rows = 4;  ///< rows of each image in memory: one being written, three being read
   static constexpr int image_count = 3;    ///< A, B, w
   static constexpr int term_count = 4;     ///< p^2 and t along x, then along y
   static constexpr int rows = image_count * weighted_rows + 2 * term_count + 2 * term_count;
@@ -159,14 +161,14 @@ struct WindowStatistics {
   GLADSTONE_HD int first() const { return thread * Columns::count; }
   GLADSTONE_HD int ahead() const { return threads * Columns::count; }
   GLADSTONE_HD float* row_in_memory(int number) const { return memory + number * pitch(side) + margin; }
-  /// Row -1 was cleared, and row `side` is written as zeros.
+  /// Row -1 was cleared by clear(), and row `side` is written as zeros.
   GLADSTONE_HD float* weighted(int image, int row) const {
     return row_in_memory(image * weighted_rows + (row + weighted_rows) % weighted_rows);
   }
   GLADSTONE_HD float* terms(int which, int row) const {
     return row_in_memory(image_count * weighted_rows + 2 * which + row % 2);
   }
-  /// Sums of a row's terms over their neighbours along x; only the thread that wrote them reads them.
+  /// Sums of a row's terms over their neighbours along x; read only by the thread that wrote them.
   GLADSTONE_HD float* across(int which, int row) const {
     return row_in_memory(image_count * weighted_rows + 2 * term_count + 2 * which + row % 2);
   }
@@ -218,8 +220,8 @@ struct WindowStatistics {
   GLADSTONE_HD void multiply_terms(int row, StatisticsSums& sums) const {
     auto const products = [&](int which) {
       float const* const t = terms(which, row);
-      float const* const above = across(which, row + 1);  // of row - 1: there are two
-      float* const here = across(which, row);             // of row - 2 so far
+      float const* const above = across(which, row + 1);  // of row - 1, which shares memory with row + 1
+      float* const here = across(which, row);             // of row - 2, until it is overwritten
       Value sum{};
       for (int x = first(); x < side; x += ahead()) {
         Value const middle = Columns::load(t + x);
@@ -237,21 +239,23 @@ struct WindowStatistics {
   }
 };
 
-/// Of a place that is anywhere within a pixel of the highest value [px^2]: a peak that is flat by chance says no more.
+/// Upper bound of the variance: uniform distribution within one pixel of the highest sample [px^2]. Nearly flat peaks
+/// would give arbitrarily large values.
 constexpr double largest_variance = 1.0 / 3.0;
 
-/// Variance of a displacement along an axis (0: x, 1: y) [px^2], NaN where its peak has no top: of three points of a
-/// Gaussian peak, u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)), so that sigma_u = sigma(C+ - C-)/(4 C1
-/// ln(C0/C1)), C1 the mean of both. The terms a_i b_(i+1) - a_(i+1) b_i of the difference are s_i d_(i+1) - s_(i+1) d_i
-/// of the frames' sum s and difference d, up to a factor, and summed by parts d_i (s_(i-1) - s_(i+1)): the noise of a
-/// pixel then stands in one term, while as it is written it stands in two, with opposite signs, whose covariance
-/// reaches as far as dots are wide. The frames have been matched by what is judged, so that the sum has lost what it
-/// would have been; with the share p_i^2/sum p^2 of a term in the variance, noise being equal everywhere, the sum over
-/// pairs of terms has lost the part of those shares' products, which is made good.
+/// Returns the variance of a displacement along an axis (0: x, 1: y) [px^2]; NaN if the peak has no maximum.
+/// The three-point Gaussian fit u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)) gives sigma_u = sigma(C+ - C-)/(4 C1
+/// ln(C0/C1)), with C1 the mean of C+ and C-. The terms a_i b_(i+1) - a_(i+1) b_i of C+ - C- equal s_i d_(i+1) -
+/// s_(i+1) d_i up to a factor, with s the sum and d the difference of the frames; summation by parts gives d_i (s_(i-1)
+/// - s_(i+1)). The noise of a pixel is then in one term, not in two of opposite sign whose covariance extends over a
+/// dot diameter.
+/// The frames were matched by the displacement to be assessed, which reduces the sum. With the share p_i^2/sum p^2 of a
+/// term in the variance, for uniform noise, the reduction is the sum of products of shares over pairs of terms; it is
+/// compensated.
 GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int axis) {
   using std::log;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  // as the correlator has it: the fall-off of the weights divided out
+  // Divide out the decrease caused by the weights, as the correlator does.
   double const fall_off = sums.overlap[axis] / sums.whole, beside = sums.beside[axis] / fall_off;
   if (!(beside > 0.0 && sums.centre > beside)) return nan;
   double const slope = 4.0 * beside * log(sums.centre / beside) * fall_off;

@@ -15,9 +15,9 @@
 namespace gladstone {
 namespace {
 
-constexpr std::size_t windows_per_chunk = 32;  // even: windows are transformed in pairs
+constexpr std::size_t windows_per_chunk = 32;  // even, since windows are transformed in pairs
 
-/// Correlates windows one pair after the other with its own scratch memory.
+/// Correlates windows two at a time, with its own scratch memory.
 class PairwiseCorrelation {
  public:
   PairwiseCorrelation(InterrogationJob const& job, AxisWeightsView const& x, AxisWeightsView const& y,
@@ -53,8 +53,8 @@ class PairwiseCorrelation {
   }
 
  private:
-  /// Fills window_ and returns the factor that makes the plane a correlation coefficient; 0 where there is nothing
-  /// to correlate.
+  /// Fills window_ and returns the factor that converts the plane to a correlation coefficient; 0 if there is no signal
+  /// or the window is masked.
   double load(std::size_t index, WindowCorrelation& result) {
     int const size = x_.size, pitch = plan_->size();
     int const column = static_cast<int>(index % static_cast<std::size_t>(grid_.columns));
@@ -96,13 +96,13 @@ class PairwiseCorrelation {
     return scale;
   }
 
-  /// Writes the cross spectra of both windows, C0 + i C1, to window_. An absent window has scale 0 and a finite
-  /// spectrum left over from before.
+  /// Writes the cross spectra of both windows, C0 + i C1, to window_. A missing window has scale 0 and a finite
+  /// spectrum from an earlier call.
   void join(double const* scale) {
     int const size = plan_->size();
     double const scale0 = scale[0], scale1 = scale[1];
     for (int j = 0; j <= size / 2; ++j) {
-      // the rows j = 0 and size/2 are their own mirrors: each column is then written twice, with equal values
+      // The rows j = 0 and size/2 are their own mirrors: each column is written twice, with equal values.
       std::size_t const row = 2 * static_cast<std::size_t>(j) * size;
       std::size_t const mirror_row = 2 * static_cast<std::size_t>((size - j) % size) * size;
       double const* const z0 = reinterpret_cast<double const*>(spectrum_[0].data()) + row;
@@ -136,7 +136,7 @@ class PairwiseCorrelation {
     result.outcome = WindowCorrelation::Outcome::measured;
     result.peaks = found.count;
     for (int p = 0; p < found.count; ++p) {
-      // join() has put the scale into the plane
+      // The plane already includes the scale, by join().
       MeasuredPeak const peak = fitted_peak(job_.fit, plane, found.peak[p].x, found.peak[p].y, x_, column, y_, row);
       result.shift[p] = peak.shift;
       result.coefficient[p] = peak.coefficient;
@@ -158,9 +158,9 @@ class PairwiseCorrelation {
 
 }  // namespace
 
-/// The same planes as scc by OpenCV's transforms in double precision over squares of twice the window (or the next
-/// length that scc has: Gaussian windows wrap at their rim, and do so alike), one pair of windows after the other:
-/// slow, and what the fast methods are compared with.
+/// Computes the planes of scc by OpenCV's transforms in double precision, two windows at a time. The transform length
+/// is twice the window or the next larger length available to scc, so that Gaussian windows wrap around at their rim in
+/// the same way. Slow; used as the reference for the faster methods.
 std::vector<WindowCorrelation> correlate_by_opencv(InterrogationJob const& job) {
   InterrogationGrid const& grid = job.grid;
   int const radius = job.search_radius_px;

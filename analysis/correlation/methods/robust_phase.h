@@ -6,14 +6,14 @@
 
 namespace gladstone {
 
-/// e^-2 diameter of the particle images whose spectrum weighs the phases [px]; the choice of Eckstein & Vlachos (2009).
+/// e^-2 diameter of the particle images whose spectrum weights the phases [px]; value of Eckstein & Vlachos (2009).
 constexpr double robust_phase_diameter_px = 2.8;
 
-/// exp(-k^2 d^2/16) along one axis, `size` wave numbers, their sum 1: the spectrum of the correlation of two Gaussian
-/// images of that diameter.
+/// Returns exp(-k^2 d^2/16) along one axis for `size` wave numbers, normalised to a sum of 1: the spectrum of the
+/// correlation of two Gaussian particle images of diameter d.
 std::vector<float> particle_spectrum(int size);
 
-/// The plane of rpc: a peak of Gaussian shape with the variance diameter^2/8 where phases agree, its height 1 at most.
+/// Computes the plane of rpc. If all phases agree, it is a Gaussian peak of height 1 with a variance of diameter^2/8.
 void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane);
 
 }  // namespace gladstone

@@ -28,7 +28,7 @@ void make_robust_phase_plane(LaneCorrelation& work, LanePlane& plane) {
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {
         float const along_x = factor[static_cast<std::size_t>(kx)];
-        // the windows are free of their means: what is there is rounding, not phase
+        // The windows have zero mean, so that the value at wave number 0 is rounding error.
         if (kx == 0) spectrum[0] = {FloatLanes{}, FloatLanes{}};
         for (int ky = 0; ky < size; ++ky) {
           ComplexLanes& c = spectrum[ky];

@@ -7,11 +7,11 @@ namespace {
 void make_filtered_plane(LaneCorrelation& work, LanePlane& plane) {
   work.load(WindowTerm::frames);
   FloatLanes const scale = work.windows().scale(work.size());
-  FloatLanes whole{};  // what a plane would reach if all phases agreed
+  FloatLanes whole{};  // height of the plane if all phases agreed
   work.correlate(
       scale,
       [&](ComplexLanes* spectrum, int kx, int size) {
-        float const times = kx == 0 || kx == size / 2 ? 1.0f : 2.0f;  // the other half of the spectrum is its mirror
+        float const times = kx == 0 || kx == size / 2 ? 1.0f : 2.0f;  // the other half of the spectrum is mirrored
         for (int ky = 0; ky < size; ++ky) {
           ComplexLanes& c = spectrum[ky];
           FloatLanes const root = root_lanes(root_lanes(c.re * c.re + c.im * c.im)) + 1e-30f;

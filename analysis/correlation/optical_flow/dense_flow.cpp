@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t rows_at_once = 16;
 
-/// Weights along both axes, at every `step`-th pixel. @param weight of offsets 0, 1, 2, ...; the same on either side
+/// Filters an image along both axes and samples it at every `step`-th pixel.
+/// @param weight  weights of the symmetric kernel at offsets 0, 1, 2, ...
 GreyImage filtered(GreyImage const& image, std::vector<float> const& weight, int step) {
   int const reach = static_cast<int>(weight.size()) - 1;
   GreyImage across{(image.columns + step - 1) / step, image.rows, {}};

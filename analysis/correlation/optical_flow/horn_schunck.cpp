@@ -7,21 +7,22 @@
 namespace gladstone {
 namespace {
 
-/// Weight of the displacement's squared slopes beside the squared grey levels, which are 1 rms: at 5 % noise the errors
-/// are then as those of the default passes, at 2 twice and at 32 half as large (docs/estimators.md).
+/// Weight of the squared gradients of the displacement relative to the squared grey-level residual, for grey levels of
+/// 1 rms. At 5 % noise the errors are similar to those of the default passes; they are twice as large for a weight of 2
+/// and half as large for 32 (docs/estimators.md).
 constexpr float smoothness = 8.0f;
-constexpr int deformations = 4;  ///< of a level; twice as many change nothing
-constexpr int sweeps = 40;       ///< after each
-/// Over-relaxation: the error of smooth modes falls several times faster than by plain Gauss-Seidel.
+constexpr int deformations = 4;  ///< image deformations per level; doubling the number has no effect
+constexpr int sweeps = 40;       ///< relaxation sweeps per deformation
+/// Over-relaxation factor: reduces the error of smooth modes several times faster than plain Gauss-Seidel.
 constexpr float relaxation = 1.8f;
 constexpr std::size_t rows_at_once = 16;
 
-/// What one deformation of a level leaves to be explained: gx du + gy dv + difference = 0.
+/// Linearised residual after a deformation: gx du + gy dv + difference = 0.
 struct Remainder {
   std::vector<float> gx, gy, difference;
 };
 
-/// The frames deformed by half of the displacement each: their mean's slopes, and how they differ.
+/// Deforms both frames by half of the displacement each, and computes the gradients of their mean and their difference.
 Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& b, DenseFlow const& d) {
   std::size_t const pixels = d.u.size();
   GreyImage mean{d.columns, d.rows, std::vector<float>(pixels)};
@@ -47,7 +48,8 @@ Remainder remainder_of(BsplineImage<float> const& a, BsplineImage<float> const& 
   return rest;
 }
 
-/// One sweep over the pixels of a colour of the chessboard, whose neighbours are all of the other: no order matters.
+/// Relaxes the pixels of one colour of the chessboard (0 or 1). All of their neighbours are of the other colour, so
+/// that the result does not depend on the order.
 void sweep(Remainder const& rest, DenseFlow const& from, int colour, DenseFlow& d) {
   parallel_chunks(static_cast<std::size_t>(d.rows), rows_at_once, [&](std::size_t begin, std::size_t end) {
     for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)

@@ -11,8 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// OpenCV with one thread as long as this lives: its patches start from neighbours of the same strip of the image, and
-/// there are as many strips as threads.
+/// RAII guard that restricts OpenCV to one thread: its patches start from neighbours in the same strip of the image,
+/// and the number of strips is the number of threads.
 class OneThread {
  public:
   OneThread() : turn_(one_at_a_time()), before_(cv::getNumThreads()) { cv::setNumThreads(1); }
@@ -38,7 +38,7 @@ cv::Mat eight_bits(GreyImage const& frame, GreyRange const& range) {
   return grey;
 }
 
-/// Displacement from one frame to the other, at the mid-position.
+/// Returns the displacement from one frame to the other, at the mid-position.
 DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
   cv::Mat found;
   try {
@@ -55,7 +55,8 @@ DenseFlow one_way(cv::Mat const& from, cv::Mat const& to) {
       d.u[d.index(i, j)] = value[0];
       d.v[d.index(i, j)] = value[1];
     }
-  // it belongs to where the first frame's dots are: the same at mid-position, by fixed-point iteration
+  // OpenCV's flow belongs to the dot positions in the first frame; fixed-point iteration transfers it to the
+  // mid-position.
   DenseFlow middle(d.columns, d.rows);
   for (int j = 0; j < d.rows; ++j)
     for (int i = 0; i < d.columns; ++i) {
@@ -79,7 +80,7 @@ GreyRange joint_range(GreyImage const& reference, GreyImage const& flow) {
   auto const high = levels.end() - 1 - static_cast<std::ptrdiff_t>(levels.size() / brightest_pixels);
   std::nth_element(levels.begin(), high, levels.end());
   range.high = *high;
-  // of a frame with fewer bright pixels than that nothing may be lost
+  // In frames with fewer bright pixels than this fraction, use the full range.
   if (!(range.high > range.low)) range.high = *std::max_element(levels.begin(), levels.end());
   return range;
 }

@@ -11,7 +11,8 @@
 namespace gladstone {
 namespace {
 
-/// Says which settings are not as by default, though only correlation heeds them; empty: none.
+/// Returns a warning listing the settings that differ from their defaults but have no effect on optical flow; empty:
+/// none.
 std::string unheeded(CorrelationSettings const& settings) {
   CorrelationSettings const usual;
   std::vector<char const*> keys;
@@ -81,7 +82,7 @@ class OpticalFlowCorrelator final : public Correlator {
     return {static_cast<int>(std::lround(centre.x - half)), static_cast<int>(std::lround(centre.y - half))};
   }
 
-  /// Whether a window of one frame is more than one level, as plane_scale() asks.
+  /// Returns whether a window of one frame has contrast, by the criterion of plane_scale().
   static bool has_signal(ImagePair const& pair, UnsetVector<float> const& frame, InterrogationGrid const& grid,
                          std::size_t vector) {
     auto const [x, y] = first_pixel(grid, vector);
@@ -96,7 +97,7 @@ class OpticalFlowCorrelator final : public Correlator {
     return squares / pixels - mean * mean > std::pow(smallest_contrast * pair.contrast, 2);
   }
 
-  /// Of a window's own pixels.
+  /// Returns the known fraction of the pixels of a nominal window.
   static double known_part(ImagePair const& pair, InterrogationGrid const& grid, std::size_t vector) {
     if (pair.available.empty()) return 1.0;
     auto const [x, y] = first_pixel(grid, vector);

@@ -7,10 +7,10 @@
 
 namespace gladstone {
 
-/// Measures by optical flow: the vectors of the last pass's grid are the displacement at their centres. Nothing is
-/// deformed in passes or validated by neighbours, since the flow is smooth by itself; there is no peak, so that peak
-/// ratio and correlation are not known. Masked where half of the window is unknown; invalid without any contrast, or
-/// beyond settings.max_displacement_px.
+/// Creates a correlator by optical flow: the vectors are the displacement at the centres of the last pass's windows.
+/// There are no passes and no validation by neighbours, since the flow is smooth; peak ratio and correlation are NaN.
+/// Vectors are masked if more than half of the window is unknown, and invalid if it has no contrast or the displacement
+/// exceeds settings.max_displacement_px.
 std::unique_ptr<Correlator> make_optical_flow_correlator(CorrelationSettings const& settings, EstimateFlow estimate);
 
 }  // namespace gladstone

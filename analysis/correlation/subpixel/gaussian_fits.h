@@ -6,10 +6,10 @@
 #include "analysis/correlation/subpixel_peak.h"
 #include "render/base/host_device.h"
 
-/// The fits of Gaussian peaks, for the CPU and for CUDA's kernels.
+/// Fits of Gaussian peaks, for the CPU and the CUDA kernels.
 namespace gladstone {
 
-/// fit_gauss3().
+/// Implementation of fit_gauss3().
 struct GaussAlongAxes {
   GLADSTONE_HD PeakFit operator()(PeakPatch const& patch) const {
     auto const& v = patch.value;
@@ -19,8 +19,9 @@ struct GaussAlongAxes {
   }
 };
 
-/// Solves a x = b for a symmetric positive definite matrix, of which the lower half is read, by Cholesky's
-/// decomposition (Eigen's is not for devices). @return false where it is not positive definite
+/// Solves a x = b for a symmetric positive definite matrix by Cholesky decomposition (Eigen's is not available on
+/// devices); x replaces b. Only the lower half of the matrix is read.
+/// @return false if the matrix is not positive definite
 template <int size>
 GLADSTONE_HD bool solve_positive_definite(double (&a)[size][size], double (&b)[size]) {
   for (int k = 0; k < size; ++k) {
@@ -41,7 +42,7 @@ GLADSTONE_HD bool solve_positive_definite(double (&a)[size][size], double (&b)[s
   return true;
 }
 
-/// fit_gauss2d().
+/// Implementation of fit_gauss2d().
 struct GaussOfAnyAxes {
   GLADSTONE_HD PeakFit operator()(PeakPatch const& patch) const {
     constexpr int terms = 6;
