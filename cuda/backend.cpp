@@ -14,7 +14,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// @throws DeviceError where no device can be used
+/// @throws DeviceError if no device is usable
 void require_device() {
   if (DeviceState const state = device_state(); !state.usable) throw DeviceError(state.text);
 }
@@ -33,9 +33,9 @@ DeviceState device_state() {
   if (status == cudaSuccess && count == 0) status = cudaErrorNoDevice;
   cudaDeviceProp device{};
   if (status == cudaSuccess) status = cudaGetDeviceProperties(&device, 0);
-  // creates the context: an exclusive or broken device says so here
+  // Create the context: reports a device that is in exclusive use or faulty.
   if (status == cudaSuccess) status = cudaFree(nullptr);
-  if (status != cudaSuccess) cudaGetLastError();  // forget it: the next launch has not failed
+  if (status != cudaSuccess) cudaGetLastError();  // clear the error, so that the next launch is not reported as failed
   if (status == cudaErrorInsufficientDriver)
     return {false, "the NVIDIA driver is absent or older than this CUDA build needs"};
   if (status != cudaSuccess) {

@@ -6,35 +6,36 @@
 #include "analysis/correlation/correlator.h"
 #include "render/scene/renderer.h"
 
-/// The GPU as the rest of gladstone sees it: no CUDA header, the same with and without CUDA compiled in.
+/// Interface to the GPU for the rest of gladstone: independent of CUDA headers, and identical whether CUDA is compiled
+/// in or not.
 namespace gladstone::cuda {
 
-/// Whether this executable can render and correlate on a CUDA device at all.
+/// Returns whether this executable was built with CUDA.
 bool compiled_in();
 
-/// One line for `--version`: the CUDA toolkit that the build saw, and what it was used for.
+/// Returns one line for `--version`: version of the CUDA toolkit and target architectures.
 std::string description();
 
-/// Whether a device can be used here and now.
+/// Availability of a device at run time.
 struct DeviceState {
   bool usable = false;
-  std::string text;  ///< the device's name and memory, or why there is none
+  std::string text;  ///< name and memory of the device, or the reason why none is usable
 };
 
-/// Looks at the first visible device; never throws.
+/// Tests the first visible device; does not throw.
 DeviceState device_state();
 
-/// Number of devices that this process may use; 0 where there is none or no CUDA.
+/// Returns the number of devices available to this process; 0 without CUDA.
 int device_count();
 
-/// The renderer on the GPU. @throws DeviceError where device_state() is not usable
+/// Creates the renderer for focused dots on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<Renderer> make_renderer();
 
-/// The general renderer on the GPU. @throws DeviceError where device_state() is not usable
+/// Creates the general ray-tracing renderer on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<Renderer> make_rays_renderer();
 
-/// The correlator on the GPU, for what gladstone::missing_on_gpu() does not name.
-/// @throws DeviceError where device_state() is not usable, or for another method
+/// Creates the correlator on the GPU, for settings accepted by gladstone::missing_on_gpu().
+/// @throws DeviceError if no device is usable or a setting is not supported
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
 }  // namespace gladstone::cuda

@@ -2,8 +2,10 @@
 
 namespace gladstone::cuda {
 
-/// Sums over all threads of a block, in a fixed order; with a barrier before the sums are read, none after.
-/// @param slots 32 * count values of shared memory that nothing else uses @pre at most 32 full warps
+/// Sums each value over all threads of a block, in a fixed order, and returns the sums to every thread. Contains a
+/// barrier before the sums are read, but none after.
+/// @param slots  32 * count values of shared memory for exclusive use
+/// @pre at most 32 warps, all of them full
 template <class T, int count>
 __device__ void block_sums(T (&value)[count], T* slots) {
   unsigned const lane = threadIdx.x % 32u, warp = threadIdx.x / 32u, warps = blockDim.x / 32u;

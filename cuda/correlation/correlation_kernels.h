@@ -12,105 +12,110 @@
 #include "cuda/correlation/cuda_correlator.h"
 #include "cuda/correlation/small_transform.h"
 
-/// The launches that a correlation consists of, in the order of their calls. All pointers are device addresses; all
-/// work is queued on the default stream, checked at its launch.
+/// Kernel launches of a correlation, in the order of their calls. All pointers are device addresses; all work is queued
+/// on the default stream and checked at launch.
 namespace gladstone::cuda {
 
-/// Extreme finite grey levels of a pair as numbers that order alike: keys of the highest and of minus the lowest.
+/// Highest finite grey level of an image pair and negative of the lowest, as ordered_key().
 struct LevelKeys {
   unsigned long long highest;
   unsigned long long minus_lowest;
 };
 
-/// One pixel of both images, read at once.
+/// Pixel of both images, read in one access.
 struct alignas(8) GreyPair {
   float reference;
   float flow;
 };
 
-/// A pair as a pass reads it: joint grey level removed and divided by a power of two, so that its contrast is in [1, 2)
-/// for any unit of grey; NaN where a pixel is not known.
+/// Image pair in the form used by a pass: common grey level subtracted and scaled by a power of two, so that the
+/// contrast is in [1, 2) for any unit of grey levels. Unknown pixels are NaN.
 struct DevicePair {
   GreyPair* pixels;
   int columns;
   int rows;
 };
 
-/// Brings images to this form. @param keys scratch @param contrast receives the largest minus the smallest level
+/// Converts images to this form.
+/// @param keys  scratch
+/// @param contrast  output: scaled range of the grey levels
 void prepare_pair(DeviceImage const& reference, DeviceImage const& flow, LevelKeys* keys, float* contrast,
                   DevicePair const& pair);
 
-/// B-spline coefficients of both images, unknown pixels taken as 0.
-/// @param taps         of bspline_taps, `tap_count` of them
-/// @param scratch      columns * rows values
-/// @param coefficients of each image (columns + 12) * (rows + 12) values, as BsplineView lays them out
+/// Computes the B-spline coefficients of both images; unknown pixels count as 0.
+/// @param taps  `tap_count` values of bspline_taps()
+/// @param scratch  columns * rows values
+/// @param coefficients  output for each image: (columns + 12) * (rows + 12) values in the layout of BsplineView
+/// @param spline  output: views of the coefficients
 void filter_pair(DevicePair const& pair, float const* taps, int tap_count, GreyPair* scratch,
                  float* const (&coefficients)[2], BsplineView<float> (&spline)[2]);
 
-/// All windows of a pass.
+/// Task of one pass: correlate all windows of a grid.
 struct WindowJob {
   DevicePair pair;
   float const* contrast;
   InterrogationGrid grid;
   AxisWeightsView x;
   AxisWeightsView y;
-  int side;                ///< of the pixels that have weight [px]
-  int margin;              ///< of the support, beside them: (x.size - side)/2
+  int side;                ///< side of the pixels with non-zero weight [px]
+  int margin;              ///< support pixels without weight on either side: (x.size - side)/2
   int size;                ///< length of the transforms
   Complex const* roots;    ///< unit_roots(size)
-  float const* particles;  ///< of rpc: the spectrum that weighs the phases, along one axis; null: scc
+  float const* particles;  ///< spectrum that weights the phases of rpc along one axis; null: scc
   int search_radius_px;
 };
 
-/// A peak of a correlation plane: its highest sample and those around it.
+/// Peak of a correlation plane: its highest sample and those around it.
 struct PeakSample {
   int x, y;
-  float height;       ///< between the samples
+  float height;       ///< interpolated between the samples
   float value[3][3];  ///< rows downwards
 };
 
-/// What a window's plane leaves behind to be measured.
+/// Peaks of a window's plane, to be measured by measure_peaks().
 struct WindowPeaks {
   WindowCorrelation::Outcome outcome;
   int count;
-  double scale;  ///< makes the heights correlation coefficients
+  double scale;  ///< factor that converts heights to correlation coefficients
   PeakSample peak[3];
 };
 
-/// Whether job has a kernel of its own: scc of supports of 32 and 64 px.
+/// Returns whether a specialised kernel exists for the job: scc with supports of 32 and 64 px.
 bool has_own_kernel(WindowJob const& job);
-/// Finds the peaks of every window of such a support, to be measured.
+/// Finds the peaks of all windows with supports of that size. @pre has_own_kernel(job)
 void correlate_windows_of_32(WindowJob const& job, WindowPeaks* peaks);
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks);
 
-/// The smallest length of a transform with factors that are known to the compiler, 32 to 128, that is no less; 0: none.
+/// Returns the smallest transform length with compile-time factors (32 to 128) that is at least `least`; 0 if there is
+/// none.
 int factored_size(int least);
-/// @pre factored_size(job.size) == job.size
+/// Finds the peaks of all windows. @pre factored_size(job.size) == job.size
 void correlate_windows_by_factors(WindowJob const& job, WindowPeaks* peaks);
 
-/// Transforms of any size, line by line in shared memory.
+/// Configuration of transforms of any size, line by line in shared memory.
 struct LinePlan {
   static constexpr int most_stages = 10;
   int size;
   int radix[most_stages];
   int stages;
-  int warps;                 ///< of a block
-  std::size_t shared_bytes;  ///< of a block
-  bool window_in_shared;     ///< else a window of pitch() * size complex values lies in `scratch`
+  int warps;                 ///< per block
+  std::size_t shared_bytes;  ///< per block
+  bool window_in_shared;     ///< false: a window of pitch() * size complex values is in `scratch`
   GLADSTONE_HD int pitch() const { return size + 1; }
   std::size_t window_values() const { return 2 * static_cast<std::size_t>(pitch()) * static_cast<std::size_t>(size); }
 };
 LinePlan make_line_plan(int size);
-/// exp(-2 pi i k / size).
+/// Returns exp(-2 pi i k / size) for 0 <= k < size.
 std::vector<Complex> unit_roots(int size);
-/// @param scratch plan.window_values() for each of `slots` windows that are worked on together
+/// Finds the peaks of all windows, for any transform length.
+/// @param scratch  plan.window_values() for each of `slots` concurrent windows
 void correlate_windows_by_lines(WindowJob const& job, LinePlan const& plan, float* scratch, int slots,
                                 WindowPeaks* peaks);
 
-/// Turns the peaks into shifts between the pixels by three points along either axis (gauss3) or nine (gauss2d).
+/// Measures the subpixel positions of the peaks by three points along each axis (gauss3) or by nine points (gauss2d).
 void measure_peaks(WindowJob const& job, WindowPeaks const* peaks, bool nine_points, WindowCorrelation* results);
 
-/// A vector or node that is being replaced.
+/// Vector or node to be replaced.
 struct Replacement {
   int index;
   FailedTest failed;
@@ -118,28 +123,28 @@ struct Replacement {
   VectorReplacement by;
 };
 
-/// What a pass was deformed by.
+/// Predictor by which the images of a pass were deformed.
 struct PassPredictor {
   PredictorView view;
-  bool any;  ///< false in the first pass: the images are as they were taken
+  bool any;  ///< false in the first pass, whose images are not deformed
   GLADSTONE_HD Vec2d at(Vec2d position_px) const { return any ? view.at(position_px) : Vec2d{}; }
 };
-/// Turns the results of a pass into vectors. @param ambiguous receives a flag for each
+/// Converts the results of a pass to vectors. @param ambiguous  output: one flag per vector
 void take_vectors(WindowCorrelation const* windows, GridVector* vectors, InterrogationGrid const& grid,
                   PassPredictor const& predictor, double limit_px, AmbiguousPlaces const& before, char* ambiguous);
-/// Validates the vectors of a pass. @param list, count scratch: a place for every vector
+/// Validates the vectors of a pass. @param list, count  scratch: `list` has one element per vector
 void validate(GridVector* vectors, InterrogationGrid const& grid, ValidationRule const& rule, Replacement* list,
               int* count);
-/// What the last pass tells of every vector.
+/// Writes the final result of every vector after the last pass.
 void finish(WindowCorrelation const* windows, GridVector const* vectors, InterrogationGrid const& grid,
             MeasuredVector* measured);
-/// The vectors as the next pass' predictor: filled, smoothed, continued past the image.
-/// @param nodes, known, list, count scratch: a place for every vector
-/// @param smoothing CorrelationSchedule::smoothing()
-/// @param extended  predictor.columns * predictor.rows, where predictor.nodes points
+/// Converts the vectors to the predictor of the next pass: fills gaps, smooths, and extrapolates beyond the image.
+/// @param nodes, known, list, count  scratch, one element per vector (`count`: one)
+/// @param smoothing  weight of CorrelationSchedule::smoothing()
+/// @param extended  output: predictor.columns * predictor.rows nodes, the memory of predictor.nodes
 void make_predictor(GridVector const* vectors, Vec2d* nodes, char* known, Replacement* list, int* count,
                     double smoothing, PredictorView const& predictor, Vec2d* extended);
-/// Deforms the original pair.
+/// Deforms the original pair by the predictor.
 void deform_pair(BsplineView<float> const& reference, BsplineView<float> const& flow, int degree,
                  DevicePair const& original, PredictorView const& predictor, DevicePair const& deformed);
 

@@ -16,12 +16,12 @@ constexpr int most_threads = 256;
 constexpr int most_warps = most_threads / 32;
 using Statistics = WindowStatistics<OneColumn>;
 
-/// The pixels of one window, NaN in the frames where they are not known.
+/// Pixels of one window; the weight is 0 where a frame is unknown (NaN) or outside the image.
 struct WindowPixels {
   DevicePair pair;
   float const* weight_x;
   float const* weight_y;
-  int first_x, first_y;  ///< where the window begins in the image
+  int first_x, first_y;  ///< image position of the window's first pixel
 
   __device__ MatchedPixels<float> at(int x, int row) const {
     int const column = first_x + x, image_row = first_y + row;
@@ -32,8 +32,8 @@ struct WindowPixels {
   }
 };
 
-/// One window after the other by each block.
-/// @tparam in_shared whether a block has its memory in shared memory; else in `scratch`
+/// Computes the variances of the windows, one window per block at a time.
+/// @tparam in_shared  whether the block's memory is shared memory; otherwise it is in `scratch`
 template <bool in_shared>
 __global__ void __launch_bounds__(most_threads)
     find_variances(MatchedWindows const __grid_constant__ windows, float* scratch, Vec2d* variances) {

@@ -2,30 +2,30 @@
 
 #include "cuda/correlation/correlation_kernels.h"
 
-/// Standard uncertainties by correlation statistics, on the device; queued and checked as correlation_kernels.h says.
+/// Standard uncertainties by correlation statistics on the device; queued and checked as in correlation_kernels.h.
 namespace gladstone::cuda {
 
-/// The windows of the last pass on frames that its vectors have deformed.
+/// Windows of the last pass on frames deformed by its vectors.
 struct MatchedWindows {
   DevicePair pair;
   InterrogationGrid grid;
   AxisWeightsView x;
   AxisWeightsView y;
-  int side;                   ///< of the pixels that have weight [px]
-  int margin;                 ///< of the support, beside them
-  GridVector const* vectors;  ///< of which the valid ones are asked for
+  int side;                   ///< side of the pixels with non-zero weight [px]
+  int margin;                 ///< support pixels without weight on either side [px]
+  GridVector const* vectors;  ///< uncertainties are estimated for valid vectors only
   double amplification;       ///< amplification_of_passes()
 };
 
-/// Memory in which a block keeps what it needs of a window of that side [values].
+/// Returns the memory of a block for a window of that side [floats].
 std::size_t statistics_values(int side);
-/// Whether that is more shared memory than a block can have.
+/// Returns whether this exceeds the shared memory available to a block.
 bool statistics_need_scratch(int side);
 
-/// @param scratch   statistics_values(side) for each of `slots` windows that are worked on together; null where they
-///                  fit into shared memory
-/// @param variances scratch, one for each vector
-/// @param sigma     receives the standard uncertainty of each [px]; NaN where it is not valid or cannot be told
+/// Estimates the standard uncertainty of every vector.
+/// @param scratch  statistics_values(side) for each of `slots` concurrent windows; null if they fit into shared memory
+/// @param variances  scratch, one per vector
+/// @param sigma  output: standard uncertainty of each vector [px]; NaN if it is not valid or has no estimate
 void estimate_sigma(MatchedWindows const& windows, float* scratch, int slots, Vec2d* variances, Vec2d* sigma);
 
 }  // namespace gladstone::cuda

@@ -23,7 +23,7 @@ DeviceArray<T> on_device(std::vector<T> const& values) {
   return DeviceArray<T>(values.data(), values.size(), purpose);
 }
 
-/// The weights along one axis on the device.
+/// Weights along one axis in device memory.
 class DeviceAxisWeights {
  public:
   explicit DeviceAxisWeights(AxisWeights const& host)
@@ -44,12 +44,13 @@ class DeviceAxisWeights {
   AxisWeightsView view_;
 };
 
-/// Room for the windows that are worked on together where one does not fit into shared memory.
+/// Scratch memory for concurrent windows that do not fit into shared memory.
 struct WindowScratch {
   DeviceArray<float> memory;
   int slots = 0;
 
-  /// For no more than 264 of `windows`; fewer where the device has little left. @param values of each
+  /// Allocates memory for up to 264 of `windows`, or for fewer if device memory is short. @param values  floats per
+  /// window
   void make(std::size_t values, std::size_t windows) {
     if (values == 0) return;
     for (auto wanted = std::min<std::size_t>(windows, 264);; wanted = (wanted + 1) / 2) try {
@@ -64,7 +65,7 @@ struct WindowScratch {
 
 }  // namespace
 
-/// Device memory and tables for pairs of one size.
+/// Device memory and tables for image pairs of one size.
 class CorrelationPlan {
  public:
   CorrelationPlan(CorrelationSettings const& settings, int columns, int rows)
@@ -98,7 +99,7 @@ class CorrelationPlan {
     vectors_ = DeviceArray<GridVector>(most_vectors, purpose);
     for (DeviceArray<char>& flags : ambiguous_) flags = DeviceArray<char>(most_vectors, purpose);
     measured_ = DeviceArray<MeasuredVector>(passes_.back().grid.size(), purpose);
-    measured_.zero();  // the gaps between its members are copied to the host, too
+    measured_.zero();  // padding bytes are copied to the host as well
     list_ = DeviceArray<Replacement>(most_vectors, purpose);
     if (with_sigma_)
       for (DeviceArray<Vec2d>* of_vectors : {&variances_, &sigma_})
@@ -126,13 +127,13 @@ class CorrelationPlan {
     return download();
   }
 
-  /// Queues all work up to the vectors, which stay on the device.
+  /// Queues all work up to the vectors, which remain on the device.
   void enqueue(DeviceImage const& reference, DeviceImage const& flow) {
-    if (!has_scratch_) make_scratch();  // last, since it takes what is left
+    if (!has_scratch_) make_scratch();  // last, because it uses the remaining memory
     DevicePair const original = original_.view(columns_, rows_), deformed = deformed_.view(columns_, rows_);
     prepare_pair(reference, flow, keys_.data(), contrast_.data(), original);
     BsplineView<float> spline[2] = {};
-    if (deforms())  // the deformed pair is not needed yet: scratch
+    if (deforms())  // the memory of the deformed pair serves as scratch
       filter_pair(original, taps_.data(), static_cast<int>(taps_.size()), deformed.pixels,
                   {spline_[0].data(), spline_[1].data()}, spline);
     for (int pass = 0;; ++pass) {
@@ -167,12 +168,12 @@ class CorrelationPlan {
   struct Pass {
     InterrogationGrid grid;
     int search_radius_px;
-    PredictorView predictor;  ///< made of this pass' vectors
+    PredictorView predictor;  ///< computed from the vectors of this pass
     DeviceAxisWeights x, y;
-    int side, size;  ///< of a window's pixels and of its transform
+    int side, size;  ///< side of a window's pixels, length of its transform
     LinePlan lines;
     DeviceArray<Complex> roots;
-    DeviceArray<float> particles;  ///< of rpc
+    DeviceArray<float> particles;  ///< for rpc
   };
 
   Pass make_pass(int pass) const {
@@ -181,7 +182,8 @@ class CorrelationPlan {
     int const radius = schedule_.search_radius_px(pass);
     int const least = plane_transform_size(schedule_.weighting(), grid.window_px, radius),
               factored = factored_size(least);
-    // zeros behind uniform windows change no correlation, but the phases' wave numbers
+    // Zero padding of uniform windows does not change a correlation, but changes the wave numbers of a phase
+    // correlation.
     int const size = side < least && factored != 0 && !phase_only_ ? factored : least;
     PredictorView const predictor{grid, ghosts, grid.columns + 2 * ghosts, grid.rows + 2 * ghosts, nullptr};
     return {grid,
@@ -273,7 +275,7 @@ class CorrelationPlan {
     return field;
   }
 
-  /// Whether the frames are deformed at all.
+  /// Returns whether the frames are deformed at all.
   bool deforms() const { return schedule_.passes() > 1 || with_sigma_; }
 
   CorrelationSchedule schedule_;
@@ -292,7 +294,7 @@ class CorrelationPlan {
   DeviceArray<WindowCorrelation> windows_;
   DeviceArray<WindowPeaks> peaks_;
   DeviceArray<GridVector> vectors_;
-  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and the one before
+  DeviceArray<char> ambiguous_[2];  ///< flags of a pass and of the previous one
   DeviceArray<MeasuredVector> measured_;
   DeviceArray<Replacement> list_;
   DeviceArray<int> list_size_{1, purpose};
@@ -306,10 +308,10 @@ class CorrelationPlan {
 struct CudaCorrelator::State {
   explicit State(CorrelationSettings const& wanted) : settings(wanted) {}
 
-  /// The plan for images of that size. @throws DataError, OutOfDeviceMemory
+  /// Returns the plan for images of that size. @throws DataError, OutOfDeviceMemory
   CorrelationPlan& plan_for(int columns, int rows) {
     if (!plan || !plan->suits(columns, rows)) {
-      plan.reset();  // first gives its memory back
+      plan.reset();  // release its memory first
       plan = std::make_unique<CorrelationPlan>(settings, columns, rows);
     }
     return *plan;

@@ -7,22 +7,22 @@
 
 namespace gladstone::cuda {
 
-/// StandardCorrelator on the device: the same per-pixel, per-window and per-vector functions, with the transform done
-/// beside them. Between the passes nothing leaves the device. Its memory is kept for the next pair of the same size;
-/// calls from several threads wait for each other. By uncertainty = "correlation_statistics" the vectors come with what
-/// estimate_uncertainty() gives for them as they are; by any other without sigma_px.
+/// StandardCorrelator on the device: shares the functions per pixel, window and vector, but not the Fourier transforms.
+/// No data are transferred between passes. Device memory is retained for later pairs of the same size; concurrent calls
+/// are serialised. With uncertainty = "correlation_statistics", the result includes sigma_px as by
+/// estimate_uncertainty(); with other methods sigma_px is empty.
 class CudaCorrelator final : public Correlator {
  public:
   explicit CudaCorrelator(CorrelationSettings const& settings);
   ~CudaCorrelator() override;
 
-  /// As Correlator::correlate. @throws also DeviceError
+  /// Like Correlator::correlate(). @throws DeviceError in addition
   DisplacementField correlate(Image<double> const& reference, Image<double> const& flow) const override;
-  /// Frames of this device's renderer are taken where they are.
+  /// Frames rendered on this device are correlated without a copy to the host.
   DisplacementField correlate_pair(FramePair const& frames) const override;
-  /// The same for images that are on the device already, complete on the default stream.
+  /// Correlates images in device memory; the work that produces them must be queued on the default stream.
   DisplacementField correlate(DeviceImage const& reference, DeviceImage const& flow) const;
-  /// Queues the same work and returns before it is done: the vectors stay on the device, until the next pair's.
+  /// Queues the correlation without waiting; the vectors remain on the device until the next pair.
   void enqueue(DeviceImage const& reference, DeviceImage const& flow) const;
 
  private:

@@ -6,9 +6,9 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 256;
-constexpr int threads_of_rounds = 512;  // of the kernel that is one block
+constexpr int threads_of_rounds = 512;  // of the kernel with a single block
 
-/// Whether both images of the original pair are known at a pixel.
+/// Returns 1 if both images of the original pair are known at a pixel, otherwise 0.
 struct KnownPixels {
   DevicePair pair;
   __device__ float operator()(int column, int row) const {
@@ -31,7 +31,7 @@ __global__ void deform_pixels(BsplineView<float> reference, BsplineView<float> f
       pixel.available > 0.0f ? GreyPair{pixel.reference, pixel.flow} : GreyPair{unknown, unknown};
 }
 
-/// Node k of smoothed_displacement.
+/// Returns node k of smoothed_displacement().
 __device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows, double part) {
   int const column = k % columns, row = k / columns;
   auto const across = [&](int at) {
@@ -40,7 +40,7 @@ __device__ Vec2d smoothed_node(Vec2d const* nodes, int k, int columns, int rows,
   return row > 0 && row + 1 < rows ? smoothed(across(k - columns), across(k), across(k + columns), part) : across(k);
 }
 
-/// Smooths nodes and continues them beyond the grid.
+/// Smooths nodes and extrapolates them beyond the grid.
 __global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, double part, PredictorView predictor,
                              Vec2d* extended) {
   int const k = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -50,7 +50,7 @@ __global__ void extend_nodes(InterrogationGrid grid, Vec2d const* nodes, double 
       k % predictor.columns - predictor.ghosts, k / predictor.columns - predictor.ghosts);
 }
 
-/// Takes over the sound vectors and lists the others.
+/// Copies the displacements of sound vectors and lists the others.
 __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, char* known, Replacement* list,
                              int* count) {
   int const i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -61,7 +61,8 @@ __global__ void gather_nodes(GridVector const* vectors, int size, Vec2d* nodes, 
   if (!sound) list[atomicAdd(count, 1)] = {i, FailedTest::none, Replacement::open, {}};
 }
 
-/// Fills the listed nodes from the rim inwards; within a round only what was known before counts. One block.
+/// Fills the listed nodes from the rim of each gap inwards; within a round, only nodes known before it count. Single
+/// block.
 __global__ void __launch_bounds__(threads_of_rounds)
     fill_nodes(Vec2d* nodes, char* known, int columns, int rows, Replacement* list, int const* count) {
   int progress = *count > 0;

@@ -3,19 +3,19 @@
 #include "analysis/correlation/window_ops.h"
 #include "cuda/correlation/small_transform.h"
 
-/// The correlation plane of a window whose lines have outer x inner values, by a block of threads that shares memory. A
-/// line takes two steps, transforms of `outer` values `inner` apart and then of `inner` values side by side; wave
-/// number k lies at place(k) afterwards, and the way back takes the steps in the other order.
-///
+/// Correlation plane of a window with transforms of length outer x inner, by a thread block with shared memory. A
+/// transform takes two steps: transforms of `outer` values at a distance of `inner`, then of `inner` adjacent values.
+/// Wave number k is then at place(k); inverse transforms perform the steps in reverse order.
 /// With a and b the windows, z = a + i b:
 ///  1. transform columns of z along y, then rows along x (columns_apart, columns_together, rows_apart, rows_together);
-///  2. form the cross spectrum for wave numbers kx <= size/2, of which one half says all since planes are real, and
-///     transform back along y (product, columns_together_again);
-///  3. transform back along x, two rows of the plane as one complex line, only those that the search for peaks reads
-///     (rows_apart_again, rows_together_again).
-/// A step is what one thread does between two barriers; no two threads write, nor one writes and another reads, the
-/// same place between two barriers.
-/// Before a loop: its body is there once. A kernel that is too long for the instruction cache waits for its code.
+///  2. form the cross spectrum for wave numbers kx <= size/2, which suffice since planes are real, and transform it
+///  back along y (product, columns_together_again);
+///  3. transform back along x, two rows of the plane as one complex line, for those rows only that the peak search
+///  reads (rows_apart_again, rows_together_again).
+/// A step is the work of one thread between two barriers. Between barriers, no two threads access the same memory
+/// unless both only read.
+/// GLADSTONE_KEEP_LOOP prevents the unrolling of a loop. A kernel that exceeds the instruction cache is limited by
+/// instruction fetches.
 #ifdef __CUDA_ARCH__
 #define GLADSTONE_KEEP_LOOP _Pragma("unroll 1")
 #else
@@ -24,7 +24,7 @@
 
 namespace gladstone::cuda {
 
-/// Takes the cross spectrum as it is.
+/// Filter of scc, which leaves the cross spectrum unchanged.
 struct WholeSpectrum {
   GLADSTONE_HD Complex operator()(Complex c, int /*kx*/, int /*ky*/) const { return c; }
 };
@@ -33,10 +33,10 @@ template <int outer, int inner, int threads_of_block>
 struct FactoredTransform {
   static constexpr int size = outer * inner;
   static constexpr int threads = threads_of_block;
-  static constexpr int groups = threads / size;  ///< of threads that have a line each
-  static constexpr int pitch = size + 3;         ///< odd; wave numbers kx = 0 and size/2 move to two columns at the end
-  static constexpr int largest_radius = size / 3;                           ///< of shifts
-  static constexpr int plane_pitch = (2 * largest_radius + 9 + 3) / 4 * 4;  ///< of the plane [values]
+  static constexpr int groups = threads / size;  ///< threads per line
+  static constexpr int pitch = size + 3;         ///< odd; wave numbers kx = 0 and size/2 are moved to two extra columns
+  static constexpr int largest_radius = size / 3;                           ///< largest search radius [px]
+  static constexpr int plane_pitch = (2 * largest_radius + 9 + 3) / 4 * 4;  ///< row stride of the plane [floats]
   static_assert(size % 4 == 0 && size >= 32 && threads % size == 0);
 
   Complex* memory;       ///< values(radius)
@@ -45,7 +45,8 @@ struct FactoredTransform {
   int line = thread % size;
   int group = thread / size;
 
-  /// Rows of two lines each; behind the window where its own rows do not suffice.
+  /// First memory row of the joined lines, each of which holds two rows of the plane; after the window if its own rows
+  /// do not suffice.
   GLADSTONE_HD static constexpr int first_joined(int radius) { return 3 * radius + 5 < size ? radius + 3 : size; }
   GLADSTONE_HD static constexpr int joined(int radius) { return radius + 2; }
   static constexpr int values(int radius) {
@@ -53,8 +54,9 @@ struct FactoredTransform {
   }
   GLADSTONE_HD static constexpr int place(int k) { return k % outer * inner + k / outer; }
 
-  /// Takes the window's pixels, each where it lies in the memory, through `weighted` and transforms.
-  /// @param weighted z at (x, y) from the pixel there, row by row @param side of the window [px], beyond which z is 0
+  /// Applies `weighted` to the window's pixels in memory, and performs the first step of the transform along y.
+  /// @param weighted  weighted(pixel, y) returns z of a pixel in row y
+  /// @param side  side of the window [px]; z is 0 beyond it
   template <class Weighted>
   GLADSTONE_HD void columns_apart(int side, Weighted const& weighted) const {
     if (line >= side) return;
@@ -91,7 +93,7 @@ struct FactoredTransform {
     for (int k = group; k < outer; k += groups) transform_neighbours(memory + line * pitch + k * inner, 1);
   }
 
-  /// Multiplies, filters, and transforms back along y, the first of two steps.
+  /// Forms the cross spectrum, applies the filter, and performs the first step of the inverse transform along y.
   template <class Filter>
   GLADSTONE_HD void product(Filter const& filter) const {
     GLADSTONE_KEEP_LOOP
@@ -122,7 +124,7 @@ struct FactoredTransform {
     }
   }
 
-  /// Joins rows dy and dy + 1 and transforms them back along x, the first of two steps.
+  /// Joins rows dy and dy + 1, and performs the first step of the inverse transform along x.
   GLADSTONE_HD void rows_apart_again(int radius) const {
     int const lines = joined(radius);
     GLADSTONE_KEEP_LOOP
@@ -144,7 +146,7 @@ struct FactoredTransform {
     }
   }
 
-  /// Leaves the plane, rows of plane_pitch values from dy = -radius - 1 on, at the beginning of the memory.
+  /// Writes the plane to the beginning of the memory: rows of plane_pitch values, from dy = -radius - 1 on.
   GLADSTONE_HD void rows_together_again(int radius) const {
     float* const out = centre(radius);
     GLADSTONE_KEEP_LOOP
@@ -163,22 +165,23 @@ struct FactoredTransform {
     }
   }
 
-  /// The plane at shift (0, 0): four values from (-radius, dy) on are aligned.
+  /// Returns the address of shift (0, 0) of the plane; groups of four values from (-radius, dy) on are aligned.
   GLADSTONE_HD float* centre(int radius) const {
     return reinterpret_cast<float*>(memory) + (radius + 1) * plane_pitch + radius + 4;
   }
-  /// Memory that the plane leaves free: pitch * joined(radius) values.
+  /// Returns the memory after the plane: pitch * joined(radius) values.
   GLADSTONE_HD Complex* behind_plane(int radius) const { return memory + first_joined(radius) * pitch; }
 
  private:
   static constexpr int waves = size / 2 + 1;
 
-  /// The wave numbers 0 .. size/2 in an order in which neighbours mostly lie side by side.
+  /// Enumerates the wave numbers 0 .. size/2 so that consecutive ones are mostly adjacent in memory.
   GLADSTONE_HD static constexpr int wave(int index) {
     constexpr int whole = inner / 2;
     return index < outer * whole ? index / whole + outer * (index % whole) : index;
   }
-  /// Where the products of wave number kx lie: those that are their own mirrors beside the spectrum, which others read.
+  /// Returns the column for the products of wave number kx. Self-mirrored wave numbers get columns outside the
+  /// spectrum, because other threads still read their values.
   GLADSTONE_HD static constexpr int wave_column(int kx) {
     return kx == 0 ? size : (kx == size / 2 ? size + 1 : place(kx));
   }

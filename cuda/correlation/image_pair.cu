@@ -29,7 +29,7 @@ __global__ void find_levels(double const* reference, double const* flow, long lo
   }
   highest = highest_of_warp(highest);
   minus_lowest = highest_of_warp(minus_lowest);
-  // one of a block for both, since all blocks wait for the same two places
+  // One atomic operation per block and value, since all blocks compete for the same two addresses.
   __shared__ unsigned long long of_warps[2][threads / 32];
   unsigned const lane = threadIdx.x % 32;
   if (lane == 0) {
@@ -48,7 +48,7 @@ __global__ void find_levels(double const* reference, double const* flow, long lo
 
 __global__ void remove_level(double const* reference, double const* flow, long long count, LevelKeys const* keys,
                              float* contrast, GreyPair* pixels) {
-  // the level between the extremes, taken off in double, keeps faint contrast on a bright ground in float
+  // Subtracting a mid-range level in double preserves faint contrast on a bright background in float.
   double const highest = key_value(keys->highest), lowest = -key_value(keys->minus_lowest);
   bool const any = keys->highest != 0;
   double const level = any ? 0.5 * (lowest + highest) : 0.0, range = any ? highest - lowest : 0.0;
@@ -61,8 +61,9 @@ __global__ void remove_level(double const* reference, double const* flow, long l
                finite(flow[i]) ? static_cast<float>((flow[i] - level) * scale) : unknown};
 }
 
-/// Coefficients side by side of a line, all from the samples that one thread reads: each counts for all of them, by the
-/// taps of its distances. @param sample(i) sample i from the first coefficient on, -reach <= i < reach + run
+/// Computes `run` adjacent coefficients of a line from samples read by one thread; each sample contributes to all of
+/// them.
+/// @param sample  sample(i) relative to the first coefficient, -reach <= i < reach + run
 template <int run, class Sample>
 __device__ void filter_run(Sample const& sample, float const* taps, int reach, GreyPair (&sum)[run]) {
   float tap[run] = {};
@@ -71,7 +72,8 @@ __device__ void filter_run(Sample const& sample, float const* taps, int reach, G
 #pragma unroll 4
   for (int i = -reach; i < reach + run; ++i) {
 #pragma unroll
-    for (int r = run - 1; r > 0; --r) tap[r] = tap[r - 1];  // a coefficient sees what the one before saw
+    for (int r = run - 1; r > 0; --r)
+      tap[r] = tap[r - 1];  // each coefficient uses the tap that the previous one used for the sample before
     tap[0] = i <= reach ? taps[abs(i)] : 0.0f;
     GreyPair const value = sample(i);
 #pragma unroll
@@ -80,7 +82,7 @@ __device__ void filter_run(Sample const& sample, float const* taps, int reach, G
   }
 }
 
-constexpr int most_taps = 48;  // bspline_taps
+constexpr int most_taps = 48;  // maximum of bspline_taps()
 
 __device__ void share_taps(float const* taps, int count, float (&shared)[most_taps]) {
   unsigned const thread = threadIdx.y * blockDim.x + threadIdx.x;
@@ -88,12 +90,12 @@ __device__ void share_taps(float const* taps, int count, float (&shared)[most_ta
 }
 
 constexpr int row_run = 4;
-constexpr int row_part = threads * row_run;  // of a row that a block filters
+constexpr int row_part = threads * row_run;  // part of a row filtered by a block
 
-/// Rows, reflected at their ends, a pixel 0 where an image is not known.
+/// Filters rows, continued by reflection at their ends. Unknown pixels count as 0.
 __global__ void __launch_bounds__(threads)
     filter_rows(DevicePair pair, float const* taps, int tap_count, GreyPair* out) {
-  // one place in sixteen is left free: samples four apart lie in different banks
+  // Skip every seventeenth place: samples four apart are then in different banks.
   constexpr int most = row_part + 2 * most_taps;
   __shared__ GreyPair samples[most + most / 16];
   __shared__ float shared_taps[most_taps];
@@ -118,7 +120,7 @@ __global__ void __launch_bounds__(threads)
 constexpr int column_run = 8;
 constexpr dim3 column_block(32, 4);
 
-/// Filters the columns and lays the margin round the coefficients.
+/// Filters the columns and fills the margin around the coefficients.
 __global__ void filter_columns(GreyPair const* image, int columns, int rows, float const* taps, int tap_count,
                                float* reference, float* flow) {
   using View = BsplineView<float>;

@@ -3,18 +3,18 @@
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/device/cuda_error.h"
 
-/// From the peaks of every window to shifts between the pixels.
+/// Subpixel measurement of the peaks of all windows.
 namespace gladstone::cuda {
 namespace {
 
-/// The values around a peak as a plane of correlation coefficients.
+/// Samples around a peak as a plane of correlation coefficients.
 struct SampledPlane {
   PeakSample const& sample;
   double scale;
   __device__ double operator()(int x, int y) const { return scale * sample.value[y - sample.y + 1][x - sample.x + 1]; }
 };
 
-/// Place and height of one peak, thread by thread: peaks, then windows.
+/// Measures one peak per thread; the peaks of a window are processed by adjacent threads.
 template <class Fit>
 __global__ void measure_peak(WindowJob const job, WindowPeaks const* all_peaks, WindowCorrelation* results) {
   constexpr int parts = PeakList<float>::capacity;

@@ -6,10 +6,10 @@
 #include "analysis/correlation/window_ops.h"
 #include "cuda/correlation/small_transform.h"
 
-/// A correlation plane as a transform of two columns at once leaves it, and its maxima.
+/// Correlation plane in the layout of a transform of two columns at a time, and its maxima.
 namespace gladstone::cuda {
 
-/// Columns 2 i and 2 i + 1 side by side, pairs of columns `pitch` apart.
+/// Columns 2 i and 2 i + 1 are interleaved; pairs of columns are `pitch` apart.
 template <int pitch>
 struct PairedPlane {
   Complex const* centre;  ///< shifts (0, 0) and (1, 0)
@@ -17,7 +17,7 @@ struct PairedPlane {
   GLADSTONE_HD float operator()(int dx, int dy) const { return (&centre->re)[2 * ((dx >> 1) * pitch + dy) + (dx & 1)]; }
 };
 
-/// Two neighbouring values of a row, those beside them, and the highest of three around either.
+/// Two adjacent values of a row, their neighbours, and the maximum of the three values around each of them.
 struct BlockRow {
   float left, first, second, right;
   float higher, around_first, around_second;
@@ -27,7 +27,7 @@ struct BlockRow {
     around_first = std::fmax(left, higher);
     around_second = std::fmax(higher, right);
   }
-  /// is_maximum() of either value, from the rows above and below. At most one of them is.
+  /// is_maximum() for the first or second value, given the rows above and below. At most one of them is a maximum.
   GLADSTONE_HD bool first_is_maximum(BlockRow const& above, BlockRow const& below) const {
     return static_cast<int>(first >= second) & static_cast<int>(first > left) &
            static_cast<int>(first > above.around_first) & static_cast<int>(first >= below.around_first);
@@ -38,14 +38,14 @@ struct BlockRow {
   }
 };
 
-/// Blocks of two columns and four rows that cover the square |dx|, |dy| <= radius, a thread one. A half-warp takes
-/// blocks of sixteen columns side by side, whose memory banks differ if the pitch is odd; those of the seventeenth
-/// column follow.
+/// Blocks of two columns and four rows that cover the square |dx|, |dy| <= radius, one per thread. A half-warp
+/// processes blocks of sixteen adjacent column pairs, which are in different memory banks if the pitch is odd; the
+/// blocks of the seventeenth column pair follow.
 /// @pre radius <= 16
 struct SearchBlock {
   static constexpr int most_columns = 17, most_rows = 9;
   static constexpr int warps = (most_columns * most_rows + 31) / 32;
-  int x, y;  ///< where it begins; beyond the radius in threads that have none
+  int x, y;  ///< first shift of the block; beyond the radius for threads without a block
 
   GLADSTONE_HD SearchBlock(int thread, int radius) {
     bool const in_last = thread >= 16 * most_rows;
@@ -54,10 +54,10 @@ struct SearchBlock {
   }
 };
 
-/// The positive maxima with |dx|, |dy| <= radius in columns x and x + 1 of rows y to y + 3. Of two rows' four values,
-/// all neighbours, at most one is a maximum.
-/// @param found receives that of rows y and y + 1 and that of the next two, height 0 where there is none
-/// @pre x is odd, y >= -radius; columns x - 1 to x + 2 and rows y - 1 to y + 4 may be read
+/// Finds the positive maxima with |dx|, |dy| <= radius in columns x and x + 1 of rows y to y + 3. Of the four values in
+/// two adjacent rows, at most one is a maximum.
+/// @param found  output: maximum of rows y and y + 1, and of rows y + 2 and y + 3; height 0 if there is none
+/// @pre x is odd, y >= -radius; columns x - 1 to x + 2 and rows y - 1 to y + 4 are readable
 template <int pitch>
 GLADSTONE_HD void maxima_of_block(PairedPlane<pitch> const& plane, int radius, int x, int y,
                                   PlanePeak<float> (&found)[2]) {

@@ -5,15 +5,17 @@
 
 namespace gladstone::cuda {
 
-/// A correlation plane in shared memory as rows of `pitch` values, shift (0, 0) at `centre`.
+/// Correlation plane in shared memory, in rows of `pitch` values, with shift (0, 0) at `centre`.
 template <int pitch>
 struct CentredPlane {
   float const* centre;
   __device__ float operator()(int dx, int dy) const { return centre[dy * pitch + dx]; }
 };
 
-/// Lists the positive local maxima among the shifts numbered [begin, end), row by row in a square of side
-/// 2 radius + 1, in reading order. By one full warp. @param begin a multiple of 32 @return how many
+/// Lists the positive local maxima among the shifts with indices [begin, end), in reading order. The indices count the
+/// shifts of the square of side 2 radius + 1 row by row. Called by one full warp.
+/// @param begin  a multiple of 32
+/// @return number of maxima
 template <class Plane>
 __device__ int list_maxima(Plane const& plane, int radius, int begin, int end, PlanePeak<float>* list) {
   int const lane = static_cast<int>(threadIdx.x % 32u);
@@ -40,22 +42,22 @@ __device__ int list_maxima(Plane const& plane, int radius, int begin, int end, P
   return count;
 }
 
-/// Enters listed maxima into the list of the highest. By one thread.
+/// Inserts the listed maxima into the list of the highest. Called by one thread.
 __device__ inline void insert_listed(PeakList<float>& found, PlanePeak<float> const* list, int count) {
   for (int k = 0; k < count; ++k)
     if (can_enter(found, list[k].height)) insert_peak(found, list[k]);
 }
 
-/// A positive maximum of a plane as whole numbers: heights between the samples order as their bits do, shifts in
-/// reading order.
+/// Positive maximum of a plane, encoded as integers: interpolated heights have the order of their bit patterns, shifts
+/// have reading order.
 struct RankedPeak {
   unsigned height = 0;  ///< 0: none
-  unsigned order = 0;   ///< the earlier in reading order, the higher
+  unsigned order = 0;   ///< decreases in reading order
 
   __device__ int x() const { return static_cast<int>(~order % 256u) - 128; }
   __device__ int y() const { return static_cast<int>(~order / 256u) - 128; }
   __device__ PlanePeak<float> peak() const { return {x(), y(), __uint_as_float(height)}; }
-  /// Of equal ones the first in reading order is.
+  /// Returns whether this peak is higher, or equally high and first in reading order.
   __device__ bool is_above(RankedPeak const& other) const { return rank() > other.rank(); }
 
  private:
@@ -67,12 +69,12 @@ inline __device__ RankedPeak ranked_peak(float height, int x, int y) {
   return {__float_as_uint(height), ~static_cast<unsigned>((y + 128) * 256 + x + 128)};
 }
 
-/// The two highest maxima that a lane came across.
+/// The two highest maxima found by a lane.
 struct LanePeaks {
   RankedPeak first, second;
-  int count = 0;  ///< all of them
+  int count = 0;  ///< number of all maxima found
 
-  /// Whether one that comes later, of at most that height, could be one of the two.
+  /// Returns whether a later maximum of at most that height could be one of the two.
   __device__ bool could_enter(float height) const { return height > __uint_as_float(second.height); }
   __device__ void add(RankedPeak const& peak) {
     bool const above_first = peak.is_above(first), above_second = peak.is_above(second);
@@ -80,7 +82,7 @@ struct LanePeaks {
     first = above_first ? peak : first;
     ++count;
   }
-  /// Takes out the highest of a warp's. Every lane receives it.
+  /// Removes the highest maximum of all lanes of the warp and returns it to every lane.
   __device__ RankedPeak take_highest() {
     constexpr unsigned all_lanes = 0xffffffffu;
     RankedPeak best;
@@ -94,7 +96,8 @@ struct LanePeaks {
     }
     return best;
   }
-  /// What a third one of this lane, which it has not kept, may have been below [height]; 0 where both were not taken.
+  /// Upper bound for the height of further maxima that this lane has not stored [bit pattern]; 0 unless both stored
+  /// ones were removed and there were more.
   __device__ unsigned missed_below() const { return taken == 2 && count > 2 ? lowest_taken : 0u; }
 
  private:
@@ -102,19 +105,19 @@ struct LanePeaks {
   unsigned lowest_taken = 0;
 };
 
-/// Four shifts side by side and what is around them.
+/// Four adjacent shifts and their neighbours.
 struct PlanePatch {
   float value[3][6];
   __device__ float operator()(int x, int y) const { return value[y + 1][x + 1]; }
 };
 
-/// The three highest maxima of a warp's share of the plane, highest first.
+/// The three highest maxima in a warp's share of the plane, highest first.
 struct HighestPeaks {
   RankedPeak peak[PeakList<float>::capacity];
-  unsigned missed_below = 0;  ///< there may be others, which are below this height
+  unsigned missed_below = 0;  ///< upper bound for the height of maxima that were not stored
 };
 
-/// By one full warp.
+/// Determines the highest maxima of a warp. Called by one full warp.
 inline __device__ HighestPeaks highest_of_warp(LanePeaks& own) {
   HighestPeaks highest;
 #pragma unroll
@@ -123,8 +126,8 @@ inline __device__ HighestPeaks highest_of_warp(LanePeaks& own) {
   return highest;
 }
 
-/// Searches rows [begin, end) of the square |x|, |y| <= radius. By one full warp.
-/// @pre four values from (-radius, y) on are aligned, and so are all others four columns apart
+/// Searches rows [begin, end) of the square |x|, |y| <= radius. Called by one full warp.
+/// @pre groups of four values, from (-radius, y) on, are aligned
 template <int pitch>
 __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius, int begin, int end) {
   int const lane = static_cast<int>(threadIdx.x % 32u), groups = (2 * radius + 4) / 4;
@@ -151,7 +154,8 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
       bool const found = x + k <= radius && height > 0.0f && is_maximum(patch, k, 0, height);
       maxima |= static_cast<unsigned>(found) << k;
     }
-    // one of each lane together: of four side by side at most two are maxima, and to refine them takes longest
+    // Process one maximum of each lane at a time. Of four adjacent shifts at most two are maxima, and their
+    // interpolation takes most of the time.
     for (; maxima != 0; maxima &= maxima - 1) {
       int const dx = x + __ffs(static_cast<int>(maxima)) - 1;
       float const height = plane(dx, y);
@@ -170,7 +174,7 @@ __device__ HighestPeaks search_rows(CentredPlane<pitch> const& plane, int radius
   return highest_of_warp(own);
 }
 
-/// Searches the square |x|, |y| <= radius, a lane a block. By one full warp.
+/// Searches the square |x|, |y| <= radius, one block per lane. Called by one full warp.
 template <int pitch>
 __device__ HighestPeaks search_block(PairedPlane<pitch> const& plane, int radius, SearchBlock const& block) {
   LanePeaks own;
@@ -188,7 +192,7 @@ __device__ HighestPeaks search_block(PairedPlane<pitch> const& plane, int radius
   return highest_of_warp(own);
 }
 
-/// The slow way: all maxima in reading order. By one full warp. @param list room for all maxima
+/// Slow search: lists all maxima in reading order. Called by one full warp. @param list  capacity for all maxima
 template <class Plane>
 __device__ __noinline__ void find_all_peaks(Plane const plane, int radius, PlanePeak<float>* list,
                                             PeakList<float>& found) {
@@ -204,10 +208,12 @@ __device__ __noinline__ void find_all_peaks(Plane const plane, int radius, Plane
   __syncwarp();
 }
 
-/// The peaks of a window from the highest of every share, as find_peaks gives them: the three highest maxima, unless
-/// two of them are close, or nearly as high. By one full warp.
-/// @param list, found memory for the other case
-/// @return how many; lane k < 3 receives the k-th in `own`
+/// Combines the highest maxima of all shares to the peaks of a window, with the result of find_peaks(): the three
+/// highest maxima, unless some of them are close to each other or nearly equally high, in which case the slow search is
+/// used. Called by one full warp.
+/// @param list, found  memory for the slow search
+/// @param own  output: the k-th peak in lane k < 3
+/// @return number of peaks
 template <class Plane>
 __device__ int join_shares(Plane const& plane, int radius, HighestPeaks const* shares, int count,
                            PlanePeak<float>* list, PeakList<float>& found, PlanePeak<float>& own) {

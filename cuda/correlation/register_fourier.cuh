@@ -2,11 +2,11 @@
 
 #include "cuda/correlation/small_transform.h"
 
-/// Fourier transforms of one line of 16 or 32 values that a thread holds in registers: every index is known when the
-/// loops are unrolled.
+/// Fourier transforms of 16 or 32 values in the registers of one thread: all indices are compile-time constants in
+/// unrolled loops.
 namespace gladstone::cuda {
 
-/// A transform of `size` values, sum over n of z(n) exp(sign 2 pi i k n / size), in place; value k ends up in
+/// Transforms `size` values in place: sum over n of z(n) exp(sign 2 pi i k n / size); value k is written to
 /// z[place(k)].
 template <int size, int sign>
 struct RegisterFourier {

@@ -2,8 +2,8 @@
 
 #include "render/base/host_device.h"
 
-/// Fourier transforms of three to sixteen values, roots of unity to join them by, and what two real lines transformed
-/// as one come to.
+/// Fourier transforms of two to sixteen values, roots of unity, and the cross spectrum of two real lines transformed as
+/// one.
 namespace gladstone::cuda {
 
 struct alignas(8) Complex {
@@ -68,7 +68,7 @@ GLADSTONE_HD constexpr Complex unit_root(int k) {
   return {cosine_64(m), sign * cosine_64(m - 16)};
 }
 
-/// a times sign i.
+/// Multiplies a by sign i.
 template <int sign>
 GLADSTONE_HD constexpr Complex quarter_turn(Complex a) {
   return sign > 0 ? Complex{-a.im, a.re} : Complex{a.im, -a.re};
@@ -85,7 +85,7 @@ GLADSTONE_HD constexpr Complex small_root(int k) {
   return {cosine[m], sign * cosine[(m + 9) % 12]};
 }
 
-/// Transform of z[0], z[stride], .. in place and in natural order.
+/// Transforms z[0], z[stride], .. in place, with the result in natural order.
 template <int radix, int sign, int stride>
 GLADSTONE_HD void small_transform(Complex* z) {
   static_assert(radix == 2 || radix == 3 || radix == 4 || radix == 5 || radix == 6 || radix == 8 || radix == 12 ||
@@ -133,7 +133,7 @@ GLADSTONE_HD void small_transform(Complex* z) {
     small_transform<4, sign, 1>(even);
     small_transform<4, sign, 1>(odd);
     constexpr float c = 0.70710678118654752f;
-    // an eighth of a turn is c (o + sign i o): joined with the sum
+    // The factor exp(sign 2 pi i / 8) is c (1 + sign i); c is applied together with the sum.
     Complex const u = odd[1] + quarter_turn<sign>(odd[1]), v = quarter_turn<sign>(odd[3]) - odd[3];
     Complex const w = quarter_turn<sign>(odd[2]);
     z[0] = even[0] + odd[0];
@@ -144,7 +144,7 @@ GLADSTONE_HD void small_transform(Complex* z) {
     z[6 * stride] = even[2] - w;
     z[3 * stride] = {even[3].re + c * v.re, even[3].im + c * v.im};
     z[7 * stride] = {even[3].re - c * v.re, even[3].im - c * v.im};
-  } else {  // 6, 12 and 16: a few transforms, turned, then others across them
+  } else {  // 6, 12 and 16: transforms of `outer` values, twiddle factors, transforms of `inner` values
     constexpr int outer = radix == 6 ? 2 : 4, inner = radix / outer;
     Complex natural[radix];
     for (int n = 0; n < inner; ++n) {
@@ -162,8 +162,9 @@ GLADSTONE_HD void small_transform(Complex* z) {
   }
 }
 
-/// Wave number k of two rows of a cross spectrum C = conj(A) B at once, both of real lines: rows 0 and n/2 of a plane
-/// of n rows. With P = A_0 + i A_n/2 and R likewise of b, C_0 + i C_n/2 at k; M and S are P and R at -k.
+/// Returns wave number k of rows 0 and n/2 of a cross spectrum C = conj(A) B with n rows, as C_0 + i C_n/2; the inverse
+/// transforms of both rows along the columns are real. P = A_0 + i A_n/2 at k, and R likewise for b; M and S are P and
+/// R at -k.
 GLADSTONE_HD constexpr Complex packed_product(Complex p, Complex m, Complex r, Complex s) {
   Complex const first = (conj(p) + m) * (r + conj(s));
   Complex const second = (conj(p) - m) * (r - conj(s));

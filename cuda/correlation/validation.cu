@@ -5,7 +5,7 @@ namespace gladstone::cuda {
 namespace {
 
 constexpr int threads = 128;
-constexpr int threads_of_rounds = 512;  // of the kernels that are one block
+constexpr int threads_of_rounds = 512;  // of the kernels with a single block
 
 __global__ void make_vectors(WindowCorrelation const* windows, InterrogationGrid grid, PassPredictor predictor,
                              double limit_px, AmbiguousPlaces before, GridVector* vectors, char* ambiguous) {
@@ -25,8 +25,8 @@ __global__ void find_spurious(GridVector const* vectors, int columns, int rows, 
   if (failed != FailedTest::none) list[atomicAdd(count, 1)] = {i, failed, Replacement::open, {}};
 }
 
-/// Rounds from the rim of a spurious patch inwards; within a round only what was sound before counts, so that the order
-/// of the list does not matter. One block.
+/// Replaces spurious vectors in rounds, from the rim of a group of them inwards; within a round, only vectors sound
+/// before it count, so that the order of the list does not matter. Single block.
 __global__ void __launch_bounds__(threads_of_rounds)
     replace_spurious(GridVector* vectors, int columns, int rows, ValidationRule rule, Replacement* list,
                      int const* count) {

@@ -7,15 +7,15 @@
 #include "cuda/device/launch.h"
 #include "render/base/contracts.h"
 
-/// Windows whose transforms have the lengths of the usual passes: a block correlates one by FactoredTransform, and
-/// nothing but the result leaves it.
+/// Correlation of windows with the transform lengths of common passes: one window per block, by FactoredTransform. Only
+/// the peaks are written to global memory.
 namespace gladstone::cuda {
 namespace {
 
 constexpr int most_warps = 32;
-constexpr int most_searching = 10;  // a warp joins what they find, three peaks each
+constexpr int most_searching = 10;  // a warp merges their results, three peaks each
 
-/// What the threads of a block share, before the window.
+/// Shared memory of a block, in front of the window.
 template <int size>
 struct alignas(16) BlockMemory {
   double scale;
@@ -29,7 +29,7 @@ struct alignas(16) BlockMemory {
   PeakList<float> found;
 };
 
-/// Copies a window's pixels into the memory, the nearest ones beyond the border, where weights are 0.
+/// Copies a window's pixels to shared memory. Positions outside the image, whose weights are 0, get the nearest pixel.
 /// @return this thread's share of the weighted sums of both images
 template <class Transform>
 __device__ Complex take_pixels(Transform const& transform, WindowJob const& job, int column, int row,
@@ -57,7 +57,8 @@ __device__ Complex take_pixels(Transform const& transform, WindowJob const& job,
   return {weight_x * sum.re, weight_x * sum.im};
 }
 
-/// Sums over this thread's pixels that are known in both images: of the weight and of either image. Seldom needed.
+/// Sums over this thread's pixels that are known in both images: weights and weighted grey levels of both. Rarely
+/// needed.
 template <class Transform>
 __device__ void sum_known_pixels(Transform const& transform, int side, float const* weight_y, float weight_x,
                                  float (&sums)[3]) {
@@ -76,7 +77,7 @@ template <class Transform, bool phase_only>
 __global__ void __launch_bounds__(Transform::threads)
     correlate_window_by_factors(WindowJob const __grid_constant__ job, WindowPeaks* const all_peaks) {
   constexpr int size = Transform::size, threads = Transform::threads, warps = threads / 32;
-  static_assert(warps > 1);  // one does not search
+  static_assert(warps > 1);  // one warp does not search
   extern __shared__ __align__(16) unsigned char memory[];
   auto& own = *reinterpret_cast<BlockMemory<size>*>(memory);
   int const thread = static_cast<int>(threadIdx.x);
@@ -96,7 +97,7 @@ __global__ void __launch_bounds__(Transform::threads)
   float sums[2] = {share.re, share.im};
   block_sums(sums, own.sums);
   Complex mean{sums[0] / full, sums[1] / full};
-  if (isnan(mean.re + mean.im)) {  // pixels that are not known
+  if (isnan(mean.re + mean.im)) {  // some pixels are unknown
     float known[3] = {0.0f, 0.0f, 0.0f};
     sum_known_pixels(transform, job.side, own.weight_y, weight_x, known);
     block_sums(known, own.known);
@@ -142,7 +143,7 @@ __global__ void __launch_bounds__(Transform::threads)
   transform.rows_together_again(radius);
   __syncthreads();
 
-  // a warp searches 32 blocks of four shifts at a time; few warps, since each ranks what it found
+  // A warp searches 32 groups of four shifts at a time. Few warps take part, because each one ranks its own maxima.
   int const blocks = (2 * radius + 1) * ((2 * radius + 4) / 4), warp = thread / 32;
   int const searching = min((blocks + 63) / 64, warps <= most_searching ? warps - 1 : most_searching);
   int const rows_each = (2 * radius + searching) / searching;
@@ -178,7 +179,7 @@ void launch(WindowJob const& job, WindowPeaks* peaks) {
   check_launch("correlate_window_by_factors");
 }
 
-/// Every length that this file has: those of windows of 16 to 64 px, one row each.
+/// Table of the supported lengths: for windows of 16 to 64 px.
 struct Length {
   int size;
   void (*launch)(WindowJob const& job, WindowPeaks* peaks);

@@ -8,13 +8,14 @@
 #include "render/base/contracts.h"
 #include "render/base/units.h"
 
-/// Windows whose transforms do not fit into registers: one block a window, one warp a line. Any size, not fast.
+/// Correlation of windows of any size: one window per block, one line per warp, in shared or global memory. Slower than
+/// the specialised kernels.
 namespace gladstone::cuda {
 namespace {
 
 constexpr unsigned all_lanes = 0xffffffffu;
 
-/// A transformed plane, real parts, shifts (dx, dy) modulo its size.
+/// Transformed plane (real parts), with shifts (dx, dy) modulo its size.
 struct WrappedPlane {
   Complex const* values;
   int size;
@@ -24,9 +25,10 @@ struct WrappedPlane {
   }
 };
 
-/// Transforms a line in `from` by one warp, with `to` as long; conjugated roots transform back. Stockham's algorithm:
-/// every stage reads radix values a whole stride apart and leaves them side by side, so that none is out of order at
-/// the end. @return where the result lies
+/// Transforms a line in `from` by one warp, with `to` as a buffer of equal length; conjugated roots give the inverse
+/// transform. Stockham's algorithm: every stage reads `radix` values at the full stride and writes them adjacently, so
+/// that the result is in natural order.
+/// @return address of the result
 __device__ Complex* transform_line(LinePlan const& plan, Complex const* roots, bool back, Complex* from, Complex* to) {
   int const lane = static_cast<int>(threadIdx.x % 32u), size = plan.size;
   auto const root = [&](int k) { return back ? conj(roots[k]) : roots[k]; };
@@ -65,7 +67,7 @@ __device__ Complex* transform_line(LinePlan const& plan, Complex const* roots, b
   return from;
 }
 
-/// Transforms `count` lines of a window, those numbered first .. first + count - 1 modulo its size, a warp each.
+/// Transforms the lines first .. first + count - 1 (modulo the size) of a window, one line per warp.
 __device__ void transform_lines(LinePlan const& plan, Complex const* roots, bool back, Complex* window, int line_step,
                                 int value_step, int first, int count, Complex* scratch) {
   int const lane = static_cast<int>(threadIdx.x % 32u), warp = static_cast<int>(threadIdx.x / 32u), size = plan.size;
@@ -81,7 +83,7 @@ __device__ void transform_lines(LinePlan const& plan, Complex const* roots, bool
   __syncthreads();
 }
 
-/// Calls visit(j, i, a, b, weight) for this thread's share of a window's pixels, weight 0 where one is not known.
+/// Calls visit(j, i, a, b, weight) for this thread's share of a window's pixels; the weight is 0 for unknown pixels.
 template <class Visit>
 __device__ void for_each_pixel(WindowJob const& job, int column, int row, Visit const& visit) {
   int const size = job.side, first_x = job.x.first(column) + job.margin, first_y = job.y.first(row) + job.margin;
@@ -103,12 +105,12 @@ __device__ void for_each_pixel(WindowJob const& job, int column, int row, Visit 
   }
 }
 
-/// Multiplies the spectrum of a + i b out to conj(A) B, wave numbers k and -k together.
-/// @param particles of rpc: what weighs the phases along one axis; null: magnitudes stay
+/// Replaces the spectrum of a + i b by conj(A) B, for wave numbers k and -k together.
+/// @param particles  weights of the phases along one axis for rpc; null: magnitudes are retained
 __device__ void form_cross_spectrum(Complex* window, int size, int pitch, float const* particles) {
   for (int k = static_cast<int>(threadIdx.x); k < (size / 2 + 1) * size; k += static_cast<int>(blockDim.x)) {
     int const x = k % size, y = k / size, mirror_x = (size - x) % size, mirror_y = (size - y) % size;
-    if (y == mirror_y && x > mirror_x) continue;  // in the rows that are their own mirrors
+    if (y == mirror_y && x > mirror_x) continue;  // in rows that are their own mirrors
     Complex& here = window[static_cast<long long>(y) * pitch + x];
     Complex& there = window[static_cast<long long>(mirror_y) * pitch + mirror_x];
     Vec2<float> const product = cross_spectrum(here.re, here.im, there.re, there.im);
@@ -132,7 +134,7 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
   for (int k = thread; k < size; k += static_cast<int>(blockDim.x)) roots[k] = job.roots[k];
 
   for (unsigned index = blockIdx.x; index < job.grid.size(); index += gridDim.x) {
-    __syncthreads();  // the window before is done with
+    __syncthreads();  // the previous window has been finished
     int const column = static_cast<int>(index) % job.grid.columns, row = static_cast<int>(index) / job.grid.columns;
     WindowPeaks& result = all_peaks[index];
 
@@ -180,7 +182,7 @@ __global__ void correlate_window_by_lines(WindowJob const job, LinePlan const pl
     transform_lines(plan, roots, true, window, pitch, 1, -(radius + 1), needed, lines);
     if (thread >= 32) continue;
 
-    // the peaks, a row of shifts at a time; `lines` has room for the maxima of a row
+    // Find the peaks, one row of shifts at a time; `lines` has capacity for the maxima of a row.
     WrappedPlane const plane{window, size, pitch};
     auto* const list = reinterpret_cast<PlanePeak<float>*>(lines);
     if (thread == 0) found = {};

@@ -2,21 +2,21 @@
 #include "cuda/correlation/window_peaks.cuh"
 #include "cuda/device/launch.h"
 
-/// Windows with supports of 32 px: one warp correlates one, a thread a column, and nothing but the result leaves it.
-/// With a and b the windows, z = a + i b and tilde a transform along y:
+/// Correlation of windows with supports of 32 px: one window per warp, one column per thread. Only the peaks are
+/// written to global memory. With a and b the windows, z = a + i b and tilde a transform along y:
 ///  1. thread x holds column x: mean, weights, energies, transform along y;
-///  2. threads 2 k and 2 k + 1 take row k of the spectra of a and of b, k < size/2 (the others follow by symmetry), and
-///     transform along x; rows 0 and size/2, both of real columns, share a place as real and imaginary part;
-///  3. they swap half their values, form conj(A) B, one at even and one at odd wave numbers, and transform back along
-///  x;
-///  4. each thread takes columns x and x + size/2 of the plane, joined as a complex number, of every second row,
-///     and transforms back along y.
+///  2. threads 2 k and 2 k + 1 process row k of the spectra of a and b, k < size/2 (the others follow by symmetry), and
+///  transform along x; rows 0 and size/2, whose columns are real, share a row as real and imaginary part;
+///  3. they exchange half of their values, form conj(A) B, one at even and one at odd wave numbers, and transform back
+///  along x;
+///  4. each thread processes columns x and x + size/2 of the plane, joined as complex numbers, of every second row, and
+///  transforms back along y.
 namespace gladstone::cuda {
 namespace {
 
 constexpr unsigned all_lanes = 0xffffffffu;
 
-/// Sums of `count` values over the block's warp, in an order that is fixed.
+/// Sums `count` values over the block's warp, in a fixed order.
 template <int count>
 __device__ void warp_sums(float (&value)[count]) {
 #pragma unroll
@@ -28,17 +28,17 @@ __device__ void warp_sums(float (&value)[count]) {
 constexpr int size = 32;
 constexpr int half = size / 2;
 constexpr int spectrum_pitch = size + 1;
-// rows of the half-transformed plane: even and odd part, their distance an odd multiple of 8 to spread the banks
+// Rows of the half-transformed plane: even and odd parts, at a distance of an odd multiple of 8 to use different banks.
 constexpr int odd_part = half + 8;
 constexpr int parts_pitch = size + 9;
 constexpr int plane_pitch = 48;
 constexpr int values = size * spectrum_pitch;
-// behind the plane: room for all maxima; no two are neighbours
+// Memory for all maxima after the plane; two maxima are never adjacent.
 constexpr int search_width = 2 * (size / 4) + 1;
 constexpr int most_maxima = (search_width + 1) * (search_width + 1) / 4;
 static_assert(sizeof(float) * size * plane_pitch + sizeof(PlanePeak<float>) * most_maxima <= sizeof(Complex) * values);
 
-/// What the threads of a block share.
+/// Shared memory of a block.
 struct alignas(16) BlockMemory {
   Complex values[cuda::values];
   Complex packed[2][size];
@@ -47,8 +47,9 @@ struct alignas(16) BlockMemory {
   PeakList<float> found;
 };
 
-/// @param turns 1: how often a transform is repeated in the other direction; the compiler must not know it, so that
-/// there is one copy of the code, which is long: the kernel is bound by fetching it
+/// Finds the peaks of one window.
+/// @param turns  always 1: number of repetitions of a transform along the other axis. It is not a compile-time
+/// constant, so that the long code exists only once: the kernel is limited by instruction fetches.
 __global__ void __launch_bounds__(size, 18)
     correlate_window_of_32(WindowJob const job, WindowPeaks* all_peaks, int const turns) {
   extern __shared__ __align__(16) unsigned char memory[];
@@ -58,7 +59,7 @@ __global__ void __launch_bounds__(size, 18)
   int const column = window % job.grid.columns, row = window / job.grid.columns;
   WindowPeaks& result = all_peaks[window];
 
-  // 1. column `thread` of both images; beyond the border the nearest pixel, with weight 0
+  // 1. Read column `thread` of both images. Positions outside the image get the nearest pixel and weight 0.
   Complex z[size];
   {
     int const columns = job.pair.columns, rows = job.pair.rows;
@@ -90,7 +91,7 @@ __global__ void __launch_bounds__(size, 18)
   sums[1] *= weight_x;
   warp_sums(sums);
   float mean_a = sums[0] / full, mean_b = sums[1] / full;
-  if (isnan(sums[0]) || isnan(sums[1])) {  // pixels that are not known
+  if (isnan(sums[0]) || isnan(sums[1])) {  // some pixels are unknown
     float known[3] = {0.0f, 0.0f, 0.0f};
 #pragma unroll
     for (int y = 0; y < size; ++y) {
@@ -113,7 +114,7 @@ __global__ void __launch_bounds__(size, 18)
     for (int y = 0; y < size; ++y)
       if (isnan(z[y].re) || isnan(z[y].im)) z[y] = {mean_a, mean_b};
   }
-  // energies of the rows within the nominal window and of the others
+  // Energies of the rows within the nominal window, and of the others.
   float energy[4] = {0.0f, 0.0f, 0.0f, 0.0f};
 #pragma unroll
   for (int y = 0; y < size; ++y) {
@@ -127,7 +128,7 @@ __global__ void __launch_bounds__(size, 18)
   energy[1] += energy[3];
   if (thread < size / 4 || thread >= size - size / 4) energy[2] = energy[3] = 0.0f;
   warp_sums(energy);
-  // the steps below leave out a factor 1/4
+  // The steps below omit a factor of 1/4.
   double const scale =
       0.25 * plane_scale({energy[0], energy[1], energy[2], energy[3]}, *job.contrast, job.grid.window_px, size);
   if (scale == 0.0) {
@@ -136,11 +137,12 @@ __global__ void __launch_bounds__(size, 18)
   }
   using Forward = RegisterFourier<size, -1>;
   int const wave = thread / 2, odd = thread % 2;
-  float const sign = odd ? -1.0f : 1.0f;  // even threads take a, odd threads b
+  float const sign = odd ? -1.0f : 1.0f;  // even threads process a, odd threads b
 #pragma unroll 1
   for (int turn = 0; turn <= turns; ++turn) {  // along y, then along x
     if (turn > 0) {
-      // 2. from columns to rows; what is written for rows 0 and `half` makes the sums below give 2 (A_0 + i A_half)
+      // 2. From columns to rows. The values of rows 0 and `half` are chosen so that the sums below give 2 (A_0 + i
+      // A_half).
       Complex* const out = shared + thread;
 #pragma unroll
       for (int k = 0; k < size; ++k)
@@ -160,7 +162,7 @@ __global__ void __launch_bounds__(size, 18)
     Forward::apply(z);
   }
 
-  // 3. the cross spectrum
+  // 3. Form the cross spectrum.
   if (wave == 0)
 #pragma unroll
     for (int k = 0; k < size; ++k) own.packed[odd][k] = z[Forward::place(k)];
@@ -179,7 +181,7 @@ __global__ void __launch_bounds__(size, 18)
     Complex const even_value = z[Forward::place(2 * k)], odd_value = z[Forward::place(2 * k + 1)];
     Complex const send = odd ? even_value : odd_value, own = odd ? odd_value : even_value;
     Complex const other = {__shfl_xor_sync(all_lanes, send.re, 1), __shfl_xor_sync(all_lanes, send.im, 1)};
-    Complex const product = conj(own) * other;  // 4 i C, in odd threads its conjugate from 2 i B and 2 A
+    Complex const product = conj(own) * other;  // 4 i C; in odd threads its conjugate, from 2 i B and 2 A
     g[k] = {sign * product.im, -product.re};
   }
   if (wave == 0)
@@ -190,7 +192,7 @@ __global__ void __launch_bounds__(size, 18)
 #pragma unroll 1
   for (int turn = 0; turn <= turns; ++turn) {  // along x, then along y
     if (turn > 0) {
-      // 4. from rows to columns
+      // 4. From rows to columns.
       Complex* const out = shared + wave * parts_pitch + odd * odd_part;
 #pragma unroll
       for (int k = 0; k < half; ++k) out[k] = g[Back::place(k)];
@@ -198,7 +200,7 @@ __global__ void __launch_bounds__(size, 18)
       float const side = parity ? -1.0f : 1.0f;
       Complex rotation;
       sincospif(2.0f * static_cast<float>(x) / size, &rotation.im, &rotation.re);
-      // columns x and x + half of row k, from the transforms of the even and the odd wave numbers
+      // Columns x and x + half of row k, from the transforms of the even and odd wave numbers.
       struct Columns {
         Complex near, far;
       };

@@ -5,8 +5,8 @@
 #include "cuda/device/launch.h"
 #include "render/base/contracts.h"
 
-/// Windows with supports of 64 px: a block of 256 threads correlates one by WindowTransform, whose code is short enough
-/// to stay in the instruction cache, and nothing but the result leaves it.
+/// Correlation of windows with supports of 64 px: one window per block of 256 threads, by WindowTransform, whose code
+/// fits into the instruction cache. Only the peaks are written to global memory.
 namespace gladstone::cuda {
 namespace {
 
@@ -16,12 +16,12 @@ constexpr unsigned all_lanes = 0xffffffffu;
 constexpr int size = Transform::size;
 constexpr int warps = Transform::threads / 32;
 constexpr int most_width = 2 * Transform::largest_radius + 1;
-constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< no two are neighbours
+constexpr int most_maxima = (most_width + 1) * (most_width + 1) / 4;  ///< two maxima are never adjacent
 static_assert(2 * SearchBlock::most_columns > most_width && 4 * SearchBlock::most_rows >= most_width);
 
 __device__ Transform::Roots const roots_of_64 = Transform::make_roots();
 
-/// What the threads of a block share.
+/// Shared memory of a block.
 struct alignas(16) BlockMemory {
   Complex values[Transform::values];
   Transform::Roots roots;
@@ -34,7 +34,8 @@ struct alignas(16) BlockMemory {
 };
 static_assert(sizeof(PlanePeak<float>) * most_maxima <= sizeof(Complex) * Transform::upper);
 
-/// Sums `count` values, 2 or 4, over a warp, each value in lanes of its own: slots[k] receives the k-th.
+/// Sums `count` (2 or 4) values over a warp, with different lanes for each value. @param slots  output: slots[k] is the
+/// k-th sum
 template <int count>
 __device__ void warp_sums(float (&value)[count], float* slots) {
   int const lane = static_cast<int>(threadIdx.x % 32u);
@@ -53,7 +54,7 @@ __device__ void warp_sums(float (&value)[count], float* slots) {
   if (lane % (32 / count) == 0) slots[lane / (32 / count)] = value[0];
 }
 
-/// The sums of all warps' slots, by every thread. @param slots [warp][count]
+/// Sums the slots of all warps, in every thread. @param slots  [warp][count]
 template <int count>
 __device__ void sum_slots(float const* slots, float (&value)[count]) {
 #pragma unroll
@@ -64,13 +65,13 @@ __device__ void sum_slots(float const* slots, float (&value)[count]) {
     for (int k = 0; k < count; ++k) value[k] += slots[warp * count + k];
 }
 
-/// A thread's pixels of a window, weights along y and x: columns lane and lane + 32, rows warp + 8 r.
+/// Pixels of a thread in a window and their weights along x and y: columns lane and lane + 32, rows warp + 8 r.
 struct ThreadPixels {
   Complex z[2][8];
   float weight_y[8];
   float weight_x[2];
 
-  /// Beyond the border the nearest pixel, with weight 0.
+  /// Reads the pixels. Positions outside the image get the nearest pixel and weight 0.
   __device__ void read(WindowJob const& job, int column, int row, int warp, int lane) {
     int const columns = job.pair.columns, rows = job.pair.rows;
     int const first_x = job.x.first(column) + lane, first_y = job.y.first(row) + warp;
@@ -95,7 +96,7 @@ struct ThreadPixels {
     for (int r = 0; r < 8; ++r) weight_y[r] = along_y[8 * r];
   }
 
-  /// Weighted sums of both images.
+  /// Computes the weighted sums of both images.
   __device__ void sum(float (&sums)[2]) const {
     Complex column[2] = {};
 #pragma unroll
@@ -109,7 +110,7 @@ struct ThreadPixels {
     sums[1] = weight_x[0] * column[0].im + weight_x[1] * column[1].im;
   }
 
-  /// Pixels that are not known are NaN in one image or in both.
+  /// Replaces unknown pixels, which are NaN in one or both images, by the mean.
   __device__ void fill_unknown(Complex mean) {
 #pragma unroll
     for (auto& column : z)
@@ -118,8 +119,9 @@ struct ThreadPixels {
         if (isnan(pixel.re + pixel.im)) pixel = mean;
   }
 
-  /// Takes the mean off and weights what is left. @param energy receives that of both images, all of it and that of the
-  /// nominal window, to which a lane has one column
+  /// Subtracts the mean and applies the weights.
+  /// @param energy  output: energies of both images, in total and over the nominal window, which contains one of the
+  /// two columns of each lane
   __device__ void weight(Complex mean, float (&energy)[4]) {
     int const lane = static_cast<int>(threadIdx.x % 32u);
     Complex inner[2] = {}, outer[2] = {};
@@ -142,8 +144,8 @@ struct ThreadPixels {
   }
 };
 
-/// Weighted sums over a warp's share of the pixels that are known in both images: slots receive that of 1 and those of
-/// either image. Seldom needed, so it reads the pixels once more, in few instructions.
+/// Computes the sums of a warp's share of the pixels known in both images: weights and weighted grey levels of both.
+/// Rarely needed; reads the pixels again to reduce the code size.
 __device__ __noinline__ void sum_known_pixels(WindowJob const& job, int column, int row, float* slots) {
   int const lane = static_cast<int>(threadIdx.x % 32u), warp = static_cast<int>(threadIdx.x / 32u);
   float sums[4] = {0.0f, 0.0f, 0.0f, 0.0f};
@@ -163,8 +165,8 @@ __device__ __noinline__ void sum_known_pixels(WindowJob const& job, int column, 
   warp_sums(sums, slots);
 }
 
-/// plane_scale of the sums of all warps' energies, by every lane of a warp. The plane is four times as high as the
-/// transforms' definition makes it.
+/// Returns plane_scale() for the sums of all warps' energies, in every lane of a warp. The factor 1/4 accounts for the
+/// plane being four times the unnormalised transform.
 __device__ double scale_of(float const* energy, WindowJob const& job) {
   float sum[4];
   sum_slots(energy, sum);
@@ -175,8 +177,9 @@ __global__ void __launch_bounds__(Transform::threads, 4)
     correlate_window_of_64(WindowJob const __grid_constant__ job, int const first_row, WindowPeaks* const all_peaks) {
   extern __shared__ __align__(16) unsigned char memory[];
   BlockMemory& own = *reinterpret_cast<BlockMemory*>(memory);
-  // Some steps are a few warps' alone. They are other ones, by 5/4 of its number, in every block, and also in blocks a
-  // multiple of four apart, which may well share a processor: none of its four schedulers has them all.
+  // Some steps involve only a few warps. Rotate the warp numbers by 5/4 of the block number, so that in blocks on the
+  // same multiprocessor, including those a multiple of four apart, these warps are distributed over its four
+  // schedulers.
   unsigned const turned = (threadIdx.x + (40u * blockIdx.x & 224u)) % Transform::threads;
   int const thread = static_cast<int>(turned), lane = static_cast<int>(turned % 32u),
             warp = static_cast<int>(turned / 32u);
@@ -188,7 +191,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   {
     ThreadPixels pixels;
     Complex mean{};
-    for (bool known = false;; known = true) {  // once more where there are pixels that are not known
+    for (bool known = false;; known = true) {  // repeated if some pixels are unknown
       pixels.read(job, column, row, warp, lane);
       if (known) {
         pixels.fill_unknown(mean);
@@ -259,7 +262,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
   }
   __syncthreads();
 
-  // the peaks
+  // Find the peaks.
   auto const plane = transform.plane(radius);
   if (warp < SearchBlock::warps) {
     HighestPeaks const highest = search_block(plane, radius, SearchBlock(thread, radius));
@@ -281,7 +284,7 @@ __global__ void __launch_bounds__(Transform::threads, 4)
 void correlate_windows_of_64(WindowJob const& job, WindowPeaks* peaks) {
   allow_shared_bytes(correlate_window_of_64, sizeof(BlockMemory));
   GLADSTONE_EXPECTS(job.search_radius_px <= Transform::largest_radius);
-  constexpr int most_rows = 65535;  // of a launch
+  constexpr int most_rows = 65535;  // per launch
   for (int first = 0; first < job.grid.rows; first += most_rows) {
     dim3 const blocks(static_cast<unsigned>(job.grid.columns),
                       static_cast<unsigned>(std::min(most_rows, job.grid.rows - first)));

@@ -3,18 +3,18 @@
 #include "cuda/correlation/correlation_kernels.h"
 #include "cuda/correlation/peak_search.cuh"
 
-/// What a window's plane leaves behind, by the block that made it.
+/// Output of a window's peaks by the block that computed its plane.
 namespace gladstone::cuda {
 
-/// Leaves that there is nothing to measure.
+/// Writes the result of a window that was not correlated.
 __device__ inline void leave_nothing(WindowCorrelation::Outcome why, WindowPeaks& peaks) {
   peaks.outcome = why;
   peaks.count = 0;
   peaks.scale = 0.0;
-  for (PeakSample& sample : peaks.peak) sample = {};  // measure_peaks reads the heights of absent peaks, too
+  for (PeakSample& sample : peaks.peak) sample = {};  // measure_peaks() also reads the heights of absent peaks
 }
 
-/// Leaves peaks with what is around them. By one full warp. @param peak in lane k < count the k-th
+/// Writes peaks with their surrounding samples. Called by one full warp. @param peak  the k-th peak in lane k < count
 template <class Plane>
 __device__ void leave_samples(Plane const& plane, int count, PlanePeak<float> const& peak, double scale,
                               WindowPeaks& peaks) {
@@ -33,8 +33,10 @@ __device__ void leave_samples(Plane const& plane, int count, PlanePeak<float> co
   }
 }
 
-/// Leaves the highest peaks. By one full warp. @param shares the highest of each part of the plane
-/// @param list room for all maxima @param found for the case that the shares do not suffice
+/// Writes the highest peaks. Called by one full warp.
+/// @param shares  highest maxima of each part of the plane
+/// @param list  capacity for all maxima
+/// @param found  memory for the slow search
 template <class Plane>
 __device__ void leave_peaks(Plane const& plane, int radius, HighestPeaks const* shares, int share_count,
                             PlanePeak<float>* list, PeakList<float>& found, double scale, WindowPeaks& peaks) {

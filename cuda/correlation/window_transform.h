@@ -2,23 +2,21 @@
 
 #include "cuda/correlation/paired_plane.h"
 
-/// The correlation plane of a window of 64 x 64 values by 256 threads, which hold sixteen values each and exchange them
-/// through memory that they share. A line of 64 takes two passes of eight values, 64 = 8 x 8, and all passes are short.
-///
-/// With a and b the windows, z = a + i b and tilde a transform along y, the steps below
+/// Correlation plane of a window of 64 x 64 values by 256 threads, each of which holds sixteen values and exchanges
+/// them through shared memory. A transform of 64 values takes two short passes of eight values, 64 = 8 x 8.
+/// With a and b the windows, z = a + i b, and tilde a transform along y, the steps are:
 ///  1. transform columns of z along y (columns_apart, columns_together);
-///  2. take rows k < 32 of the spectra of a and of b out of rows k and -k, and transform along x (rows_apart,
-///     rows_together); rows 0 and 32, both of real columns, share a place as real and imaginary part;
+///  2. extract rows k < 32 of the spectra of a and b from rows k and -k, and transform along x (rows_apart,
+///  rows_together); rows 0 and 32, whose columns are real, share a row as real and imaginary part;
 ///  3. form conj(A) B and transform back along x (product, rows_apart_again, rows_together_again);
-///  4. transform columns 2 x and 2 x + 1 of the plane, joined as a complex number, back along y, as many of them as the
-///     search for peaks reads (columns_apart_again, columns_together_again, keep_plane).
-/// A step is what one thread does between two barriers; the comments say which: all steps of the rows of one warp stay
-/// within it, and so do those of the columns of step 4. No two threads write, nor one writes and another reads, the
-/// same place between two barriers.
-///
-/// Wave number or shift p + 8 q of the columns lies in row 4 p + q % 4 of the lower (q < 4) or upper half of the
-/// memory: a column's second pass leaves its values where it found them, and half-warps, which take rows q and q + 1,
-/// meet all banks, since a row is an odd multiple of eight values long.
+///  4. transform columns 2 x and 2 x + 1 of the plane, joined as complex numbers, back along y, for those columns only
+///  that the peak search reads (columns_apart_again, columns_together_again, keep_plane).
+/// A step is the work of one thread between two barriers, which are given in the comments. The rows of a warp in steps
+/// 2 and 3 and its columns in step 4 are exchanged within the warp only. Between barriers, no two threads access the
+/// same memory unless both only read.
+/// Wave number or shift p + 8 q of a column is in row 4 p + q % 4 of the lower (q < 4) or upper half of the memory. The
+/// second pass of a column thus writes where it reads. Half-warps, which process rows q and q + 1, access all banks,
+/// since the row length is an odd multiple of eight values.
 namespace gladstone::cuda {
 
 struct WindowTransform {
@@ -26,14 +24,14 @@ struct WindowTransform {
   static constexpr int threads = 256;
   static constexpr int pitch = 72;
   static constexpr int values = size * pitch;
-  static constexpr int upper = 32 * pitch;         ///< where the upper half begins
-  static constexpr int plane_pitch = 73;           ///< of the plane, in the upper half; odd for SearchBlock
-  static constexpr int largest_radius = size / 4;  ///< of shifts; all are right up to one more
+  static constexpr int upper = 32 * pitch;         ///< start of the upper half
+  static constexpr int plane_pitch = 73;           ///< stride of the plane in the upper half; odd for SearchBlock
+  static constexpr int largest_radius = size / 4;  ///< largest search radius; shifts up to one more are valid
 
   struct alignas(16) ComplexPair {
     Complex even, odd;
   };
-  /// exp(-2 pi i n k / 64), k = 0 .. 7, in row n, whose length keeps eight rows apart.
+  /// exp(-2 pi i n k / 64), k = 0 .. 7, in row n; the row length puts eight rows into different banks.
   struct Roots {
     ComplexPair of[8][5];
   };
@@ -45,7 +43,7 @@ struct WindowTransform {
     return roots;
   }
 
-  int thread;  ///< what follows from it is cheaper to reckon again than to keep in registers
+  int thread;  ///< values derived from it are recomputed, which is cheaper than registers
   Complex* memory;
   Roots const* roots;
 
@@ -53,17 +51,17 @@ struct WindowTransform {
       : thread(static_cast<int>(number)), memory(shared), roots(shared_roots) {}
   GLADSTONE_HD int lane() const { return thread & 31; }
   GLADSTONE_HD int warp() const { return thread >> 5; }
-  GLADSTONE_HD int along() const { return thread & 7; }  ///< its place among the eight that share a row
-  /// Where the row of its wave number -- and of its mirror -- begins.
+  GLADSTONE_HD int along() const { return thread & 7; }  ///< index of the thread among the eight that share a row
+  /// Offset of the row of this thread's wave number, and of the mirrored row.
   GLADSTONE_HD int row() const { return (thread >> 3) * pitch; }
   GLADSTONE_HD int mirror() const {
     int const line = thread >> 3;  // 4 p + q
     return (warp() > 0 ? 67 - line : 32 + (-line & 3)) * pitch;
   }
 
-  // ---- along y: a warp takes 32 columns and as many again
+  // ---- along y: each warp processes columns lane and lane + 32
 
-  /// @param z columns lane and lane + 32, rows warp + 8 r. A barrier of all threads follows.
+  /// First pass. @param z  columns lane and lane + 32, rows warp + 8 r. Must be followed by a barrier of all threads.
   GLADSTONE_HD void columns_apart(Complex (&z)[2][8]) const {
     for (int half = 0; half < 2; ++half) {
       small_transform<8, -1, 1>(z[half]);
@@ -71,7 +69,7 @@ struct WindowTransform {
       for (int k = 0; k < 8; ++k) memory[place(k, warp()) + lane() + 32 * half] = z[half][k];
     }
   }
-  /// Columns 2 lane and 2 lane + 1. A barrier of all threads follows.
+  /// Second pass, columns 2 lane and 2 lane + 1. Must be followed by a barrier of all threads.
   GLADSTONE_HD void columns_together() const {
     Complex z[2][8];
     for (int n = 0; n < 8; ++n) {
@@ -81,7 +79,7 @@ struct WindowTransform {
     }
     for (Complex(&column)[8] : z) {
       small_transform<8, -1, 1>(column);
-      if (warp() == 0) {  // so that the sums of rows_apart give 2 (A_0 + i A_32), 2 (B_0 + i B_32)
+      if (warp() == 0) {  // so that the sums in rows_apart() give 2 (A_0 + i A_32) and 2 (B_0 + i B_32)
         Complex const zero = column[0], nyquist = column[4];
         column[0] = {zero.re + zero.im, nyquist.re + nyquist.im};
         column[4] = {zero.re - zero.im, nyquist.im - nyquist.re};
@@ -90,9 +88,9 @@ struct WindowTransform {
     for (int k = 0; k < 8; ++k) pair_at(place(warp(), k) + 2 * lane()) = {z[0][k], z[1][k]};
   }
 
-  // ---- along x: eight lanes take a row of a and of b
+  // ---- along x: eight lanes process a row of a and of b
 
-  /// @param a receives 2 A, @param b 2 i B, first pass done. A barrier of the warp follows.
+  /// First pass. @param a, b  output: 2 A and 2 i B after the first pass. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_apart(Complex (&a)[8], Complex (&b)[8]) const {
     for (int r = 0; r < 8; ++r) {
       Complex const d = memory[row() + along() + 8 * r], m = memory[mirror() + along() + 8 * r];
@@ -104,14 +102,14 @@ struct WindowTransform {
     turn<-1>(a, along());
     turn<-1>(b, along());
   }
-  /// A barrier of the warp follows.
+  /// Writes the rows of both spectra. Must be followed by a barrier of the warp.
   GLADSTONE_HD void keep_rows(Complex const (&a)[8], Complex const (&b)[8]) const {
     for (int k = 0; k < 8; ++k) {
       memory[row() + 9 * k + along()] = a[k];
       memory[mirror() + 9 * k + along()] = b[k];
     }
   }
-  /// The second pass: wave numbers along + 8 k. A barrier of the warp follows.
+  /// Second pass: wave numbers along + 8 k. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_together(Complex (&a)[8], Complex (&b)[8]) const {
     for (int n = 0; n < 8; ++n) {
       a[n] = memory[row() + 9 * along() + n];
@@ -121,9 +119,9 @@ struct WindowTransform {
     small_transform<8, -1, 1>(b);
   }
 
-  // ---- the cross spectrum; warp 0 has barriers of its own between the steps of its packed row
+  // ---- cross spectrum; the packed row of warp 0 requires additional barriers between the steps
 
-  /// 4 C = 4 conj(A) B, left in a.
+  /// Replaces a by 4 C = 4 conj(A) B.
   GLADSTONE_HD static void product(Complex (&a)[8], Complex const (&b)[8]) {
     for (int k = 0; k < 8; ++k) {
       Complex const both = conj(a[k]) * b[k];
@@ -152,31 +150,32 @@ struct WindowTransform {
     for (int k = 0; k < 8; ++k) c[k] = memory[row() + along() + 8 * k];
   }
 
-  // ---- back along x
+  // ---- inverse transform along x
 
-  /// A barrier of the warp follows.
+  /// First pass. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_apart_again(Complex (&c)[8]) const {
     small_transform<8, 1, 1>(c);
     turn<1>(c, along());
     for (int k = 0; k < 8; ++k) memory[row() + 9 * k + along()] = c[k];
   }
-  /// Shifts along + 8 k. A barrier of the warp follows.
+  /// Second pass: shifts along + 8 k. Must be followed by a barrier of the warp.
   GLADSTONE_HD void rows_together_again(Complex (&c)[8]) const {
     for (int n = 0; n < 8; ++n) c[n] = memory[row() + 9 * along() + n];
     small_transform<8, 1, 1>(c);
   }
-  /// Shifts from -24 to 23. Those of wave number p + 8 q along y begin 2 p places on in their row, so that the lanes
-  /// that take a pair of columns, a lane a p, read from different banks. A barrier of all threads follows.
+  /// Writes shifts from -24 to 23. Rows of wave numbers p + 8 q along y start at an offset of 2 p, so that the lanes of
+  /// a pair of columns, one per p, read from different banks. Must be followed by a barrier of all threads.
   GLADSTONE_HD void keep_shifts(Complex const (&c)[8]) const {
     for (int k = 0; k < 8; ++k)
       if (is_kept(k)) memory[row() + 2 * warp() + along() + kept_place(k)] = c[k];
   }
 
-  // ---- back along y: eight lanes take a pair of columns, a warp four, for shifts up to radius + 1 and a few more
+  // ---- inverse transform along y: eight lanes process a pair of columns, a warp four pairs, for shifts of at least
+  // radius + 1
 
-  /// Whether a warp has pairs of columns.
+  /// Returns whether this warp has pairs of columns.
   GLADSTONE_HD bool has_columns(int radius) const { return 4 * warp() < radius + 2; }
-  /// From the lower half to the upper one. A barrier of the warp follows.
+  /// First pass, from the lower half to the upper half. Must be followed by a barrier of the warp.
   GLADSTONE_HD void columns_apart_again(int radius) const {
     int const x = kept_place(0) + 2 * (own_pair() - middle_pair(radius));
     int const near = place(along(), 0) + 2 * along() + x;
@@ -197,37 +196,38 @@ struct WindowTransform {
     Complex* const out = exchange() + along();
     for (int k = 0; k < 8; ++k) out[9 * k] = g[k];
   }
-  /// @param g receives shifts along + 8 k. A barrier of the warp follows.
+  /// Second pass. @param g  output: shifts along + 8 k. Must be followed by a barrier of the warp.
   GLADSTONE_HD void columns_together_again(Complex (&g)[8]) const {
     Complex const* const in = exchange() + 9 * along();
     for (int n = 0; n < 8; ++n) g[n] = in[n];
     small_transform<8, 1, 1>(g);
   }
-  /// A barrier of all threads follows.
+  /// Writes the plane. Must be followed by a barrier of all threads.
   GLADSTONE_HD void keep_plane(Complex const (&g)[8]) const {
     Complex* const out = memory + upper + own_pair() * plane_pitch + along();
     for (int k = 0; k < 8; ++k)
       if (is_kept(k)) out[kept_place(k)] = g[k];
   }
-  /// 4 * 64^2 times the correlation at shifts up to radius + 1 along either axis.
+  /// Returns the plane, which is 4 * 64^2 times the correlation, for shifts up to radius + 1 along either axis.
   GLADSTONE_HD PairedPlane<plane_pitch> plane(int radius) const {
     return {memory + upper + middle_pair(radius) * plane_pitch + kept_place(0)};
   }
 
  private:
   GLADSTONE_HD static constexpr int place(int p, int q) { return ((q & 4) * 8 + 4 * p + (q & 3)) * pitch; }
-  /// Whether shifts 8 k to 8 k + 7 are, modulo 64, among those from -24 to 23 that are kept, and where they begin.
+  /// is_kept() returns whether shifts 8 k to 8 k + 7 (modulo 64) are in the stored range -24 to 23; kept_place()
+  /// returns the offset of the first of them.
   GLADSTONE_HD static constexpr bool is_kept(int k) { return k < 3 || k > 4; }
   GLADSTONE_HD static constexpr int kept_place(int k) { return (8 * k + 24) % size; }
-  /// Pairs of columns are counted from the leftmost that the search reads; this is that of shifts 0 and 1.
+  /// Index of the pair of shifts 0 and 1; pairs of columns are counted from the leftmost that the search reads.
   GLADSTONE_HD static constexpr int middle_pair(int radius) { return radius / 2 + 1; }
   GLADSTONE_HD int own_pair() const { return 4 * warp() + lane() / 8; }
-  /// Where the eight lanes of a pair exchange values: within their warp's part of the plane.
+  /// Buffer for the exchange between the eight lanes of a pair, within their warp's part of the plane.
   GLADSTONE_HD Complex* exchange() const { return memory + upper + 4 * warp() * plane_pitch + lane() / 8 * pitch; }
-  /// Two neighbouring values, the first at an even place.
+  /// Two adjacent values, the first at an even index.
   GLADSTONE_HD ComplexPair& pair_at(int at) const { return *reinterpret_cast<ComplexPair*>(memory + at); }
 
-  /// Turns value k by exp(sign 2 pi i n k / 64).
+  /// Multiplies value k by exp(sign 2 pi i n k / 64).
   template <int sign>
   GLADSTONE_HD void turn(Complex (&z)[8], int n) const {
     for (int k = 0; k < 4; ++k) {

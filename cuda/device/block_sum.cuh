@@ -2,8 +2,9 @@
 
 namespace gladstone::cuda {
 
-/// Sums of `value` over those threads of a block whose numbers agree modulo `groups`, in an order that depends on the
-/// block's size alone. @param shared one Value a thread; on return the sums in the first `groups`, for all to read
+/// Sums `value` over the threads of a block whose indices are equal modulo `groups`, in an order that depends on the
+/// block size only.
+/// @param shared  one Value per thread; on return, the first `groups` contain the sums, readable by all threads
 /// @pre blockDim.x and groups are powers of two
 template <class Value>
 __device__ void block_sums(Value const& value, Value* shared, unsigned int groups) {
@@ -15,7 +16,7 @@ __device__ void block_sums(Value const& value, Value* shared, unsigned int group
   }
 }
 
-/// The sum over all of them, every thread's. @param shared free again on return
+/// Returns the sum over all threads to every thread. @param shared  one Value per thread; may be reused on return
 template <class Value>
 __device__ Value block_sum(Value const& value, Value* shared) {
   block_sums(value, shared, 1);

@@ -6,7 +6,7 @@ namespace gladstone::cuda {
 
 void check(cudaError_t status, char const* call) {
   if (status == cudaSuccess) return;
-  cudaGetLastError();  // forget it: the next launch has not failed
+  cudaGetLastError();  // clear the error, so that the next launch is not reported as failed
   throw DeviceError(
       fmt::format("CUDA: {} failed: {} ({})", call, cudaGetErrorString(status), cudaGetErrorName(status)));
 }

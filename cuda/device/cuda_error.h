@@ -6,10 +6,10 @@
 
 namespace gladstone::cuda {
 
-/// Throws DeviceError naming the failed call, unless `status` says success.
+/// Throws DeviceError naming the failed call if `status` is an error.
 void check(cudaError_t status, char const* call);
 
-/// The same for the launch that went before; in a debug build it waits for the kernel to end.
+/// Checks the preceding kernel launch; debug builds also wait for the kernel to finish.
 void check_launch(char const* kernel);
 
 }  // namespace gladstone::cuda

@@ -8,12 +8,13 @@
 
 namespace gladstone::cuda {
 
-/// Memory on the device from its pool, in the order of the default stream; freed with its owner.
+/// RAII array in device memory, allocated from the memory pool in the order of the default stream.
 template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  /// @param what_for named in the message should memory be short. Contents are undefined. @throws OutOfDeviceMemory
+  /// Allocates an uninitialised array. @param what_for  named in the error message
+  /// @throws OutOfDeviceMemory
   DeviceArray(std::size_t size, std::string const& what_for) : size_(size) {
     if (size > 0) data_ = static_cast<T*>(allocate_on_device(size * sizeof(T), what_for));
   }
@@ -39,7 +40,7 @@ class DeviceArray {
   void upload(T const* host) {
     if (size_ > 0) copy_to_device(data_, host, size_ * sizeof(T));
   }
-  /// Copies the first `count` elements to `host`; waits for the work before it.
+  /// Copies the first `count` elements to `host`, after all preceding work.
   void download(T* host, std::size_t count) const {
     if (count > 0) copy_to_host(host, data_, count * sizeof(T));
   }
@@ -52,14 +53,14 @@ class DeviceArray {
   std::size_t size_ = 0;
 };
 
-/// Page-locked memory that grows and never shrinks.
+/// Page-locked host memory that grows on demand and never shrinks.
 class PinnedBuffer {
  public:
   PinnedBuffer() = default;
   PinnedBuffer(PinnedBuffer const&) = delete;
   PinnedBuffer& operator=(PinnedBuffer const&) = delete;
   ~PinnedBuffer() { release_pinned(data_); }
-  /// @return room for so many bytes; what was in it is lost
+  /// Returns memory for at least `bytes` bytes; previous contents are lost.
   void* reserve(std::size_t bytes) {
     if (bytes > bytes_) {
       bytes_ = 0;

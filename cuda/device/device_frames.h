@@ -8,7 +8,7 @@
 
 namespace gladstone::cuda {
 
-/// Grey levels of two frames in the device's memory.
+/// Grey levels of frames A and B in device memory; copied to the host on first access.
 class DeviceFrames final : public FramePair {
  public:
   DeviceFrames(int columns, int rows);

@@ -2,7 +2,7 @@
 
 namespace gladstone::cuda {
 
-/// An image in the device's memory: grey levels row by row.
+/// Image in device memory: grey levels row by row.
 struct DeviceImage {
   double const* pixels;  ///< device address of columns * rows values
   int columns;

@@ -4,11 +4,11 @@
 
 namespace gladstone::cuda {
 
-/// A deposit's share of a pixel, rounded to whole units of the images' fixed point: sums of such numbers are exact, so
-/// that images depend neither on the order of deposits nor on where they are gathered on their way to the image.
+/// Rounds a contribution to a pixel to whole units of the images' fixed point. Sums of whole numbers are exact, so that
+/// images depend neither on the order of the contributions nor on intermediate accumulators.
 __device__ inline double whole_units(double units) { return rint(units); }
 
-/// @param units whole
+/// Adds light to a pixel; pixels outside the image are ignored. @param units  whole number
 __device__ inline void add_light(DeviceImages const& images, Frame frame, int column, int row, double units) {
   if (column < 0 || row < 0 || column >= images.columns || row >= images.rows) return;
   auto const share = static_cast<unsigned long long>(static_cast<long long>(units));

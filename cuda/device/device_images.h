@@ -6,15 +6,15 @@
 
 namespace gladstone::cuda {
 
-/// Images in the making: 64-bit fixed point, row by row.
+/// Images under accumulation: 64-bit fixed point, row by row.
 struct DeviceImages {
   unsigned long long* light[frame_count] = {};  ///< null: no images
   int columns = 0;
   int rows = 0;
-  double units_per_weight = 0;  ///< units of fixed point
+  double units_per_weight = 0;  ///< fixed-point units per unit of ray weight
 };
 
-/// Both frames on the device.
+/// Accumulated images of frames A and B in device memory.
 class ImagePairOnDevice {
  public:
   ImagePairOnDevice(int columns, int rows);

@@ -9,7 +9,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// A copy to page-locked memory, which the host need not wait for until it wants the values.
+/// Asynchronous copy from the device to page-locked memory.
 class CopyToHost {
  public:
   CopyToHost(double* to, double const* from, std::size_t count) : to_(to) {
@@ -22,10 +22,10 @@ class CopyToHost {
   CopyToHost(CopyToHost const&) = delete;
   CopyToHost& operator=(CopyToHost const&) = delete;
   ~CopyToHost() {
-    cudaEventSynchronize(done_);  // nothing is written to the memory any more
+    cudaEventSynchronize(done_);  // the memory must not be written after destruction
     cudaEventDestroy(done_);
   }
-  /// @return the values, arrived
+  /// Waits for the copy and returns the values.
   double const* wait() const {
     check(cudaEventSynchronize(done_), "cudaMemcpyAsync from the device");
     return to_;

@@ -7,16 +7,17 @@
 
 namespace gladstone::cuda {
 
-/// Light of both frames in the device's memory, and a camera for it there.
+/// Light of both frames in device memory, with a camera model that runs on the device.
 class DeviceLight final : public RenderedLight {
  public:
-  /// Light per pixel is for the renderer to write.
+  /// The light is uninitialised and must be written by the renderer.
   DeviceLight(int columns, int rows);
 
   double* light(Frame frame) { return light_[static_cast<int>(frame)].data(); }
-  /// Takes the dots from a white target: what is there becomes white minus that.
+  /// Replaces the light by that of a white target minus it, for dark dots on a white target.
   void take_from(Image<double> const& white);
-  /// @param staging that the device copies to; all cores copy one frame on from there while the other is on its way
+  /// Copies the light to the host. @param staging  page-locked buffer; all cores copy one frame from it while the other
+  /// is being transferred
   LightPair to_host(PinnedBuffer& staging) const;
 
   LightPair to_host() const override;

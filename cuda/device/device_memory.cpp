@@ -9,7 +9,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Enters memory into the account. @return false where the limit does not allow it
+/// Registers an allocation. @return false if it would exceed the limit
 bool enter(std::size_t bytes) {
   DeviceMemoryAccount& account = device_memory_account;
   std::size_t held = account.held;
@@ -29,7 +29,7 @@ std::size_t pool_attribute(cudaMemPool_t pool, cudaMemPoolAttr attribute) {
   return value;
 }
 
-/// In MiB, small sizes with their decimals.
+/// Formats bytes in MiB, with decimals for small sizes.
 std::string mebibytes(std::size_t bytes) {
   double const size = static_cast<double>(bytes) / 0x1p20;
   return fmt::format("{:.{}f}", size, size < 10 ? 3 : 0);
@@ -49,7 +49,7 @@ OutOfDeviceMemory::OutOfDeviceMemory(std::string const& what_for, std::size_t by
     : DeviceError(shortage(what_for, bytes)) {}
 
 DeviceRoom device_room() {
-  check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is given back in the order of the stream
+  check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");  // memory is released in stream order
   DeviceRoom room{};
   check(cudaMemGetInfo(&room.free, &room.total), "cudaMemGetInfo");
   int device = 0;
@@ -78,13 +78,13 @@ void* allocate_on_device(std::size_t bytes, std::string const& what_for) {
   if (status == cudaSuccess) return memory;
   device_memory_account.held -= bytes;
   if (status != cudaErrorMemoryAllocation) check(status, "cudaMallocAsync");
-  cudaGetLastError();  // the failure is not sticky: forget it
+  cudaGetLastError();  // the error is not sticky; clear it
   throw OutOfDeviceMemory(what_for, bytes);
 }
 
 void release_on_device(void* memory, std::size_t bytes) noexcept {
   if (!memory) return;
-  cudaFreeAsync(memory, nullptr);  // fails only after an error that was reported where it happened
+  cudaFreeAsync(memory, nullptr);  // fails only after an error that has already been reported
   device_memory_account.held -= bytes;
 }
 

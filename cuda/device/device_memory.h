@@ -8,11 +8,11 @@
 
 #include "render/base/error.h"
 
-/// The device's memory: who takes how much of it, and what goes there and back. No CUDA header here, so that tests and
-/// benchmarks, which lie outside of cuda/, can use it.
+/// Device memory: allocation, accounting and transfers. Does not include CUDA headers, so that tests and benchmarks
+/// outside of cuda/ can use it.
 namespace gladstone::cuda {
 
-/// What the arrays of this process hold on the device, and may hold [bytes].
+/// Device memory held by the arrays of this process, its maximum, and its limit [bytes].
 struct DeviceMemoryAccount {
   std::atomic<std::size_t> held{0};
   std::atomic<std::size_t> most_held{0};
@@ -20,8 +20,8 @@ struct DeviceMemoryAccount {
 };
 inline DeviceMemoryAccount device_memory_account;
 
-/// While it lives, arrays get no more than `bytes` beyond what they hold now, as on a smaller card; for tests of what
-/// happens then. One at a time.
+/// RAII guard that limits further allocations to `bytes`, as on a smaller card; for tests of memory shortage. At most
+/// one may exist.
 class DeviceMemoryLimit {
  public:
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
@@ -34,17 +34,18 @@ class DeviceMemoryLimit {
   DeviceMemoryLimit(DeviceMemoryLimit const&) = delete;
   DeviceMemoryLimit& operator=(DeviceMemoryLimit const&) = delete;
 
-  /// The most that was held at a time since then, beyond what was before [bytes].
+  /// Maximum memory held since construction, minus that held before [bytes].
   std::size_t most_held() const { return device_memory_account.most_held - held_before_; }
 
  private:
   std::size_t held_before_;
 };
 
-/// Shared memory that a block gets at most, where the device offers more [bytes].
+/// Upper limit of the shared memory per block, in addition to that of the device [bytes].
 inline std::atomic<std::size_t> shared_memory_limit{std::numeric_limits<std::size_t>::max()};
 
-/// While it lives, blocks get no more shared memory than `bytes`, as on a smaller card; for tests. One at a time.
+/// RAII guard that limits the shared memory per block to `bytes`, as on a smaller card; for tests. At most one may
+/// exist.
 class SharedMemoryLimit {
  public:
   explicit SharedMemoryLimit(std::size_t bytes) { shared_memory_limit = bytes; }
@@ -53,41 +54,43 @@ class SharedMemoryLimit {
   SharedMemoryLimit& operator=(SharedMemoryLimit const&) = delete;
 };
 
-/// [bytes]
+/// Free and total memory [bytes].
 struct DeviceRoom {
   std::size_t free;
   std::size_t total;
 };
 
-/// What arrays can still get, memory that the pool keeps for them included. Waits for the default stream.
+/// Returns the memory available to arrays, including unused memory in the pool. Waits for the default stream.
 /// @throws DeviceError
 DeviceRoom device_room();
 
-/// The device has no room left: callers may try again with less. what() names the sizes.
+/// Thrown if an allocation fails for lack of device memory: callers may retry with a smaller one. what() reports the
+/// sizes.
 class OutOfDeviceMemory : public DeviceError {
  public:
   OutOfDeviceMemory(std::string const& what_for, std::size_t bytes);
 };
 
-/// Freed memory of the device stays with the process, so that the next rendering does not wait for the driver.
+/// Configures the pool to retain freed device memory for this process, which avoids driver calls in later renderings.
 void keep_freed_device_memory();
 
-/// Memory from the device's pool, in the order of the default stream; contents are undefined.
-/// @param what_for named in the message should memory be short @throws OutOfDeviceMemory, DeviceError
+/// Allocates uninitialised memory from the device's pool, in the order of the default stream.
+/// @param what_for  named in the error message
+/// @throws OutOfDeviceMemory, DeviceError
 void* allocate_on_device(std::size_t bytes, std::string const& what_for);
 
-/// Gives it back. @param bytes as allocated
+/// Releases memory from allocate_on_device(). @param bytes  size of the allocation
 void release_on_device(void* memory, std::size_t bytes) noexcept;
 
-/// Copies, and zeroes, in the order of the default stream; copies to the host wait for the work before them.
+/// Copies or zeroes memory in the order of the default stream; copies to the host wait for preceding work.
 /// @throws DeviceError
 void copy_to_device(void* to, void const* from, std::size_t bytes);
-/// Does not wait. @param from page-locked, to stay as it is until the work after it is done
+/// Copies asynchronously. @param from  page-locked memory, which must remain unchanged until the copy has finished
 void copy_pinned_to_device(void* to, void const* from, std::size_t bytes);
 void copy_to_host(void* to, void const* from, std::size_t bytes);
 void zero_on_device(void* memory, std::size_t bytes);
 
-/// Page-locked memory of the host, which a device copies to at full speed. @throws DeviceError
+/// Allocates page-locked host memory, to and from which a device transfers at full speed. @throws DeviceError
 void* allocate_pinned(std::size_t bytes);
 void release_pinned(void* memory) noexcept;
 

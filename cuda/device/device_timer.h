@@ -4,16 +4,17 @@
 
 namespace gladstone::cuda {
 
-/// Time that work on the default stream takes, measured on the device. No CUDA header here: benchmarks use it.
+/// Measures, on the device, the time taken by work on the default stream. Does not include CUDA headers, so that
+/// benchmarks can use it.
 class DeviceTimer {
  public:
   /// @throws DeviceError
   DeviceTimer();
   ~DeviceTimer();
 
-  /// From the end of the work queued before.
+  /// Starts the interval at the end of the work queued so far.
   void start();
-  /// To the end of the work queued since start(), which is waited for [s].
+  /// Waits for the work queued since start() and returns its time [s].
   double stop();
 
  private:

@@ -10,10 +10,11 @@
 
 namespace gladstone::cuda {
 
-/// Steps of rays that one launch may take, a second or two of them: nothing ends a launch, so that Ctrl-C has to wait.
+/// Maximum number of ray-tracing steps per launch, equivalent to a second or two. A running launch cannot be cancelled,
+/// so Ctrl-C has to wait for it.
 inline constexpr double most_steps_a_launch = 4e10;
 
-/// Blocks that fill the device with a kernel, but no more than the work needs.
+/// Returns the number of blocks that fills the device, at most `wanted`.
 template <class Kernel>
 int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64_t wanted) {
   int device = 0, processors = 0, resident = 0;
@@ -21,13 +22,13 @@ int blocks_for(Kernel kernel, int threads, std::size_t shared_bytes, std::uint64
   check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device), "cudaDeviceGetAttribute");
   check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&resident, kernel, threads, shared_bytes),
         "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
-  // several rounds, so that blocks whose work is short do not leave processors idle
+  // Several waves, so that blocks with little work do not leave multiprocessors idle.
   std::uint64_t const most =
       8 * static_cast<std::uint64_t>(processors) * static_cast<std::uint64_t>(std::max(1, resident));
   return static_cast<int>(std::max<std::uint64_t>(1, std::min(wanted, most)));
 }
 
-/// Dynamic shared memory that a block of a kernel can have beside its static one [bytes].
+/// Returns the maximum dynamic shared memory of a block, in addition to the kernel's static shared memory [bytes].
 template <class Kernel>
 std::size_t most_shared_bytes(Kernel kernel) {
   int device = 0, of_block = 0;
@@ -39,7 +40,7 @@ std::size_t most_shared_bytes(Kernel kernel) {
   return most - std::min(most, attributes.sharedSizeBytes);
 }
 
-/// Lets a kernel be launched with so much dynamic shared memory.
+/// Permits launches of a kernel with this amount of dynamic shared memory.
 template <class Kernel>
 void allow_shared_bytes(Kernel kernel, std::size_t bytes) {
   check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,

@@ -2,7 +2,8 @@
 
 namespace gladstone::cuda {
 
-/// Whole numbers in the order of the floating-point ones, for atomicMax; 0 is below all.
+/// Conversion between floating-point numbers and unsigned integers of the same order, for atomicMax. Key 0 is below
+/// those of all numbers.
 __device__ inline unsigned long long ordered_key(double value) {
   auto const bits = static_cast<unsigned long long>(__double_as_longlong(value));
   return bits >> 63 ? ~bits : bits | 0x8000000000000000ull;

@@ -12,7 +12,7 @@ __global__ void any_kernel() {}
 std::string why_code_cannot_run() {
   cudaFuncAttributes attributes{};
   if (cudaFuncGetAttributes(&attributes, any_kernel) != cudaSuccess) {
-    cudaGetLastError();  // forget it: the next launch has not failed
+    cudaGetLastError();  // clear the error, so that the next launch is not reported as failed
     return "this build has code for sm_" GLADSTONE_CUDA_ARCHITECTURES
            " alone; build with CMAKE_OPTIONS=-DCMAKE_CUDA_ARCHITECTURES=native";
   }

@@ -4,7 +4,7 @@
 
 namespace gladstone::cuda {
 
-/// Whether the current device can run what was compiled. @return empty, or why it cannot
+/// Returns the reason why the current device cannot run the compiled code; empty if it can.
 std::string why_code_cannot_run();
 
 }  // namespace gladstone::cuda

@@ -4,7 +4,7 @@
 
 #include "render/medium/medium.h"
 
-/// Views in another scalar: what the single-precision preview traces. One function for every medium.
+/// Conversion of views to another scalar type, for the preview in single precision; one overload per medium.
 namespace gladstone::cuda {
 
 template <class T>
@@ -20,12 +20,12 @@ template <class T>
 NoMedium<T> cast(NoMedium<double> const&) {
   return {};
 }
-/// Of a field in closed form.
+/// Converts a medium in closed form.
 template <class T, class Form>
 requires std::is_base_of_v<Slab<double>, Form>
 auto cast(Form const& form) { return form.template in_scalar<T>(); }
 
-/// A grid's view with coefficients that lie elsewhere, perhaps in another type.
+/// Converts a grid's view. @param coefficients  copy of the coefficients, possibly of another type
 template <class T, class Stored, class From, class Basis, int Dimensions>
 GriddedIndex<T, Stored, Basis, Dimensions> cast_grid(GriddedIndex<double, From, Basis, Dimensions> const& m,
                                                      Stored const* coefficients) {

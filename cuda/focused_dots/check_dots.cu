@@ -7,19 +7,19 @@ namespace {
 
 constexpr int threads = dot_threads, warps = dot_warps;
 
-/// A warp that checks a dot's rays, a lane a ray.
+/// Warp that traces the rays of one dot, one ray per lane and step.
 struct CheckingWarp : Warp {
   static constexpr int abreast = 1;
   int scramblings;
-  TableCheck* shared;  ///< one a scrambling
+  TableCheck* shared;  ///< one per scrambling
   unsigned int (*statuses)[ray_status_count];
-  TableCheck sums{};  ///< of this lane, whose rays are all of one scrambling
+  TableCheck sums{};  ///< sums of this lane, whose rays all belong to one scrambling
 
   __device__ CheckingWarp(int of, TableCheck* room, unsigned int (*counts)[ray_status_count])
       : Warp{0, 1}, scramblings(of), shared(room), statuses(counts) {}
   __device__ void clear() { sums = {}; }
   __device__ TableCheck& check(int) { return sums; }
-  /// Sums over the lanes whose numbers agree modulo the scramblings, in one order.
+  /// Sums over the lanes of each scrambling (equal lane numbers modulo their count), in a fixed order.
   __device__ TableCheck const* of_scramblings() const {
     TableCheck sum = sums;
     sum.each_number([groups = scramblings](double& number, int) {
@@ -34,7 +34,7 @@ struct CheckingWarp : Warp {
   }
 };
 
-/// A warp a dot.
+/// Traces one dot per warp.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     check_dots_kernel(DotModel const __grid_constant__ model, Medium const __grid_constant__ medium,

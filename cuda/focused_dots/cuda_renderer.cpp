@@ -22,10 +22,10 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Memory for the cones of one batch of dots [bytes].
+/// Maximum memory for the ray cones of one batch of dots [bytes].
 constexpr std::size_t most_cone_bytes = std::size_t{2} << 30;
 
-/// A model with its rules on the device.
+/// Copy of a dot model whose quadrature rules are in device memory.
 class MirroredModel {
  public:
   explicit MirroredModel(DotModel const& host)
@@ -58,8 +58,9 @@ class MirroredModel {
   DeviceArray<double> moment_images_;
 };
 
-/// One try at a scene. @param dots_a_batch worked on at a time @param light_out of the images, for bright dots; null:
-/// truth only
+/// Renders a scene, or its truth only.
+/// @param dots_a_batch  number of dots processed at a time
+/// @param light_out  output: light of the images of bright dots; null: truth only
 TracingPass trace_all(std::uint64_t dots_a_batch, FocusedDots const& bench, DotPattern const& sources,
                       MirroredMedium const& mirrored, DeflectionTable const& table, RenderTheory theory,
                       std::shared_ptr<DeviceLight>* light_out) {
@@ -156,7 +157,7 @@ Rendering CudaRenderer::render(Scene& scene, DotPattern const& sources, RenderIm
       std::min(most_cone_bytes / sizeof(DotCone), static_cast<std::size_t>(most_steps_a_launch / steps));
   Rendering rendering = render_within_table(scene, [&](double farthest_aim) {
     DeflectionTable const table = uploads_->deflections.table(*bench, sources, farthest_aim, medium.view<double>());
-    // where the device is short of memory, once more with smaller batches, which give the same bits
+    // Retry with smaller batches if device memory is short; results are bitwise the same.
     for (std::uint64_t batch = std::clamp<std::uint64_t>(most, 1, dots);; batch /= 2) try {
         return trace_all(batch, *bench, sources, medium, table, theory, images == RenderImages::no ? nullptr : &light);
       } catch (OutOfDeviceMemory const&) {

@@ -7,19 +7,19 @@
 
 namespace gladstone::cuda {
 
-/// The renderer on the first visible CUDA device: TracePair over all rays, a block a dot for light and truth.
-/// With render.precision = "single" rays are traced in single precision, which is a preview; sums and light are double.
+/// Renderer for focused dots on the first visible CUDA device. The check rays of a dot are traced by a warp; its ray
+/// cone is integrated to truth and light by a block. All computations are in double precision.
 class CudaRenderer final : public Renderer {
  public:
   CudaRenderer();
   ~CudaRenderer() override;
 
   std::string device() const override { return "cuda"; }
-  /// As Renderer::render. @throws also DeviceError, out of memory with the sizes
+  /// Like Renderer::render(). @throws DeviceError in addition, with the sizes if device memory is exhausted
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
 
  private:
-  struct Uploads;  ///< what scenes that follow each other have in common
+  struct Uploads;  ///< data reused between successive scenes
   std::unique_ptr<Uploads> uploads_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int threads = 128;
 
-/// Four lanes of a warp, neighbours in the medium, with a ray each.
+/// Four adjacent lanes of a warp, which trace one ray each at neighbouring positions in the medium.
 struct FourLanes {
   static constexpr int abreast = 1;
   __device__ static int lane() { return static_cast<int>(threadIdx.x) % 4; }
@@ -21,7 +21,7 @@ struct FourLanes {
   }
 };
 
-/// @param first of the table's fours that the launch begins with
+/// Computes groups of four table entries. @param first  index of the first group of this launch
 template <class Medium>
 __global__ void __launch_bounds__(threads, 3)
     deflect_kernel(BenchView const __grid_constant__ bench, Medium const __grid_constant__ medium,

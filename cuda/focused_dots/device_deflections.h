@@ -8,18 +8,18 @@
 
 namespace gladstone::cuda {
 
-/// A scene's deflection table in the device's memory, as DeflectionMap is in the host's.
+/// Deflection table of a scene in device memory; counterpart of DeflectionMap on the host.
 class DeviceDeflections {
  public:
-  /// @throws OutOfDeviceMemory naming the size of the whole table
+  /// @throws OutOfDeviceMemory with the size of the whole table
   DeviceDeflections(FocusedDots const& dots, DeflectionPlan const& plan, DeviceMedium<double> const& medium);
 
-  /// exists() only where it was wanted.
+  /// Returns the table; exists() is false if the plan does not require one.
   DeflectionTable const& table() const { return table_; }
 
  private:
   DeflectionTable table_;
-  DeviceArray<std::byte> values_;  ///< all of the table's: displacements, shifts, and the slopes of both
+  DeviceArray<std::byte> values_;  ///< all values of the table: displacements, shifts, and their derivatives
 };
 
 }  // namespace gladstone::cuda

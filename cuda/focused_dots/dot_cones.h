@@ -7,31 +7,32 @@
 #include "render/focused_dots/bench_theory.h"
 #include "render/focused_dots/cone_integral.h"
 
-/// What launches do with dots. All pointers of models, media and dots are the device's; a launch works on `count` dots
-/// that lie one after the other, a dot's sums have one order, and light is in whole units: the same bits on any number
-/// of blocks.
+/// Kernel launches for dots. All pointers in models, media and dots are device addresses. A launch processes `count`
+/// consecutive dots. Sums over a dot have a fixed order, and light is accumulated in whole units, so that results are
+/// bitwise the same for any number of blocks.
 namespace gladstone::cuda {
 
-/// Counted over all dots of a rendering, on the device.
+/// Ray statistics over all dots of a rendering.
 struct RayTally {
   unsigned long long statuses[frame_count][ray_status_count];
-  unsigned long long farthest_aim;  ///< bits of a double, which order as the numbers do [m]
+  unsigned long long
+      farthest_aim;  ///< bit pattern of a non-negative double, which has the same order as the numbers [m]
 };
 
-/// Aims at dots and traces their rays, a warp a dot. @param found receives errors and counts of rays
+/// Aims at the dots and traces their check rays, one warp per dot. @param found  output: errors and ray counts
 void check_dots(DotModel const& model, DeviceMedium<double> const& medium, SourcesView<double> const& dots,
                 std::uint64_t count, DotCone* cones, DotFound* found, RayTally* tally);
 
-/// Integrates their cones to truth, a block a dot.
+/// Integrates the ray cones of the dots to obtain the truth, one block per dot.
 void integrate_cones(DotModel const& model, std::uint64_t count, DotCone* cones, DotFound* found);
 
-/// Works out the images of a model's moments, which have a plan. @param out room for them
+/// Computes the images of a model's moments. @pre model.moment_images exist. @param out  output: all images
 void make_moment_images(DotModel const& model, double* out);
 
-/// Lays down the light of dots in both frames, a block a dot.
+/// Accumulates the light of the dots in both frames, one block per dot.
 void expose_dots(DotModel const& model, std::uint64_t count, DotCone const* cones, DeviceImages const& images);
 
-/// Integrates the gradient along the straight rays of dots.
+/// Integrates the density gradient along the straight rays of the dots, for the small-angle theory.
 void integrate_theory(DotModel const& model, TheoryModel const& theory, DeviceMedium<double> const& medium,
                       SourcesView<double> const& dots, std::uint64_t count, DotTheory* out);
 

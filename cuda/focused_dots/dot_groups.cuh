@@ -2,7 +2,7 @@
 
 #include "render/focused_dots/moment_images.h"
 
-/// The threads that work on a dot together on the device: what OneLane is on the CPU.
+/// Groups of device threads that process a dot together; counterpart of OneLane on the CPU.
 namespace gladstone::cuda {
 
 inline constexpr int dot_threads = 128;
@@ -10,7 +10,8 @@ inline constexpr int warp_size = 32;
 inline constexpr int dot_warps = dot_threads / warp_size;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
-/// Groups of threads of a warp, each of as many. A warp's all call what takes part in a sum.
+/// One of the equal groups into which a warp is divided. All threads of the warp must take part in the collective
+/// functions.
 template <int threads>
 struct WarpPart {
   static constexpr bool alone = false;
@@ -24,7 +25,7 @@ struct WarpPart {
   __device__ static void poll() {}
   __device__ WarpPart<8> eight() const { return {lane() / 8, threads / 8}; }
 
-  /// Sum over the lanes, in one order; every lane gets it.
+  /// Returns the sum over the lanes to every lane, in a fixed order.
   template <class Number>
   static __device__ Number sum(Number value) {
 #pragma unroll
@@ -61,7 +62,7 @@ struct WarpPart {
 };
 using Warp = WarpPart<warp_size>;
 
-/// A block that works on one dot; its teams are its warps.
+/// Thread block that processes one dot; its teams are its warps.
 struct Block {
   static constexpr bool alone = false;
 

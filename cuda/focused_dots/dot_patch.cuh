@@ -7,11 +7,11 @@
 #include "cuda/focused_dots/dot_cones.h"
 #include "cuda/focused_dots/dot_groups.cuh"
 
-/// How a block of threads gathers a dot's light.
+/// Accumulation of a dot's light by a thread block.
 namespace gladstone::cuda {
 
-/// A square piece of a frame in which a block gathers a dot's light, one copy a warp, so that few additions go to the
-/// image; what falls beside it does so at once.
+/// Square stamp in shared memory in which a block accumulates a dot's light, with one copy per warp, to reduce the
+/// number of atomic additions to the image. Light outside the stamp is added to the image directly.
 struct Patch {
   DeviceImages const& images;
   Frame frame;
@@ -29,7 +29,7 @@ struct Patch {
     for (int i = threadIdx.x; i < dot_warps * side * side; i += dot_threads) light[i] = 0;
     __syncthreads();
   }
-  /// Adds a spot, by a warp: a lane a pixel. @param fill (row, column, line) adds to a pixel's light
+  /// Adds a PSF, one pixel per lane. @param fill  fill(row, column, line) adds to a pixel's light
   template <int pixels, class Fill>
   __device__ void add(Warp const& warp, Footprint const& spot, Fill const& fill) {
     bool const inside = spot.column >= left && spot.row >= top && spot.column + spot.width <= left + side &&
@@ -48,7 +48,7 @@ struct Patch {
       }
     }
   }
-  /// Adds a pixel of a square.
+  /// Adds one pixel of a square.
   __device__ void add_run(Footprint const& square, int pixel, double const (&units)[1]) {
     int const column = square.column - left + pixel % square.width, row = square.row - top + pixel / square.width;
     double const share = whole_units(units[0]);
@@ -58,7 +58,7 @@ struct Patch {
       add_light(images, frame, left + column, top + row, share);
     }
   }
-  /// Sends what all warps have gathered to the image.
+  /// Adds the light of all warps to the image.
   __device__ void flush() const {
     __syncthreads();
     for (int i = threadIdx.x; i < side * side; i += dot_threads) {
@@ -71,9 +71,9 @@ struct Patch {
 };
 
 inline std::size_t patch_bytes(int side) { return sizeof(double) * dot_warps * side * side; }
-/// Side of a patch: wide enough for a dot, its spot and some pixels of spread, as far as a block's shared memory goes.
-/// Eight more than a multiple of sixteen, so that four rows of a spot lie in different banks.
-/// @param most_bytes that a patch may take
+/// Returns the side of a stamp: covers a dot, its PSF and some pixels of displacement, as far as shared memory permits.
+/// The side is eight more than a multiple of sixteen, so that four rows of a PSF are in different banks.
+/// @param most_bytes  maximum size of the stamp
 inline int patch_side(DotModel const& model, std::size_t most_bytes) {
   int const width = 2 * model.spot.half_width() + 1;
   int const wanted = width + 2 * static_cast<int>(std::ceil(model.half_size_px())) + 6;

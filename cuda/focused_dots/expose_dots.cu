@@ -8,10 +8,10 @@ namespace gladstone::cuda {
 namespace {
 
 using Squares = SquareSums<4>;
-constexpr std::uint64_t most_blocks = 1024;  // each of which has room for the points of a wide cone
-constexpr int room = 512;                    // numbers of the points that a warp works on together
+constexpr std::uint64_t most_blocks = 1024;  // each has a buffer for the points of a wide cone
+constexpr int room = 512;                    // capacity of the numbers of the points that a warp processes together
 
-/// Lays down a source's disc, with moments or without.
+/// Accumulates the light of a source disc. @tparam orders  1: without moments
 template <int orders>
 __device__ void lay_down(DotModel const& model, Vec2d origin, double light, MomentField const* field, Patch patch,
                          double (*numbers)[room]) {
@@ -75,8 +75,9 @@ __global__ void __launch_bounds__(dot_threads, 4)
   }
 }
 
-/// Launches with as large a patch as there is shared memory for. @param beside bytes of it behind the patch
-/// @param more arguments after images and the patch's side
+/// Launches a kernel with the largest stamp that fits into shared memory.
+/// @param beside  additional shared memory after the stamp [bytes]
+/// @param more  arguments after the images and the side of the stamp
 template <class Kernel, class... More>
 void launch(Kernel* kernel, DotModel const& model, std::uint64_t count, DotCone const* cones,
             DeviceImages const& images, std::uint64_t blocks, std::size_t beside, More... more) {

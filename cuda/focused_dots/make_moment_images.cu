@@ -5,7 +5,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// A block works out all images of a phase and moment, which are zero so far.
+/// Computes all images of one sub-pixel phase and moment per block. The output must be initialised to zero.
 __global__ void __launch_bounds__(dot_threads)
     make_moment_images_kernel(DotModel const __grid_constant__ model, double* const out) {
   constexpr int most_points = 16, room = 2048;

@@ -6,15 +6,17 @@ namespace {
 
 constexpr int threads = 64;
 
-/// Without the medium: one function for all media.
+/// Aims at the stop without the medium; not a template, so that all media share its code.
 __device__ __noinline__ bool fill_straight(StopView const& stop, TracingOptions<double> const& tracing, Vec3d place,
                                            FilledStop& filled) {
   filled.map = paraxial_aim(stop, place);
   return fill_stop(stop, NoMedium<double>{}, tracing, place, filled);
 }
 
-/// Aims for one particle at one pulse. @param origin is set where it is not known yet @param step is raised to what
-/// this pulse begins at
+/// Aims at the stop for one particle at one pulse.
+/// @param placed  whether `origin` is already set
+/// @param origin  set if `placed` is false
+/// @param step  raised to the first ladder step of this pulse, if that is higher
 template <class Medium>
 __device__ void aim_pulse(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
                           Medium const& medium, std::uint64_t i, int pulse, bool placed, PulseAim& aim, Vec2d& origin,

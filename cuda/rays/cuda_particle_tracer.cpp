@@ -18,18 +18,18 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Memory of one batch of particles [bytes], and the most particles that it has.
+/// Maximum memory [bytes] and maximum number of particles of a batch.
 constexpr std::size_t most_batch_bytes = std::size_t{256} << 20, most_of_batch = std::size_t{1} << 20;
 
-/// Particles at both pulses, in the host's memory.
+/// Particles at both pulses, in host memory.
 using HostPulses = ParticleSources<double, AnyScattering>[frame_count];
 
-/// Takes a batch of particles through the device. The medium is there twice, for the host aims those that do not fill
-/// the stop.
+/// Traces a batch of particles on the device. The medium is also needed on the host, which aims those particles that
+/// the device cannot aim by filling the stop.
 template <class Medium>
 class BatchPass {
  public:
-  /// @param launches of the batch's particles, by steps
+  /// Starts aiming the particles on the device. @param launches  launches of the batch's particles, one per ladder step
   BatchPass(ParticleLaunches const& host, LaunchesOnDevice const& on_device, std::vector<ParticlesLaunch> launches,
             HostPulses const& pulses, Medium const& medium, DeviceMedium<double> const& mirrored, ParticleBatch& batch,
             double across_medium, unsigned long long* ends)
@@ -48,7 +48,7 @@ class BatchPass {
     list(batch.steps().step);
   }
 
-  /// Traces all that is needed, and enters the truth.
+  /// Traces all rays required, and stores the truth.
   void finish(PinnedBuffer& staging, GroundTruth& truth) {
     constexpr bool bends = !std::is_same_v<Medium, NoMedium<double>>;
     std::size_t const count = batch_.count();
@@ -79,7 +79,7 @@ class BatchPass {
     });
   }
 
-  /// The widest that any particle was aimed beyond the stop [m].
+  /// Returns the largest margin by which any particle was aimed beyond the stop [m].
   double largest_margin() const {
     double largest = 0;
     for (std::uint32_t const at : wide_) largest = std::max(largest, found_[at].margin);
@@ -89,24 +89,24 @@ class BatchPass {
  private:
   unsigned int counted(std::size_t step) const { return counts_[step]; }
 
-  /// Lists by steps the aims of chosen particles that fill the stop.
+  /// Lists, by ladder step, the aims of chosen particles that fill the stop.
   void list(int const* at) {
     list_particles(on_device_.ladder(), batch_.aims().data(), at, batch_.steps(), batch_.count(),
                    batch_.listed(launches_.size()));
   }
-  /// Traces what is listed. @param sign of the light that is laid down and of the ends that are counted
+  /// Traces the listed aims. @param sign  -1 removes the light and the ray counts of an earlier call
   void trace_listed(AimState state, double sign) {
     batch_.counts().download(counts_, LadderView::most_steps + 1);
     for (std::size_t step = 0; step < launches_.size(); ++step) {
       trace(state, step, batch_.listed(launches_.size()) + step * frame_count * batch_.count(), counted(step), sign);
     }
   }
-  /// @param listed on the device
+  /// Traces `count` aims of one ladder step. @param listed  indices of the aims, in device memory
   void trace(AimState state, std::size_t step, std::uint32_t const* listed, std::size_t count, double sign) {
     ParticlesLaunch launch = launches_[step];
     launch.sign = sign;
     if (state == AimState::wide) launch.camera.elements = on_device_.smooth(step);
-    // so many at a time that one launch does not take long
+    // Limit the number of aims per launch, so that no launch takes long.
     double const at_once = most_steps_a_launch / on_device_.steps_a_particle(across_medium_, step);
     auto const most = static_cast<std::size_t>(std::clamp(frame_count * at_once, 1.0, 1e9));
     for (std::size_t first = 0; first < count; first += most) {
@@ -116,7 +116,7 @@ class BatchPass {
     }
   }
 
-  /// Takes the light of particles that need more rays back, and traces them anew.
+  /// Removes the light of particles that need more rays, and traces them again with the next number of rays.
   void go_on() {
     std::size_t const count = batch_.count();
     batch_.counts().zero();
@@ -138,7 +138,7 @@ class BatchPass {
     trace_wider(chosen, steps.data() + count);
   }
 
-  /// Aims at the host what the device could not, and traces these particles.
+  /// Aims on the host those particles that the device could not aim, and traces them.
   void aim_wide() {
     std::size_t const count = batch_.count();
     aims_.resize(batch_.aims().size());
@@ -150,7 +150,7 @@ class BatchPass {
     batch_.all_steps().download(steps.data(), steps.size());
     parallel_chunks(count, 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        steps[2 * count + i] = 1 - steps[2 * count + i];  // those are chosen now that have not been
+        steps[2 * count + i] = 1 - steps[2 * count + i];  // choose the particles that have not been traced yet
         if (steps[2 * count + i] != 0) steps[i] = aim_at_host(i, origins[i], steps[i]);
         steps[count + i] = steps[i];
       }
@@ -167,7 +167,7 @@ class BatchPass {
     trace_wider(wide_, steps.data());
   }
 
-  /// Traces aims at clipped rays, by the steps of their particles.
+  /// Traces aims at clipped rays, by the ladder steps of their particles.
   void trace_wide(std::vector<std::uint32_t> const& aims, int const* step, double sign) {
     for (std::size_t here = 0; here < launches_.size(); ++here) {
       std::vector<std::uint32_t> some;
@@ -178,7 +178,8 @@ class BatchPass {
       trace(AimState::wide, here, listed.data(), some.size(), sign);
     }
   }
-  /// The same; what is bent beyond its margin is taken back and traced again, wider.
+  /// Like trace_wide(); aims with a ray that was deflected beyond the margin are removed, and traced again with a
+  /// larger margin.
   void trace_wider(std::vector<std::uint32_t> aims, int const* step) {
     while (!aims.empty()) {
       throw_if_interrupted();
@@ -191,7 +192,7 @@ class BatchPass {
         double const moved = std::sqrt(moved2[at]);
         if (!host_.sharp.camera.chief_rays_only() && moved > found_[at].margin) missed.push_back(at);
       }
-      trace_wide(missed, step, -1);  // with the aims that are there still
+      trace_wide(missed, step, -1);  // with the previous aims, which are still on the device
       for (std::uint32_t const at : missed) {
         found_[at].margin = host_.sharp.wider_margin(std::sqrt(moved2[at]));
         place_aim(at, static_cast<std::size_t>(step[at / frame_count]));
@@ -201,7 +202,8 @@ class BatchPass {
     }
   }
 
-  /// Aims at both pulses of a particle what is not known yet. @return the step that it begins at
+  /// Aims at the stop for those pulses of a particle that the device could not aim. @return first ladder step of the
+  /// particle
   int aim_at_host(std::size_t i, Vec2d& origin, int step) {
     PulseAim* const aims = &aims_[frame_count * i];
     bool placed = aims[0].state == AimState::filled || aims[1].state == AimState::filled;
@@ -223,7 +225,7 @@ class BatchPass {
     }
     return step;
   }
-  /// Where the rays of a wide aim go, at a step.
+  /// Sets the aim point and extent of the rays of a wide aim, at a ladder step.
   void place_aim(std::size_t at, std::size_t step) {
     PulseAim& aim = aims_[at];
     SourceAim const& found = found_[at];
@@ -253,12 +255,12 @@ class BatchPass {
   double across_medium_;
   unsigned long long* ends_;
   unsigned int counts_[LadderView::most_steps + 1] = {};
-  std::vector<PulseAim> aims_;       ///< of the batch, where the host aims
-  std::vector<SourceAim> found_;     ///< of these
-  std::vector<std::uint32_t> wide_;  ///< those that it has aimed
+  std::vector<PulseAim> aims_;       ///< aims of the batch, if the host aims some of them
+  std::vector<SourceAim> found_;     ///< results of aim_at_stop() for these
+  std::vector<std::uint32_t> wide_;  ///< indices of the aims set by the host
 };
 
-/// Particles of a batch: so many that they fit, and that one launch does not take long.
+/// Returns the number of particles per batch, limited by memory and by the duration of a launch.
 std::size_t batch_size(Scene const& scene, LaunchesOnDevice const& launches) {
   double const at_once = most_steps_a_launch / launches.steps_a_particle(scene.steps_across(), 0);
   return std::clamp<std::size_t>(
@@ -309,7 +311,7 @@ Rendering trace_particles_on_device(Scene& scene, Particles const& particles, Pa
       }
       BatchPass pass(host, launches, std::move(of_batch), pulses, host_medium, medium, batch, scene.steps_across(),
                      ends.data());
-      if (first == 0) rendering = empty_rendering(particles);  // meanwhile
+      if (first == 0) rendering = empty_rendering(particles);  // while the device is working
       pass.finish(staging, rendering.truth);
       margin = std::max(margin, pass.largest_margin());
       progress.advance(count);

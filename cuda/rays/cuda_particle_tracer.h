@@ -5,10 +5,12 @@
 
 namespace gladstone::cuda {
 
-/// Images and truth of particles as trace_particles() gives them, on the device: where their rays go is found there,
-/// too, a thread a particle; those that do not fill the stop (filled_stop.h) the host aims. Particles pass in batches
-/// that take 256 MB at most, to which come images, medium and the table of what spheres scatter.
-/// @param kept of the device, from scene to scene @param staging that the device copies to
+/// Renders images and truth of particles on the device, with the results of trace_particles(). Aiming is also done on
+/// the device, one thread per particle; particles whose rays cannot be restricted to the stop (filled_stop.h) are aimed
+/// by the host. Particles are processed in batches of at most 256 MB, in addition to the images, the medium and the
+/// scattering table.
+/// @param kept  scattering table on the device, reused between scenes
+/// @param staging  page-locked buffer for transfers
 Rendering trace_particles_on_device(Scene& scene, Particles const& particles, ParticleLight light, RenderImages images,
                                     DeviceMedium<double> const& medium, ScatteringCache& kept, PinnedBuffer& staging);
 

@@ -24,10 +24,10 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Memory for the sums of one batch of sources [bytes].
+/// Maximum memory for the ray sums of one batch of sources [bytes].
 constexpr std::size_t most_sum_bytes = std::size_t{256} << 20;
 
-/// The sources of a scene, on the device and on the host.
+/// Sources of a scene, on the host and on the device.
 struct PatternOnDevice {
   LambertSources<double> host;
   DeviceArray<Vec2d> centres;
@@ -39,10 +39,10 @@ struct PatternOnDevice {
         radiances(pattern.radiance.data(), pattern.radiance.size(), "the sources") {}
 };
 
-/// What the sources of a scene share that take so many rays, on the device and on the host.
+/// Data common to all sources with the same number of rays, on the host and on the device.
 class LaunchOnDevice {
  public:
-  /// @param images null: truth only
+  /// @param images  null: truth only
   LaunchOnDevice(RaysLaunch const& host, PatternOnDevice const& pattern, DeviceMedium<double> const& medium,
                  ImagePairOnDevice* images)
       : host_(host),
@@ -80,7 +80,8 @@ class LaunchOnDevice {
   SourceOnDevice place(std::uint64_t source, SourceAim const& aim) const {
     AimedBundle<double> const bundle = host_.bundle(*aim.disc, pattern_.reach(), aim.margin);
     SourceOnDevice placed{source, bundle.centre, bundle.a, bundle.b, bundle.across, aim.origin};
-    // four times what a ray through the middle weighs: rays through a wide disc differ, but not by so much
+    // Four times the weight of the central ray: the weights of rays through a wide disc differ, but by less than this
+    // factor.
     placed.most_weight = 4 * std::abs(ray_to(pattern_, bundle, source, {}, {}).weight);
     if (widest_window_px_ == 0) return placed;
     double wide = 0, far = 0;
@@ -90,7 +91,8 @@ class LaunchOnDevice {
       far = std::max({far, length(aim.high[frame]), length(aim.low[frame])});
     }
     if (!(far < 1e7)) return placed;
-    // a tenth for rims wider than what is seen of the stop, and a pixel on either side for the nodes about a hit
+    // A margin of a tenth allows for rays at the rim beyond the estimated extent, and one pixel on either side for the
+    // spline nodes around a ray.
     double const wanted = std::ceil(1.1 * wide + 2 * source_px_) + 4;
     placed.window_px = static_cast<int>(std::min<double>(wanted, widest_window_px_));
     for (int frame = 0; frame < frame_count; ++frame) {
@@ -101,14 +103,15 @@ class LaunchOnDevice {
     return placed;
   }
 
-  /// Operations of all rays of a source, in steps across a medium, for the length of a launch.
+  /// Estimates the operations of all rays of a source, in units of integration steps, to limit the duration of a
+  /// launch.
   double steps_a_source(double across_medium) const {
     int const wide = 2 * launch_.spot.half_width() + 1;
     double const light = !launch_.images.light[0] ? 0 : (widest_window_px_ > 0 ? 2 : wide * wide / 16.0);
     return static_cast<double>(launch_.rays) * (across_medium + 2.0 * launch_.camera.count + light);
   }
 
-  /// @param sign of the light that is laid down
+  /// @param sign  -1 removes the light of an earlier launch
   SourcesLaunch launch(std::vector<SourceOnDevice> const& sources, double sign) const {
     SourcesLaunch launch = launch_;
     launch.sign = sign;
@@ -128,7 +131,7 @@ class LaunchOnDevice {
   SourcesLaunch launch_;
 };
 
-/// Some sources, and how they were aimed.
+/// Sources and their aims.
 struct AimedSources {
   std::vector<SourceOnDevice> placed;
   std::vector<SourceAim> aims;
@@ -139,7 +142,7 @@ struct AimedSources {
   }
 };
 
-/// Some sources on their way through the device.
+/// Batch of sources being traced on the device.
 class Batch {
  public:
   Batch(LaunchOnDevice const& scene, DeviceMedium<double> const& medium, AimedSources sources, double sign)
@@ -156,7 +159,7 @@ class Batch {
                   {sums_.data(), moved2_.data(), ends_.data()});
   }
 
-  /// Waits for it. @param sign by which its rays count
+  /// Waits for the results. @param sign  sign of its ray counts
   void finish(std::int64_t sign, StatusCounts& statuses) {
     unsigned long long ends[frame_count * ray_status_count] = {};
     ends_.download(ends, frame_count * ray_status_count);
@@ -170,9 +173,9 @@ class Batch {
   }
 
   AimedSources const& sources() const { return sources_; }
-  /// Furthest that the medium moved a ray of a source on the aim plane [m].
+  /// Returns the largest displacement of a source's rays by the medium in the aim plane [m].
   double moved(std::size_t at) const { return std::sqrt(moved_[at]); }
-  /// Sums over the rays of a source's scramblings.
+  /// Sums over the rays of each scrambling of a source.
   void sum(std::size_t at, RaySums (&of_scramblings)[most_scramblings]) const {
     auto const scramblings = static_cast<std::size_t>(scene_.scramblings());
     for (std::size_t i = 0; i < scene_.sums_a_source(); ++i) {
@@ -191,7 +194,7 @@ class Batch {
   std::vector<RaySums> found_;
 };
 
-/// Traces all sources of a scene; the medium is there twice, for the host aims and integrates.
+/// Traces all sources of a scene. The medium is also needed on the host, which aims and computes the theory.
 template <class Medium>
 class SceneTracer {
  public:
@@ -207,7 +210,7 @@ class SceneTracer {
         statuses_(pass.rendering.statuses),
         steps_(ladder.size()) {}
 
-  /// @return the widest that any source was aimed beyond the stop [m]
+  /// Traces all sources. @return largest margin by which any source was aimed beyond the stop [m]
   double trace(char const* what) {
     std::size_t const count = truth_.size(), most = at_once(0);
     Progress progress(what, count);
@@ -215,7 +218,7 @@ class SceneTracer {
     for (std::size_t first = 0; first < count; first += most) {
       throw_if_interrupted();
       auto batch = std::make_unique<Batch>(on_device(0), mirrored_, std::move(next), 1);
-      // meanwhile
+      // Aim the next batch while the device is working.
       std::size_t const after = std::min(first + most, count);
       next = aim(after, std::min(after + most, count));
       finish(std::move(batch));
@@ -229,7 +232,8 @@ class SceneTracer {
     if (!steps_[step]) steps_[step] = std::make_unique<LaunchOnDevice>(ladder_[step], pattern_, mirrored_, images_);
     return *steps_[step];
   }
-  /// So many sources that their sums fit, that one launch does not take long, and that few wait for the first aims.
+  /// Returns the number of sources per batch, limited by the memory for sums, the duration of a launch, and the waiting
+  /// time for the first aims.
   std::size_t at_once(std::size_t step) {
     LaunchOnDevice const& launch = on_device(step);
     double const launches_at_once = most_steps_a_launch / launch.steps_a_source(scene_.steps_across());
@@ -259,8 +263,8 @@ class SceneTracer {
     return aimed;
   }
 
-  /// Takes in what a batch of the first step came to. Sources of which a ray was bent beyond their margin, and those
-  /// that need more rays, are taken back and traced again.
+  /// Processes the results of a batch of the first ladder step. Sources with a ray deflected beyond their margin, and
+  /// those that need more rays, are removed and traced again.
   void finish(std::unique_ptr<Batch> batch) {
     std::vector<AimedSources> waiting(ladder_.size());
     take_in(*batch, 0, waiting);
@@ -282,7 +286,7 @@ class SceneTracer {
     }
   }
 
-  /// @param waiting for their turn at every step
+  /// Stores the results of a batch. @param waiting  output: sources to be traced again, by ladder step
   void take_in(Batch& batch, std::size_t step, std::vector<AimedSources>& waiting) {
     batch.finish(1, statuses_);
     RaysLaunch const& launch = ladder_[step];
@@ -317,7 +321,7 @@ class SceneTracer {
   ImagePairOnDevice* images_;
   GroundTruth& truth_;
   StatusCounts& statuses_;
-  std::vector<std::unique_ptr<LaunchOnDevice>> steps_;  ///< made when first needed
+  std::vector<std::unique_ptr<LaunchOnDevice>> steps_;  ///< created on first use
   double largest_margin_ = 0;
 };
 
@@ -328,7 +332,7 @@ struct CudaRaysRenderer::Uploads {
   ScatteringCache scattering;
   PinnedBuffer staging;
 
-  /// The scene's medium, on the device.
+  /// Returns the scene's medium on the device; uploads it if necessary.
   DeviceMedium<double> medium_of(Scene const& scene) {
     if (!medium.serves(scene, true)) medium.upload(scene, true);
     return medium.medium().view<double>();

@@ -7,22 +7,22 @@
 
 namespace gladstone::cuda {
 
-/// The general renderer on the first visible CUDA device: what RaysRenderer gives, a block a source, in double. Where a
-/// source's rays go is found on the CPU's cores.
+/// General ray-tracing renderer on the first visible CUDA device, with the results of RaysRenderer: one block per
+/// source, in double precision. Dot sources are aimed on the CPU.
 class CudaRaysRenderer final : public Renderer {
  public:
   CudaRaysRenderer();
   ~CudaRaysRenderer() override;
 
   std::string device() const override { return "cuda"; }
-  /// As Renderer::render. @throws also DeviceError, out of memory with the sizes
+  /// Like Renderer::render(). @throws DeviceError in addition, with the sizes if device memory is exhausted
   Rendering render(Scene& scene, DotPattern const& sources, RenderImages images, RenderTheory theory) override;
-  /// As Renderer::render_particles; which rays fill the stop is found on the device. @throws as render
+  /// Like Renderer::render_particles(); particles are aimed on the device. @throws as render()
   Rendering render_particles(Scene& scene, Particles const& particles, ParticleLight light,
                              RenderImages images) override;
 
  private:
-  struct Uploads;  ///< what scenes that follow each other have in common
+  struct Uploads;  ///< data reused between successive scenes
   std::unique_ptr<Uploads> uploads_;
 };
 

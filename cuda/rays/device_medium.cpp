@@ -15,8 +15,8 @@ void require_room(char const* what_for, std::size_t bytes) {
   if (bytes > device_room().free) throw OutOfDeviceMemory(what_for, bytes);
 }
 
-/// A volume's polynomials, or nothing: they may take a quarter of the device's memory. What is free does not count, so
-/// that results do not depend on what else runs there.
+/// Returns a volume's polynomials; empty if they would need more than a quarter of the device's total memory. The limit
+/// does not refer to free memory, so that results do not depend on other programs on the device.
 template <class T, class Grid>
 DeviceArray<T> make_polynomials(Grid const& grid) {
   using Cells = CellPolynomials<T, typename Grid::Interpolant, true>;
@@ -47,7 +47,8 @@ MirroredMedium::MirroredMedium(Medium<double> const& medium, bool wide) : host_(
             Grid on_device = grid;
             on_device.coefficients = floats_.data();
             if (!wide) {
-              single_polynomials_ = make_polynomials<float>(on_device);  // theory, in double, still reads the grid
+              single_polynomials_ =
+                  make_polynomials<float>(on_device);  // theory, in double precision, still reads the grid
             } else {
               polynomials_ = make_polynomials<double>(on_device);
               if (polynomials_.size() > 0) floats_ = {};

@@ -19,14 +19,14 @@ struct WithAlternatives<std::variant<Held...>, More...> {
   using type = std::variant<Held..., More...>;
 };
 
-/// Every medium as the device traces it: volumes as polynomials, where there is room for them.
+/// Any medium in the form traced on the device: volumes as cell polynomials if memory permits.
 template <class T>
 using DeviceMedium =
     typename WithAlternatives<Medium<T>, CellPolynomials<T, CubicBspline, false>,
                               CellPolynomials<T, CubicBspline, true>, CellPolynomials<T, Linear, false>,
                               CellPolynomials<T, Linear, true>>::type;
 
-/// Fills the coefficients of all cells. @param grid with its coefficients on the device
+/// Computes the polynomial coefficients of all cells. @param grid  with its coefficients in device memory
 template <class T, class Basis>
 void fill_cells(GriddedIndex<double, float, Basis, 3> const& grid, T* out);
 extern template void fill_cells(SplineVolume<double> const&, double*);
@@ -34,20 +34,20 @@ extern template void fill_cells(SplineVolume<double> const&, float*);
 extern template void fill_cells(LinearVolume<double> const&, double*);
 extern template void fill_cells(LinearVolume<double> const&, float*);
 
-/// Owner of a medium's coefficients on the device, which has n - 1 once: a plane as its coefficients in double; a
-/// volume as polynomials in double, 64 numbers a cell (trilinear: 8), or, where these would take more than a quarter of
-/// the device's memory, as its coefficients in float, one a node. With single precision a volume is there once in float
-/// and once more: rays cross polynomials in float, while theory and the deflection table, which stay double so that
-/// they do not change with the rays' precision, read the coefficients. That adds a sixty-fourth (an eighth) of what the
-/// polynomials take.
+/// Owner of a medium's coefficients in device memory. Planes are stored as coefficients in double. Volumes are stored
+/// as cell polynomials in double, with 64 numbers per cell (trilinear: 8), or, if these would need more than a quarter
+/// of the device's memory, as one float coefficient per node.
+/// For rays in single precision, a volume is stored as polynomials in float for the rays, and also as coefficients for
+/// theory and deflection tables, which remain in double so that they do not depend on the precision of the rays. The
+/// latter add one sixty-fourth (trilinear: one eighth) to the memory of the polynomials.
 class MirroredMedium {
  public:
   MirroredMedium() = default;
-  /// Uploads. @param wide rays will cross it in double, not in single precision @throws DeviceError where the card is
-  /// too small
+  /// Uploads a medium. @param wide  true: for rays in double precision; false: in single precision
+  /// @throws DeviceError if device memory is too small
   MirroredMedium(Medium<double> const& medium, bool wide);
 
-  /// The medium's view in scalar T, its coefficients on the device.
+  /// Returns the medium's view in scalar type T, with its coefficients in device memory.
   template <class T>
   DeviceMedium<T> view() const {
     return std::visit(
@@ -91,14 +91,15 @@ class MirroredMedium {
   DeviceArray<float> single_polynomials_;
 };
 
-/// The medium of the last scene, which often is the next one's too.
+/// Cache of the last scene's medium, which is often that of the next scene, too.
 class MediumCache {
  public:
-  /// Whether it is the scene's. Views without a grid cost nothing to mirror: it never is.
+  /// Returns whether the cache holds the scene's medium. Always false for media without a grid, whose upload takes no
+  /// time.
   bool serves(Scene const& scene, bool wide) const {
     return scene.medium.owner && owner_ == scene.medium.owner && wide_ == wide;
   }
-  /// @param wide as MirroredMedium
+  /// Uploads the scene's medium. @param wide  as in MirroredMedium
   void upload(Scene const& scene, bool wide) {
     owner_.reset();
     medium_ = MirroredMedium();
@@ -109,7 +110,7 @@ class MediumCache {
   MirroredMedium const& medium() const { return medium_; }
 
  private:
-  std::shared_ptr<void const> owner_;  ///< of the medium that is on the device
+  std::shared_ptr<void const> owner_;  ///< owner of the medium on the device
   MirroredMedium medium_;
   bool wide_ = false;
 };

@@ -3,30 +3,30 @@
 #include "cuda/device/device_images.cuh"
 #include "cuda/rays/trace_sources.h"
 
-/// What a block of threads has in shared memory while it traces sources.
+/// Shared memory of a block of threads that traces sources.
 namespace gladstone::cuda {
 
 inline constexpr int source_threads = 128;
 
-/// Threads of a block, as hit_spline.h takes them.
+/// Threads of a block, as required by hit_spline.h.
 struct Block {
   __device__ int rank() const { return static_cast<int>(threadIdx.x); }
   __device__ int size() const { return source_threads; }
   __device__ void sync() const { __syncthreads(); }
 };
 
-/// A square of a frame in which a block gathers the light of a source at nodes. They are whole numbers, which may be
-/// added in any order, of a unit so small that rounding every ray's shares leaves less than 1e-6 of the source's light
-/// to a pixel.
+/// Square of a frame in which a block accumulates the light of a source at spline nodes. The values are integers, so
+/// that the order of summation does not matter; their unit is so small that rounding the shares of all rays changes a
+/// pixel by less than 1e-6 of the source's light.
 struct HitWindow {
-  int* nodes = nullptr;  ///< [side][side]; null: takes nothing
+  int* nodes = nullptr;  ///< [side][side]; null: accepts no light
   int side, per_px;
   int left, top;  ///< pixel of node (0, 0)
-  double units;   ///< of weight 1
+  double units;   ///< integer units per weight of 1
   double most_weight;
 
-  /// Units for so many rays of that weight and less: their sum at a node is half of what a number holds, since a node
-  /// gets 4/9 of a ray at most.
+  /// Returns the unit for a number of rays of at most that weight. A node gets at most 4/9 of a ray, so that a sum uses
+  /// less than half of the integer's range.
   __device__ static double units_per_weight(double most_weight, std::uint64_t rays) {
     return most_weight > 0 ? 0x1p31 / (most_weight * static_cast<double>(rays)) : 0;
   }
@@ -35,7 +35,7 @@ struct HitWindow {
     for (int i = threadIdx.x; i < side * side; i += source_threads) nodes[i] = 0;
   }
 
-  /// Takes a ray's light in. @return false where it lands elsewhere, or is too bright
+  /// Adds a ray's light. @return false if it is outside the square, or its weight exceeds most_weight
   __device__ bool take(Vec2d p, double weight) const {
     if (!nodes || !(fabs(weight) <= most_weight)) return false;
     if (!(fabs(p.x) < 1e7 && fabs(p.y) < 1e7)) return false;
@@ -49,7 +49,7 @@ struct HitWindow {
     return true;
   }
 
-  /// Sends what was gathered to the image.
+  /// Adds the accumulated light to the image.
   __device__ void flush(HitSplineView const& spline, double* rows_seen, DeviceImages const& images, int frame,
                         double sign) const {
     double const of_unit = units > 0 ? sign * images.units_per_weight / units : 0;
@@ -63,14 +63,14 @@ struct HitWindow {
   }
 };
 
-/// Where the parts lie.
-/// @tparam Launch has camera, spline, most_window_px, and windows: how many a block has
+/// Layout of the shared memory.
+/// @tparam Launch  has camera, spline, most_window_px, and windows (number per block)
 struct SharedParts {
   CameraElement<double>* elements;
-  RaySums* sums;      ///< one a thread
-  double* rows_seen;  ///< in the place of sums, which are done with then
-  double* share;      ///< of the spline
-  int* nodes;         ///< of all windows; null: there are none
+  RaySums* sums;      ///< one per thread
+  double* rows_seen;  ///< shares the memory of `sums`, which are no longer needed then
+  double* share;      ///< values of the spline
+  int* nodes;         ///< of all windows; null: no windows
 
   template <class Launch>
   __device__ SharedParts(unsigned char* memory, Launch const& launch, int threads) {
@@ -82,7 +82,7 @@ struct SharedParts {
     share = reinterpret_cast<double*>(memory);
     nodes = launch.most_window_px > 0 ? reinterpret_cast<int*>(memory + share_bytes(launch)) : nullptr;
   }
-  /// Copies what all sources share. The threads must meet before it is used.
+  /// Copies the data common to all sources. Must be followed by a barrier.
   template <class Launch>
   __device__ void fill(Launch const& launch, int threads) const {
     auto const copy = [threads](void* to, void const* from, std::size_t bytes) {

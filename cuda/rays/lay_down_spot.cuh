@@ -3,13 +3,13 @@
 #include "cuda/device/device_images.cuh"
 #include "render/scene/spot.h"
 
-/// Light of single rays, laid down by a warp each.
+/// PSFs of single rays, added to the image by a warp each.
 namespace gladstone::cuda {
 
 inline constexpr int warp_size = 32;
 inline constexpr unsigned int whole_warp = 0xffffffffu;
 
-/// Lays down one ray's spot by a warp.
+/// Adds the PSF of one ray to an image. Called by one full warp.
 __device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units, int frame,
                                      DeviceImages const& images) {
   if (!(fabs(p.x) < 1e8 && fabs(p.y) < 1e8)) return;
@@ -31,8 +31,9 @@ __device__ inline void lay_down_spot(SpotView const& spot, Vec2d p, double units
   }
 }
 
-/// Lays down, one after the other, the spots of those of a warp's rays that nothing else took, each in its frame.
-/// @tparam Launch has spot, sign and images
+/// Adds the PSFs of a warp's rays that are not accumulated elsewhere, one after the other, each to its frame.
+/// @tparam Launch  has spot, sign and images
+/// @param mine  whether this lane's ray is to be added
 template <class Launch>
 __device__ void lay_down_spots(Launch const& launch, bool mine, RayHit<double> const& hit, int frame) {
   for (unsigned int rest = __ballot_sync(whole_warp, mine); rest != 0; rest &= rest - 1) {

@@ -4,12 +4,12 @@
 
 namespace gladstone::cuda {
 
-/// A ray of a particle at a pulse, through the medium and without it.
+/// Ray of a particle at one pulse, with and without the medium.
 struct ParticleRay {
   RayHit<double> seen, ambient;
-  double moved2 = 0;  ///< square of how far the medium moved it on the aim plane [m^2]
+  double moved2 = 0;  ///< squared displacement by the medium in the aim plane [m^2]
 
-  /// Adds what the camera sees, about the particle's origin.
+  /// Adds the position on the sensor relative to the particle's origin to the sums.
   __device__ void enter(Vec2d origin, RaySums& sums) const {
     add(seen, origin, sums.hits[0]);
     add(ambient, origin, sums.hits[1]);
@@ -21,7 +21,7 @@ struct ParticleRay {
   }
 };
 
-/// Traces ray j. @param key of the particle's random numbers
+/// Traces ray j. @param key  key of the particle's random numbers
 template <class Medium>
 __device__ ParticleRay trace_particle_ray(ParticlesLaunch const& launch, CameraView<double> const& camera,
                                           Medium const& medium, PulseAim const& aim, int pulse, std::uint64_t particle,
@@ -44,18 +44,19 @@ __device__ ParticleRay trace_particle_ray(ParticlesLaunch const& launch, CameraV
   return ray;
 }
 
-/// Keeps the largest of squares that are not negative.
+/// Stores the larger of two non-negative squares atomically.
 __device__ inline void keep_largest(double* largest, double square) {
   atomicMax(reinterpret_cast<unsigned long long*>(largest),
             static_cast<unsigned long long>(__double_as_longlong(square)));
 }
 
-/// Adds a block's counts of ends to all others'. All its threads come here. @param counts [pulse][status]
+/// Adds a block's counts of ray statuses to the totals. Must be called by all threads of the block.
+/// @param counts  [pulse][status]
 __device__ inline void add_ends(ParticlesLaunch const& launch, unsigned int const* counts, unsigned long long* ends) {
   __syncthreads();
   if (threadIdx.x < frame_count * ray_status_count && counts[threadIdx.x] > 0) {
     auto const more = static_cast<long long>(counts[threadIdx.x]);
-    // numbers wrap around where they are taken back
+    // negative counts rely on unsigned wrap-around
     atomicAdd(ends + threadIdx.x, static_cast<unsigned long long>(launch.sign < 0 ? -more : more));
   }
 }

@@ -8,7 +8,7 @@
 namespace gladstone::cuda {
 namespace {
 
-/// Widest patch of pixels that a warp gathers spots in.
+/// Widest square of pixels in which a warp accumulates PSFs [px].
 constexpr int widest_patch_px = 24;
 
 }  // namespace
@@ -121,7 +121,7 @@ void ParticleBatch::upload(Particles const& particles, std::size_t first, Pinned
   struct Column {
     void* to;
     char const* from;
-    std::size_t begin, end;  ///< in the staging memory
+    std::size_t begin, end;  ///< offsets in the staging memory
   };
   std::vector<Column> columns;
   std::size_t bytes = 0;

@@ -9,12 +9,12 @@
 
 namespace gladstone::cuda {
 
-/// What spheres scatter, on the device: the table of the last scene, which often is the next one's too.
+/// Cache of the scattering table on the device: that of the last scene, which is often that of the next one, too.
 class ScatteringCache {
  public:
-  /// @param mie may be null @throws OutOfDeviceMemory
+  /// Uploads a table unless it is already there. @param mie  may be null @throws OutOfDeviceMemory
   void upload(std::shared_ptr<MieScattering const> const& mie);
-  /// Of the particles from number `first` on. @pre there is a table
+  /// Returns a view for the particles from index `first` on. @pre a table has been uploaded
   MieScatteringView<double> view(std::uint64_t first) const;
 
  private:
@@ -24,39 +24,41 @@ class ScatteringCache {
   DeviceArray<float> coefficients_;
 };
 
-/// What all particles of a scene share, on the device, by the steps of their ladder.
+/// Data common to all particles of a scene, on the device, for each step of the ladder of ray counts.
 class LaunchesOnDevice {
  public:
-  /// @param images null: truth only @param light_per_photon in them
+  /// @param images  null: truth only
+  /// @param light_per_photon  light in the images per photon
   LaunchesOnDevice(ParticleLaunches const& host, DeviceMedium<double> const& medium, ImagePairOnDevice* images,
                    double light_per_photon);
 
   StopView const& stop() const { return stop_; }
   LadderView const& ladder() const { return ladder_; }
   std::size_t steps() const { return launches_.size(); }
-  /// For rays that fill the stop; of no particles yet.
+  /// Returns the launch of a ladder step for rays that fill the stop, without particles.
   ParticlesLaunch const& filled(std::size_t step) const { return launches_[step]; }
-  /// The camera's elements for rays that are clipped at a smooth rim.
+  /// Returns the camera's elements for rays clipped at a stop with a smooth edge.
   CameraElement<double> const* smooth(std::size_t step) const;
 
-  /// Operations of all rays of a particle that takes the fewest that it may, in steps across a medium, for the length
-  /// of a launch.
+  /// Estimates the operations of all rays of a particle at a ladder step, in units of integration steps, to limit the
+  /// duration of a launch.
   double steps_a_particle(double across_medium, std::size_t step) const;
 
  private:
   ParticleLaunches const& host_;
   DeviceArray<CameraElement<double>> sharp_;
-  mutable std::vector<DeviceArray<CameraElement<double>>> smooth_;  ///< uploaded when first asked for
+  mutable std::vector<DeviceArray<CameraElement<double>>> smooth_;  ///< uploaded on first use
   DeviceArray<double> airy_, share_, rules_;
   StopView stop_;
   LadderView ladder_;
   std::vector<ParticlesLaunch> launches_;
 };
 
-/// Some particles on the device.
+/// Batch of particles in device memory.
 class ParticleBatch {
  public:
-  /// @param staging by way of which they are copied; not to be written to before the batch's first kernel has run
+  /// Uploads the particles. @param staging  page-locked buffer; must not be written before the first kernel of the
+  /// batch has run
   ParticleBatch(Particles const& particles, std::size_t first, std::size_t count, std::size_t sums_a_pulse,
                 PinnedBuffer& staging)
       : count_(count),
@@ -76,14 +78,14 @@ class ParticleBatch {
     upload(particles, first, staging);
   }
 
-  /// What a particle takes.
+  /// Returns the device memory per particle [bytes].
   static std::size_t bytes_a_particle(std::size_t sums_a_pulse) {
     std::size_t const a_pulse = sizeof(PulseAim) + sizeof(Vec3d) + 2 * sizeof(double) + sums_a_pulse * sizeof(RaySums);
     std::size_t const listed = LadderView::most_steps * frame_count * sizeof(std::uint32_t);
     return frame_count * a_pulse + sizeof(double) + sizeof(Vec2d) + 2 * sizeof(DotTruth) + 3 * sizeof(int) + listed;
   }
 
-  /// Makes a launch one of its particles.
+  /// Sets the particles of a launch to those of this batch.
   void fill(ParticlesLaunch& launch, std::size_t first, AnyScattering scattering,
             LaserSheet<double> const& sheet) const {
     launch.first = first;
@@ -94,11 +96,12 @@ class ParticleBatch {
   }
 
   ParticleSteps steps() { return {steps_.data(), steps_.data() + count_, steps_.data() + 2 * count_, counts_.data()}; }
-  /// As they lie there: step, next, chosen.
+  /// Arrays step, next and chosen, one after the other.
   DeviceArray<int>& all_steps() { return steps_; }
-  /// Numbers of listed aims by step, and of aims that the host is to find, or of particles that go on.
+  /// Number of listed aims by ladder step; the last element counts the aims left to the host, or the particles that
+  /// need more rays.
   DeviceArray<unsigned int>& counts() { return counts_; }
-  /// Room for lists of aims. @param steps of the ladder
+  /// Returns the memory for the lists of aims. @param steps  number of ladder steps
   std::uint32_t* listed(std::size_t steps) {
     if (listed_.size() == 0) listed_ = DeviceArray<std::uint32_t>(steps * frame_count * count_, "the particles");
     return listed_.data();

@@ -7,7 +7,8 @@ namespace {
 
 constexpr int threads = 128, warps = threads / warp_size;
 
-/// Sums of those lanes of a particle whose rays are of one scrambling, in an order that hangs on their number alone.
+/// Sums over those lanes of a particle whose rays belong to one scrambling, in an order that depends only on their
+/// number.
 __device__ void sum_lanes(RaySums& sums, int lanes, int scramblings) {
   auto const from = [](auto value, int step) { return __shfl_xor_sync(whole_warp, value, step); };
   for (int step = lanes / 2; step >= scramblings; step /= 2) {
@@ -27,7 +28,7 @@ GLADSTONE_HD std::size_t elements_bytes(ParticlesLaunch const& launch) {
   return static_cast<std::size_t>(launch.camera.count) * sizeof(CameraElement<double>);
 }
 
-/// A warp has as many particles as their rays leave lanes for.
+/// Traces particles with few rays, warp_size / lanes of them per warp.
 template <class Medium>
 __global__ void __launch_bounds__(threads, 4)
     trace_few_rays_kernel(ParticlesLaunch const __grid_constant__ launch, Medium const __grid_constant__ medium,

@@ -9,16 +9,16 @@ namespace {
 
 constexpr int threads = source_threads;
 
-/// What a block has of a particle at a pulse.
+/// Part of a particle's rays at one pulse that is traced by one block.
 struct BlockShare {
-  std::uint64_t particle;  ///< of the batch
+  std::uint64_t particle;  ///< index in the batch
   int pulse;
-  std::uint64_t first, last;  ///< of its rays
-  std::uint64_t key;          ///< of its random numbers
+  std::uint64_t first, last;  ///< range of its rays
+  std::uint64_t key;          ///< key of its random numbers
   Vec2d origin;
 };
 
-/// What the heaviest ray of a window is expected to weigh. All threads of the block come here.
+/// Estimates the weight of the heaviest ray in a window. Must be called by all threads of the block.
 __device__ double weight_expected(ParticlesLaunch const& launch, PulseAim const& aim, BlockShare const& share) {
   __shared__ unsigned long long heaviest;
   if (threadIdx.x == 0) heaviest = 0;
@@ -31,17 +31,18 @@ __device__ double weight_expected(ParticlesLaunch const& launch, PulseAim const&
   return heavier_in_window * __longlong_as_double(static_cast<long long>(heaviest));
 }
 
-/// Traces the rays of a block's share. Seen rays are counted and lay down light; the sums are of seen and ambient.
+/// Traces the rays of a block's share. Rays through the medium are counted and contribute light; sums are taken with
+/// and without the medium.
 template <class Medium>
 __device__ void trace_share(ParticlesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
                             PulseAim const& aim, BlockShare const& share, HitWindow const& window, unsigned int* counts,
                             RaySums& sums, double& moved2) {
   bool const lit = launch.images.light[0] != nullptr;
-  // whole warps go round, for what they lay down together
+  // Whole warps take part in every iteration, because lay_down_spots() is collective.
   for (std::uint64_t of_block = share.first; of_block < share.last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     ParticleRay ray;
-    bool alone = false;  // whether the window does not take its light
+    bool alone = false;  // whether the window did not accept its light
     if (j < share.last) {
       ray = trace_particle_ray(launch, camera, medium, aim, share.pulse, share.particle, share.key, j);
       ray.enter(share.origin, sums);

@@ -16,7 +16,7 @@
 
 namespace gladstone::cuda {
 
-/// How particles scatter, whichever way it is: one kernel serves them all.
+/// Scattering model of the particles, selected at run time, so that one kernel suffices.
 struct AnyScattering {
   enum class Kind : int { equal, lambert, mie };
 
@@ -31,47 +31,47 @@ struct AnyScattering {
   }
 };
 
-/// What is known of the rays of one particle at one pulse.
+/// State of the aim of one particle at one pulse.
 enum class AimState : int {
-  none,     ///< not lit, or no ray of it gets through
-  filled,   ///< they fill the stop
-  unknown,  ///< the host is to aim
-  wide,     ///< they go to a disc about the stop, and are clipped there
+  none,     ///< not illuminated, or no ray passes the stop
+  filled,   ///< the rays fill the stop, none is clipped
+  unknown,  ///< to be aimed by the host
+  wide,     ///< the rays cover a disc around the stop and are clipped there
 };
 
-/// How the rays of one particle are sent at one pulse, and where their light is expected.
+/// Directions of the rays of one particle at one pulse, and the expected position of their light.
 struct PulseAim {
   AimState state = AimState::none;
-  AimMap seen, ambient;  ///< where they go, through the medium, and without
-  Vec2d low{}, high{};   ///< about between which they end on the sensor [px]
-  double spread2 = 0;    ///< as FilledStop's
+  AimMap seen, ambient;  ///< aim map with and without the medium
+  Vec2d low{}, high{};   ///< approximate extent of the rays on the sensor [px]
+  double spread2 = 0;    ///< as in FilledStop
 };
 
-/// The numbers of rays that particles may take (RaysLadder), on the device.
+/// Ladder of ray counts per particle (RaysLadder), on the device.
 struct LadderView {
   static constexpr int most_steps = 16;
 
   RayGoal goal;
-  double light_per_photon = 0;  ///< of images
+  double light_per_photon = 0;  ///< light in the images per photon
   int steps = 1;
-  int first_clipped = 0;  ///< that particles begin at whose rays are clipped
-  bool ruled = false;     ///< rays that fill the stop go by rules
+  int first_clipped = 0;  ///< first step of particles whose rays are clipped
+  bool ruled = false;     ///< rays that fill the stop follow quadrature rules
   std::uint64_t rays[most_steps] = {};
   int scrambling_bits[most_steps] = {};
-  std::uint64_t sums_a_pulse = 1;  ///< of one particle: room for those of any step
+  std::uint64_t sums_a_pulse = 1;  ///< number of sums of one particle and pulse; maximum over the steps
 
-  /// As RaysLadder::at_least.
+  /// Like RaysLadder::at_least().
   GLADSTONE_HD int at_least(double wanted) const {
     int step = 0;
     while (step + 1 < steps && static_cast<double>(rays[step]) < wanted) ++step;
     return step;
   }
-  /// As ParticleLaunches::step_filled.
+  /// Like ParticleLaunches::step_filled().
   GLADSTONE_HD int step_filled(double light, double spread2) const {
     return at_least(rays_for_spread(goal, ruled ? RaysSent::by_rule : RaysSent::clipped, light, spread2,
                                     static_cast<double>(rays[0])));
   }
-  /// As RaysLadder::next.
+  /// Like RaysLadder::next().
   GLADSTONE_HD int next(int step, RaysSent sent, RimSpread const& rim, RaySums const* of_scramblings) const {
     if (step + 1 >= steps) return step;
     auto const here = static_cast<double>(rays[step]);
@@ -83,58 +83,59 @@ struct LadderView {
   }
 };
 
-/// Particles of a batch, and what those share that take so many rays.
+/// Particles of a batch, and data common to those with the same number of rays.
 struct ParticlesLaunch {
-  static constexpr std::size_t windows = 1;  ///< of a block
+  static constexpr std::size_t windows = 1;  ///< per block
 
-  CameraView<double> camera;  ///< its elements on the device; the rim of its stop sharp, or smooth for wide aims
+  CameraView<double> camera;  ///< elements in device memory; the stop has a sharp edge, or a smooth one for wide aims
   TracingOptions<double> tracing;
-  ParticleSources<double, AnyScattering> pulses[frame_count];  ///< on the device, counted from the batch's first
-  std::uint64_t first = 0;                                     ///< number of the batch's first particle
+  ParticleSources<double, AnyScattering>
+      pulses[frame_count];  ///< in device memory, indexed from the batch's first particle
+  std::uint64_t first = 0;  ///< index of the batch's first particle in the scene
   BundleView<double> choice;
-  StopRuleView rule;  ///< on the device; that rays which fill the stop go by, if there is one
+  StopRuleView rule;  ///< in device memory; quadrature rule of rays that fill the stop, if any
   SpotView spot;
-  HitSplineView spline;    ///< on the device; no share: no windows of nodes
-  int most_window_px = 0;  ///< of windows of nodes
-  int patch_px = 0;        ///< widest square of pixels that a warp lays spots down in together; 0: none
-  DeviceImages images;     ///< may be none
+  HitSplineView spline;    ///< in device memory; null share: no windows of spline nodes
+  int most_window_px = 0;  ///< maximum side of a window of spline nodes [px]
+  int patch_px = 0;        ///< widest square of pixels in which a warp accumulates PSFs; 0: none
+  DeviceImages images;     ///< may be empty
   std::uint64_t rays = 1;
-  std::uint64_t sums_a_pulse = 1;  ///< from one aim's sums to the next one's
-  bool chief_rays = false;         ///< of a camera without a stop
-  double sign = 1;                 ///< of the light that is laid down and of the ends that are counted
+  std::uint64_t sums_a_pulse = 1;  ///< distance between the sums of successive aims
+  bool chief_rays = false;         ///< the camera has no stop: trace chief rays only
+  double sign = 1;                 ///< sign of the light and of the ray counts; -1 removes those of an earlier launch
 
   GLADSTONE_HD int scramblings() const { return 1 << choice.scrambling_bits; }
   GLADSTONE_HD static std::uint64_t shares_of(std::uint64_t rays) {
     return (rays + most_rays_of_block - 1) / most_rays_of_block;
   }
   GLADSTONE_HD std::uint64_t shares() const { return shares_of(rays); }
-  /// Whether a warp traces all rays of a particle: so few that no window of nodes pays for them.
+  /// Returns whether a warp traces all rays of a particle, because a window of spline nodes would not be efficient.
   bool few_rays() const { return patch_px > 0 || (!images.light[0] && rays <= 64); }
-  /// Lanes of a warp that a particle has then: a power of two.
+  /// Returns the number of lanes per particle in this case: a power of two.
   GLADSTONE_HD int lanes() const {
     int most = 32;
     while (static_cast<std::uint64_t>(most / 2) >= rays) most /= 2;
     return most;
   }
 
-  /// Rays of a particle that one block traces; more are shared between several.
+  /// Maximum number of rays of a particle traced by one block; larger numbers are divided among several blocks.
   static constexpr std::uint64_t most_rays_of_block = 16384;
 };
 
-/// What a launch gives, on the device.
+/// Output of a launch, in device memory.
 struct ParticlesTraced {
-  RaySums* sums;   ///< [particle][pulse], of each [share][scrambling]: seen through the medium, and without it
-  double* moved2;  ///< [particle][pulse]: square of the furthest that the medium moved a ray [m^2]
-  unsigned long long* ends;  ///< [pulse][status], counted on
+  RaySums* sums;             ///< [particle][pulse][share][scrambling]: sums with and without the medium
+  double* moved2;            ///< [particle][pulse]: largest squared displacement of a ray by the medium [m^2]
+  unsigned long long* ends;  ///< [pulse][status]: ray counts, incremented
 };
 
-/// A square of pixels that the light of a particle at a pulse is gathered in.
+/// Square of pixels in which the light of a particle at one pulse is accumulated.
 struct LightSquare {
-  int side = 0;           ///< 0: none
+  int side = 0;           ///< [px]; 0: none
   int left = 0, top = 0;  ///< its first pixel
 };
 
-/// The square of pixels that the light of an aim needs, so that a tenth more finds room, too.
+/// Returns the square of pixels for the light of an aim, with a margin of a tenth.
 GLADSTONE_HD inline LightSquare light_square(ParticlesLaunch const& launch, PulseAim const& aim) {
   Vec2d const more = 0.05 * (aim.high - aim.low), low = aim.low - more, high = aim.high + more;
   double const furthest = 1e7;
@@ -147,66 +148,71 @@ GLADSTONE_HD inline LightSquare light_square(ParticlesLaunch const& launch, Puls
     return {side < launch.patch_px ? side : launch.patch_px, first_x - half, first_y - half};
   }
   if (launch.most_window_px == 0) return {};
-  int const side = wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // nodes about a hit
+  int const side =
+      wanted + 4 < launch.most_window_px ? wanted + 4 : launch.most_window_px;  // four more for the nodes around a ray
   return {side, first_x + (wide - side) / 2, first_y + (tall - side) / 2};
 }
 
-/// A ray of a particle of either memory to a place of the unit disc.
+/// Returns the ray of a particle to a point of the unit disc. @param sources  in host or device memory
 template <class Sources>
 GLADSTONE_HD AimedRay<double> aimed_ray(ParticlesLaunch const& launch, Sources const& sources, AimMap const& map,
                                         std::uint64_t i, Vec2d at) {
-  // chief rays are worth a square metre
+  // Chief rays represent an aperture of one square metre.
   if (launch.chief_rays) return ray_to_plane(sources, launch.camera.aim_plane, map.centre, 1.0, i);
   return ray_to(sources, launch.camera.aim_plane, map, i, at);
 }
 
-/// A window takes rays that are so many times heavier than the heaviest of those to the middle and to the rim; what is
-/// heavier still is laid down by itself.
+/// Maximum weight of a ray in a window, over that of the heaviest of the central and rim rays. PSFs of heavier rays are
+/// added to the image one by one.
 inline constexpr double heavier_in_window = 4;
-/// What ray k of these weighs, k up to rim_rays.
+/// Returns the weight of ray k: a ray to the rim for k < rim_rays, the central ray for k = rim_rays.
 GLADSTONE_HD inline double weight_of_rim(ParticlesLaunch const& launch, PulseAim const& aim, int pulse, std::uint64_t i,
                                          int k) {
   Vec2d const at = k < rim_rays ? point_of_circle(1.0, static_cast<double>(k) / rim_rays) : Vec2d{};
   return aimed_ray(launch, launch.pulses[pulse], aim.seen, i, at).weight;
 }
 
-/// The widest windows that launches may have: not of any particle, so that none depends on others.
+/// Returns the maximum side of windows [px]. It does not depend on the particles, so that the result of one is
+/// independent of the others.
 int widest_particle_window_px(ParticlesLaunch const& launch, DeviceMedium<double> const& medium);
 
-/// What becomes of the particles of a batch, on the device.
+/// Progress of the particles of a batch, in device memory.
 struct ParticleSteps {
-  int* step;            ///< of the ladder, that a particle is at
-  int* next;            ///< that it is to go on to; the same: it has what it needs
-  int* chosen;          ///< whether it is to be listed: it is aimed at; or it goes on
-  unsigned int* count;  ///< [step], and of all aims that the host is to find
+  int* step;            ///< current ladder step of each particle
+  int* next;            ///< next ladder step; equal to `step`: the particle has enough rays
+  int* chosen;          ///< whether to list the particle: it has been aimed, or needs more rays
+  unsigned int* count;  ///< [step]: listed aims; last element: aims left to the host, or particles that need more rays
 };
 
-/// Aims at the stop for both pulses of `count` particles, and tells the step that each begins at. @param stop its
-/// elements on the device @param launch of any step
+/// Aims at the stop for both pulses of `count` particles, and determines the first ladder step of each.
+/// @param stop  with its elements in device memory
+/// @param launch  of any ladder step
 void aim_particles(StopView const& stop, ParticlesLaunch const& launch, LadderView const& ladder,
                    DeviceMedium<double> const& medium, std::uint64_t count, PulseAim* aims, Vec2d* origins,
                    ParticleSteps const& steps);
 
-/// Lists by their steps the aims of chosen particles that fill the stop. @param at their steps, or those that they go
-/// on to @param listed [step], of each room for all aims; their order is none, nor does anything hang on it
+/// Lists, by ladder step, the aims of chosen particles that fill the stop.
+/// @param at  ladder step of each particle
+/// @param listed  output: [step][frame_count * count], in arbitrary order, which does not affect the results
 void list_particles(LadderView const& ladder, PulseAim const* aims, int const* at, ParticleSteps const& steps,
                     std::uint64_t count, std::uint32_t* listed);
 
-/// Traces all rays of listed particles, a block for each share of a particle at a pulse, or a warp for several
-/// particles of few rays: sums, ends, light. Sums have
-/// an order and light is in whole units, so that results hang on nothing but the particle.
-/// @param state of the aims that are traced @param listed numbers of the aims, `count` of them
+/// Traces all rays of the listed aims: one block per share of a particle at one pulse, or one warp for several
+/// particles with few rays. Adds their light, sums and status counts. Sums have a fixed order and light is in whole
+/// units, so that the result of a particle is independent of the others.
+/// @param state  only aims in this state are traced
+/// @param listed  `count` indices of aims
 void trace_particles(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
                      PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                      ParticlesTraced const& traced);
 
-/// The same by warps. @pre launch.few_rays()
+/// Like trace_particles(), by warps. @pre launch.few_rays()
 void trace_few_rays(ParticlesLaunch const& launch, DeviceMedium<double> const& medium, AimState state,
                     PulseAim const* aims, Vec2d const* origins, std::uint32_t const* listed, std::uint64_t count,
                     ParticlesTraced const& traced);
 
-/// What the camera sees of particles, from the sums over their rays, and which of them need more of these.
-/// @param ambient null: nothing bends rays
+/// Computes the truth of the particles from the sums over their rays, and determines which of them need more rays.
+/// @param ambient  null: there is no medium
 void see_particles(LadderView const& ladder, PulseAim const* aims, Vec2d const* origins, RaySums const* sums,
                    std::uint64_t count, ParticleSteps const& steps, DotTruth* truth, DotTruth* ambient);
 

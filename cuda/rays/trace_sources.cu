@@ -8,7 +8,7 @@ namespace {
 
 constexpr int threads = source_threads;
 
-/// One block's part of a source.
+/// Traces one block's share of a source.
 template <class Medium>
 __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> const& camera, Medium const& medium,
                             SourceOnDevice const& aim, std::uint64_t first, std::uint64_t last,
@@ -19,11 +19,11 @@ __device__ void trace_share(SourcesLaunch const& launch, CameraView<double> cons
   auto const count = [counts](int frame, RayStatus status) {
     atomicAdd(counts + frame * ray_status_count + static_cast<int>(status), 1u);
   };
-  // whole warps go round, for what they lay down together
+  // Whole warps take part in every iteration, because lay_down_spots() is collective.
   for (std::uint64_t of_block = first; of_block < last; of_block += threads) {
     std::uint64_t const j = of_block + threadIdx.x;
     RayHit<double> hit[frame_count];
-    bool alone[frame_count] = {};  // whether no window takes its light
+    bool alone[frame_count] = {};  // whether no window accepted its light
     if (j < last) {
       AimedRay<double> const aimed = aim_ray(launch.sources, bundle, aim.source, j);
       hit[0] = trace_ray(camera, NoMedium<double>{}, launch.tracing, aimed.ray, aimed.weight);

@@ -12,56 +12,58 @@
 
 namespace gladstone::cuda {
 
-/// Rays of a source that one block traces; sources of more rays are shared between several.
+/// Maximum number of rays of a source traced by one block; larger numbers are divided among several blocks.
 inline constexpr std::uint64_t most_rays_a_share = 16384;
 
-/// The widest window that any source has, in nodes, and what a block may take of shared memory for it: so much has
-/// every card since 2020. A card with less lays every ray down by itself.
+/// Maximum side of a source's window in spline nodes, and shared memory of a block for it, which all cards since 2020
+/// provide. On cards with less, the PSFs of rays are added one by one.
 inline constexpr int most_window_nodes = 88;
 inline constexpr std::size_t most_block_bytes = 96 * 1024;
 
-/// How the rays of a source are sent, and where most of their light is expected.
+/// Directions of the rays of a source, and the expected position of their light.
 struct SourceOnDevice {
-  std::uint64_t source;                               ///< by its number in the pattern
-  Vec3d centre, a, b, across;                         ///< as AimedBundle
-  Vec2d origin;                                       ///< that its sums count from [px]
-  int window_px = 0;                                  ///< side of the windows that its light is gathered in; 0: none
-  int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node of either frame's
-  double most_weight = 0;                             ///< of a ray that a window takes; others are laid down one by one
+  std::uint64_t source;                               ///< index in the pattern
+  Vec3d centre, a, b, across;                         ///< as in AimedBundle
+  Vec2d origin;                                       ///< origin of its sums [px]
+  int window_px = 0;                                  ///< side of the windows that accumulate its light; 0: none
+  int left[frame_count] = {}, top[frame_count] = {};  ///< pixel of the first node in each frame
+  double most_weight = 0;  ///< maximum weight of a ray in the window; PSFs of heavier rays are added one by one
 };
 
-/// What all sources of a launch share.
+/// Data common to all sources of a launch.
 struct SourcesLaunch {
-  static constexpr std::size_t windows = frame_count;  ///< of a block: one a frame
+  static constexpr std::size_t windows = frame_count;  ///< per block: one per frame
 
-  CameraView<double> camera;  ///< its elements on the device
+  CameraView<double> camera;  ///< elements in device memory
   TracingOptions<double> tracing;
-  LambertSources<double> sources;  ///< on the device
+  LambertSources<double> sources;  ///< in device memory
   BundleView<double> choice;
   SpotView spot;
-  HitSplineView spline;    ///< on the device; no share: rays are laid down one by one
-  int most_window_px = 0;  ///< of the sources
-  DeviceImages images;     ///< may be none
+  HitSplineView spline;    ///< in device memory; null share: PSFs are added one by one
+  int most_window_px = 0;  ///< maximum over the sources
+  DeviceImages images;     ///< may be empty
   std::uint64_t rays = 1;
-  double sign = 1;  ///< of the light that is laid down
+  double sign = 1;  ///< sign of the light
 
   int scramblings() const { return 1 << choice.scrambling_bits; }
   std::uint64_t shares() const { return (rays + most_rays_a_share - 1) / most_rays_a_share; }
 };
 
-/// What a launch gives, on the device.
+/// Output of a launch, in device memory.
 struct SourcesTraced {
   RaySums* sums;             ///< [source][share][scrambling]
-  double* moved2;            ///< [source]: square of the furthest that the medium moved a ray [m^2]
-  unsigned long long* ends;  ///< [frame][status], counted on
+  double* moved2;            ///< [source]: largest squared displacement of a ray by the medium [m^2]
+  unsigned long long* ends;  ///< [frame][status]: ray counts, incremented
 };
 
-/// The widest window that sources of a launch may have [px]: not of any one of them, so that none depends on others.
+/// Returns the maximum side of windows [px]. It does not depend on the sources, so that the result of one is
+/// independent of the others.
 int widest_window_px(SourcesLaunch const& launch, DeviceMedium<double> const& medium);
 
-/// Traces all rays of `count` sources in both frames, a block for each share of a source: sums, ends, light. Sums have
-/// an order and light is in whole units, so that results hang on nothing but the source.
-/// @param sources on the device
+/// Traces all rays of `count` sources in both frames, one block per share of a source. Adds their light, sums and
+/// status counts. Sums have a fixed order and light is in whole units, so that the result of a source is independent of
+/// the others.
+/// @param sources  in device memory
 void trace_sources(SourcesLaunch const& launch, DeviceMedium<double> const& medium, SourceOnDevice const* sources,
                    std::uint64_t count, SourcesTraced const& traced);
 

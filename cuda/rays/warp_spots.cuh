@@ -5,20 +5,23 @@
 
 namespace gladstone::cuda {
 
-/// Lays down the Gaussian spots of the rays of a warp, which may be several particles': a lane works out the shares
-/// that columns and rows of pixels have of its ray, then all lanes sum over a particle's rays in the pixels of its
-/// square, one particle after the other. Shares are kept to 1e-6, a fifteenth of a level of 16 bits.
+/// Accumulates the Gaussian PSFs of a warp's rays, which may belong to several particles. Each lane computes the column
+/// and row shares of its ray; then all lanes sum over a particle's rays in the pixels of its square, one particle after
+/// the other. The shares have an error of 1e-6, a fifteenth of a grey level at 16 bits.
 class WarpSpots {
  public:
-  /// Shared memory of a warp [bytes].
+  /// Returns the shared memory of a warp [bytes].
   GLADSTONE_HD static std::size_t bytes(int most_side) {
     return static_cast<std::size_t>(2 * warp_size * pitch_of(most_side)) * sizeof(float);
   }
   __device__ WarpSpots(unsigned char* memory, int most_side)
       : pitch_(pitch_of(most_side)), columns_(reinterpret_cast<float*>(memory)), rows_(columns_ + warp_size * pitch_) {}
 
-  /// All lanes come here, each with its ray. @param square of its particle @param units of light; 0: none
-  /// @param lanes of a particle, one beside the other @return false where the light lies elsewhere
+  /// Adds the PSFs of all lanes. Must be called by all lanes of the warp.
+  /// @param square  square of the ray's particle
+  /// @param units  light of the ray; 0: none
+  /// @param lanes  number of adjacent lanes per particle
+  /// @return false if the ray's light is outside its square
   __device__ bool lay_down(SpotView const& spot, LightSquare const& square, Vec2d p, double units, int lanes, int frame,
                            DeviceImages const& images) const {
     int const lane = threadIdx.x % warp_size;
@@ -30,7 +33,7 @@ class WarpSpots {
       row = static_cast<int>(floor(p.y + 0.5)) - half - square.top;
       taken = column >= 0 && row >= 0 && column + width <= square.side && row + width <= square.side;
     }
-    __syncwarp();  // all have done with the rays before
+    __syncwarp();  // all lanes have finished the previous rays
     float *const of_columns = columns_ + lane * pitch_, *const of_rows = rows_ + lane * pitch_;
     for (int i = 0; i < square.side; ++i) of_columns[i] = of_rows[i] = 0;
     if (taken) {
@@ -56,10 +59,10 @@ class WarpSpots {
   }
 
  private:
-  /// Odd, so that lanes beside each other write to different banks.
+  /// Odd, so that adjacent lanes write to different banks.
   GLADSTONE_HD static int pitch_of(int most_side) { return most_side | 1; }
 
-  /// Shares of `width` pixels from `first` on of light at p, times a factor.
+  /// Computes the shares of `width` pixels, from `first` on, of light centred at p, multiplied by a factor.
   __device__ static void shares(double sigma, double p, int first, int width, double factor, float* out) {
     auto const edge = [&](int i) { return GaussianSpot<float>::edge_value(static_cast<float>((i - 0.5 - p) / sigma)); };
     float before = edge(first);
@@ -71,7 +74,7 @@ class WarpSpots {
   }
 
   int pitch_;
-  float *columns_, *rows_;  ///< [lane][pixel]: shares, and shares times light
+  float *columns_, *rows_;  ///< [lane][pixel]: column shares, and row shares multiplied by the light
 };
 
 }  // namespace gladstone::cuda
