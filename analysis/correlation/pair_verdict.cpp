@@ -225,7 +225,7 @@ struct Evidence {
   std::function<DisplacementField()> chance;
 };
 
-/// Returns the verdict from the remaining vectors. @pre there is no reason not to judge
+/// Returns the verdict from the remaining vectors. @pre the pair can be judged by its vectors
 std::string verdict_of(DisplacementField const& field, Tally const& left) {
   if (std::any_of(field.status.begin(), field.status.end(), is_sound)) return correlates;
   return left.nothing_left() ? "does not correlate" : "not judged: no vector passed its tests";

@@ -8,23 +8,26 @@ namespace gladstone {
 
 /// Invalidates vectors that correlate no better than unrelated frames (decorrelation test, VectorReason::uncorrelated);
 /// all vectors if fewer than a quarter of the windows with a signal pass.
-/// The unrelated frames are frame A and frame B rotated by 180 degrees, which have the same dots, density and noise. If
-/// their correlation has mean m and standard deviation s per vector, its mean over the n independent windows within two
-/// windows of a vector scatters by s/sqrt(n), and m over all N by s/sqrt(N). A vector passes if its own local mean
-/// exceeds m by two joint deviations. A fixed threshold would fail, since noise, few dots and steep gradients lower
-/// both means, and later passes sharpen random peaks, too. Not applicable to periodic patterns, which also match their
-/// rotated image.
+/// - Unrelated frames with the same dots, density and noise are frame A and frame B rotated by 180 degrees.
+/// - If their correlation has mean m and standard deviation s per vector, its mean over the n independent windows
+///   within two windows of a vector scatters by s/sqrt(n), and m, over all N windows, by s/sqrt(N).
+/// - A vector passes if its own local mean exceeds m by two joint standard deviations.
+/// - No fixed threshold is used: noise, few dots and steep gradients lower both means, and later passes sharpen
+///   random peaks as they do true ones.
+/// - Not applicable to periodic patterns, which also match their rotated image.
 /// @param chance  result of the same correlator for frame A and the rotated frame B, on the same grid
 void leave_out_chance(DisplacementField& field, DisplacementField const& chance, CorrelationSettings const& settings);
 
-/// Assesses a pair by its vectors: runs the decorrelation test and adds warnings to the field, each as "problem
-/// (reason); suggestion". Warnings concern identical frames, uncorrelated frames, a pattern whose period makes
-/// displacements within the search range ambiguous, and test failures of at least a fifth of the vectors. If fewer than
-/// one in twenty vectors are replaced, invalid or ambiguous, the costly tests are skipped.
-/// The field's verdict becomes "correlates" if any vector remains valid or replaced, "does not correlate" if none does,
-/// or "not judged: " and the reason: identical frames, no signal, everything masked, a periodic pattern, optical flow,
-/// too few windows, a disabled median test, or no vector that passed the tests. Masked windows outside the frames are
-/// first marked by name_windows_outside().
+/// Assesses a pair by its vectors: runs the decorrelation test, sets the field's verdict, and adds warnings to the
+/// field, each as "problem (reason); suggestion".
+/// - Warnings: identical frames, uncorrelated frames, displacements beyond the search range, a pattern whose period
+///   makes displacements within it ambiguous, and at least a fifth of the vectors failing a test.
+/// - If fewer than one in twenty vectors are replaced, invalid or ambiguous, the costly tests are skipped.
+/// - Verdict: "correlates" if any vector is valid or replaced; "does not correlate" if every vector with a signal is
+///   uncorrelated or beyond the search range; or "not judged: " and the reason: identical frames, no signal, everything
+///   masked, a periodic pattern, optical flow, too few windows, a disabled median test, or no vector that passed its
+///   tests.
+/// - Masked windows outside the frames are first marked by name_windows_outside().
 /// @param field  result of the correlator for these frames
 /// @throws the exceptions of Correlator::correlate()
 void judge_pair(DisplacementField& field, FramePair const& frames, Correlator const& correlator,

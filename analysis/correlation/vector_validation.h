@@ -337,13 +337,14 @@ GLADSTONE_HD inline Vec2d smoothed(Vec2d before, Vec2d middle, Vec2d after, doub
   return 0.5 * part * (before + after) + (1.0 - part) * middle;
 }
 
-/// Finds spurious vectors among the valid ones of a grid, and replaces them.
-/// The increments to the predictor are tested, which no longer contain steep gradients; see agrees() for the border. A
-/// spurious vector is replaced by the highest secondary peak that agrees with the sound neighbours, otherwise by their
-/// median; its status becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
-/// the rule does not allow replacements. Vectors with fewer than three neighbours and those accepted by is_trusted()
-/// remain unchanged: the median would clip the maxima of structures as fine as the grid. Then, if the rule requires it,
-/// total displacements are tested by is_unlike(). The result does not depend on the order of the vectors.
+/// Finds spurious vectors among the valid ones of a grid, and replaces them. The result does not depend on their order.
+/// - The median test applies to the increments to the predictor, which no longer contain steep gradients; see
+///   agrees() for the border. Then, if the rule requires it, is_unlike() tests the total displacements.
+/// - A spurious vector is replaced by the highest secondary peak that agrees with the sound neighbours, otherwise by
+///   their median. It becomes invalid if fewer than three neighbours are sound, the replacement exceeds the limit, or
+///   the rule does not allow replacements.
+/// - Vectors with fewer than three neighbours and those accepted by is_trusted() remain unchanged: the median would
+///   clip the maxima of structures as fine as the grid.
 void validate_vectors(std::span<GridVector> vectors, int columns, ValidationRule const& rule);
 
 /// Returns the displacement at every node, for a predictor. Masked and invalid nodes are filled with the median of

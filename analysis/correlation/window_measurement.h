@@ -76,7 +76,7 @@ GLADSTONE_HD MeasuredPeak measured_peak(Plane const& plane, int peak_x, int peak
 }
 
 /// Returns the height of the first peak over that of the higher of the other two, at most largest_peak_ratio.
-/// @param second, third  0 if there is no such peak
+/// @param second, third  heights of the other peaks; 0: none
 GLADSTONE_HD inline double peak_ratio(double first, double second, double third) {
   double const other = second > third ? second : third;
   double const ratio = first / (other > 1e-12 ? other : 1e-12);

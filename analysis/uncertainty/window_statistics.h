@@ -244,14 +244,14 @@ struct WindowStatistics {
 constexpr double largest_variance = 1.0 / 3.0;
 
 /// Returns the variance of a displacement along an axis (0: x, 1: y) [px^2]; NaN if the peak has no maximum.
-/// The three-point Gaussian fit u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)) gives sigma_u = sigma(C+ - C-)/(4 C1
-/// ln(C0/C1)), with C1 the mean of C+ and C-. The terms a_i b_(i+1) - a_(i+1) b_i of C+ - C- equal s_i d_(i+1) -
-/// s_(i+1) d_i up to a factor, with s the sum and d the difference of the frames; summation by parts gives d_i (s_(i-1)
-/// - s_(i+1)). The noise of a pixel is then in one term, not in two of opposite sign whose covariance extends over a
-/// dot diameter.
-/// The frames were matched by the displacement to be assessed, which reduces the sum. With the share p_i^2/sum p^2 of a
-/// term in the variance, for uniform noise, the reduction is the sum of products of shares over pairs of terms; it is
-/// compensated.
+/// - The three-point Gaussian fit u = (ln C- - ln C+)/(2 (ln C+ + ln C- - 2 ln C0)) gives sigma_u = sigma(C+ - C-)/(4
+///   C1 ln(C0/C1)), with C1 the mean of C+ and C-.
+/// - The terms a_i b_(i+1) - a_(i+1) b_i of C+ - C- equal s_i d_(i+1) - s_(i+1) d_i up to a factor, with s the sum
+///   and d the difference of the frames. Summation by parts gives d_i (s_(i-1) - s_(i+1)): the noise of a pixel is then
+///   in one term, not in two of opposite sign whose covariance extends over a dot diameter.
+/// - The frames were matched by the displacement to be assessed, which reduces the sum. If p_i^2/sum p^2 is the share
+///   of a term in the variance (uniform noise), the relative reduction is the sum of the products of shares over pairs
+///   of neighbouring terms. The result is corrected for it.
 GLADSTONE_HD inline double displacement_variance(StatisticsSums const& sums, int axis) {
   using std::log;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -6,14 +6,17 @@
 /// Correlation plane of a window with transforms of length outer x inner, by a thread block with shared memory. A
 /// transform takes two steps: transforms of `outer` values at a distance of `inner`, then of `inner` adjacent values.
 /// Wave number k is then at place(k); inverse transforms perform the steps in reverse order.
+///
 /// With a and b the windows, z = a + i b:
-///  1. transform columns of z along y, then rows along x (columns_apart, columns_together, rows_apart, rows_together);
+///  1. transform columns of z along y, then rows along x (columns_apart, columns_together, rows_apart,
+///     rows_together);
 ///  2. form the cross spectrum for wave numbers kx <= size/2, which suffice since planes are real, and transform it
-///  back along y (product, columns_together_again);
+///     back along y (product, columns_together_again);
 ///  3. transform back along x, two rows of the plane as one complex line, for those rows only that the peak search
-///  reads (rows_apart_again, rows_together_again).
+///     reads (rows_apart_again, rows_together_again).
 /// A step is the work of one thread between two barriers. Between barriers, no two threads access the same memory
 /// unless both only read.
+///
 /// GLADSTONE_KEEP_LOOP prevents the unrolling of a loop. A kernel that exceeds the instruction cache is limited by
 /// instruction fetches.
 #ifdef __CUDA_ARCH__

@@ -5,12 +5,12 @@
 /// Correlation of windows with supports of 32 px: one window per warp, one column per thread. Only the peaks are
 /// written to global memory. With a and b the windows, z = a + i b and tilde a transform along y:
 ///  1. thread x holds column x: mean, weights, energies, transform along y;
-///  2. threads 2 k and 2 k + 1 process row k of the spectra of a and b, k < size/2 (the others follow by symmetry), and
-///  transform along x; rows 0 and size/2, whose columns are real, share a row as real and imaginary part;
-///  3. they exchange half of their values, form conj(A) B, one at even and one at odd wave numbers, and transform back
-///  along x;
-///  4. each thread processes columns x and x + size/2 of the plane, joined as complex numbers, of every second row, and
-///  transforms back along y.
+///  2. threads 2 k and 2 k + 1 process row k of the spectra of a and b, k < size/2 (the others follow by symmetry),
+///     and transform along x; rows 0 and size/2, whose columns are real, share a row as real and imaginary part;
+///  3. they exchange half of their values, form conj(A) B, one at even and one at odd wave numbers, and transform
+///     back along x;
+///  4. each thread processes columns x and x + size/2 of the plane, joined as complex numbers, of every second row,
+///     and transforms back along y.
 namespace gladstone::cuda {
 namespace {
 
@@ -142,7 +142,7 @@ __global__ void __launch_bounds__(size, 18)
   for (int turn = 0; turn <= turns; ++turn) {  // along y, then along x
     if (turn > 0) {
       // 2. From columns to rows. The values of rows 0 and `half` are chosen so that the sums below give 2 (A_0 + i
-      // A_half).
+      //    A_half).
       Complex* const out = shared + thread;
 #pragma unroll
       for (int k = 0; k < size; ++k)

@@ -4,16 +4,18 @@
 
 /// Correlation plane of a window of 64 x 64 values by 256 threads, each of which holds sixteen values and exchanges
 /// them through shared memory. A transform of 64 values takes two short passes of eight values, 64 = 8 x 8.
+///
 /// With a and b the windows, z = a + i b, and tilde a transform along y, the steps are:
 ///  1. transform columns of z along y (columns_apart, columns_together);
 ///  2. extract rows k < 32 of the spectra of a and b from rows k and -k, and transform along x (rows_apart,
-///  rows_together); rows 0 and 32, whose columns are real, share a row as real and imaginary part;
+///     rows_together); rows 0 and 32, whose columns are real, share a row as real and imaginary part;
 ///  3. form conj(A) B and transform back along x (product, rows_apart_again, rows_together_again);
-///  4. transform columns 2 x and 2 x + 1 of the plane, joined as complex numbers, back along y, for those columns only
-///  that the peak search reads (columns_apart_again, columns_together_again, keep_plane).
+///  4. transform columns 2 x and 2 x + 1 of the plane, joined as complex numbers, back along y, for those columns
+///     only that the peak search reads (columns_apart_again, columns_together_again, keep_plane).
 /// A step is the work of one thread between two barriers, which are given in the comments. The rows of a warp in steps
 /// 2 and 3 and its columns in step 4 are exchanged within the warp only. Between barriers, no two threads access the
 /// same memory unless both only read.
+///
 /// Wave number or shift p + 8 q of a column is in row 4 p + q % 4 of the lower (q < 4) or upper half of the memory. The
 /// second pass of a column thus writes where it reads. Half-warps, which process rows q and q + 1, access all banks,
 /// since the row length is an odd multiple of eight values.
