@@ -34,7 +34,7 @@ std::unique_ptr<Renderer> make_renderer();
 /// Creates the general ray-tracing renderer on the GPU. @throws DeviceError if no device is usable
 std::unique_ptr<Renderer> make_rays_renderer();
 
-/// Creates the correlator on the GPU, for settings accepted by gladstone::missing_on_gpu().
+/// Creates the correlator on the GPU, for settings that gladstone::missing_on_gpu() does not list.
 /// @throws DeviceError if no device is usable or a setting is not supported
 std::unique_ptr<Correlator> make_correlator(CorrelationSettings const& settings);
 
