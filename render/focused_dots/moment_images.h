@@ -40,7 +40,10 @@ struct MomentLattice {
     return rest < 0 ? rest + per_pixel : rest;
   }
   /// Distance from the pixel's centre to the square's [px].
-  GLADSTONE_HD double offset(int phase) const { return static_cast<double>(phase - per_pixel / 2) / per_pixel + aside; }
+  GLADSTONE_HD double offset(int phase) const {
+    int const from_middle = phase - per_pixel / 2;
+    return static_cast<double>(from_middle) / per_pixel + aside;
+  }
 };
 
 /// Squares into which a dot's displacements are sorted, counted from the one at zero displacement: those of the
