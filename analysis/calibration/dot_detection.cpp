@@ -12,18 +12,19 @@
 namespace gladstone {
 namespace {
 
-constexpr double rounding = 0.5;  // noise that whole grey levels may hide
-constexpr int ring_px = 5;        // width of the background's ring
-constexpr int least_ring = 24;    // pixels of it, for a plane
-constexpr int reach_px = 4;       // that what is no dot reaches beyond its region
+// minimum noise assumed for images of whole grey levels, whose rounding may hide the noise
+constexpr double rounding = 0.5;
+constexpr int ring_px = 5;      // width of the ring in which the background is fitted
+constexpr int least_ring = 24;  // minimum number of background pixels for a plane fit
+constexpr int reach_px = 4;     // distance to which light of a region that is not a dot spreads beyond the region
 
 enum class Dots { bright, dark };
 
-/// A picture with what its dots stand out from.
+/// Image with its background and noise.
 struct LitPicture {
   Image<double> const& raw;
   Image<double> background;
-  Image<double> over_background;  ///< dots bright
+  Image<double> over_background;  ///< grey levels minus background; inverted for dark dots
   Dots dots = Dots::bright;
   double noise = 0;
 };
@@ -52,15 +53,15 @@ LitPicture lit_picture(Image<double> const& picture) {
   if (lit.dots == Dots::dark) {
     for (double& level : over) level = -level;
   }
-  lit.noise = 1.4826 * median_size(over);  // of normal noise
-  // of which rounding to whole levels may leave nothing to see
+  lit.noise = 1.4826 * median_size(over);  // standard deviation of normal noise from the median
+  // For whole grey levels, rounding may hide all noise.
   if (std::all_of(picture.begin(), picture.end(), [](double level) { return level == std::floor(level); })) {
     lit.noise = std::max(lit.noise, rounding);
   }
   return lit;
 }
 
-/// Pixels that no window and nothing else reaches.
+/// Returns the mask of background pixels: those outside of all dot windows and of all other regions.
 cv::Mat background_pixels(DotRegions& regions) {
   Image<unsigned char>& others = regions.not_dots;
   cv::Mat reached;
@@ -74,7 +75,7 @@ cv::Mat background_pixels(DotRegions& regions) {
   return free;
 }
 
-/// A grey level that changes linearly about a place.
+/// Plane of grey levels: varies linearly around a point.
 struct LevelPlane {
   Vec2d about{};
   double level = 0;
@@ -83,7 +84,8 @@ struct LevelPlane {
   double at(double column, double row) const { return level + dot(slope, Vec2d{column - about.x, row - about.y}); }
 };
 
-/// The estimated background about a dot, moved to the mean of the free pixels.
+/// Returns a plane tangent to the estimated background at a point, shifted by the mean error over the background
+/// pixels.
 LevelPlane estimated_plane(LitPicture const& lit, double mean_error, Vec2d about) {
   Image<double> const& ground = lit.background;
   int const column = std::clamp(cvRound(about.x), 1, ground.columns() - 2);
@@ -95,8 +97,8 @@ LevelPlane estimated_plane(LitPicture const& lit, double mean_error, Vec2d about
   return plane;
 }
 
-/// The plane through the background in a ring about a dot's window; where the ring has too few free pixels, the
-/// estimated background.
+/// Fits a plane to the background in the ring around a dot's window; falls back to the estimated background if the ring
+/// has too few background pixels.
 LevelPlane background_plane(LitPicture const& lit, cv::Mat const& free, double mean_error, DotRegion const& dot) {
   double const outer = dot.window + 1 + ring_px;
   int const left = std::max(0, cvFloor(dot.centre.x - outer)), top = std::max(0, cvFloor(dot.centre.y - outer));
@@ -113,15 +115,15 @@ LevelPlane background_plane(LitPicture const& lit, cv::Mat const& free, double m
     }
   }
   double const count = normal(0, 0);
-  // about a dot, and not to one side of it
+  // The background pixels must surround the dot rather than be on one side of it.
   bool const about = std::hypot(normal(0, 1), normal(0, 2)) < 0.5 * dot.window * count;
   if (count < least_ring || !about) return estimated_plane(lit, mean_error, dot.centre);
   Eigen::Vector3d const plane = normal.ldlt().solve(sum);
   return {dot.centre, plane(0), {plane(1), plane(2)}};
 }
 
-/// The centroid over the background in the dot's window, moved to where it is. @return false where the window does not
-/// lie in the picture
+/// Computes the centroid of the levels above the background, re-centring the window until it converges.
+/// @return false if the window extends beyond the image
 bool measure(LitPicture const& lit, LevelPlane const& background, DotRegion const& region, DetectedDot& measured) {
   Vec2d centre = region.centre;
   for (int round = 0; round < 10; ++round) {

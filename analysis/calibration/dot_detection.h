@@ -7,30 +7,33 @@
 
 namespace gladstone {
 
-/// A dot as a picture shows it.
+/// Dot measured in an image of a calibration target.
 struct DetectedDot {
-  Vec2d centre_px{};       ///< column right, row down, from the first pixel's centre
-  double flux = 0;         ///< grey levels over the background, summed
-  double diameter_px = 0;  ///< of the disc of its area at half its height
+  Vec2d centre_px{};       ///< centroid; column to the right, row downwards, from the centre of the first pixel
+  double flux = 0;         ///< sum of the grey levels above the background (of dark dots: below it)
+  double diameter_px = 0;  ///< diameter of the disc with the area of the region above half the dot's height
 };
 
-/// What a picture of a calibration target shows.
+/// Result of the dot detection in one image.
 struct DetectedDots {
-  std::vector<DetectedDot> dots;  ///< in no order
-  std::vector<Vec2d> not_dots;    ///< centres of regions without the size and shape of the dots: dirt, letters [px]
+  std::vector<DetectedDot> dots;  ///< in no particular order
+  /// Centres of regions that differ from the dots in size or shape, such as dirt and letters [px].
+  std::vector<Vec2d> not_dots;
 };
 
-/// Finds the dots of a calibration target, bright on dark or dark on bright.
+/// Detects the dots of a calibration target, bright on dark or dark on bright.
 ///
-/// Dots are connected regions that stand out from a background which may change smoothly over the picture (OpenCV;
-/// find_dot_regions); dirt, letters and what touches the picture's edge is left out. A dot's centre is the centroid of
-/// the grey levels over its background in a round window that holds the dot with its blur: unbiased wherever the dot
-/// lies among the pixels, since nothing is cut off by a threshold, and for any shape (of tilted dots it is the centroid
-/// of the image, not the image of the centre; PinholeModel knows). The background is the plane through a ring about the
-/// window that no dot reaches; levels of dark dots are shares of it, so that light which falls off across a dot does
-/// not move it. With N electrons in a dot of diameter d shot noise makes d / (4 sqrt(N)) px of it: 0.001 px for a dot
-/// of 6 px and a full well of 30,000 electrons.
-/// @return no dots where nothing stands out from the noise
+/// Dots are connected regions that differ from a smoothly varying background (OpenCV; find_dot_regions). Dirt, letters
+/// and regions that touch the image's edge are excluded. The centre is the centroid of the grey levels above the
+/// background in a circular window that contains the blurred dot. No threshold cuts off light, so the centre is
+/// unbiased for every shape and sub-pixel position. For a tilted dot it is the centroid of the image, not the image of
+/// the centre; see PinholeCamera::image_of_dot.
+///
+/// The background is a plane fitted to a ring around the window that contains no dots. The levels of dark dots are
+/// taken relative to it, so that uneven illumination across a dot does not shift the centroid. For N electrons in a dot
+/// of diameter d, shot noise causes an error of d / (4 sqrt(N)) px: 0.001 px for a dot of 6 px and a full well of
+/// 30,000 electrons.
+/// @return no dots if no region exceeds the noise
 DetectedDots detect_dots(Image<double> const& picture);
 
 }  // namespace gladstone

@@ -9,15 +9,16 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_contrast = 8;      // of the dots' height over the noise
-constexpr double threshold_share = 0.25;  // of the dots' height
-constexpr double least_area = 5;          // [px]
-constexpr double blur_px = 4;             // that a dot's light reaches beyond the threshold
-constexpr double area_factor = 3;         // by which perspective and blur may change areas
-constexpr double axes_factor = 1.5;       // by which the ratio of axes may differ from the usual one
-constexpr double least_fill = 0.9;        // of a region's area in the ellipse of its second moments
+constexpr double least_contrast = 8;      // minimum ratio of the dots' height to the noise
+constexpr double threshold_share = 0.25;  // threshold relative to the dots' height
+constexpr double least_area = 5;          // minimum area [px^2]
+constexpr double blur_px = 4;             // distance to which a dot's light spreads beyond the threshold
+constexpr double area_factor = 3;         // maximum ratio of areas, caused by perspective and blur
+constexpr double axes_factor = 1.5;       // maximum ratio of a region's axis ratio to the median one
+// minimum ratio of a region's area to that of the ellipse of its second moments
+constexpr double least_fill = 0.9;
 
-/// Size and shape of a region at half its height.
+/// Size and shape of a region above half its height.
 struct Shape {
   Vec2d centre;
   double area, fill, axes;
@@ -48,7 +49,7 @@ double highest(cv::Mat const& smooth, Labels const& regions, int label) {
   return height;
 }
 
-/// The height that half the area of all regions reaches: neither a glint nor faint dirt sets it.
+/// Returns the area-weighted median of the regions' heights, which is insensitive to glints and faint dirt.
 double usual_height(cv::Mat const& smooth, double noise) {
   Labels const regions = label_regions(smooth > least_contrast * noise);
   std::vector<std::pair<double, double>> heights;
@@ -85,7 +86,7 @@ Shape shape_of(cv::Mat const& smooth, Labels const& regions, int label, double t
   }
   x /= count;
   y /= count;
-  constexpr double pixel = 1.0 / 12;  // second moment of a pixel about its middle
+  constexpr double pixel = 1.0 / 12;  // second moment of a pixel about its centre [px^2]
   double const a = xx / count - x * x + pixel, b = yy / count - y * y + pixel, c = xy / count - x * y;
   double const mean = 0.5 * (a + b), apart = std::hypot(0.5 * (a - b), c);
   double const fill = count / (4 * CV_PI * std::sqrt(std::max(a * b - c * c, pixel * pixel)));
@@ -102,7 +103,8 @@ double median_of(std::vector<Shape> const& shapes, Value const& value) {
   return *middle;
 }
 
-/// Tolerances widen for small regions, whose shape hangs on where pixels lie: by a pixel of their diameter.
+/// Compares size and shape with the medians. Tolerances widen with the inverse diameter, since the shape of a small
+/// region depends on the pixel grid.
 bool looks_like(Shape const& shape, double usual_area, double usual_axes) {
   double const one_pixel = 1 / std::sqrt(shape.area);
   double const area = shape.area / usual_area, axes = shape.axes / usual_axes, most = axes_factor + 2 * one_pixel;
@@ -110,7 +112,7 @@ bool looks_like(Shape const& shape, double usual_area, double usual_axes) {
          shape.fill > least_fill - one_pixel;
 }
 
-/// Windows as wide as dots with their blur are, but at most half the way to the next dot.
+/// Sets the window radius to that of the blurred dot, but at most to half the distance to the nearest dot.
 void choose_windows(std::vector<DotRegion>& dots) {
   for (DotRegion& dot : dots) {
     double nearest2 = std::numeric_limits<double>::infinity();

@@ -7,30 +7,33 @@
 
 namespace gladstone {
 
-/// Standard deviation of the Gaussian average in which regions are sought, not of what is measured [px].
+/// Standard deviation of the Gaussian filter applied before the region search; measurements use the unfiltered image
+/// [px].
 inline constexpr double dot_smoothing_px = 0.8;
 
-/// A connected region of a picture that looks like a dot.
+/// Connected region of an image with the size and shape of a dot.
 struct DotRegion {
-  Vec2d centre{};     ///< [px]
-  double radius = 0;  ///< of the disc of its area at half its height [px]
-  double window = 0;  ///< radius of the window for its centroid [px]
+  Vec2d centre{};     ///< centre of the region above half the dot's height [px]
+  double radius = 0;  ///< radius of the disc with the area of the region above half the dot's height [px]
+  double window = 0;  ///< radius of the window in which the centroid is computed [px]
 };
 
-/// The regions of a picture that stand out from its background.
+/// Regions of an image that exceed its background.
 struct DotRegions {
   std::vector<DotRegion> dots;
-  std::vector<Vec2d> others;      ///< centres of regions that have neither the size nor the shape of the dots
-  Image<unsigned char> not_dots;  ///< 255 where a region is no dot
+  std::vector<Vec2d> others;      ///< centres of regions that differ from the dots in size or shape [px]
+  Image<unsigned char> not_dots;  ///< 255 inside every region that is not a dot, else 0
 };
 
-/// Finds the regions that look like dots.
-/// - Height: above a quarter of the dots' height, which is the median over area of what exceeds the noise eight times.
-/// - Size: area at half the height within a factor 3 of the usual one.
-/// - Shape: a filled ellipse (its area is 4 pi sqrt(det M) of its second moments M, and less for every other shape), of
-///   about the usual ratio of axes, which the camera's slant sets.
-/// Regions that touch the picture's edge are neither.
-/// @param levels over the background, dots bright @param noise standard deviation of a level
+/// Finds the regions that have the size and shape of the dots.
+/// - Height: above a quarter of the dots' height, which is the area-weighted median over the regions that exceed eight
+///   times the noise.
+/// - Size: area at half height within a factor of 3 of the median area.
+/// - Shape: a filled ellipse with about the median axis ratio, which depends on the camera's viewing angle. The area of
+///   an ellipse is 4 pi sqrt(det M) for its second moments M; every other shape has a smaller area.
+/// Regions that touch the image's edge are reported neither as dots nor in `others`.
+/// @param levels  grey levels above the background, with bright dots
+/// @param noise   standard deviation of the grey levels
 DotRegions find_dot_regions(Image<double> const& levels, double noise);
 
 }  // namespace gladstone

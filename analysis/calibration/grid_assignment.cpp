@@ -14,9 +14,9 @@
 namespace gladstone {
 namespace {
 
-constexpr double reach = 0.3;  // of a step, within which a neighbour is to lie of where it is foretold
+constexpr double reach = 0.3;  // maximum distance of a neighbour from its predicted position, relative to the step
 
-/// Pixels from a dot to its neighbours along X and Y.
+/// Image vectors from a dot to its neighbours along X and Y [px].
 struct Steps {
   Vec2d x, y;
 };
@@ -25,7 +25,7 @@ using Places = std::map<std::pair<int, int>, std::size_t>;
 
 double length2(Vec2d v) { return dot(v, v); }
 
-/// Where places are counted from.
+/// Start of the search: dot with index (0, 0) and the steps to its neighbours.
 struct Beginning {
   std::size_t dot;
   Steps steps;
@@ -38,7 +38,7 @@ std::size_t nearest_to(std::vector<DetectedDot> const& dots, Vec2d at) {
   return static_cast<std::size_t>(std::min_element(dots.begin(), dots.end(), nearer) - dots.begin());
 }
 
-/// The step to the nearest dot within 45 degrees of a direction.
+/// Returns the step to the nearest dot within 45 degrees of a direction.
 std::optional<Vec2d> first_step(std::vector<DetectedDot> const& dots, std::size_t from, Vec2d direction) {
   std::optional<Vec2d> nearest;
   for (std::size_t k = 0; k < dots.size(); ++k) {
@@ -56,10 +56,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// One of the dots about the middle of all: that whose steps are most like the others' median, so that neither a
-/// missing neighbour nor a stranger leads astray.
+/// Chooses the start among the dots nearest to the centroid: the dot whose steps are closest to the median steps, which
+/// is robust to missing neighbours and spurious spots.
 std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedView const& expected) {
-  constexpr std::size_t most = 25;  // a square of five by five
+  constexpr std::size_t most = 25;  // five by five dots
   Vec2d middle{};
   for (DetectedDot const& dot : dots) middle += dot.centre_px / static_cast<double>(dots.size());
   std::vector<std::size_t> order(dots.size());
@@ -87,7 +87,7 @@ std::optional<Beginning> begin(std::vector<DetectedDot> const& dots, ExpectedVie
                            [&off](Beginning const& a, Beginning const& b) { return off(a) < off(b); });
 }
 
-/// Places from neighbour to neighbour, counted from the dot that it begins at.
+/// Assigns indices from neighbour to neighbour, relative to the start.
 Places spread(std::vector<DetectedDot> const& dots, Beginning const& beginning) {
   Places places{{{0, 0}, beginning.dot}};
   std::vector<bool> taken(dots.size());
@@ -120,7 +120,7 @@ Places spread(std::vector<DetectedDot> const& dots, Beginning const& beginning) 
   return places;
 }
 
-/// Columns and rows that places take.
+/// Range of occupied columns and rows.
 struct Span {
   int left = std::numeric_limits<int>::max(), right = std::numeric_limits<int>::min();
   int low = left, high = right;
@@ -135,19 +135,19 @@ Span span_of(Places const& places) {
   return span;
 }
 
-/// A place between dots, in spacings.
+/// Fractional grid index [spacings].
 struct GridPoint {
   double i, j;
 };
 
-/// The point of the grid at a pixel, with the steps at the nearest dot.
+/// Returns the fractional grid index of a pixel by linear extrapolation from the nearest dot.
 GridPoint point_at(std::vector<DetectedDot> const& dots, Places const& places, Vec2d pixel, Steps const& first) {
   auto nearest = places.begin();
   for (auto place = places.begin(); place != places.end(); ++place) {
     if (length2(dots[place->second].centre_px - pixel) < length2(dots[nearest->second].centre_px - pixel))
       nearest = place;
   }
-  int const i = nearest->first.first, j = nearest->first.second;  // clang 14 captures no structured bindings
+  int const i = nearest->first.first, j = nearest->first.second;  // clang 14 cannot capture structured bindings
   Vec2d const at = dots[nearest->second].centre_px;
   auto const step = [&](int di, int dj, Vec2d otherwise) {
     if (auto const next = places.find({i + di, j + dj}); next != places.end()) return dots[next->second].centre_px - at;
@@ -159,8 +159,8 @@ GridPoint point_at(std::vector<DetectedDot> const& dots, Places const& places, V
   return {i + (way.x * y.y - way.y * y.x) / area, j + (x.x * way.y - x.y * way.x) / area};
 }
 
-/// Removes the places of spots that do not belong to the grid.
-/// @return them, and how smooth the rest is
+/// Removes the indices of spots that do not belong to the grid.
+/// @return removed spots and smoothness of the remaining grid
 SmoothGrid clean(std::vector<DetectedDot> const& dots, Places& places) {
   std::vector<GridDot> all;
   for (auto const& [place, dot] : places) {

@@ -6,45 +6,50 @@
 
 namespace gladstone {
 
-/// The dots of a calibration target: (i, j) times the spacing, from -half_columns and -half_rows to as many.
+/// Grid of dots on a calibration target: dot (i, j) is at (i, j) times the spacing, with |i| <= half_columns and |j| <=
+/// half_rows.
 struct CalibrationGrid {
   int half_columns = 0, half_rows = 0;
-  double spacing = 0;       ///< [m]
-  double dot_diameter = 0;  ///< [m]
+  double spacing = 0;       ///< distance between neighbouring dots [m]
+  double dot_diameter = 0;  ///< diameter of a dot [m]
 };
 
-/// Roughly how a camera is expected to see the grid of a plane.
+/// Approximate image of the grid of one plane, as expected from the camera set-up.
 struct ExpectedView {
-  Vec2d middle_px{};                 ///< of the grid
-  Vec2d along_x_px{}, along_y_px{};  ///< from a dot to the next along X and along Y
+  Vec2d middle_px{};                 ///< image of the grid's centre
+  Vec2d along_x_px{}, along_y_px{};  ///< image vector from a dot to its neighbour along X and along Y
 };
 
-/// A detected dot with its place on the grid.
+/// Detected dot with its grid index.
 struct GridDot {
   int i = 0, j = 0;
   Vec2d pixel{};
   double diameter_px = 0;
 };
 
-/// How the grid's middle was told among dots that all look alike.
+/// Method by which the centre dot of the grid was identified among the identical dots.
 enum class MiddleBy {
-  whole_grid,     ///< all columns and rows are in view
-  expected_view,  ///< the dot nearest to where the middle is expected, along X, Y or both
+  whole_grid,     ///< all columns and rows are visible
+  expected_view,  ///< the dot nearest to the expected image of the centre, along X, Y or both
 };
 
 struct AssignedDots {
   std::vector<GridDot> dots;
   MiddleBy middle_by = MiddleBy::whole_grid;
-  double middle_offset = 0;      ///< of the expected middle from the dot taken for it, the larger component [spacings]
-  int columns = 0, rows = 0;     ///< that the dots span; more than the grid has where the grid is larger than told
-  std::vector<Vec2d> strangers;  ///< spots with a place on the grid that are no dots of it, see remove_strangers() [px]
-  double smoothness_px = 0;      ///< rms per component of the dots about a smooth grid: noise, or more; 0: unknown
+  /// Distance of the expected centre from the chosen centre dot, larger component [spacings].
+  double middle_offset = 0;
+  /// Extent of the visible grid; larger than `grid` if the target has more dots than specified.
+  int columns = 0, rows = 0;
+  /// Detected spots with a grid index that are not dots of the grid, see remove_strangers() [px].
+  std::vector<Vec2d> strangers;
+  /// Rms residual per component from a smooth grid: noise and distortions of high order; 0: unknown.
+  double smoothness_px = 0;
 };
 
-/// Gives dots their places on the grid: from the dot nearest to the middle of all, from neighbour to neighbour, each
-/// step foretold by the one before it. The expected view tells which way X and Y run, within 45 degrees; along an axis
-/// on which the picture shows a part of the grid only, also which dot the middle is, within half a spacing. Spots that
-/// lie off the grid are left out.
+/// Assigns grid indices to dots. The search starts at a dot near the centroid of all dots and proceeds from neighbour
+/// to neighbour, predicting each step from the previous one. The expected view determines the directions of X and Y, to
+/// within 45 degrees. If only a part of the grid is visible along an axis, the expected view also determines the centre
+/// dot, to within half a spacing. Spots off the grid are excluded.
 AssignedDots assign_to_grid(std::vector<DetectedDot> const& dots, CalibrationGrid const& grid,
                             ExpectedView const& expected);
 

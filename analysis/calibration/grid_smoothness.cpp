@@ -8,13 +8,15 @@ namespace gladstone {
 namespace {
 
 constexpr std::size_t least_for_cubic = 30, least_dots = 15;
-constexpr double deviations = 6;            // of a robust standard deviation
-constexpr double least_of_spacing = 0.02;   // residual of a place that is never removed
-constexpr double least_of_diameter = 0.25;  // residual of a diameter that is never removed
+constexpr double deviations = 6;           // removal limit in robust standard deviations
+constexpr double least_of_spacing = 0.02;  // minimum residual for removal of a position, relative to the spacing
+// minimum residual for removal of a diameter, relative to the median diameter
+constexpr double least_of_diameter = 0.25;
 constexpr double least_diameter_px = 1;
 constexpr int most_rounds = 20;
 
-/// Products of i and j up to an order, over the largest of either.
+/// Returns the design matrix: products of powers of i and j up to a total order, both divided by the largest |i| or
+/// |j|.
 Eigen::MatrixXd terms_of(std::vector<GridDot> const& dots, int order) {
   int most = 1;
   for (GridDot const& dot : dots) most = std::max({most, std::abs(dot.i), std::abs(dot.j)});
@@ -30,7 +32,7 @@ Eigen::MatrixXd terms_of(std::vector<GridDot> const& dots, int order) {
   return terms;
 }
 
-/// Residuals of values, a column each, from a polynomial in (i, j).
+/// Returns the residuals of each column of values from a polynomial in (i, j).
 Eigen::MatrixXd residuals_of(std::vector<GridDot> const& dots, Eigen::MatrixXd const& values, int order) {
   Eigen::MatrixXd const terms = terms_of(dots, order);
   return values - terms * Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(values);
@@ -57,7 +59,7 @@ Eigen::MatrixXd diameters_of(std::vector<GridDot> const& dots) {
   return diameters;
 }
 
-/// Pixels from a dot to the next, the shorter of the two ways: from the linear part of a plane's map.
+/// Returns the image distance between neighbouring dots along the axis where it is shorter, from a linear fit [px].
 double spacing_of(std::vector<GridDot> const& dots) {
   Eigen::MatrixXd const terms = terms_of(dots, 1), places = places_of(dots);
   Eigen::MatrixXd const map = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(places);
@@ -66,8 +68,9 @@ double spacing_of(std::vector<GridDot> const& dots) {
   return std::min(map.row(1).norm(), map.row(2).norm()) / most;
 }
 
-/// Removes the dots whose residual exceeds the limit; of several the larger ones, which may have drawn the others.
-/// @return whether there were any
+/// Removes the dots whose residual exceeds both the limit and half the largest residual; large outliers may have
+/// distorted the fit and thus the smaller residuals.
+/// @return true if any dot was removed
 bool remove_larger(SmoothGrid& grid, Eigen::VectorXd const& size, double limit) {
   double const largest = size.maxCoeff();
   if (!(largest > limit)) return false;
@@ -84,7 +87,7 @@ bool remove_larger(SmoothGrid& grid, Eigen::VectorXd const& size, double limit) 
 bool remove_misplaced(SmoothGrid& grid) {
   Eigen::VectorXd const size =
       residuals_of(grid.dots, places_of(grid.dots), order_of(grid.dots.size())).rowwise().norm();
-  double const deviation = median_of(size) / 1.1774;  // median of a Rayleigh distribution
+  double const deviation = median_of(size) / 1.1774;  // median of a Rayleigh distribution of unit scale
   return remove_larger(grid, size, std::max(deviations * deviation, least_of_spacing * spacing_of(grid.dots)));
 }
 

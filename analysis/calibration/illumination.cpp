@@ -6,10 +6,11 @@
 namespace gladstone {
 namespace {
 
-constexpr int blocks_across = 8;  // the shorter side
+constexpr int blocks_across = 8;  // blocks along the shorter side
 constexpr int least_block = 16;   // [px]
 
-/// Position among equal blocks: the cell between two centres and the share of the second, outside [0, 1] at the edges.
+/// Interpolation weights among equal blocks: the two adjacent block centres and the weight of the second, which is
+/// outside of [0, 1] near the edges.
 struct BlockPlace {
   int first, second;
   double share;
@@ -22,7 +23,7 @@ BlockPlace between_centres(int at, int pixels, int blocks) {
   return {first, first + 1, place - first};
 }
 
-/// Median of a rectangle; right and low are the first column and row beyond it.
+/// Returns the median over a rectangle; `right` and `low` are one past its last column and row.
 double block_median(Image<double> const& levels, int left, int right, int top, int low) {
   std::vector<double> values;
   for (int row = top; row < low; ++row) {

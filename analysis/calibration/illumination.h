@@ -4,9 +4,9 @@
 
 namespace gladstone {
 
-/// Background of a picture of dots as light that falls off smoothly leaves it: medians of blocks an eighth of the
-/// picture's shorter side wide (at least 16 px), interpolated linearly between the blocks' centres and extrapolated to
-/// the edges. Holds where dots cover less than half of every block.
+/// Estimates the smoothly varying background of an image of dots. Computes the medians of blocks whose side is an
+/// eighth of the image's shorter side (at least 16 px), interpolates them linearly between the block centres and
+/// extrapolates to the edges. Valid if dots cover less than half of every block.
 Image<double> estimate_background(Image<double> const& levels);
 
 }  // namespace gladstone

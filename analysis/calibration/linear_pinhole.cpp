@@ -11,8 +11,9 @@ namespace {
 
 using Camera = Eigen::Matrix<double, 3, 4>;
 
-/// The similarity, as a matrix of homogeneous coordinates, that moves the mean of points to 0 and their mean distance
-/// from it to 1. @param points a column each
+/// Returns the similarity transform (homogeneous coordinates) that shifts the mean of points to 0 and scales their mean
+/// distance from it to 1.
+/// @param points  one point per column
 Eigen::MatrixXd normalisation(Eigen::MatrixXd const& points) {
   Eigen::Index const size = points.rows();
   Eigen::VectorXd const mean = points.rowwise().mean();
@@ -37,7 +38,7 @@ Eigen::MatrixXd pixels_of(CalibrationPoints const& points) {
   return pixels;
 }
 
-/// The projection matrix whose third row is positive for the points.
+/// Returns the projection matrix, with the sign that makes its third row positive for the points.
 Camera projection(CalibrationPoints const& points) {
   Eigen::MatrixXd const world = world_of(points), pixels = pixels_of(points);
   Eigen::MatrixXd const of_world = normalisation(world), of_pixels = normalisation(pixels);
@@ -62,7 +63,7 @@ Camera projection(CalibrationPoints const& points) {
 
 PinholeCamera linear_pinhole(CalibrationPoints const& points) {
   Camera const camera = projection(points);
-  // K R of K (R | t) by an RQ decomposition: QR of the transpose, with rows and columns in reverse
+  // Split K (R | t) by an RQ decomposition: QR of the transpose with rows and columns reversed.
   Eigen::Matrix3d flip;
   flip << 0, 0, 1, 0, 1, 0, 1, 0, 0;
   Eigen::Matrix3d const turned = (flip * camera.leftCols<3>()).transpose();
@@ -75,7 +76,7 @@ PinholeCamera linear_pinhole(CalibrationPoints const& points) {
     R.row(i) = -R.row(i);
   }
   Eigen::Vector3d t = K.inverse() * camera.col(3);
-  if (R.determinant() < 0) {  // the sign of a projection matrix is free
+  if (R.determinant() < 0) {  // the sign of a projection matrix is arbitrary
     R = -R;
     t = -t;
   }

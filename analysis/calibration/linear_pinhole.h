@@ -4,14 +4,15 @@
 
 namespace gladstone {
 
-/// The pinhole camera without distortion that the direct linear transformation gives (Hartley & Zisserman 2004, section
-/// 7.1, with their normalisation): the start of a fit. Skew, which the transformation allows, is dropped.
+/// Computes a pinhole camera without distortion by the direct linear transformation (Hartley & Zisserman 2004, section
+/// 7.1, with their normalisation), as initial value of a fit. The skew, which the transformation permits, is dropped.
 PinholeCamera linear_pinhole(CalibrationPoints const& points);
 
-/// Residuals of the direct linear transformation itself, skew included: rms per component [px].
+/// Returns the rms residual per component of the direct linear transformation, including its skew [px].
 double linear_residual_px(CalibrationPoints const& points);
 
-/// Whether all points lie on one plane: their least extent is nothing beside the largest.
+/// Returns true if all points are on one plane: the smallest eigenvalue of their scatter matrix is below 1e-12 times
+/// the largest.
 bool on_one_plane(CalibrationPoints const& points);
 
 }  // namespace gladstone

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t least_points = 12;
 using Parameters = std::array<double, PinholeCamera::count>;
 
-/// The pixel of a point in the camera's axes.
+/// Computes the pixel of a point in camera coordinates.
 template <class T>
 void pixel_of(T const* p, T const* d, T* pixel) {
   T const x = d[0] / d[2], y = d[1] / d[2];
@@ -25,14 +25,14 @@ void pixel_of(T const* p, T const* d, T* pixel) {
   pixel[1] = p[1] * (y * radial + p[6] * (r2 + 2.0 * y * y) + 2.0 * p[7] * x * y) + p[3];
 }
 
-/// From the camera to a point of the world, in the camera's axes.
+/// Transforms a world point to camera coordinates.
 template <class T>
 void look_at(T const* p, T const* world, T* d) {
   ceres::AngleAxisRotatePoint(p + 8, world, d);
   for (int axis = 0; axis < 3; ++axis) d[axis] += p[11 + axis];
 }
 
-/// PinholeCamera::project, for any scalar.
+/// Implements PinholeCamera::project for any scalar type.
 template <class T>
 void project(T const* p, T const* world, T* pixel) {
   T d[3];
@@ -51,12 +51,14 @@ void turn(T const* p, Vec3d const& world, T* turned) {
   ceres::AngleAxisRotatePoint(p + 8, v, turned);
 }
 
-/// Adds the light that a point sends through a place of the pupil, cos(slant of the plane) cos(slant of the lens) /
-/// distance^2, to `sum`, and that times where it arrives to `pixel`: at the image of where its ray crosses the plane in
-/// focus, which every ray through that place shares (ideal lens). All in the camera's axes.
-/// @param across the dots' plane's normal @param axis of the lens @param focus normal of the plane in focus; null:
-/// place is the pinhole
-/// @param depth of that plane along its normal, from the camera
+/// Accumulates one ray from a point through a position in the pupil. Adds its irradiance, cos(angle to the plate's
+/// normal) cos(angle to the lens axis) / distance^2, to `sum`, and the irradiance times the image position to `pixel`.
+/// The image position is that of the ray's intersection with the plane in focus (ideal lens). All vectors are in camera
+/// coordinates.
+/// @param across  normal of the plane of the dots
+/// @param axis    direction of the lens axis
+/// @param focus   normal of the plane in focus; null: `place` is the pinhole
+/// @param depth   distance of the plane in focus from the camera, along its normal [m]
 template <class T>
 void add_ray(T const* p, T const* point, T const* place, T const* across, T const* axis, T const* focus, T const& depth,
              T* pixel, T& sum) {
@@ -71,7 +73,7 @@ void add_ray(T const* p, T const* point, T const* place, T const* across, T cons
   sum += light;
 }
 
-/// Two directions across the lens's axis, each of the given length.
+/// Computes two vectors of the given length, perpendicular to the lens axis and to each other.
 template <class T>
 void across_axis(T const* axis, double length, T* right, T* down) {
   using std::sqrt;
@@ -84,8 +86,8 @@ void across_axis(T const* axis, double length, T* right, T* down) {
   down[2] = -axis[1] * right[0] / size;
 }
 
-/// The centroid of the image of a Lambertian dot: the mean over its disc_points of where their light arrives, through
-/// disc_points of the lens's pupil where that is known. The lens faces `middle`.
+/// Computes the centroid of the image of a Lambertian dot: the irradiance-weighted mean over disc_points of the dot
+/// and, if the pupil radius is not 0, over disc_points of the entrance pupil. The lens axis points at `middle`.
 template <class T>
 void project_dot(T const* p, Vec3d const& centre, double radius, Vec3d const& middle, CalibratedLens const& lens,
                  T* pixel) {
@@ -137,11 +139,12 @@ struct Residual {
 };
 
 struct Refinement {
-  double cost = 0;  ///< half the sum of squares
+  double cost = 0;  ///< half the sum of squared residuals
   bool converged = false;
 };
 
-/// Fits from a start; first without distortion, and with the principal point where it is.
+/// Fits from a start in three stages: without distortion and with a fixed principal point; without distortion; all
+/// parameters.
 Refinement refine(CalibrationPoints const& points, Parameters& parameters) {
   Refinement refinement;
   Vec3d const middle = mean_of(points.world);
@@ -168,7 +171,7 @@ Refinement refine(CalibrationPoints const& points, Parameters& parameters) {
   return refinement;
 }
 
-/// Derivatives of all residuals by the parameters.
+/// Returns the derivatives of all residuals with respect to the parameters.
 Eigen::MatrixXd jacobian(CalibrationPoints const& points, Parameters const& parameters) {
   constexpr auto columns = static_cast<int>(PinholeCamera::count);
   Eigen::Matrix<double, Eigen::Dynamic, columns, Eigen::RowMajor> all(2 * static_cast<Eigen::Index>(points.size()),
@@ -185,8 +188,8 @@ Eigen::MatrixXd jacobian(CalibrationPoints const& points, Parameters const& para
   return all;
 }
 
-/// Inverse of J^T J times the residuals' variance; columns are brought to one size first. Where the points leave a
-/// combination of parameters open its standard errors are infinite.
+/// Computes standard errors and covariance: inverse of J^T J times the variance of the residuals, with the columns of J
+/// normalised. If a combination of parameters is undetermined, its standard errors are infinite.
 void find_errors(CalibrationPoints const& points, PinholeFit& fit, double squares) {
   Eigen::MatrixXd J = jacobian(points, fit.camera.value);
   Eigen::VectorXd const shrink = J.colwise().norm().cwiseInverse();

@@ -9,13 +9,13 @@
 namespace gladstone {
 namespace {
 
-constexpr double least_gain = 5;         // by which another placement has to fit better
-constexpr std::size_t most_planes = 6;   // whose orders are tried
-constexpr int most_moved = 2;            // columns and rows
-constexpr double rounding_share = 1e-3;  // of the given residual, below which residuals are as good as none
-constexpr double whole_spacing = 0.15;   // by which a drift may miss whole spacings
-constexpr double largest_drift = 0.8;    // sine of the angle
-constexpr double precision_px = 1;       // of the principal point
+constexpr double least_gain = 5;         // minimum ratio by which another placement must reduce the residual
+constexpr std::size_t most_planes = 6;   // maximum number of planes for the search over orders
+constexpr int most_moved = 2;            // maximum index offset [columns, rows]
+constexpr double rounding_share = 1e-3;  // residuals below this fraction of the given one count as equal
+constexpr double whole_spacing = 0.15;   // tolerance for a drift by whole spacings [spacings]
+constexpr double largest_drift = 0.8;    // maximum sine of the drift angle
+constexpr double precision_px = 1;       // tolerance of the principal point
 
 bool in_front(PinholeCamera const& camera) { return camera.value.back() > 0; }
 
@@ -24,7 +24,7 @@ Vec2d principal_point(PlateDots const& dots, PlatePlacement const& placement) {
   return {camera.cx(), camera.cy()};
 }
 
-/// The drift as whole spacings from plane to plane; nullopt where it is none.
+/// Converts a drift to index offsets; returns nullopt if it is not a whole number of spacings per plane or is zero.
 std::optional<PlatePlacement> as_moved_middles(PlateDots const& dots, Vec2d drift) {
   PlatePlacement placement;
   bool any = false;
@@ -128,7 +128,7 @@ std::optional<PlatePlacement> find_drift(PlateDots const& dots, Vec2d principal_
     Vec2d const x = slope({probe, 0}), y = slope({0, probe});
     double const area = x.x * y.y - x.y * y.x;
     if (!(std::abs(area) > 0)) return std::nullopt;
-    // Newton's step, shortened to stay within directions that face the plate
+    // Newton step, limited to 0.2 so that the direction remains towards the plate.
     Vec2d by = {-(off.x * y.y - off.y * y.x) / area, -(x.x * off.y - x.y * off.x) / area};
     if (double const size = length(by); size > 0.2) by *= 0.2 / size;
     drift += by;

@@ -17,7 +17,7 @@ double power(double base, int exponent) {
   return product;
 }
 
-/// Terms up to the third order with Z up to `most_z`.
+/// Returns the exponents of all terms up to third order, with Z up to `most_z`.
 std::vector<std::array<int, 3>> terms(int most_z) {
   std::vector<std::array<int, 3>> all;
   for (int order = 0; order <= cubic; ++order) {
@@ -28,7 +28,7 @@ std::vector<std::array<int, 3>> terms(int most_z) {
   return all;
 }
 
-/// Mean of a term over a dot, see disc_points.
+/// Returns the mean of a term over a dot, see disc_points.
 double mean_of_term(std::array<int, 3> const& term, Vec3d centre, double radius) {
   double sum = 0;
   for (Vec2d const off : disc_points) {
