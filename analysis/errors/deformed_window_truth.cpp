@@ -14,7 +14,7 @@ namespace {
 
 bool is_finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
-/// What a pass deforms the frames by; nothing before the first.
+/// Predictor by which a pass deforms the frames; zero in the first pass.
 struct Predictor {
   std::optional<DensePredictor> field;
 
@@ -31,7 +31,7 @@ std::vector<Vec2d> centres_of(InterrogationGrid const& grid) {
   return centres;
 }
 
-/// The next pass's predictor, of what this one measures at its nodes.
+/// Computes the predictor of the next pass from the displacements at the nodes of this pass.
 DensePredictor predictor_of(InterrogationGrid const& grid, std::span<Vec2d const> measured, double smoothing,
                             int columns, int rows) {
   std::vector<GridVector> vectors(measured.size());

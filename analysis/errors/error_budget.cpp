@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// The chain: each stage but the first ends the term beside it.
+/// One link of the chain: a stage and the term that leads to it; the first stage has no term.
 struct Link {
   std::string_view stage;
   std::string_view term;
@@ -40,7 +40,7 @@ std::span<Link const> links_of(BudgetChain chain) {
   return bos_chain;
 }
 
-using Differences = std::vector<Vec2d>;  // of one term, over the vectors that count; empty: unknown
+using Differences = std::vector<Vec2d>;  // values of one term at the counted vectors; empty: unknown
 
 bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
@@ -70,7 +70,7 @@ BudgetTerm term_of(std::string_view name, Differences const& values) {
   return term;
 }
 
-/// Fills C_u, C_v and their mean from the terms' differences.
+/// Computes C_u, C_v and their mean from the values of the terms.
 void fill_covariance(std::vector<Differences> const& terms, ErrorBudget& budget) {
   std::size_t const size = terms.size();
   CovarianceMatrix const unknown{size, std::vector<double>(size * size, nan)};
@@ -115,7 +115,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
     GLADSTONE_EXPECTS(link != chain.end());
     return static_cast<std::size_t>(link - chain.begin());
   };
-  // The present stages in the order of the chain.
+  // Sort the available stages into the order of the chain.
   std::vector<std::vector<Vec2d> const*> at(chain.size());
   for (BudgetStage const& stage : stages) {
     auto& place = at[place_of(stage.name)];
@@ -125,7 +125,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
     place = &stage.displacement_px;
   }
 
-  // One set of vectors for all terms.
+  // Use the same vectors for all terms.
   std::vector<std::size_t> counted;
   for (std::size_t i = 0; i < mask.size(); ++i) {
     bool const whole =
@@ -139,7 +139,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
     return values;
   };
 
-  // A difference across absent stages goes to the first term of the gap.
+  // Assign a difference across missing stages to the first term of the gap.
   std::vector<Differences> differences(chain.size() - 1);
   std::vector<std::vector<std::string>> includes(chain.size() - 1);
   std::optional<std::size_t> first, last;
@@ -175,7 +175,7 @@ ErrorBudget error_budget(std::span<BudgetStage const> stages, VectorMask const& 
     budget.closure_px = std::max({budget.closure_px, std::abs(gap.x), std::abs(gap.y)});
   }
 
-  // Estimator error of this pattern where there are noise-free images, of the measurement otherwise.
+  // Peak locking: use the estimator error on noise-free images if available, otherwise that of the measurement.
   std::size_t const window = place_of("window"), noise_free = place_of("noise_free"), measured = place_of("measured");
   std::size_t const estimate = at[noise_free] ? noise_free : measured;
   budget.peak_locking_px = nan;
@@ -230,7 +230,7 @@ BudgetStage mean_estimator_stage(std::span<Vec2d const> window_truth_px,
       sum += error;
       ++count;
     }
-    stage.displacement_px[i] += sum / static_cast<double>(count);  // no pattern: NaN, and the vector is left out
+    stage.displacement_px[i] += sum / static_cast<double>(count);  // no pattern: 0/0 is NaN, which excludes the vector
   }
   return stage;
 }

@@ -14,7 +14,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 
-/// The errors of the vectors that count, and of how many vectors they are.
+/// Errors of the counted vectors, and the number of all vectors.
 struct Errors {
   std::vector<Vec2d> error_px;
   std::size_t total = 0;
@@ -31,7 +31,7 @@ double deviation(Errors const& errors, double Vec2d::*component) {
   double const centre = mean(errors, component);
   double sum = 0.0;
   for (Vec2d const& e : errors.error_px) sum += (e.*component - centre) * (e.*component - centre);
-  return std::sqrt(sum / static_cast<double>(errors.error_px.size()));  // 0/0: NaN of nothing
+  return std::sqrt(sum / static_cast<double>(errors.error_px.size()));  // 0/0 is NaN for no vectors
 }
 
 double rms(Errors const& errors, double largest) {
@@ -62,7 +62,7 @@ double valid_fraction(Errors const& errors) {
   return errors.total == 0 ? nan : static_cast<double>(errors.error_px.size()) / static_cast<double>(errors.total);
 }
 
-/// A new error measure is one row here; it appears in errors.json, study.csv and the reports under this name.
+/// Error measure with its name in errors.json, study.csv and the reports. A new measure requires one more row below.
 struct Measure {
   std::string_view name;
   double (*of)(Errors const&);

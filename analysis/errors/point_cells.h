@@ -12,11 +12,12 @@
 
 namespace gladstone {
 
-/// Points of the plane sorted into square cells, to find those near a place in constant time. Points that are not
-/// finite are left out. The order in which neighbours are visited depends on the points alone.
+/// Points of the plane sorted into square cells, for neighbour searches in constant time. Points that are not finite
+/// are excluded. The order in which neighbours are visited depends only on the points.
 class PointCells {
  public:
-  /// @param points [px] @param cell edge of a cell [px], about the radius of the queries
+  /// @param points  [px]
+  /// @param cell    edge of a cell, ideally about the radius of the queries [px]
   /// @pre fewer than 2^32 points; cell > 0
   PointCells(std::span<Vec2d const> points, double cell) : cell_(cell) {
     GLADSTONE_EXPECTS(cell > 0.0 && points.size() < (std::size_t{1} << 32));
@@ -29,9 +30,9 @@ class PointCells {
       any = true;
     }
     if (!any) return;
-    // A few points far away must not ask for more cells than there are points.
+    // Limit the number of cells, since a few distant points could demand more cells than there are points.
     double const most = 4.0 * static_cast<double>(points.size()) + 16.0;
-    constexpr double farthest = 1e150;  // whose square is finite
+    constexpr double farthest = 1e150;  // its square is finite
     double const width = std::min(high.x - low_.x, farthest), height = std::min(high.y - low_.y, farthest);
     double const wanted = (width / cell_ + 1.0) * (height / cell_ + 1.0);
     if (wanted > most) cell_ = std::max(cell_ * std::sqrt(wanted / most), std::max(width, height) / most);
@@ -51,8 +52,8 @@ class PointCells {
     }
   }
 
-  /// Calls visit(index) for every point in the square |x - c.x|, |y - c.y| <= radius and for some beyond it; about a
-  /// place that is not finite for none.
+  /// Calls visit(index) for every point in the square |x - c.x|, |y - c.y| <= radius and for some points outside of it.
+  /// Does nothing if c is not finite.
   template <class Visit>
   void for_near(Vec2d c, double radius, Visit&& visit) const {
     if (columns_ == 0 || !finite(c)) return;
@@ -81,7 +82,7 @@ class PointCells {
   Vec2d low_{};
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<std::uint32_t> first_;   // first sorted point of each cell, and the end
+  std::vector<std::uint32_t> first_;   // index of the first sorted point of each cell, and end index
   std::vector<std::uint32_t> sorted_;  // point indices
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Weighted sums of a plane through scattered values, offsets in units of h.
+/// Weighted sums for the fit of a plane to scattered values, with offsets from the node in units of h.
 struct PlaneFit {
   int dots = 0;
   double w = 0.0, wx = 0.0, wy = 0.0, wxx = 0.0, wxy = 0.0, wyy = 0.0;
@@ -36,14 +36,14 @@ struct PlaneFit {
   double cofactor() const { return wxx * wyy - wxy * wxy; }
   double determinant() const { return w * cofactor() + wx * (wxy * wy - wx * wyy) + wy * (wx * wxy - wxx * wy); }
 
-  /// Variance of the value at the node in that of one dot, by the normal matrix' inverse: below 1 where the plane is
-  /// interpolated, large where it is extrapolated.
+  /// Returns the variance of the fitted value at the node relative to that of one dot, from the inverse of the normal
+  /// matrix: below 1 for interpolation, large for extrapolation. Infinite for fewer than four dots or a singular fit.
   double amplification() const {
     double const det = determinant();
     return dots >= 4 && det > 1e-9 * w * w * w ? cofactor() / det : std::numeric_limits<double>::infinity();
   }
 
-  /// The plane's value at the node, by Cramer's rule.
+  /// Returns the value of the plane at the node, by Cramer's rule.
   Vec2d at_node() const {
     return (cofactor() * d + (wxy * wy - wx * wyy) * dx + (wx * wxy - wxx * wy) * dy) / determinant();
   }

@@ -8,13 +8,13 @@
 namespace gladstone {
 namespace {
 
-/// Vectors that are left out.
+/// Numbers of excluded vectors.
 struct LeftOut {
   std::size_t gross = 0;
   std::size_t without_sigma = 0;
 };
 
-/// Calls visit(error, sigma) for every component that counts.
+/// Calls visit(|error|, sigma) for every counted component.
 template <class Visit>
 LeftOut visit_components(std::span<Vec2d const> measured, std::span<Vec2d const> truth, std::span<Vec2d const> sigma,
                          VectorMask const& mask, Visit const& visit) {
@@ -57,7 +57,7 @@ UncertaintyQuality uncertainty_quality(std::span<Vec2d const> measured, std::spa
   quality.count = static_cast<std::size_t>(n);
   quality.gross = left_out.gross;
   quality.without_sigma = left_out.without_sigma;
-  quality.coverage_1 = within_1 / n;  // 0/0: NaN of nothing
+  quality.coverage_1 = within_1 / n;  // 0/0 is NaN for no components
   quality.coverage_2 = within_2 / n;
   quality.rms_ratio = std::sqrt(ss / ee);
   quality.correlation = (n * es - e * s) / std::sqrt((n * ee - e * e) * (n * ss - s * s));

@@ -10,32 +10,34 @@
 
 namespace gladstone {
 
-/// The weight that a correlator puts on each image: W(dx, dy) at (dx, dy) px from the window's
-/// centre, zero beyond half_width_px in either direction.
+/// Weight W(dx, dy) that a correlator applies to each image at (dx, dy) px from the window's centre. It is zero for
+/// |dx| or |dy| > half_width_px.
 struct WindowWeight {
   std::function<double(double dx_px, double dy_px)> value;
   double half_width_px = 0.0;
 };
 
-/// W of a correlator's pass.
-/// @param window_px nominal window size
+/// Returns the weight of a correlation pass.
+/// @param window_px  nominal size of the interrogation window [px]
 WindowWeight correlation_window(WindowWeighting weighting, double window_px);
 
-/// Where a dot counts: symmetric deformation measures at mid-position, one-sided codes at the reference.
+/// Position assigned to a dot: the middle of its displacement for symmetric image deformation, its position in frame A
+/// for one-sided methods.
 enum class TruthAt { mid_position, reference };
 
-/// True displacement at every vector, NaN where left out.
+/// True displacement at every vector; NaN at excluded vectors.
 struct WindowTruth {
   std::vector<Vec2d> displacement_px;
-  std::size_t left_out = 0;  ///< vectors with fewer than three dots on their window
+  std::size_t left_out = 0;  ///< vectors with fewer than three dots in their window
 };
 
-/// Truth on the window: T(c) = sum a W^2(x - c) d / sum a W^2(x - c) over the dots, because the product of two
-/// weighted images carries W^2; a is the squared flux of the dot and x = reference + d/2 (or the reference).
-/// @param reference_px,displacement_px of the dots; those with NaN count nowhere
-/// @param flux       of the dots, any unit; empty: all equal
-/// @param centres_px of the vectors
-/// Runs on thread_count() threads; the sums do not depend on their number.
+/// Computes the true window displacement T(c) = sum a W^2(x - c) d / sum a W^2(x - c), summed over the dots. W is
+/// squared because the product of two weighted images is correlated; a is the squared flux of the dot, and x is its
+/// position (see TruthAt). Runs on thread_count() threads; the result does not depend on their number.
+/// @param reference_px     positions of the dots in frame A [px]
+/// @param displacement_px  of the dots; dots with NaN are ignored [px]
+/// @param flux             of the dots, in any unit; empty: all equal
+/// @param centres_px       positions of the vectors [px]
 WindowTruth window_truth(std::span<Vec2d const> reference_px, std::span<Vec2d const> displacement_px,
                          std::span<double const> flux, std::span<Vec2d const> centres_px, WindowWeight const& weight,
                          TruthAt at = TruthAt::mid_position);

@@ -16,14 +16,14 @@ struct NamedChange {
   FrameChange (*read)(SetupTable& table, FramePreparation& preparation);
 };
 
-/// Every mask, one row each.
+/// All masks.
 constexpr std::array masks{
     NamedChange{"polygon", read_polygon_mask},
     NamedChange{"image", read_image_mask},
     NamedChange{"intensity", read_intensity_mask},
 };
 
-/// Every step, one row each.
+/// All preprocessing steps.
 constexpr std::array steps{
     NamedChange{"background", read_background}, NamedChange{"high_pass", read_high_pass},
     NamedChange{"clahe", read_clahe},           NamedChange{"intensity_cap", read_intensity_cap},
@@ -47,7 +47,7 @@ template <class Rows>
 void read_changes(SetupTable& correlate, std::string const& key, Rows const& rows, std::vector<FrameChange>& changes,
                   FramePreparation& preparation) {
   for (SetupTable& table : correlate.tables(key)) {
-    std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" where it is refused
+    std::string const kind = table.kind_word("kind", "", names_of(rows));  // "" if the value was rejected
     if (!table.has("kind")) {
       table.problem("kind", "is missing; give " + quoted(names_of(rows)));
       table.excuse();
@@ -57,7 +57,7 @@ void read_changes(SetupTable& correlate, std::string const& key, Rows const& row
   }
 }
 
-/// Puts the mean of what is known where nothing is.
+/// Replaces invalid pixels by the mean grey level of the valid ones.
 void fill_unknown(PreparedFrames& frames) {
   for (Image<double>* picture : {&frames.reference, &frames.flow}) {
     double sum = 0.0, count = 0.0;

@@ -7,42 +7,42 @@
 #include "render/base/frame_pair.h"
 #include "render/base/setup_table.h"
 
-/// What is done to frames before they are correlated: steps that change grey levels, and masks.
+/// Preparation of frames before correlation: masks, and preprocessing steps that change grey levels.
 namespace gladstone {
 
-/// Frames under preparation.
+/// Pair of frames during the preparation.
 struct PreparedFrames {
   Image<double> reference;
   Image<double> flow;
-  Image<double> known;  ///< 1 where both frames count, 0 elsewhere; grey levels there stand for nothing
+  Image<double> known;  ///< 1 where both frames are valid, else 0; the grey levels of invalid pixels are meaningless
 };
 
-/// One mask or step, as its settings make it. @throws DataError where its files do not suit the frames
+/// Operation of one mask or step with its settings. @throws DataError if its files do not match the frames
 using FrameChange = std::function<void(PreparedFrames& frames)>;
 
-/// The arrays of tables [[correlate.mask]] and [[correlate.preprocess]] of a setup, in their order.
+/// Contents of the arrays [[correlate.mask]] and [[correlate.preprocess]] of a setup, in their order.
 struct FramePreparation {
   std::vector<FrameChange> masks;
   std::vector<FrameChange> steps;
-  std::vector<std::string> files;  ///< pictures that these read
+  std::vector<std::string> files;  ///< images that the masks and steps read
 
   bool empty() const { return masks.empty() && steps.empty(); }
 };
 
-/// Names of the masks and of the steps, as `kind` takes them.
+/// Names of the masks and of the preprocessing steps: the allowed values of `kind`.
 std::vector<std::string> mask_kinds();
 std::vector<std::string> preprocessing_kinds();
 
-/// @param correlate the table [correlate]; problems are collected in its document
+/// @param correlate  table [correlate]; problems are collected in its document
 FramePreparation read_frame_preparation(SetupTable& correlate);
 
-/// The frames with steps done and, in both, NaN where either is unknown or a mask lies: correlators leave such pixels
-/// out. Masks look at the frames as they were taken, and are laid on in the end; before, what is unknown or masked has
-/// the mean of the rest, so that its light reaches nothing.
-/// @throws DataError
+/// Applies masks and preprocessing steps. Pixels that are masked or not finite in either frame become NaN in both, and
+/// correlators ignore them. Masks are evaluated on the original frames and applied after the steps. During the steps,
+/// invalid pixels have the mean grey level of the valid ones, so that their light does not affect their surroundings.
+/// @throws DataError if a file of a mask or step does not match the frames
 HostFrames prepare_frames(FramePair const& frames, FramePreparation const& preparation);
 
-/// Part of the pixels that are not left out, 0 .. 1.
+/// Returns the fraction of pixels of the first frame (`reference`) that are not NaN [1].
 double known_part(FramePair const& frames);
 
 }  // namespace gladstone

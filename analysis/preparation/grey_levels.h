@@ -6,13 +6,13 @@
 
 namespace gladstone {
 
-/// A picture as a library's matrix of doubles, such as cv::Mat1d: a view, what is written there stands in the picture.
+/// Returns a library's matrix of doubles, such as cv::Mat1d, as a view on an image; writing to it changes the image.
 template <class Matrix>
 Matrix view_of(Image<double>& picture) {
   return Matrix(picture.rows(), picture.columns(), picture.data());
 }
 
-/// Calls change(levels, known) for either frame, with what is not 0 where pixels are known; not where none is.
+/// Calls change(levels, known) for both frames; `known` is nonzero at valid pixels. Does nothing if no pixel is valid.
 template <class Matrix, class Change>
 void for_both(PreparedFrames& frames, Change const& change) {
   if (std::all_of(frames.known.begin(), frames.known.end(), [](double known) { return known == 0.0; })) return;

@@ -6,8 +6,8 @@
 
 namespace gladstone {
 
-/// Reads a picture that is to have the frames' size. @throws DataError where it cannot be read, has another size, or
-/// pixels that are nan or infinite
+/// Reads an image that must have the size of the frames.
+/// @throws DataError if it cannot be read, has another size, or has pixels that are nan or infinite
 Image<double> read_sized_picture(std::string const& file, Image<double> const& frame);
 
 }  // namespace gladstone

@@ -9,7 +9,7 @@
 namespace gladstone {
 namespace {
 
-/// Whether a point lies inside a polygon: a ray to the right crosses its sides an odd number of times.
+/// Returns true if a point is inside a polygon: a ray to the right crosses its sides an odd number of times.
 bool is_inside(std::vector<Vec2d> const& corners, Vec2d p) {
   bool inside = false;
   for (std::size_t k = 0, before = corners.size() - 1; k < corners.size(); before = k++) {

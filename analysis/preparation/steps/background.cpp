@@ -6,7 +6,7 @@
 namespace gladstone {
 namespace {
 
-/// Minimum or mean of pictures, pixel by pixel.
+/// Computes the minimum or mean of images, pixel by pixel.
 Image<double> background_of(std::vector<std::string> const& files, bool mean, Image<double> const& frame) {
   Image<double> background;
   for (std::string const& file : files) {

@@ -8,7 +8,7 @@ namespace gladstone {
 FrameChange read_high_pass(SetupTable& table, FramePreparation&) {
   double const sigma_px = table.number("sigma_px", 10.0, Range::positive(512.0));
   return [sigma_px](PreparedFrames& frames) {
-    // over known pixels alone: their sum over the sum of their weights
+    // Average over valid pixels only: divide the filtered levels by the filtered weights.
     cv::Mat1d weight;
     cv::GaussianBlur(view_of<cv::Mat1d>(frames.known), weight, {}, sigma_px);
     for_both<cv::Mat1d>(frames, [&](cv::Mat1d& levels, cv::Mat1d const& known) {
