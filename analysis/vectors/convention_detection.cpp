@@ -17,12 +17,13 @@ using Verdict = DetectedConventions::Verdict;
 
 bool finite(Vec2d v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
-/// Mirrored about the grid or about the image is a matter of position, like the offset, not of axes.
+/// Compares axes and signs. The mirror (grid or image) and the offset affect only the position.
 bool same_axes(VectorConventions const& a, VectorConventions const& b) {
   return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
 }
 
-/// At most `most` vectors that count, evenly taken, with the extreme rows kept so that the grid's middle stays.
+/// Selects at most `most` counted vectors at equal index intervals. The rows with the extreme y are included as masked
+/// vectors, so that the centre of the grid is preserved.
 DisplacementField sample(DisplacementField const& field, std::size_t most) {
   std::vector<std::size_t> usable;
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -41,14 +42,15 @@ DisplacementField sample(DisplacementField const& field, std::size_t most) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   if (!all.empty()) {
     auto const [low, high] = std::minmax_element(all.begin(), all.end(), by_y);
-    take(*low, VectorStatus::masked);  // counts for the extent only
+    take(*low, VectorStatus::masked);  // used only for the extent
     take(*high, VectorStatus::masked);
   }
   return few;
 }
 
-/// @param most that a difference counts as [px], and that a place without truth does, lest a choice win by moving its
-///             vectors out of sight
+/// Computes the agreement with clamped differences.
+/// @param most  upper limit of a difference [px], and the difference assumed at positions without truth, so that
+///              conventions cannot win by moving vectors out of view
 ConventionFit fit_within(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                          int image_rows, double most) {
   DisplacementField const ours = apply_conventions(field, conventions, image_rows);
@@ -77,20 +79,21 @@ ConventionFit fit_within(DisplacementField const& field, VectorConventions const
   if (known > 0) fit.signal_px = std::sqrt(signal / static_cast<double>(known));
   if (signal > 0.0) {
     fit.slope = product / signal;
-    // at an overlap of one half every vector shares its image with three others
+    // At an overlap of one half, every vector shares its image with three others.
     fit.slope_error = 2.0 * fit.rms_px / std::sqrt(signal);
   }
   return fit;
 }
 
-/// See ConventionFit::rms_px. What one wild vector adds is bounded, and yet misfits of large signals count in full.
+/// Returns the limit of ConventionFit::rms_px, which bounds the influence of outliers but preserves misfits of large
+/// signals.
 double largest_difference(DisplacementField const& field, VectorConventions const& conventions, Truth const& truth,
                           int image_rows) {
   double const signal = fit_within(field, conventions, truth, image_rows, 1.0).signal_px;
   return std::isfinite(signal) ? std::max(1.0, 3.0 * signal) : 1.0;
 }
 
-/// Every choice, the format's own first, so that they win a tie.
+/// Returns all candidate conventions. The format's own come first, so that they win ties.
 std::vector<VectorConventions> every_choice(std::vector<VectorConventions> const& own) {
   std::vector<VectorConventions> choices = own;
   auto const consider = [&choices](VectorConventions const& c) {
@@ -129,7 +132,7 @@ bool surely_better(ConventionFit const& a, ConventionFit const& b) {
 
 bool better(ConventionFit const& a, ConventionFit const& b) { return a.rms_px < b.rms_px; }
 
-/// The best fit of each choice of axes and sign, the best first.
+/// Returns the best fit of each choice of axes and signs, in ascending order of rms.
 std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) {
   std::vector<ConventionFit> best;
   for (ConventionFit const& fit : fits) {
@@ -147,28 +150,28 @@ std::vector<ConventionFit> best_of_axes(std::vector<ConventionFit> const& fits) 
 }
 
 Verdict judge(ConventionFit const& best) {
-  // three standard errors, since the best of some sixty choices is judged
+  // Require three standard errors, since this is the best of some sixty candidates.
   if (best.rms_px < best.signal_px && best.slope > 3.0 * best.slope_error) return Verdict::fits;
   if (!(best.signal_px >= telling_signal_px)) return Verdict::cannot_be_told;
   bool const follows = best.slope - 2.0 * best.slope_error > 0.5 && best.slope < 2.0;
   return follows ? Verdict::noisy : Verdict::fits_none;
 }
 
-/// The least unlikelihood beside any of the format's own readings.
+/// Returns the smallest unlikelihood relative to any of the format's own conventions.
 double unlikelihood(VectorConventions const& reading, std::vector<VectorConventions> const& own) {
   double least = std::numeric_limits<double>::infinity();
   for (VectorConventions const& one : own) least = std::min(least, unlikelihood(reading, one));
   return least;
 }
 
-/// Whether a fit is that of the best but for chance, or for what an estimator's own errors make of a flow that looks
-/// the same: 10 % of the rms for other axes, 5 % for another offset.
+/// Returns true if the difference from the best fit is insignificant, or small enough to be caused by estimator errors
+/// in a flow of similar appearance: 10 % of the rms for other axes, 5 % for another offset.
 bool fits_as_well(ConventionFit const& fit, ConventionFit const& best) {
   double const part = same_axes(fit.conventions, best.conventions) ? 0.95 : 0.9;
   return !(part * fit.rms_px > best.rms_px) || evidence_for(best, fit) < 9.0;
 }
 
-/// Of the readings that fit as well as the best does the likeliest.
+/// Returns the likeliest of the conventions that fit as well as the best.
 ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<VectorConventions> const& own) {
   ConventionFit const best = *std::min_element(fits.begin(), fits.end(), better);
   return *std::min_element(fits.begin(), fits.end(), [&](ConventionFit const& a, ConventionFit const& b) {
@@ -179,15 +182,15 @@ ConventionFit likeliest(std::vector<ConventionFit> const& fits, std::vector<Vect
   });
 }
 
-/// A file's vectors with their displacements divided by a factor, or their places moved.
+/// Divides displacements by a factor and shifts positions.
 DisplacementField changed(DisplacementField field, Vec2d factor, Vec2d shift) {
   for (Vec2d& d : field.displacement_px) d = {d.x / factor.x, d.y / factor.y};
   for (Vec2d& p : field.position_px) p += shift;
   return field;
 }
 
-/// The factor of least absolute deviations between a component and its truth: the median of their ratios, weighted by
-/// the truth, which half of the vectors may be wrong without moving far.
+/// Returns the factor between a component and its truth by least absolute deviations: the median of their ratios,
+/// weighted by |truth|. It is robust to up to half of the vectors being wrong.
 double median_factor(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
   std::vector<std::pair<double, double>> ratios;
   double sum = 0.0;
@@ -207,7 +210,7 @@ double median_factor(DisplacementField const& ours, Truth const& truth, double V
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Root mean square of a component of the truth [px].
+/// Returns the rms of a component of the truth [px].
 double component_signal(DisplacementField const& ours, Truth const& truth, double Vec2d::*component) {
   double square = 0.0;
   std::size_t count = 0;
@@ -220,7 +223,8 @@ double component_signal(DisplacementField const& ours, Truth const& truth, doubl
   return count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0.0;
 }
 
-/// The share of the true displacement, by component, that its mean over windows of 64 px follows, at most 1.
+/// Returns the regression slope, by component and at most 1, of the truth averaged over windows of 64 px on the truth
+/// at the point.
 Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
   constexpr int half = 32, step = 8;
   Vec2d product{}, square{};
@@ -245,41 +249,42 @@ Vec2d share_in_windows(DisplacementField const& ours, Truth const& truth) {
   return {share(product.x, square.x), share(product.y, square.y)};
 }
 
-/// Everything that the search for mistakes shares.
+/// Common input of the searches for mistakes.
 struct Search {
-  DisplacementField const& few;  ///< of the file's vectors
+  DisplacementField const& few;  ///< sample of the file's vectors
   Truth const& truth;
   int image_rows;
-  double most;  ///< see fit_within()
+  double most;  ///< upper limit of a difference, see fit_within()
   ConventionFit own;
 
   ConventionFit fit(DisplacementField const& field) const {
     return fit_within(field, own.conventions, truth, image_rows, most);
   }
-  /// By 30 % and, of many that were tried, not by chance.
+  /// Returns true if a correction reduces the rms by 30 % and the improvement is significant at five standard
+  /// deviations.
   bool is_mended(ConventionFit const& other) const {
     return other.rms_px < 0.7 * own.rms_px && other.rms_px < 0.7 * other.signal_px && evidence_for(other, own) > 25.0;
   }
 };
 
-/// Displacements that are a multiple of the true ones.
+/// Searches for displacements that are a multiple of the true ones.
 LikelyMistake find_factor(Search const& search) {
   DisplacementField const ours = apply_conventions(search.few, search.own.conventions, search.image_rows);
   Vec2d const share = share_in_windows(sample(ours, 500), search.truth);
-  constexpr double least_followed = 0.05;  // by windows that still measure something
+  constexpr double least_followed = 0.05;  // minimum slope of windows that still measure a displacement
   Vec2d factor{1.0, 1.0};
   for (auto const component : {&Vec2d::x, &Vec2d::y}) {
     if (!(component_signal(ours, search.truth, component) > std::max(telling_signal_px, 0.2 * search.own.signal_px)))
-      continue;  // too little of it to tell a factor by
+      continue;  // this component is too small to determine a factor
     double const found = median_factor(ours, search.truth, component);
     if (found > 0.0 && (found > 1.1 || found < std::max(least_followed, 0.9 * (share.*component))))
       factor.*component = found;
   }
   if (factor == Vec2d{1.0, 1.0}) return {};
-  // one unit for both, where both say so
+  // Use one factor for both components if the two agree.
   bool const both = std::abs(factor.x - factor.y) < 0.1 * std::max(factor.x, factor.y);
   if (both) factor.x = factor.y = 0.5 * (factor.x + factor.y);
-  // of columns as the file has them, whatever component they are
+  // Apply the factors to the columns of the file, which may be exchanged.
   Vec2d const of_columns = search.own.conventions.exchanges_components() ? Vec2d{factor.y, factor.x} : factor;
   ConventionFit const mended = search.fit(changed(search.few, of_columns, {}));
   if (!search.is_mended(mended)) return {};
@@ -291,8 +296,8 @@ LikelyMistake find_factor(Search const& search) {
   return {text, both ? describe(scaled) : std::string(), mended.rms_px, search.own.rms_px};
 }
 
-/// Places from another origin: the shift that fits best, of a lattice of 4 px up to 64 px and then of quarters of a
-/// pixel.
+/// Searches for positions with another origin: the shift that fits best, on a lattice of 4 px up to 64 px, refined to a
+/// quarter of a pixel.
 LikelyMistake find_shift(Search const& search) {
   constexpr double farthest = 64.0;
   DisplacementField const fewer = sample(search.few, 400);
@@ -311,7 +316,7 @@ LikelyMistake find_shift(Search const& search) {
   };
   look_around({}, farthest, 4.0);
   for (double const step : {2.0, 1.0, 0.5, 0.25}) look_around(best, step, step);
-  constexpr double counting = 2.0;  // ways of counting pixels differ by less
+  constexpr double counting = 2.0;  // conventions of pixel counting differ by less
   if (!(std::max(std::abs(best.x), std::abs(best.y)) > counting)) return {};
   ConventionFit const mended = search.fit(changed(search.few, {1.0, 1.0}, best));
   if (!search.is_mended(mended)) return {};
@@ -321,7 +326,7 @@ LikelyMistake find_shift(Search const& search) {
           search.own.rms_px};
 }
 
-/// Places that are a multiple of the true ones.
+/// Searches for positions that are a multiple of the true ones.
 LikelyMistake find_place_factor(Search const& search) {
   auto const scaled = [](DisplacementField field, double factor) {
     for (Vec2d& p : field.position_px) p = p / factor;
@@ -337,7 +342,7 @@ LikelyMistake find_place_factor(Search const& search) {
       best = factor;
     }
   };
-  look_around(1.0, 1.4, 0.01);  // a quarter to four times
+  look_around(1.0, 1.4, 0.01);  // from a quarter to four times
   look_around(best, 0.01, 0.001);
   if (std::abs(best - 1.0) < 0.01) return {};
   ConventionFit const mended = search.fit(scaled(search.few, best));
@@ -348,11 +353,12 @@ LikelyMistake find_place_factor(Search const& search) {
           mended.rms_px, search.own.rms_px};
 }
 
-/// A factor or a shift, read as the format says or, where that fits nothing, in any other way that a factor mends.
+/// Searches for a factor or shift with the conventions in use. If `any_reading`, also searches for a factor with all
+/// other conventions.
 LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> const& fits,
                                   std::vector<VectorConventions> const& own, bool any_reading) {
   if (LikelyMistake found = find_factor(search); found.found()) return found;
-  // what a shift of a few pixels changes of a smooth field is more than this share of it
+  // A shift of a few pixels changes a smooth field by more than this fraction of the signal.
   if (search.own.rms_px > 0.03 * search.own.signal_px) {
     if (LikelyMistake found = find_shift(search); found.found()) return found;
     if (LikelyMistake found = find_place_factor(search); found.found()) return found;
@@ -374,7 +380,7 @@ LikelyMistake find_scale_or_shift(Search search, std::vector<ConventionFit> cons
   return best;
 }
 
-/// What may be the matter with vectors that fit nothing at all.
+/// Returns a probable cause if no conventions fit.
 std::string likely_cause(ConventionFit const& best) {
   if (std::abs(best.slope) < 0.1)
     return "places from another origin, or places or displacements that are not in px, look like this";
@@ -504,8 +510,9 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   for (VectorConventions const& choice : every_choice(own))
     fits.push_back(fit_within(few, choice, truth, image_rows, most));
 
-  // Of the format's own readings the first, unless another is better: by an offset alone by more than chance, since
-  // codes that deform images put their vectors where their grid says, and one pass of theirs half a pixel from there.
+  // Use the first of the format's own conventions unless another fits better. For an offset alone, significance
+  // suffices: software with image deformation measures at the nodes of its grid, but with a single pass half a pixel
+  // away.
   DetectedConventions result;
   ConventionFit chosen = fits.front();
   for (std::size_t i = 1; i < own.size(); ++i) {
@@ -517,14 +524,15 @@ DetectedConventions detect_conventions(VectorFile const& file, Truth const& trut
   result.best = likeliest(fits, own);
   if (result.verdict == Verdict::cannot_be_told) chosen = fits.front();
 
-  // What fits better and is not the format's own is a mistake, if it is clear and, of so many choices, not chance.
+  // A better fit that is not the format's own is a mistake if the improvement is clear and, given the number of
+  // candidates, significant at four standard deviations.
   bool const reads = result.verdict == Verdict::fits || result.verdict == Verdict::noisy;
   double const clearly = same_axes(result.best.conventions, chosen.conventions) ? 0.95 : 0.9;
   bool const is_own = std::find(own.begin(), own.end(), result.best.conventions) != own.end();
   if (reads && !is_own && result.best.rms_px < clearly * chosen.rms_px && evidence_for(result.best, chosen) > 16.0) {
     result.mistake = {difference_of(result.best.conventions, chosen.conventions), describe(result.best.conventions),
                       result.best.rms_px, chosen.rms_px};
-    for (ConventionFit const& other : result.tried) {  // what looks the same in this displacement
+    for (ConventionFit const& other : result.tried) {  // other mistakes that are indistinguishable in this displacement
       if (same_axes(other.conventions, result.best.conventions) || !fits_as_well(other, result.best)) continue;
       if (unlikelihood(other.conventions, own) > unlikelihood(result.best.conventions, own) + 0.5) continue;
       result.mistake.text += ", or " + difference_of(other.conventions, chosen.conventions);

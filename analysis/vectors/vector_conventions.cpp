@@ -17,14 +17,14 @@ namespace {
 using Exchange = VectorConventions::Exchange;
 using Mirror = VectorConventions::Mirror;
 
-/// Words for exchanged columns; the first has none.
+/// Words for exchanged columns; Exchange::none has no word.
 constexpr std::array<std::pair<Exchange, std::string_view>, 4> exchange_words{
     {{Exchange::none, ""},
      {Exchange::places, "places-exchanged"},
      {Exchange::components, "components-exchanged"},
      {Exchange::axes, "axes-exchanged"}}};
 
-/// The number behind NAME=. @throws std::invalid_argument
+/// Parses the number in NAME=NUMBER. @throws std::invalid_argument
 double number_of(std::string_view word) {
   std::size_t const equals = word.find('=');
   std::string_view const text = word.substr(equals + 1);
@@ -36,7 +36,7 @@ double number_of(std::string_view word) {
                                           word.starts_with("offset") ? "-0.5" : "0.0614"));
 }
 
-/// The same, of a scale.
+/// Parses a positive number. @throws std::invalid_argument
 double scale_of(std::string_view word) {
   double const scale = number_of(word);
   if (scale > 0.0) return scale;

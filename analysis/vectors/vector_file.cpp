@@ -15,7 +15,8 @@
 namespace gladstone {
 namespace {
 
-/// A new format of text is one row here, tried from the top; the last takes what has the columns x, y, u, v.
+/// Reader of a text format. Readers are tried in order; the last accepts every table. A new format requires one more
+/// row.
 struct TextReader {
   bool (*recognizes)(detail::TextTable const&);
   VectorFile (*read)(detail::TextTable const&);
@@ -37,7 +38,7 @@ VectorFile read_text(std::string const& path) {
   return reader->read(table);
 }
 
-/// One coordinate of a lattice: the distinct values in ascending order, to 0.01 px.
+/// Returns the distinct values of a coordinate in ascending order; values within 0.01 px are equal.
 std::vector<double> distinct(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   std::vector<double> levels;
@@ -89,7 +90,7 @@ void arrange_as_grid(DisplacementField& field) {
   std::vector<double> const rows = distinct(y);
   if (columns.empty() || columns.size() * rows.size() != field.size()) return;
 
-  // Where every vector sits on its own node, `order` becomes a permutation.
+  // If every vector occupies its own node, `order` becomes a permutation.
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> order(field.size(), none);
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -115,7 +116,7 @@ void write_vectors(std::string const& path, DisplacementField const& field, File
   auto const sigma = [&](std::size_t i) { return field.sigma_px.empty() ? Vec2d{nan, nan} : field.sigma_px[i]; };
   auto const ratio = [&](std::size_t i) { return field.peak_ratio.empty() ? nan : field.peak_ratio[i]; };
   auto const status = [&](std::size_t i) { return field.status.empty() ? 0 : static_cast<int>(field.status[i]); };
-  // vectors that say nothing of it are their own raw ones, for no other reason than that they were measured
+  // Vectors without raw displacements are their own raw displacements, with reason 0 (as measured).
   auto const raw = [&](std::size_t i) { return field.raw_px.empty() ? field.displacement_px[i] : field.raw_px[i]; };
   auto const correlation = [&](std::size_t i) { return field.correlation.empty() ? nan : field.correlation[i]; };
   auto const reason = [&](std::size_t i) { return field.reason.empty() ? 0 : static_cast<int>(field.reason[i]); };

@@ -10,26 +10,28 @@
 
 namespace gladstone {
 
-/// How the numbers of a vector file relate to ours (column right and row down from 0 at the first pixel's centre,
-/// displacement = flow minus reference, v down). Columns first: exchanged. Then positions, in the file's own axes:
-/// x = x_file/px + offset, y' = y_file/px + offset, y = mirror - y' if y_up; displacements: u = u_file/px_per_frame,
-/// v = -v_file/px_per_frame if v_up, then both change sign if swapped.
+/// Conversion from the numbers of a vector file to our conventions: column to the right and row downwards from 0 at the
+/// first pixel's centre, displacement = frame B minus frame A (BOS: measurement minus reference), v downwards.
+/// The steps are: exchange the columns; positions, in the file's axes: x = x_file/px + offset, y' = y_file/px + offset,
+/// y = mirror - y' if y_up; displacements: u = u_file/px_per_frame, v = v_file/px_per_frame, negated if v_up; finally
+/// both change sign if swapped.
 struct VectorConventions {
   enum class Mirror {
-    grid,   ///< about the middle of the vector grid: y' min + y' max (OpenPIV's transform_coordinates)
-    image,  ///< about the middle of the image: rows - 1
+    grid,   ///< about the centre of the vector grid: mirror = y' min + y' max (OpenPIV's transform_coordinates)
+    image,  ///< about the centre of the image: mirror = rows - 1
   };
-  /// Which pairs of columns stand in each other's place.
-  enum class Exchange { none, places, components, axes };  ///< x and y, u and v, both
+  /// Pairs of columns that are exchanged.
+  enum class Exchange { none, places, components, axes };  ///< none, x with y, u with v, both pairs
 
-  bool y_up = false;       ///< y grows upwards
-  bool v_up = false;       ///< v counts upwards
-  bool swapped = false;    ///< reference minus flow: the frames were exchanged
-  double offset_px = 0.0;  ///< ours minus the file's coordinates; -0.5 for codes that report x = ws/2, -1 for 1-based
+  bool y_up = false;     ///< y increases upwards
+  bool v_up = false;     ///< v is positive upwards
+  bool swapped = false;  ///< displacement = frame A minus frame B: the frames were exchanged
+  /// Our coordinate minus the file's; -0.5 for software that reports x = ws/2 (ws: window size), -1 for 1-based pixels.
+  double offset_px = 0.0;
   Mirror mirror = Mirror::grid;
   Exchange exchange = Exchange::none;
-  std::optional<double> px{};            ///< a pixel, in the unit of the file's places
-  std::optional<double> px_per_frame{};  ///< a displacement of a pixel, in the unit of the file's displacements
+  std::optional<double> px{};            ///< size of a pixel, in the file's unit of position
+  std::optional<double> px_per_frame{};  ///< displacement of one pixel, in the file's unit of displacement
 
   bool exchanges_places() const { return exchange == Exchange::places || exchange == Exchange::axes; }
   bool exchanges_components() const { return exchange == Exchange::components || exchange == Exchange::axes; }
@@ -37,58 +39,62 @@ struct VectorConventions {
   friend bool operator==(VectorConventions const&, VectorConventions const&) = default;
 };
 
-/// As the user tells it: words separated by commas out of y-down, y-up (about the grid), y-up-image, v-down, v-up,
+/// Parses conventions: a comma-separated list of y-down, y-up (about the grid), y-up-image, v-down, v-up,
 /// frames-exchanged (or swapped), axes-exchanged, places-exchanged, components-exchanged, offset=NUMBER, px=NUMBER,
-/// px/frame=NUMBER; what is left unsaid is as in `from`. @throws std::invalid_argument naming the word
+/// px/frame=NUMBER.
+/// @param from  values of the properties that the text does not mention
+/// @throws std::invalid_argument that contains the invalid word
 VectorConventions parse_conventions(std::string_view text, VectorConventions from = {});
-/// The same words, complete: "y-up,v-up,offset=-0.5".
+/// Returns the conventions in the words of parse_conventions(), complete: "y-up,v-up,offset=-0.5".
 std::string describe(VectorConventions const& conventions);
 
-/// Vectors as they stand in a file.
+/// Vectors of a file, not yet converted to our conventions.
 struct VectorFile {
-  DisplacementField field;  ///< numbers as written
+  DisplacementField field;  ///< numbers as in the file
   std::string format;       ///< "gladstone", "OpenPIV", "PIVlab", "DaVis", "Insight", "JPIV", "named columns", ...
-  VectorConventions conventions;          ///< what the format's own program writes by default
-  bool foreign = true;                    ///< false: ours
-  std::vector<VectorConventions> also{};  ///< what it writes as well
-  std::string place_unit{};               ///< as the file states it; empty: px
-  std::string displacement_unit{};        ///< likewise
-  std::vector<std::string> warnings{};    ///< of what was assumed or not read
+  VectorConventions conventions;          ///< default of the program that writes the format
+  bool foreign = true;                    ///< false: written by gladstone
+  std::vector<VectorConventions> also{};  ///< other conventions that the program uses
+  std::string place_unit{};               ///< unit of the positions as stated in the file; empty: px
+  std::string displacement_unit{};        ///< unit of the displacements as stated in the file; empty: px
+  std::vector<std::string> warnings{};    ///< about assumptions and ignored parts of the file
 };
 
-/// Reads vectors.h5 or vectors.csv of ours, and text of OpenPIV, PIVlab, DaVis, TSI Insight, Dantec and JPIV; any text
-/// with a header line of columns x, y, u, v (or vx, vy), with or without units. Separators: comma, semicolon, tab or
-/// blanks; decimals may have commas. A complete lattice of vectors is put in our order (row by row from
-/// the smallest y) and `columns`, `rows` are set.
-/// @throws DataError with file:line for what cannot be read
+/// Reads vectors.h5 or vectors.csv of gladstone, text files of OpenPIV, PIVlab, DaVis, TSI Insight, Dantec and JPIV, or
+/// any text file with a header line that names columns x, y, u, v (or vx, vy), with or without units. Separators are
+/// comma, semicolon, tab or blanks; the decimal separator may be a comma. Vectors on a complete lattice are sorted row
+/// by row from the smallest y, and `columns` and `rows` are set.
+/// @throws DataError with file:line for content that cannot be read
 VectorFile read_vectors(std::string const& path);
 
-/// Whether words of conventions say how to read a file's axes, signs or places, not just how much a pixel is.
+/// Returns true if the words specify axes, signs or positions rather than only the size of a pixel.
 bool specifies_reading(std::string_view text);
-/// Puts the words of parse_conventions() over what the format's program writes.
+/// Replaces the format's default conventions by those of the words, see parse_conventions(). Unless only the size of a
+/// pixel is given, the format's alternatives are discarded.
 void override_conventions(VectorFile& file, std::string_view text);
 
-/// The same file with places and displacements in px, by its conventions' px and px_per_frame.
-/// @throws DataError where the file states other units and the conventions do not say what a pixel is in them
+/// Converts positions and displacements to px, by the px and px_per_frame of the file's conventions.
+/// @throws DataError if the file states other units and its conventions do not define the size of a pixel in them
 VectorFile convert_to_pixels(VectorFile file, std::string const& path);
 
-/// Vectors in our conventions; grids come back in our order. @pre they are in px
-/// @param image_rows for Mirror::image
+/// Converts vectors to our conventions; vectors on a complete lattice are sorted in our order.
+/// @pre the vectors are in px
+/// @param image_rows  number of rows of the image, for Mirror::image
 DisplacementField apply_conventions(DisplacementField field, VectorConventions const& conventions, int image_rows);
 
-/// Writes vectors.h5 (path ends in .h5) or vectors.csv: x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
-/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous; what was not estimated is NaN. CSV has one header line
-/// and 17 significant digits. A .h5 carries the verdict, the warnings and the hashes of its sources; plain numbers
-/// cannot.
-/// @throws OutputError; DataError where a source has changed since it was read; std::invalid_argument for another
-/// ending
+/// Writes vectors.h5 (path ends in .h5) or vectors.csv with x_px, y_px, u_px, v_px, sigma_u_px, sigma_v_px, peak_ratio,
+/// status, u_raw_px, v_raw_px, correlation, reason, ambiguous; quantities that were not estimated are NaN. CSV has one
+/// header line and 17 significant digits. A .h5 file also contains failed_test, the result of the decorrelation test,
+/// the warnings and the hashes of the sources.
+/// @throws OutputError; DataError if a source has changed since it was read; std::invalid_argument for another file
+///         extension
 void write_vectors(std::string const& path, DisplacementField const& field, FileOrigin const& origin);
 
-/// Keeps the vectors of these indices, in this order, as scattered ones.
+/// Selects vectors by index, in the given order; the result is scattered (columns = rows = 0).
 void take_vectors(DisplacementField& field, std::vector<std::size_t> const& order);
 
-/// Where the positions are a complete lattice (to 0.01 px), puts the vectors row by row from the smallest y, x
-/// ascending, and sets columns and rows; otherwise leaves them scattered.
+/// Sorts vectors row by row from the smallest y, with x ascending, and sets columns and rows if the positions are a
+/// complete lattice (within 0.01 px). Otherwise sets columns and rows to 0 and preserves the order.
 void arrange_as_grid(DisplacementField& field);
 
 }  // namespace gladstone

@@ -19,7 +19,7 @@ bool inside(double coordinate, int size) {
   return coordinate >= -outside_margin_px && coordinate <= size - 1 + outside_margin_px;
 }
 
-/// The rectangle that holds finite places.
+/// Bounding box of positions.
 struct Extent {
   Vec2d low{}, high{};
   bool any = false;
@@ -40,7 +40,7 @@ Extent extent_of(DisplacementField const& screened) {
   return extent;
 }
 
-/// Vectors at places (to 0.01 px) where another vector is, which would count twice; the first such place.
+/// Number of vectors whose position (within 0.01 px) another vector already has, and the first such position.
 struct RepeatedPlaces {
   std::size_t count = 0;
   Vec2d first{};
@@ -144,7 +144,7 @@ std::string refusal_of_places(DisplacementField const& screened, LeftOutVectors 
 }
 
 std::string doubt_about_places(DisplacementField const& screened, int image_columns, int image_rows) {
-  constexpr std::size_t fewest = 16;  // that tell how far a grid reaches
+  constexpr std::size_t fewest = 16;  // minimum number of vectors to judge the extent of a grid
   Extent const extent = extent_of(screened);
   Vec2d const size = extent.high - extent.low;
   double const share = size.x * size.y / (static_cast<double>(image_columns) * image_rows);

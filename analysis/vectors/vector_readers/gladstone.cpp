@@ -20,8 +20,10 @@ DisplacementField whole_field(std::vector<double> const& x, std::vector<double> 
 
 bool is_code(double value, int most) { return value >= 0.0 && value <= most && value == std::floor(value); }
 
-/// What files of older versions do not have: how each vector came about. @param column values by name
-/// @param place of the reason of vector i, and what it is called there
+/// Adds the origin of each vector (raw displacement, reason, correlation), which files of older versions do not
+/// contain.
+/// @param column  returns a column by name
+/// @param place   returns file location and name of the reason of vector i, for messages
 template <class Column, class Place>
 void add_origin(DisplacementField& field, Column const& column, Place const& place) {
   std::vector<double> const u = column("u_raw_px"), v = column("v_raw_px"), reason = column("reason"),

@@ -70,7 +70,8 @@ void add_offsets(VectorFile& file, std::initializer_list<double> offsets_px) {
   }
 }
 
-bool has_named_columns(TextTable const&) { return true; }  // the last row of the table: its columns are checked here
+// accepts every table; read_named_columns() checks the columns
+bool has_named_columns(TextTable const&) { return true; }
 
 VectorFile read_named_columns(TextTable const& table) {
   VectorFile file = read_quantities(table, "named columns");

@@ -18,11 +18,12 @@ VectorFile read_openpiv(TextTable const& table) {
       if (flag != 0.0) field.status[i] = flag == 2.0 ? VectorStatus::replaced : VectorStatus::invalid;
     }
     if (mask && table.values[*mask][i] != 0.0) {
-      field.status[i] = flags ? VectorStatus::masked : VectorStatus::invalid;  // without flags, mask marks the invalid
+      // without flags, mask denotes invalid vectors
+      field.status[i] = flags ? VectorStatus::masked : VectorStatus::invalid;
     }
   }
-  // As measured, or turned round by transform_coordinates; x = ws/2, which several passes measure at and one pass does
-  // half a pixel from: its centre is (ws - 1)/2.
+  // Either as measured or flipped by transform_coordinates. x = ws/2 is exact for several passes; for a single pass the
+  // window's centre is at (ws - 1)/2, half a pixel away.
   file.conventions.offset_px = -0.5;
   VectorConventions turned = file.conventions;
   turned.y_up = turned.v_up = true;

@@ -7,7 +7,7 @@
 namespace gladstone::detail {
 namespace {
 
-/// DaVis writes vectors that were taken out or masked as zeros.
+/// Masks vectors of exactly zero: DaVis writes removed or masked vectors as zeros.
 void mask_zeros(VectorFile& file, std::string const& path) {
   std::size_t masked = 0;
   for (std::size_t i = 0; i < file.field.size(); ++i) {

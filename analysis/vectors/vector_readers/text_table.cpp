@@ -23,7 +23,8 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-/// The separator of a line: the first of semicolon, tab, comma (which may be decimal ones) that it holds, else blank.
+/// Returns the separator of a line: the first of semicolon, tab and comma (possibly a decimal comma) that occurs in it,
+/// else a blank.
 char separator_of(std::string_view line) {
   for (char const candidate : {';', '\t', ','}) {
     if (line.find(candidate) != std::string_view::npos) return candidate;
@@ -49,9 +50,9 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
-/// How the fields of a row are written.
+/// Number format of a row.
 struct RowFormat {
-  char separator = 0;  ///< 0: not known yet
+  char separator = 0;  ///< 0: not yet determined
   char decimal = '.';
 };
 
@@ -65,7 +66,7 @@ std::optional<double> number(std::string_view text, char decimal = '.') {
   double value = 0.0;
   auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) {  // of a double: 1e400 is infinite, 1e-400 nothing
+  if (error == std::errc::result_out_of_range) {  // outside of the range of double: 1e400 is infinite, 1e-400 is 0
     bool const tiny = text.find("e-") != std::string_view::npos || text.find("E-") != std::string_view::npos;
     value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     return text.front() == '-' ? -value : value;
@@ -74,14 +75,15 @@ std::optional<double> number(std::string_view text, char decimal = '.') {
   return value;
 }
 
-/// Fields of a row; a separator that ends the line is none before another field.
+/// Splits a row into fields; ignores a separator at the end of the line.
 std::vector<std::string_view> fields_of(std::string_view line, RowFormat format, std::size_t columns) {
   std::vector<std::string_view> fields = split(line, format.separator);
   if (fields.size() == columns + 1 && fields.back().empty()) fields.pop_back();
   return fields;
 }
 
-/// The format in which a row is as many numbers as there are columns; where there is none, the line's first separator.
+/// Returns the format in which a row has as many numbers as there are columns; if there is none, the separator of the
+/// line.
 RowFormat row_format(std::string_view line, std::size_t columns) {
   constexpr std::array<RowFormat, 7> formats{
       {{';', '.'}, {';', ','}, {',', '.'}, {'\t', '.'}, {'\t', ','}, {' ', '.'}, {' ', ','}}};
@@ -95,7 +97,7 @@ RowFormat row_format(std::string_view line, std::size_t columns) {
   return {separator_of(line), '.'};
 }
 
-/// Column names; a header in blanks whose names carry their unit in brackets ("u [px/frame]") is cut after each unit.
+/// Parses column names. A blank-separated header with units in brackets ("u [px/frame]") is split after each unit.
 std::vector<std::string> column_names(std::string_view line) {
   line = trimmed(line);
   while (!line.empty() && (line.front() == '#' || line.front() == '%')) line = trimmed(line.substr(1));
@@ -114,12 +116,14 @@ std::vector<std::string> column_names(std::string_view line) {
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
     names.emplace_back(field);
   }
-  while (!names.empty() && names.back().empty()) names.pop_back();  // a separator that ends the line
+  while (!names.empty() && names.back().empty()) names.pop_back();  // a separator at the end of the line
   return names;
 }
 
-/// Names of Tecplot's variables: what stands behind VARIABLES =, in quotation marks or between commas and blanks, up to
-/// the next record of the header. @param text the header's lines, joined by blanks; empty without VARIABLES
+/// Parses the names of Tecplot's variables: the words after VARIABLES =, in quotation marks or separated by commas and
+/// blanks, up to the next record of the header.
+/// @param text  lines of the header, joined by blanks
+/// @return empty if there is no VARIABLES record
 std::vector<std::string> tecplot_variables(std::string const& text) {
   std::string const lower = lower_case(text);
   std::size_t at = lower.find("variables");
@@ -140,7 +144,7 @@ std::vector<std::string> tecplot_variables(std::string const& text) {
   return names;
 }
 
-/// Whether a zone's values stand variable by variable.
+/// Returns true if the values of a zone are stored variable by variable.
 bool is_block_packed(std::string const& header) {
   std::string packed = lower_case(header);
   std::erase_if(packed, [](unsigned char c) { return std::isspace(c) != 0; });
@@ -274,7 +278,7 @@ TextTable read_text_table(std::string const& path) {
     text = trimmed(text);
     if (text.empty()) continue;
 
-    // Lines before the first row of numbers: the last of them is the header.
+    // Skip the lines before the first row of numbers; the last of them is the header.
     if (format.separator == 0 && !number(split(text, separator_of(text)).front(), ',')) {
       if (at > most_lines_before_numbers) {
         fail(at, fmt::format("no row of numbers in {} lines; is this a table of vectors?", most_lines_before_numbers));

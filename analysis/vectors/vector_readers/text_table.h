@@ -9,51 +9,51 @@
 
 namespace gladstone::detail {
 
-/// What a column's name says: "U pix[pix]" is the quantity "u" in "pix".
+/// Column name split into quantity and unit: "U pix[pix]" is the quantity "u" in "pix".
 struct ColumnName {
-  std::string quantity;  ///< in small letters, without its unit
-  std::string unit;      ///< in small letters; empty: not stated
+  std::string quantity;  ///< lower case, without the unit
+  std::string unit;      ///< lower case; empty: not stated
 };
 ColumnName parse_column_name(std::string_view name);
 
-/// A text file of numbers in columns: what the readers of foreign vectors share.
+/// Text file of numbers in columns, common to all readers of foreign vectors.
 struct TextTable {
   std::string path;
   std::vector<std::string> preamble;        ///< lines before the header
-  std::vector<std::string> names;           ///< of the columns, as written, without quotes and outer blanks
-  std::size_t header_line = 0;              ///< its number, from 1
-  std::vector<std::vector<double>> values;  ///< by column
-  std::vector<std::size_t> line;            ///< of each row
-  bool tecplot = false;                     ///< the names are those of Tecplot's VARIABLES
-  bool has_header = true;                   ///< false: the names are those of the format
-  std::vector<std::string> warnings;        ///< "file:line: ..." of what was not read
+  std::vector<std::string> names;           ///< column names as in the file, without quotes and surrounding blanks
+  std::size_t header_line = 0;              ///< line number of the header, from 1; 0: no header
+  std::vector<std::vector<double>> values;  ///< one vector per column
+  std::vector<std::size_t> line;            ///< line number of each row, from 1
+  bool tecplot = false;                     ///< the names are from Tecplot's VARIABLES
+  bool has_header = true;                   ///< false: the names are defined by the format
+  std::vector<std::string> warnings;        ///< "file:line: ..." about ignored parts of the file
 
   std::size_t rows() const { return line.size(); }
-  /// The first column with one of these names, ignoring case.
+  /// Returns the index of the first column with one of these names, ignoring case.
   std::optional<std::size_t> find(std::initializer_list<std::string_view> any_of) const;
-  /// The same, or DataError naming the columns there are.
+  /// Returns the values of that column. @throws DataError with the available column names if there is none
   std::vector<double> const& column(std::initializer_list<std::string_view> any_of) const;
 
-  /// The column of one of these quantities, whatever its unit: in px if there is one, else in another unit, else the
-  /// first without any.
+  /// Returns the index of the column of one of these quantities: preferably in px, then in another unit, then without
+  /// unit.
   std::optional<std::size_t> find_quantity(std::initializer_list<std::string_view> any_of) const;
-  /// The same, or DataError naming the columns there are.
+  /// Like find_quantity(). @throws DataError with the available column names if there is none
   std::size_t quantity(std::initializer_list<std::string_view> any_of) const;
   /// @throws DataError naming the columns there are
   [[noreturn]] void refuse_missing(std::string_view wanted) const;
 };
 
-/// Whether a unit, as ColumnName has it, is that of pixels (or is not stated).
+/// Returns true if a unit, as in ColumnName, is a pixel unit or not stated.
 bool is_pixel_unit(std::string_view unit);
 
-/// Reads a table whose last line before the numbers names the columns ("# " in front is dropped), or Tecplot's
-/// VARIABLES; JPIV's .jvc has no header. Separators are comma, semicolon, tab or blanks, decimals have a point or, with
-/// another separator, a comma.
-/// @throws DataError with file:line for an empty file, no header, a row with another number of fields, a field that is
-/// not a number, Tecplot's BLOCK packing
+/// Reads a table. The last line before the numbers contains the column names (a leading "# " is ignored) unless
+/// Tecplot's VARIABLES does; JPIV's .jvc has no header. Separators are comma, semicolon, tab or blanks; the decimal
+/// separator is a point or, with another field separator, a comma.
+/// @throws DataError with file:line for an empty file, a missing header, a row with a wrong number of fields, a field
+///         that is not a number, or Tecplot's BLOCK packing
 TextTable read_text_table(std::string const& path);
 
-/// Text in small letters.
+/// Converts text to lower case.
 std::string lower_case(std::string_view text);
 
 }  // namespace gladstone::detail
