@@ -13,7 +13,7 @@ void remove(SetupNode& table, std::string const& key) {
   std::erase_if(table.members, [&key](SetupMember const& member) { return member.key == key; });
 }
 
-/// The only table of a name, written as a table or as an array of one; an empty one where there is none.
+/// Returns the table of a name, or the first of an array of tables; an empty table if there is none.
 SetupNode& table_of(SetupNode& root, std::string const& key) {
   static thread_local SetupNode empty;
   SetupNode* node = root.find(key);
@@ -24,7 +24,7 @@ SetupNode& table_of(SetupNode& root, std::string const& key) {
 }  // namespace
 
 CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs, RepeatSeeds seeds) {
-  SetupNode setup = parse_toml(loaded.document.resolved(), "resolved setup");  // every default is written out
+  SetupNode setup = parse_toml(loaded.document.resolved(), "resolved setup");  // all defaults are explicit
   std::string files;
   for (auto const& [name, hash] : inputs) files += fmt::format("\n{} {}", name, hash);
 
@@ -34,7 +34,8 @@ CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> c
   auto const field = inputs.find(loaded.setup.medium.field.file);
   keys.medium = toml_text(medium) + '\n' + (field == inputs.end() ? "" : field->second);
 
-  // The camera's electronics come after the light; the first window counts by the extent of the target only.
+  // The camera's electronics do not affect the light; the first interrogation window matters only through the target's
+  // extent.
   SetupNode& camera = table_of(setup, "camera");
   std::string const electronics =
       fmt::format("bits {}, exposure {}, full well {}, {} of photons", loaded.setup.camera.bit_depth,

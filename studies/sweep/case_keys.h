@@ -7,17 +7,20 @@
 
 namespace gladstone {
 
-/// What parts of a case depend on, as text: equal texts, equal parts to the last bit.
+/// Texts that identify the parts of a case that can be shared: equal texts imply bitwise equal parts.
 struct CaseKeys {
-  std::string medium;  ///< the field, built
-  std::string scene;   ///< dots, medium, lens, rays but for their number: step, strain and, with that number, frames
-  std::string rays;    ///< the number of rays
+  std::string medium;  ///< key of the refractive medium
+  /// Key of dots, medium, lens and rays except their number: determines step and strain and, with that number, the
+  /// frames.
+  std::string scene;
+  std::string rays;  ///< key of the number of rays
 };
 
-/// Whether the seeds of dots and of rays count: without them repeats of a case have equal keys.
+/// Treatment of the random seeds of dots and rays; if left out, all repeats of a case have equal keys.
 enum class RepeatSeeds { count, left_out };
 
-/// @param inputs of the manifest: names of files and their hashes
+/// Computes the keys of a case.
+/// @param inputs  of the manifest: hash of each input file by its name
 CaseKeys case_keys(CaseSetup const& loaded, std::map<std::string, std::string> const& inputs,
                    RepeatSeeds seeds = RepeatSeeds::count);
 

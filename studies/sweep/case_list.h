@@ -6,12 +6,12 @@
 
 namespace gladstone {
 
-/// Case numbers as a short text: "0-3,7,9-10". @pre growing
+/// Formats case numbers as a short text: "0-3,7,9-10". @pre in ascending order
 std::string case_list(std::vector<std::size_t> const& cases);
 
-/// The numbers of such a text, growing, each once.
-/// @param count cases of the study
-/// @throws DataError where the text is no list of cases, or names one from `count` on
+/// Parses such a text to case numbers in ascending order, without duplicates.
+/// @param count  number of cases of the study
+/// @throws DataError if the text is not a list of cases, or contains a number >= count
 std::vector<std::size_t> parse_case_list(std::string const& text, std::size_t count);
 
 }  // namespace gladstone

@@ -32,10 +32,10 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Media that together take more than this are not kept beside a new one [bytes].
+/// Maximum total size of the cached media when a new one is added [bytes].
 constexpr std::size_t kept_media_bytes = std::size_t{1} << 30;
 
-/// What a file was when it was hashed last: as long as it stays so, it is not read again.
+/// State of a file when it was last hashed; it is not read again as long as time and size are unchanged.
 struct HashedFile {
   fs::file_time_type time;
   std::uintmax_t size = 0;
@@ -56,7 +56,7 @@ void flatten(nlohmann::ordered_json const& json, std::string const& path,
   }
 }
 
-/// NaN are left out.
+/// Returns the largest value of a map, at least 0, ignoring NaN.
 double largest(Image<double> const& map) {
   double most = 0;
   for (double const value : map) most = std::max(most, std::isnan(value) ? 0 : value);
@@ -73,20 +73,21 @@ std::string hash_of_input(std::string const& path, ManifestCase const& one) {
   }
 }
 
-/// Whether an error tells of a lack of memory, which is no property of the case: another moment or machine has more.
+/// Returns true if an error was caused by insufficient memory, which is not a property of the case: a later run or
+/// another machine may have more.
 bool wants_memory(std::exception const& error) {
   std::string_view const text = error.what();
   return lacks_memory(error) || text.starts_with("out of device memory") ||
-         text.find("GB of memory (") != text.npos;  // as check_memory refuses, before anything is allocated
+         text.find("GB of memory (") != text.npos;  // wording of check_memory(), which throws before allocating
 }
 
-/// Whether the next case would meet the same.
+/// Returns true if the error would also affect the next case.
 bool stops_the_run(std::exception const& error) {
   return dynamic_cast<OutputError const*>(&error) || dynamic_cast<DeviceError const*>(&error) ||
          dynamic_cast<Interrupted const*>(&error);
 }
 
-/// Vectors and errors of a case whose other files stand in the folder already.
+/// Writes vectors and errors of a case into a folder that already contains its other files.
 void write_kept_results(std::string const& folder, DisplacementField const& vectors, Comparison comparison,
                         FileOrigin origin) {
   Hdf5Reader const truth((fs::path(folder) / case_file::truth).string());
@@ -165,7 +166,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
       compute(one, keep, observe, result);
     } catch (std::exception const& error) {
       if (!wants_memory(error)) throw;
-      shared_ = std::make_unique<Shared>();  // once more without what is kept for other cases
+      shared_ = std::make_unique<Shared>();  // repeat without the cached results of other cases
       result = fresh;
       compute(one, keep, observe, result);
     }
@@ -174,7 +175,7 @@ CaseResult CaseRunner::run(ManifestCase const& one, std::string const& keep, Cas
     if (!no_memory && stops_the_run(error)) throw;
     return failed_case(one.index, one.line_hash, device_.name(), message_of(error), no_memory);
   }
-  check_inputs(one);  // nor while it was computed
+  check_inputs(one);  // the inputs must not have changed during the computation either
   return result;
 }
 
@@ -213,7 +214,7 @@ void CaseRunner::compute(ManifestCase const& one, std::string const& keep, CaseO
   if (!plan) shared.plans.keep(plans.scene, {prepared.step, prepared.strain});
   if (!known.rays) shared.rays.keep(plans.rays, prepared.rays);
 
-  RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // of the dots: for truth.h5
+  RenderTheory const theory = keep.empty() ? RenderTheory::no : RenderTheory::yes;  // theory at the dots, for truth.h5
   std::string const traced =
       fmt::format("\n{}, rays {}, at side faces {}, for a level {}, fineness {}{}",
                   to_string(method_of(prepared.scene)), prepared.scene.rays_per_dot, prepared.scene.rays_at_side_faces,

@@ -13,12 +13,13 @@
 
 namespace gladstone {
 
-/// Whether a runner takes over from the cases before what this one agrees with them on. Over repeats: also what other
-/// dots and rays were planned (step, number of rays) and what truth and theory they had at the same vectors, which then
-/// hang on which of them came first, by no more than what those plans allow.
+/// Reuse of intermediate results from earlier cases. `yes` shares only what is identical. `over_repeats` also shares,
+/// between cases that differ only in the random dots and rays, the planned step and number of rays and the truth and
+/// theory at common vectors. These then depend on which of the cases was computed first, within the tolerances of the
+/// ray budget.
 enum class Sharing { yes, no, over_repeats };
 
-/// A case in memory, before it is let go.
+/// Results of a case, passed to an observer before they are discarded.
 struct ObservedCase {
   PreparedCase const& prepared;
   RenderedCase const& rendered;
@@ -27,23 +28,24 @@ struct ObservedCase {
 };
 using CaseObserver = std::function<void(ObservedCase const&)>;
 
-/// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends on its manifest
-/// line alone (but for Sharing::over_repeats): what is shared between cases (fields and their splines, planned steps
-/// and rays, renderings, truth at vectors) is what the case itself would have computed, to the last bit. A reference
-/// frame is traced with the rays of its flow frame, whose pupil is as wide as the medium bends; so frames are shared
-/// where the medium agrees too.
+/// Computes cases of a study in memory: rendering, correlation, comparison. A case's result depends only on its
+/// manifest line (except for Sharing::over_repeats): shared intermediate results (fields and their splines, steps,
+/// numbers of rays, renderings, truth at vectors) are bitwise equal to what the case itself would compute. The rays of
+/// frame A are traced through the pupil of frame B, which is enlarged according to the medium; frames are therefore
+/// shared only between cases with the same medium.
 class CaseRunner {
  public:
-  /// @param least_apart_px of the vectors that are compared: of a lattice that is denser, every second is, or third ...
+  /// @param least_apart_px  minimum spacing of the compared vectors; of a denser lattice, only every n-th row and
+  ///                        column is compared
   explicit CaseRunner(Device device, Sharing sharing = Sharing::yes, int least_apart_px = 0);
   ~CaseRunner();
 
-  /// Computes a case. What goes wrong in computing it is its result (`failed`).
-  /// @param keep folder to write the whole CASE to, as render, correlate and compare would, without figures; empty:
-  /// nothing is written
-  /// @param observe told of the case once it is compared; empty: nobody
-  /// @throws DataError where an input is not what it was when the study was planned; Interrupted, OutputError,
-  ///         DeviceError (but a device without enough memory fails the case alone)
+  /// Computes a case. Errors in the computation become a result with status `failed`.
+  /// @param keep     folder in which all files of the case are written, as by render, correlate and compare but without
+  ///                 figures; empty: none
+  /// @param observe  called after the comparison; may be empty
+  /// @throws DataError if an input has changed since the study was planned; Interrupted; OutputError; DeviceError
+  ///         (insufficient device memory only fails the case)
   CaseResult run(ManifestCase const& one, std::string const& keep = "", CaseObserver const& observe = {});
 
  private:
@@ -58,8 +60,8 @@ class CaseRunner {
   std::unique_ptr<Shared> shared_;
 };
 
-/// The numbers of what errors.json holds by their path ("budget.terms.cone.rms_px"), in its order; arrays and texts are
-/// left out, null is NaN.
+/// Returns the numbers of errors.json by path ("budget.terms.cone.rms_px"), in its order. Null becomes NaN; arrays and
+/// texts are omitted.
 std::vector<std::pair<std::string, double>> flat_measures(nlohmann::ordered_json const& errors);
 
 }  // namespace gladstone

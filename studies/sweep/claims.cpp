@@ -23,7 +23,7 @@ namespace {
                                       std::strerror(error)));
 }
 
-/// @return -1 with errno where it cannot be opened
+/// Opens the claims file. @return -1 with errno set if it cannot be opened
 int open_claims(std::string const& path, Claims::Use use) {
   return ::open(path.c_str(), (use == Claims::Use::take ? O_RDWR | O_CREAT : O_RDONLY) | O_CLOEXEC, 0666);
 }
@@ -50,7 +50,7 @@ Claims::~Claims() {
 
 bool Claims::take(std::size_t index) {
   bool taken = lock(index);
-  // not for ever: some file systems number their files anew at every look
+  // Limit the attempts: on some file systems the inode number changes with every call.
   for (int attempt = 0; attempt < 5 && is_replaced(); ++attempt) {
     int const fresh = open_claims(path_, Use::take);
     if (fresh < 0) not_opened(path_, Use::take, errno);

@@ -5,37 +5,40 @@
 
 namespace gladstone {
 
-/// Who computes which case: byte INDEX of the file RUN/claims is locked (file_lock.h) while a process works on case
-/// INDEX.
+/// Locks on cases, one per case, held by the processes that compute them: byte INDEX of the file RUN/claims is locked
+/// (file_lock.h) while a process works on case INDEX.
 class Claims {
  public:
   enum class Use {
-    take,  ///< RUN/claims is made where it is missing
-    look   ///< nothing is written; without RUN/claims no case is held
+    take,  ///< for claiming cases; creates RUN/claims if it is missing
+    look   ///< read-only; if RUN/claims is missing, no case is claimed
   };
-  /// Opens RUN/claims. @throws OutputError, where RUN is read-only and claims are to be taken too
+  /// Opens RUN/claims. @throws OutputError if it cannot be opened, for example because RUN is read-only and Use is
+  /// `take`
   Claims(std::string const& run, Use use);
   ~Claims();
   Claims(Claims const&) = delete;
   Claims& operator=(Claims const&) = delete;
 
-  /// Takes a case for this object; false where another has it. Where RUN/claims has been replaced or removed since, the
-  /// new one is locked, which others look at too. @pre made to take
-  /// @throws OutputError where the file system has no locks
+  /// Claims a case for this object. If RUN/claims has been replaced or removed since it was opened, the new file is
+  /// opened and locked, since other processes use that one.
+  /// @return false if another process has claimed the case
+  /// @pre opened with Use::take
+  /// @throws OutputError if the file system does not support locks
   bool take(std::size_t index);
   void release(std::size_t index);
 
-  /// Whether another holds this case, or any.
+  /// Returns true if another process has claimed this case, or any case.
   bool held(std::size_t index) const;
   bool any_held() const;
 
  private:
   bool lock(std::size_t index);
-  bool is_replaced() const;  ///< RUN/claims is another file than the one that was opened
+  bool is_replaced() const;  ///< RUN/claims is not the file that was opened
   bool held_from(std::size_t first, std::size_t count) const;
 
   std::string path_;
-  int file_ = -1;  ///< -1: not there, and only looked for
+  int file_ = -1;  ///< -1: the file does not exist and Use is `look`
 };
 
 }  // namespace gladstone

@@ -15,7 +15,7 @@
 namespace gladstone {
 namespace {
 
-/// RFC 4180: quotes where a comma, a quote or a line end stands inside.
+/// Quotes a cell according to RFC 4180 if it contains a comma, quotation mark or line end.
 std::string cell(std::string const& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -36,7 +36,7 @@ std::string csv_of(StudyTable const& table, std::vector<StudyColumn> const& colu
       separator = ',';
       double const number = column.number(row);
       if (column.name == "seed") {
-        text += std::to_string(row.seed);  // has more digits than a double
+        text += std::to_string(row.seed);  // more digits than a double has
       } else if (!column.labels.empty()) {
         text += cell(column.labels[static_cast<std::size_t>(number)]);
       } else {
@@ -75,7 +75,7 @@ StudyTable collect_study(std::string const& run) {
   std::string const study = in_run(run_file::study), manifest = in_run(run_file::manifest);
   std::string const points = in_run(run_file::points_text);
   std::error_code error;
-  if (!fs::exists(manifest, error)) read_manifest(run);  // says so
+  if (!fs::exists(manifest, error)) read_manifest(run);  // throws DataError with an explanation
   refuse_inputs_as_outputs({in_run(run_file::table), in_run(run_file::table_text), points}, {study, manifest});
   OutputFile const tried(in_run(run_file::table));
   SourceFiles sources;

@@ -28,13 +28,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lattice constants of the displacement maps: every pixel of PIV, whose flow is known everywhere; of BOS, whose every
-/// node is a dot that is traced through the medium, every fourth [px].
+/// Spacing of the displacement maps [px]. PIV maps have every pixel, since the flow is known everywhere; BOS maps have
+/// every fourth, since every node is a dot that must be traced through the medium.
 constexpr int piv_spacing_px = 1, bos_spacing_px = 4;
-/// Rows of a chunk of the lists.
+/// Number of rows per HDF5 chunk of the lists.
 constexpr std::size_t list_chunk = 8192;
 
-/// A case whose folder is there, and how many sources it has.
+/// Case with a stored folder, and its number of sources (dots or particles).
 struct CaseWithImages {
   std::string folder;
   std::string sources;  ///< "/dots" or "/particles"
@@ -59,7 +59,7 @@ std::vector<std::uint16_t> levels_of(Image<double> const& image) {
   return levels;
 }
 
-/// Both frames of a case, as their files hold them. @throws DataError where they are of another size than the first's
+/// Reads the grey levels of both frames of a case. @throws DataError if their size differs from that of the first case
 std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<std::size_t> const& size) {
   std::vector<std::uint16_t> both;
   for (char const* name : {case_file::reference, case_file::flow}) {
@@ -77,7 +77,7 @@ std::vector<std::uint16_t> read_frames(CaseWithImages const& one, std::vector<st
   return both;
 }
 
-/// A map of the data set: its name, the image that its places are of, and that in words.
+/// Displacement map of the data set: name, image to which its positions refer, and a description of these.
 struct DisplacementMapName {
   char const* name;
   TruthAt at;
@@ -90,10 +90,10 @@ constexpr std::array maps{
                         "mid-time: the displacement of what is at this pixel midway between its images in both frames"},
 };
 
-/// A kept case made ready to trace once more. @throws DataError where a file that it names has changed
+/// Prepares a stored case for ray tracing. @throws DataError if one of its input files has changed
 PreparedCase prepare_again(CaseWithImages const& one) {
   require_unchanged_inputs(one.folder);
-  QuietLog const quiet;  // what there is to warn of stands in its summary.json
+  QuietLog const quiet;  // its warnings are already in its summary.json
   CaseSetup loaded = load_case_setup(in_case(one.folder, case_file::setup), {});
   StrainMap const unused{};
   KnownParts known;

@@ -7,18 +7,18 @@
 
 namespace gladstone {
 
-/// What was packed.
+/// Numbers of packed and omitted cases.
 struct PackedDataset {
-  std::size_t cases = 0;    ///< in the file
-  std::size_t without = 0;  ///< cases of the study that are not: not finished, or computed without --keep-images
+  std::size_t cases = 0;    ///< number of cases in the file
+  std::size_t without = 0;  ///< number of omitted cases: not finished, or computed without --keep-images
 };
 
-/// Packs images and truth of the cases whose folders a study has kept into one HDF5 file, for people who train and test
-/// estimators (docs/file-formats.md), with true displacements at pixels that are computed from the cases' setups
-/// (displacement_truth.h). One case is in memory at a time.
-/// @param path must not be a file of the run
-/// @throws DataError where no case has images, their sizes differ, cases of BOS and PIV are mixed, or a file that a
-///         case was rendered from has changed; OutputError
+/// Packs images and truth of a study's cases into one HDF5 file for training and testing displacement estimators
+/// (docs/file-formats.md). Includes maps of the true displacement at pixels, computed from the setups of the cases
+/// (displacement_truth.h). Only cases computed with --keep-images are packed, one at a time in memory.
+/// @param path  output file, which must not be a file of the run
+/// @throws DataError if no case has images, image sizes differ, BOS and PIV cases are mixed, or an input file of a case
+///         has changed; OutputError
 PackedDataset pack_dataset(std::string const& run, std::string const& path, Renderer& renderer);
 
 }  // namespace gladstone

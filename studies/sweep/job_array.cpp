@@ -73,7 +73,7 @@ JobArray make_job_array(std::string const& program, std::string const& run, std:
                              fmt::arg("lines", fmt::join(array.tasks, "\n")), fmt::arg("program", shell_word(program)),
                              fmt::arg("run", shell_word(run)), fmt::arg("options", run_options));
 
-  // --chdir takes the path as it is, --output would read a '%' in it
+  // --chdir uses the path literally, whereas --output would interpret a '%' in it.
   std::string const throttle = options.throttle > 0 ? fmt::format("%{}", options.throttle) : "";
   array.command = {"sbatch",
                    "--parsable",

@@ -6,40 +6,40 @@
 
 namespace gladstone {
 
-/// How the missing cases of a study go to a Slurm cluster; texts are passed to sbatch as they are.
+/// Options of a Slurm job array that computes the missing cases of a study. Texts are passed to sbatch unchanged.
 struct SlurmOptions {
-  std::string partition;            ///< --partition; empty: the cluster's default
-  std::string time;                 ///< --time of a task; empty: the partition's default
-  std::string gres;                 ///< --gres of a task, "gpu:1"
-  std::vector<std::string> sbatch;  ///< any other options, "--account=flow"
-  std::vector<std::string> run;     ///< further options of a task's `sweep run`, "--keep-images"
-  std::size_t cases_per_task = 0;   ///< 0: as few as the cluster's arrays allow
-  std::size_t throttle = 0;         ///< tasks that run at a time; 0: as many as the cluster has room for
+  std::string partition;            ///< sbatch --partition; empty: default of the cluster
+  std::string time;                 ///< sbatch --time per task; empty: default of the partition
+  std::string gres;                 ///< sbatch --gres per task, such as "gpu:1"
+  std::vector<std::string> sbatch;  ///< other options of sbatch, such as "--account=flow"
+  std::vector<std::string> run;     ///< other options of each task's `sweep run`, such as "--keep-images"
+  std::size_t cases_per_task = 0;   ///< 0: the minimum that the cluster's array size permits
+  std::size_t throttle = 0;         ///< maximum number of concurrent tasks; 0: no limit
 };
 
-/// A job array, ready to be submitted: each of its tasks computes a slice of the cases.
+/// Job array that is ready for submission; each task computes a slice of the cases.
 struct JobArray {
   std::size_t cases = 0;
   std::size_t cases_per_task = 0;    ///< the last task may have fewer
-  std::vector<std::string> tasks;    ///< the cases of each task, as case_list() writes them
+  std::vector<std::string> tasks;    ///< cases of each task, in the format of case_list()
   std::string script;                ///< text of the job script
-  std::string script_path;           ///< RUN/slurm/job.sh; the logs of tasks stand beside it, JOB_TASK.log
-  std::vector<std::string> command;  ///< that submits it: sbatch and its arguments
+  std::string script_path;           ///< RUN/slurm/job.sh; each task writes its log JOB_TASK.log to the same folder
+  std::vector<std::string> command;  ///< command line that submits the array: sbatch and its arguments
 };
 
-/// RUN/slurm/job.sh
+/// Returns RUN/slurm/job.sh.
 std::string job_script_path(std::string const& run);
 
-/// Text as one word of a shell's command line, quoted where it needs to be.
+/// Quotes a text, if necessary, so that a shell reads it as one word.
 std::string shell_word(std::string const& text);
 
-/// Slices the cases into tasks and writes what runs them. A task calls `PROGRAM sweep run RUN --case SLICE`, which
-/// computes only what is missing, so that a task may be repeated at will.
-/// @param program absolute path of gladstone, as the nodes see it
-/// @param run     absolute path of the study's RUN folder, as the nodes see it
-/// @param cases   missing ones, growing
-/// @param most    tasks in an array of this cluster
-/// @throws std::invalid_argument where more tasks are needed, with how many cases a task must have
+/// Divides the cases into tasks and generates the job script. A task runs `PROGRAM sweep run RUN --case SLICE`, which
+/// computes only missing cases, so that tasks can be repeated safely.
+/// @param program  absolute path of gladstone on the nodes
+/// @param run      absolute path of the study's RUN folder on the nodes
+/// @param cases    missing cases, in ascending order
+/// @param most     maximum number of tasks of an array on this cluster
+/// @throws std::invalid_argument with the required number of cases per task if more tasks would be needed
 JobArray make_job_array(std::string const& program, std::string const& run, std::vector<std::size_t> const& cases,
                         SlurmOptions const& options, std::size_t most);
 

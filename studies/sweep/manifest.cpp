@@ -18,8 +18,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A text, a number, or {label, value} for a number that the study gives a label; JSON knows no infinity: it is a text
-/// there.
+/// Formats a value as a text, a number, or {label, value} for a number with a label. JSON has no infinity, which
+/// becomes a text.
 Json value_json(ParameterValue const& value) {
   if (!value.number) return value.label;
   if (!value.has_own_label() && std::isfinite(*value.number)) return *value.number;
@@ -36,14 +36,14 @@ ParameterValue value_of(Json const& json) {
   return {json.at("label").get<std::string>(), number};
 }
 
-constexpr std::string_view hash_start = ",\"hash\":\"";  // then 16 digits and `"}`: the end of every line
+constexpr std::string_view hash_start = ",\"hash\":\"";  // followed by 16 digits and `"}` at the end of every line
 constexpr std::size_t hash_end_size = hash_start.size() + 16 + 2;
 
 bool has_hash(std::string_view line) {
   return line.size() > hash_end_size && line.substr(line.size() - hash_end_size).starts_with(hash_start);
 }
 
-/// Nothing where an object is no case of a manifest of ours.
+/// Returns nullopt if the object is not a case of a gladstone manifest.
 std::optional<int> version_of(Json const& json) {
   if (!json.is_object() || !json.contains("manifest") || !json.contains("index")) return std::nullopt;
   Json const& version = json["manifest"];
@@ -63,7 +63,7 @@ ManifestCase case_of(Json const& json, std::string_view line) {
   return one;
 }
 
-/// What the line of a case begins with as manifest_line writes it.
+/// Returns the start of a case's line as written by manifest_line().
 std::string line_start(std::size_t index) {
   return fmt::format("{{\"manifest\":{},\"index\":{},", manifest_version, index);
 }
@@ -74,7 +74,7 @@ std::string place_of(std::string const& path, std::size_t index) { return fmt::f
   throw DataError(place, "is damaged or cut short (every line is one JSON object); plan the study again");
 }
 
-/// @param place for messages
+/// @param place  file and line, for messages
 ManifestCase parse_line(std::string_view line, std::size_t index, std::string const& place) {
   Json const json = Json::parse(line, nullptr, false);
   if (!json.is_object()) damaged(place);
@@ -149,7 +149,7 @@ std::string hash_of_line(std::string_view line) {
 }
 
 std::optional<int> version_of_manifest(InputFile const& file) {
-  // as manifest_line() begins a line; what another gladstone, or somebody else, wrote is parsed
+  // Try the format of manifest_line() first; parse the line if another version or program wrote it.
   std::string text(64, '\0');
   text.resize(file.read(0, text.data(), text.size()));
   int version = 0, index = -1;
@@ -162,8 +162,8 @@ std::optional<int> version_of_manifest(InputFile const& file) {
 
 Manifest::Manifest(std::string const& path) : file_(path, "the folder of a planned study") {
   std::vector<char> buffer(std::size_t{4} << 20);
-  std::size_t held = 0;    // bytes of the buffer, from the start of a line on
-  std::uint64_t read = 0;  // bytes of the file
+  std::size_t held = 0;    // bytes in the buffer, beginning at the start of a line
+  std::uint64_t read = 0;  // bytes read from the file
   while (true) {
     std::size_t const got = file_.read(read, buffer.data() + held, buffer.size() - held);
     read += got;

@@ -12,40 +12,45 @@
 
 namespace gladstone {
 
-/// What an axis of a study is set to in a case.
+/// Value of a study's axis in a case.
 struct ParameterValue {
-  std::string label;             ///< as shown: a number, a text, or the label that the study gives
-  std::optional<double> number;  ///< where the value is a number, in the key's own unit
+  std::string label;             ///< displayed text: a number, a text, or the label in the study file
+  std::optional<double> number;  ///< in the unit of the key; nullopt if the value is not a number
 
-  /// Whether the study calls a number something else than the number.
+  /// Returns true if the study file defines a label for a number that differs from the number itself.
   bool has_own_label() const;
 };
 
-/// How a number is shown that has no label of its own.
+/// Formats a number that has no label in the study file.
 std::string number_label(double number);
 
-/// One case of a study: one line of RUN/manifest.jsonl, on which alone its result depends.
+/// One case of a study: a line of RUN/manifest.jsonl, which determines its result completely.
 struct ManifestCase {
-  std::size_t index = 0;                                           ///< from 0, the line less one
-  std::size_t repeat = 0;                                          ///< from 0; repeats have other dots, rays and noise
-  std::uint64_t seed = 0;                                          ///< of the repeat; equal for all points of the study
-  std::string device;                                              ///< "cpu" or "cuda": who may compute it
-  std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< by axis key path, in the study's order
-  std::string setup;                          ///< full setup (TOML), file names absolute, every "auto" still one
-  std::map<std::string, std::string> inputs;  ///< absolute name of every file that the setup names, and its file_hash()
-  std::string line_hash;                      ///< content_hash() of the line without its last member, which it is
+  std::size_t index = 0;  ///< from 0: line number - 1
+  /// From 0; repeats differ in random dots, rays and noise.
+  std::size_t repeat = 0;
+  /// Seed of the repeat, equal for all points of the study.
+  std::uint64_t seed = 0;
+  /// "cpu" or "cuda": device that must compute the case.
+  std::string device;
+  std::vector<std::pair<std::string, ParameterValue>> parameters;  ///< by key path of the axis, in the study's order
+  /// Complete setup (TOML) with absolute file names; "auto" values are not resolved.
+  std::string setup;
+  std::map<std::string, std::string> inputs;  ///< file_hash() of every file in the setup, by its absolute name
+  /// Content_hash() of the line without its last member, which contains this hash.
+  std::string line_hash;
 
   /// "case 17 (lens.f_number = 8, geometry.z_d_mm = 250)"
   std::string title() const;
 };
 
-/// The names of what stands in a RUN folder.
+/// Names of the files in a RUN folder.
 namespace run_file {
 inline constexpr char const* manifest = "manifest.jsonl";
 inline constexpr char const* study = "study.toml";  ///< copy of the study file
-inline constexpr char const* base = "base.toml";    ///< the setup that every case starts from, file names absolute
-inline constexpr char const* claims = "claims";     ///< locked byte by byte by who computes which case
-inline constexpr char const* cases = "cases";       ///< folder of results, INDEX.json
+inline constexpr char const* base = "base.toml";    ///< base setup of all cases, with absolute file names
+inline constexpr char const* claims = "claims";     ///< lock file, one byte per case, see Claims
+inline constexpr char const* cases = "cases";       ///< folder of the results INDEX.json
 inline constexpr char const* table = "study.h5";
 inline constexpr char const* table_text = "study.csv";
 inline constexpr char const* points_text = "study_points.csv";
@@ -53,38 +58,38 @@ inline constexpr char const* points_text = "study_points.csv";
 
 inline constexpr int manifest_version = 2;
 
-/// The text of a case's line, without line end. Equal cases give equal text. Its last member is the line_hash.
+/// Formats a case as a manifest line without line end; its last member is the line_hash. Equal cases give equal texts.
 std::string manifest_line(ManifestCase const& one);
 
-/// The line_hash of a line.
+/// Computes the line_hash of a line.
 std::string hash_of_line(std::string_view line);
 
-/// The version of the manifest that a file's first line begins; nothing where it is no gladstone manifest.
+/// Returns the manifest version from the first line of a file, or nullopt if it is not a gladstone manifest.
 std::optional<int> version_of_manifest(InputFile const& file);
 
-/// RUN/manifest.jsonl, which is not held in memory: a case is read and parsed when it is asked for. Of many workers
-/// each needs some cases only, and who looks at results needs no more than the hashes of their lines.
+/// Index of RUN/manifest.jsonl, which is not held in memory: cases are read and parsed on access. Each of many workers
+/// needs only some of the cases, and reading results requires only the hashes of the lines.
 class Manifest {
  public:
-  /// Reads the file through for its lines. It must stay as it is; another may take its place.
-  /// @throws DataError at manifest.jsonl:LINE for a foreign or damaged file, a line cut short, out of order or of
-  /// another version
+  /// Scans the file for its lines. The file must not be modified afterwards, but may be replaced by another.
+  /// @throws DataError at manifest.jsonl:LINE for a foreign or damaged file, or a line that is truncated, out of order
+  ///         or of another version
   explicit Manifest(std::string const& path);
 
   std::size_t size() const { return ends_.size(); }
-  /// @throws DataError where the line is not what was planned, by its hash, or has none
+  /// Reads a case. @throws DataError if the line has no hash or does not match it
   ManifestCase operator[](std::size_t index) const;
-  /// Of the line as it stands, whatever hash it holds.
+  /// Returns the hash computed from the line's content, regardless of the hash stored in it.
   std::string line_hash(std::size_t index) const;
 
  private:
   std::string line(std::size_t index) const;
 
   InputFile file_;
-  std::vector<std::uint64_t> ends_;  ///< of every line, before its line end
+  std::vector<std::uint64_t> ends_;  ///< offset of each line's end, excluding the line end character
 };
 
-/// Reads RUN/manifest.jsonl. @throws DataError as Manifest, and where there is none
+/// Opens RUN/manifest.jsonl. @throws DataError as Manifest, and if the file does not exist
 Manifest read_manifest(std::string const& run);
 
 }  // namespace gladstone

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Results in RUN that are whole, without their numbers. @throws DataError where one is of another version
+/// Reads the heads of all intact results in RUN. @throws DataError if one is of another version
 std::vector<CaseResult> whole_results(fs::path const& run) {
   std::vector<CaseResult> results;
   std::error_code error;
@@ -43,10 +43,11 @@ std::vector<CaseResult> whole_results(fs::path const& run) {
   return results;
 }
 
-/// Whether a folder holds nothing but what write_plan() leaves when it is cut short: by a full disk, or killed.
+/// Returns true if a folder contains only what write_plan() leaves behind when it is interrupted, by a full disk or a
+/// signal.
 bool left_by_a_cut_plan(fs::path const& folder) {
   std::error_code error;
-  // study.toml and base.toml are written after cases/ was made: alone they are somebody else's
+  // study.toml and base.toml are written after cases/; without cases/ they are the user's files.
   bool const ours = fs::is_directory(folder / run_file::cases, error) && fs::is_empty(folder / run_file::cases, error);
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::string const name = entry->path().filename().string();
@@ -60,7 +61,7 @@ bool left_by_a_cut_plan(fs::path const& folder) {
   return !error;
 }
 
-/// @throws OutputError where RUN is there and is no study's
+/// Checks that RUN does not exist, is empty or is a study. @throws OutputError otherwise
 void refuse_foreign_run(fs::path const& folder) {
   fs::path const manifest = folder / run_file::manifest;
   std::error_code error;
@@ -77,7 +78,7 @@ void refuse_foreign_run(fs::path const& folder) {
   }
 }
 
-/// Hands out the lines of a plan in their order, each with its end, until one is not taken.
+/// Passes the lines of a plan, with line ends, to `take` in their order until it returns false.
 void each_line(StudyPlan const& plan, std::string const& label, std::function<bool(std::string const&)> const& take) {
   constexpr std::size_t at_once = 4096;
   Progress progress(label, plan.size());
@@ -94,7 +95,7 @@ void each_line(StudyPlan const& plan, std::string const& label, std::function<bo
   }
 }
 
-/// Whether a manifest is the plan's, byte by byte.
+/// Returns true if a manifest equals the plan byte by byte.
 bool is_the_same(InputFile const& manifest, StudyPlan const& plan) {
   std::uint64_t offset = 0;
   std::string there;
@@ -108,7 +109,7 @@ bool is_the_same(InputFile const& manifest, StudyPlan const& plan) {
   return same && offset == manifest.size();
 }
 
-/// @param manifest for messages
+/// @param manifest  final path, for messages
 void write_lines(StudyPlan const& plan, std::string const& path, std::string const& manifest) {
   auto const fail = [&manifest](int error) {
     throw OutputError(manifest, fmt::format("cannot be written ({})", std::strerror(error != 0 ? error : EIO)));

@@ -6,19 +6,20 @@
 
 namespace gladstone {
 
-/// Tries RUN before a study is planned into it. @throws OutputError where it holds something else, cannot be written,
-/// or the plan would write over a file that is read for it
+/// Checks whether a study can be planned into RUN.
+/// @throws OutputError if RUN contains something other than a study, cannot be written, or the plan would overwrite one
+///         of its own inputs
 void try_plan_place(std::string const& run, StudyFile const& study);
 
-/// What planning found in RUN.
+/// Result of planning: into a new folder, onto an identical plan, or replacing a different plan.
 enum class Planned { fresh, unchanged, replaced };
 
-/// Writes RUN/manifest.jsonl, with a copy of the study and of its base beside it. A RUN that is planned already stays
-/// as it is where the manifest is the same, and is planned anew where no result would be lost: each that is there
-/// belongs to the same line of the new manifest (more repeats come at the end). What a plan that was cut short has left
-/// does not stand in the way. Lines are made in parallel and written as they come, some thousands at a time.
-/// @throws OutputError where results would be lost, cases are being computed, or RUN holds something else;
-///         DataError where RUN's results are of another version, or an input cannot be read
+/// Writes RUN/manifest.jsonl and copies of the study file and its base setup. An existing identical manifest is left
+/// unchanged. A different one is replaced if no result would be lost, that is, if every existing result belongs to the
+/// same line of the new manifest (additional repeats are appended). Remains of an interrupted plan are overwritten.
+/// Lines are generated in parallel and written in blocks of some thousand.
+/// @throws OutputError if results would be lost, cases are being computed, or RUN contains something else; DataError if
+///         results in RUN are of another version, or an input cannot be read
 Planned write_plan(std::string const& run, StudyPlan const& plan);
 
 }  // namespace gladstone

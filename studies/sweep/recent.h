@@ -7,13 +7,13 @@
 
 namespace gladstone {
 
-/// The last few values by the text that they depend on, and no more than so many bytes of them.
+/// Least-recently-used cache of values by a text key, with limits on the number of entries and on their size in bytes.
 template <class Value>
 class Recent {
  public:
   explicit Recent(std::size_t most) : most_(most) {}
 
-  /// Nothing where it is not kept. What is found counts as used last.
+  /// Returns the value and marks it as most recently used, or returns nullptr if it is not cached.
   Value* find(std::string const& key) {
     for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
       if (entry->key != key) continue;
@@ -23,7 +23,7 @@ class Recent {
     return nullptr;
   }
 
-  /// Keeps a value that takes so many bytes, instead of the one used longest ago where there are too many.
+  /// Adds a value of the given size; if the cache is full, the least recently used value is evicted.
   Value& keep(std::string const& key, Value value, std::size_t bytes = 0) {
     if (entries_.size() >= most_) drop_last();
     entries_.push_front({key, std::move(value), bytes});
@@ -31,7 +31,7 @@ class Recent {
     return entries_.front().value;
   }
 
-  /// Drops those used longest ago until so many bytes more make no more than most_bytes, or none is left.
+  /// Evicts the least recently used values until `bytes` more fit into `most_bytes`, or the cache is empty.
   void make_room(std::size_t bytes, std::size_t most_bytes) {
     while (!entries_.empty() && bytes_ + bytes > most_bytes) drop_last();
   }
@@ -49,7 +49,7 @@ class Recent {
   }
 
   std::size_t most_, bytes_ = 0;
-  std::list<Entry> entries_;  ///< the one used last comes first
+  std::list<Entry> entries_;  ///< most recently used first
 };
 
 }  // namespace gladstone

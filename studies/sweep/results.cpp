@@ -30,15 +30,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::uint64_t result_version = 2;
 constexpr std::size_t hash_digits = 16;
-constexpr std::string_view head = "{\"hash\":\"";  // then the digits, then `",` and what is hashed
+constexpr std::string_view head = "{\"hash\":\"";  // followed by the digits, `",` and the hashed text
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 double number_of(Json const& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-/// Errors of vectors stand as whole numbers of vector_unit_px, u and v by turns, with spaces between them in one text
-/// (JSON arrays of thousands of numbers take long to read); what is unknown is "-".
+/// Formats the errors of vectors as one text, since large JSON arrays are slow to read: integer multiples of
+/// vector_unit_px, u and v alternating, separated by blanks; "-" if unknown.
 std::string numbers_text(std::vector<Vec2d> const& errors_px) {
   std::string text;
   for (Vec2d const& error : errors_px) {
@@ -87,9 +87,10 @@ std::vector<VectorErrors> vectors_of(Json const& json) {
   return vectors;
 }
 
-constexpr std::string_view numbers = ",\"measures\":";  // where a result's numbers begin; quotes in texts are escaped
+// start of a result's numbers; quotes within texts are escaped, so this occurs nowhere before
+constexpr std::string_view numbers = ",\"measures\":";
 
-/// @param json a result, or its head
+/// @param json  complete result, or its head
 CaseResult result_of(Json const& json, ResultPart part) {
   CaseResult result;
   result.index = json.at("index").get_ref<std::uint64_t const&>();
@@ -164,7 +165,7 @@ std::string result_text(CaseResult const& result) {
   Json::object_t& measures = json["measures"].get_ref<Json::object_t&>();
   for (auto const& [name, value] : result.measures) measures.emplace_back(name, number(value));
   json["vectors"] = vectors_json(result.vectors);
-  // texts of errors may hold bytes that are no UTF-8 (file names): they are replaced
+  // Replace invalid UTF-8, which error messages may contain (file names).
   std::string const rest = json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(1) + '\n';
   return std::string(head) + content_hash(rest) + "\"," + rest;
 }
@@ -206,7 +207,7 @@ std::optional<CaseResult> read_result(std::string const& run, std::size_t index,
   } catch (MemoryError const&) {
     throw;
   } catch (DataError const&) {
-    return std::nullopt;  // what cannot be read is no whole result, and the next run's takes its place
+    return std::nullopt;  // an unreadable file is not an intact result and is overwritten by the next run
   }
   std::optional<CaseResult> const result = parse_result(text, path, part);
   if (!result || result->index != index || result->line_hash != line_hash) return std::nullopt;
@@ -231,7 +232,7 @@ void remove_left_partials(std::string const& run) {
 }
 
 void write_result(std::string const& run, CaseResult const& result) {
-  // There is no fsync: a result that a power cut spoils is found by its hash and computed again.
+  // No fsync: a result damaged by a power failure is detected by its hash and recomputed.
   std::filesystem::path const path = result_path(run, result.index);
   std::string const text = result_text(result);
   int error = 0;

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Holds a claim while it lives.
+/// RAII guard that holds a claim.
 class Claim {
  public:
   Claim(Claims& claims, std::size_t index) : claims_(claims), index_(index), taken_(claims.take(index)) {}
@@ -46,7 +46,7 @@ std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& s
   std::vector<std::size_t> all(selection.only ? 0 : count);
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (selection.only) all = parse_case_list(*selection.only, count);
-  // contiguous pieces: neighbours share most
+  // Use contiguous parts, since neighbouring cases share the most.
   auto const end_of = [&](std::size_t pieces) {
     return all.begin() + static_cast<std::ptrdiff_t>(all.size() * pieces / selection.shards);
   };
@@ -58,7 +58,7 @@ RunState state_of(std::string const& run, Manifest const& cases, std::vector<std
   Claims const claims(run, Claims::Use::look);
   for (std::size_t const index : selected) {
     throw_if_interrupted();
-    // of a study that has only begun, no line is read but those of finished cases
+    // Skip cases without a result file, whose manifest lines need not be read.
     std::optional<CaseResult> result;
     if (has_result(run, index)) result = read_result(run, index, cases.line_hash(index), ResultPart::head);
     if (!result) {
@@ -98,7 +98,7 @@ RunState forget_failures(std::string const& run, Manifest const& cases, std::vec
   std::erase_if(state.failed, [&](CaseResult const& failed) {
     Claim const claim(claims, failed.index);
     if (!claim.taken()) return false;
-    // looked at again, now that nobody else can change it
+    // Check again, now that no other process can change the result.
     auto const result = read_result(run, failed.index, failed.line_hash, ResultPart::head);
     if (!result || !due(*result)) return false;
     remove_result(run, failed.index);
@@ -143,7 +143,7 @@ void run_cases(std::string const& run, Manifest const& cases, std::vector<std::s
           with_others.push_back(index);
           continue;
         }
-        // between the look and the claim another runner may have finished it
+        // Another process may have finished it between the check and the claim.
         if (!is_done(index)) {
           tell(index, CaseEvent::begun);
           stop_point("case-begun");

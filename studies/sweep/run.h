@@ -9,60 +9,62 @@
 
 namespace gladstone {
 
-/// Which cases of a study a runner is to see to, and how.
+/// Selection of the cases that a run computes, and options of their computation.
 struct RunSelection {
-  std::optional<std::string> only;    ///< these cases alone, as parse_case_list reads them; else all
-  std::size_t shard = 0, shards = 1;  ///< the shard-th of that many equal pieces of them
-  bool retry_failed = false;          ///< all failed cases are tried again, not only those that lacked memory
-  bool keep_images = false;           ///< leave the whole CASE in RUN/cases/INDEX/
+  std::optional<std::string> only;    ///< list of cases in the format of parse_case_list(); nullopt: all
+  std::size_t shard = 0, shards = 1;  ///< index of this run's part of the selection, and number of (equal) parts
+  /// Repeat all failed cases, not only those that failed because of insufficient memory.
+  bool retry_failed = false;
+  bool keep_images = false;  ///< write all files of a case to RUN/cases/INDEX/
 };
 
-/// The cases of a selection of a study of so many, in the manifest's order. @throws DataError where it selects what is
-/// not there
+/// Returns the selected cases of a study with `count` cases, in the manifest's order.
+/// @throws DataError if the selection contains a case that does not exist
 std::vector<std::size_t> selected_cases(std::size_t count, RunSelection const& selection);
 
-/// How a selection stands.
+/// State of the selected cases.
 struct RunState {
   std::size_t ok = 0;
-  std::vector<CaseResult> failed;    ///< without their measures
-  std::vector<std::size_t> missing;  ///< without a whole result
-  std::vector<std::size_t> running;  ///< those of them that a runner has claimed
+  std::vector<CaseResult> failed;    ///< without measures
+  std::vector<std::size_t> missing;  ///< cases without an intact result
+  std::vector<std::size_t> running;  ///< subset of `missing` that a process has claimed
   bool complete() const { return failed.empty() && missing.empty(); }
 };
 
-/// Reads results and claims; computes nothing. @throws OutputError where the claims cannot be looked at
+/// Determines the state from results and claims without computing anything. @throws OutputError if the claims cannot be
+/// read
 RunState state_of(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected);
 
-/// Whether the next run computes a case with this result anew.
+/// Returns true if the next run recomputes a case with this result.
 bool is_due(CaseResult const& result, RunSelection const& selection);
 
-/// The CASE that a run with keep_images leaves of a case: RUN/cases/INDEX.
+/// Returns the folder in which a run with keep_images stores the files of a case: RUN/cases/INDEX.
 std::string images_folder(std::string const& run, std::size_t index);
 
-/// Whether images are wanted of a finished case and not there: it is computed again for them.
+/// Returns true if images are requested, the case is finished and they do not exist, so that it must be recomputed.
 bool lacks_images(std::string const& run, CaseResult const& result, RunSelection const& selection);
 
-/// Takes the failures away that a run is to try again, before it begins: they are missing then, and computed once,
-/// whatever number of workers it has. What another runner has claimed is left to it.
-/// @return how the selection stands then; cases that lack images count as missing
+/// Removes the results of the failed cases that a run will repeat. They are removed before the workers start, so that
+/// each is recomputed once, regardless of the number of workers. Cases claimed by other processes are skipped.
+/// @return state afterwards; cases without requested images count as missing
 /// @throws OutputError
 RunState forget_failures(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                          RunSelection const& selection);
 
-/// Records that a case could not be computed, unless another runner has computed it or does so now.
-/// @return whether it was recorded
+/// Records that a case could not be computed, unless it has a result or another process has claimed it.
+/// @return true if the failure was recorded
 /// @throws OutputError
 bool record_failure(std::string const& run, Manifest const& cases, std::size_t index, std::string const& error,
                     bool again);
 
 enum class CaseEvent { begun, finished };
 
-/// Computes what is missing of a selection, or lacks its images, one case after the other. Each case is claimed while
-/// it is computed, and its result looked for again once it is; what another runner has claimed is waited for, and
-/// computed here should that runner die.
-/// @param first    position in `selected` to begin at, so that runners side by side meet late
-/// @param tell     called before and after every case that is computed here
-/// @throws as CaseRunner::run; what is finished stays
+/// Computes the cases of a selection that have no result or no requested images, one after the other. Each case is
+/// claimed during its computation, and its result is checked again after claiming. Cases claimed by other processes are
+/// waited for, and computed here if the other process dies.
+/// @param first  position in `selected` at which to start, so that concurrent processes start at different cases
+/// @param tell   called before and after every case that is computed here
+/// @throws as CaseRunner::run; finished results remain
 void run_cases(std::string const& run, Manifest const& cases, std::vector<std::size_t> const& selected,
                RunSelection const& selection, CaseRunner& runner, std::size_t first,
                std::function<void(std::size_t index, CaseEvent event)> const& tell);

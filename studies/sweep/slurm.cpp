@@ -33,10 +33,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A program of Slurm's, started; what it prints is kept. Ctrl-C on the terminal does not reach it.
+/// Running Slurm command whose output is captured. It has its own process group and is not affected by Ctrl-C.
 class Started {
  public:
-  /// @throws SlurmError where there is no such program
+  /// @throws SlurmError if the program does not exist
   explicit Started(std::vector<std::string> command)
       : out_(std::tmpfile(), std::fclose), err_(std::tmpfile(), std::fclose) {
     if (!out_ || !err_) throw OutputError("/tmp", fmt::format("no temporary file ({})", std::strerror(errno)));
@@ -70,7 +70,7 @@ class Started {
   Started(Started const&) = delete;
   Started& operator=(Started const&) = delete;
 
-  /// Its exit code once it has ended, 128 + N after signal N.
+  /// Returns the exit code if the command has ended, or 128 + N after signal N.
   std::optional<int> exit_code() {
     int status = 0;
     if (child_ > 0 && ::waitpid(child_, &status, WNOHANG) == child_) {
@@ -99,8 +99,8 @@ class Started {
   std::optional<int> exit_code_;
 };
 
-/// The number of the job that sbatch prints once it is submitted: "123" or "123;cluster".
-/// @throws SlurmError with sbatch's message where it refuses; Interrupted
+/// Waits for the job number that sbatch prints after submission: "123" or "123;cluster".
+/// @throws SlurmError with sbatch's message if the job is rejected; Interrupted
 std::string submitted_job(Started& sbatch) {
   for (;; std::this_thread::sleep_for(milliseconds(20))) {
     std::optional<int> const ended = sbatch.exit_code();
@@ -115,7 +115,7 @@ std::string submitted_job(Started& sbatch) {
   }
 }
 
-/// Waits for a short command. @throws SlurmError where there is no such program; Interrupted
+/// Waits for a short command. @throws Interrupted
 void finish(Started& command) {
   while (!command.exit_code()) {
     throw_if_interrupted();
@@ -123,7 +123,7 @@ void finish(Started& command) {
   }
 }
 
-/// Whether a job is queued or running; true as well while the cluster does not answer.
+/// Returns true if a job is queued or running, or if the cluster does not respond.
 bool goes_on(std::string const& job) {
   Started squeue({"squeue", "--noheader", "--jobs=" + job});
   finish(squeue);
@@ -131,7 +131,7 @@ bool goes_on(std::string const& job) {
 }
 
 /// Waits until a job has ended or no case remains.
-/// @param ended the job's exit code once it has ended; asked often
+/// @param ended  returns the job's final state once it has ended; called frequently
 JobEnd watch(std::string const& job, CountRemaining const& remaining,
              std::function<std::optional<JobEnd>()> const& ended) try {
   std::size_t left = remaining();
@@ -141,7 +141,7 @@ JobEnd watch(std::string const& job, CountRemaining const& remaining,
     progress.advance(left - now);
     left = now;
   };
-  // Counting reads files, perhaps over a network: it takes at most a twentieth of the time.
+  // Counting reads files, perhaps over a network; limit it to a twentieth of the time.
   Clock::time_point due = Clock::now();
   std::optional<JobEnd> end;
   for (; left > 0 && !(end = ended()); std::this_thread::sleep_for(milliseconds(50))) {
@@ -152,7 +152,7 @@ JobEnd watch(std::string const& job, CountRemaining const& remaining,
     due = Clock::now() + std::max<Clock::duration>(milliseconds(500), 20 * (Clock::now() - start));
   }
   if (!end) return {job, 0};
-  // Where every task found its cases whole, a network file system may still show the files late.
+  // After a successful job, a network file system may show the result files with a delay.
   Clock::time_point const patience = Clock::now() + std::chrono::seconds(end->exit_code == 0 ? 90 : 0);
   for (count(); left > 0 && Clock::now() < patience; count()) {
     throw_if_interrupted();
@@ -197,7 +197,7 @@ std::optional<std::string> job_going_on(std::string const& run) {
   if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
   try {
     if (goes_on(job)) return job;
-  } catch (SlurmError const&) {  // no squeue here
+  } catch (SlurmError const&) {  // squeue is not available
   }
   return std::nullopt;
 }

@@ -10,41 +10,41 @@
 
 namespace gladstone {
 
-/// There is no Slurm here, or it does not take the job; its own message is passed on.
+/// Error of a Slurm command: not installed, or the job was rejected; contains Slurm's message.
 class SlurmError : public Error {
  public:
   using Error::Error;
 };
 
-/// How many tasks a job array of this cluster may have (`scontrol show config`, MaxArraySize); Slurm's own default,
-/// 1001, where the cluster does not tell.
+/// Returns the maximum number of tasks of a job array on this cluster (MaxArraySize of `scontrol show config`), or
+/// Slurm's default of 1001 if it cannot be determined.
 std::size_t most_array_tasks();
 
-/// How a job array ended.
+/// Final state of a job array.
 struct JobEnd {
-  std::string job;               ///< its number
-  std::optional<int> exit_code;  ///< largest of the tasks', 1 where a signal ended one; nothing where not known
+  std::string job;  ///< job number
+  /// Largest exit code of the tasks; 1 if a task was terminated by a signal; nullopt: unknown.
+  std::optional<int> exit_code;
 };
 
-/// The job that run_job_array() submitted last for this study, if it is still queued or running (squeue).
-/// @param run absolute path of the RUN folder
+/// Returns the job that run_job_array() submitted last for this study if it is still queued or running (squeue).
+/// @param run  absolute path of the RUN folder
 std::optional<std::string> job_going_on(std::string const& run);
 
-/// Counts the cases that have no whole result yet. Called about once a second, more rarely where it takes long.
+/// Returns the number of cases without an intact result. Called at most about once a second, less often if it is slow.
 using CountRemaining = std::function<std::size_t()>;
 
-/// Writes the job script, submits the array with `sbatch --wait` and waits for the last task, or until no case remains.
-/// What is done is drawn as a progress bar.
-/// @throws SlurmError where sbatch is not here or refuses; OutputError; Interrupted on Ctrl-C: the job then goes on, as
-///         after any sbatch, and the message says how to cancel it and how to wait again
+/// Writes the job script, submits the array with `sbatch --wait` and waits until the last task ends or no case remains.
+/// Displays a progress bar.
+/// @throws SlurmError if sbatch is not installed or rejects the job; OutputError; Interrupted on Ctrl-C: the job
+///         continues, and the message explains how to cancel it and how to wait for it again
 JobEnd run_job_array(JobArray const& array, CountRemaining const& remaining);
 
-/// Waits for a job_going_on(). @throws Interrupted, as run_job_array()
+/// Waits for a job returned by job_going_on(). @throws Interrupted, as run_job_array()
 JobEnd wait_for_job(std::string const& job, CountRemaining const& remaining);
 
-/// The last line in the log of a task, Slurm's own ("slurmstepd: error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME
-/// LIMIT
-/// ***") where there is one; empty where there is none.
+/// Returns the last line of a task's log, or the last message of Slurm itself if there is one, for example
+/// "slurmstepd: error: *** JOB 12 ON node3 CANCELLED ... DUE TO TIME LIMIT ***". Empty if there is no log.
 std::string last_words(JobArray const& array, std::string const& job, std::size_t task);
 
 }  // namespace gladstone

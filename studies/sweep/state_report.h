@@ -8,11 +8,11 @@
 
 namespace gladstone {
 
-/// How a study stands, as JSON: run, cases, done, failed, missing, running (counts; running are missing too),
-/// failures [{case, title, error, again: whether the next run tries it again}], missing_cases, running_cases.
+/// Returns the state of a study as JSON: run; the counts cases, done, failed, missing and running (running cases are
+/// also missing); failures [{case, title, error, again: the next run repeats it}]; missing_cases; running_cases.
 nlohmann::ordered_json state_json(std::string const& run, Manifest const& cases, RunState const& state);
 
-/// The same to be read: counts, every failing case with its error, the first missing ones.
+/// Returns the state as text: counts, the failed cases with their errors and the missing cases, at most 20 of each.
 std::string state_text(std::string const& run, Manifest const& cases, RunState const& state);
 
 }  // namespace gladstone

@@ -9,26 +9,29 @@
 
 namespace gladstone {
 
-/// One column of a study's table: numbers, and what its whole numbers stand for.
+/// Column of a study's table.
 struct StudyColumn {
   std::string name;
   std::function<double(StudyRow const&)> number;
-  std::vector<std::string> labels;  ///< the number is a place in this list; empty: it is itself
+  std::vector<std::string> labels;  ///< the number is an index into this list; empty: the number is the value
   std::string description;
   bool whole = false;
 };
 
-/// Of a column by its name: "px", or "1" of a pure number; a statistic of a measure has the measure's unit.
+/// Returns the unit of a column from its name: "px", or "1" if dimensionless. A statistic of a measure has the
+/// measure's unit.
 std::string unit_of_column(std::string name);
 
-/// Columns that tell a table's rows apart: its axes and the case.
+/// Returns the columns that identify a row: the axes and the case.
 std::vector<StudyColumn> axis_columns(StudyTable const& table);
-/// All columns of study.csv and study.h5.
+/// Returns all columns of study.csv and study.h5.
 std::vector<StudyColumn> table_columns(StudyTable const& table);
-/// All columns of study_points().
+/// Returns all columns of study_points().
 std::vector<StudyColumn> point_columns(StudyTable const& points);
 
-/// @param group "/" or "/points/" @param row_name what a row is
+/// Writes columns to an HDF5 group.
+/// @param group     "/" or "/points/"
+/// @param row_name  meaning of a row, as axis name of the datasets
 void write_columns(Hdf5Writer& file, std::string const& group, std::string const& row_name, StudyTable const& table,
                    std::vector<StudyColumn> const& columns);
 

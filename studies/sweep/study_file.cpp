@@ -22,7 +22,7 @@ namespace {
 
 using Kind = SetupNode::Kind;
 
-/// Twelve digits: a tenth is a tenth, not 0.30000000000000004 - 0.2.
+/// Rounds to twelve digits, so that values of a range are short decimals: 0.1 instead of 0.30000000000000004 - 0.2.
 double rounded(double value) {
   std::string const text = fmt::format("{:.12g}", value);
   double result = value;
@@ -46,14 +46,15 @@ double along(AxisPlan::Range const& range, double t) {
   return rounded(range.first * std::pow(range.last / range.first, t));
 }
 
-/// Whether steps are wider than twelve digits tell apart, 1e-11 of a number at most, wherever in the range.
+/// Returns true if adjacent values of the range certainly differ after rounding to twelve digits, a relative error of
+/// at most 1e-11.
 bool surely_tells_values_apart(AxisPlan::Range const& range) {
   double const steps = static_cast<double>(range.count - 1);
   if (range.logarithmic) return std::abs(std::log(range.last / range.first)) > 2e-11 * steps;
   return std::abs(range.last - range.first) > 2e-11 * steps * std::max(std::abs(range.first), std::abs(range.last));
 }
 
-/// Collects the problems of a study file at their places.
+/// Reads a study file and collects its problems with their positions.
 class StudyReader {
  public:
   StudyReader(std::string const& path, std::string text)
@@ -81,7 +82,7 @@ class StudyReader {
                                          error.what()));
       }
     }
-    read_settings(root.table("study"));  // first: what a list may hold depends on the mode
+    read_settings(root.table("study"));  // first, since the mode determines which lists are allowed
     read_axes(root);
     check_sizes();
     document_.finish();
@@ -92,7 +93,7 @@ class StudyReader {
   static std::string folder_of(std::string const& path) {
     return std::filesystem::absolute(path).parent_path().string();
   }
-  /// A place of this file, also where its value goes into another document.
+  /// Adds this file as source to a position, for values that are inserted into another document.
   SetupPlace placed(SetupPlace place) const {
     place.source = source_;
     return place;
@@ -202,7 +203,7 @@ class StudyReader {
         value.parameter.label = label->text;
       }
       std::erase_if(members, [](SetupMember const& member) { return member.key == "label"; });
-      if (members.size() == 1 && members.front().key == "value") {  // a label for something that is no table
+      if (members.size() == 1 && members.front().key == "value") {  // a label for a value that is not a table
         SetupNode const inner = members.front().value;
         value.node = inner;
         if (inner.is_number()) value.parameter.number = inner.as_double();
@@ -223,7 +224,7 @@ class StudyReader {
         if (key.starts_with("log")) nearest = "log";
         if (nearest) {
           hint = fmt::format("; did you mean \"{}\"?", *nearest);
-        } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was taken for the axis
+        } else if (axis.path.size() == 1) {  // lens.f_number = ...: "lens" was read as the axis
           hint = fmt::format("; a key path stands in quotes: \"{}.{}\" = ...", axis.key, key);
         }
       }
@@ -300,7 +301,7 @@ class StudyReader {
     }
   }
 
-  /// The same values of all axes of a zip: they would be counted as repeats of one point.
+  /// Reports points of a zip at which all axes have the same values; they would count as repeats of one point.
   void refuse_points_twice() {
     std::unordered_map<std::string, std::size_t> points;
     for (std::size_t i = 0; i < study_.points(); ++i) {
@@ -319,7 +320,7 @@ class StudyReader {
     }
   }
 
-  /// A table and a key in it: the one that stands later would overwrite the other's value.
+  /// Reports an axis for a key within a table that is itself an axis; the later one would overwrite the other.
   void refuse_axes_within_axes() {
     for (AxisPlan const& above : study_.axes) {
       for (AxisPlan const& axis : study_.axes) {
@@ -333,7 +334,7 @@ class StudyReader {
     }
   }
 
-  /// A range so fine that two of its values are equal.
+  /// Reports a range that is so fine that two of its values are equal.
   void refuse_steps_of_nothing(AxisPlan const& axis) {
     if (!axis.range || surely_tells_values_apart(*axis.range)) return;
     for (std::size_t i = 1; i < axis.size(); ++i) {

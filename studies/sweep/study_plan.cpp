@@ -24,12 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// TOML's whole numbers have 63 bits.
+/// Returns the seed of a repeat. TOML integers have 63 bits.
 std::uint64_t case_seed(StudyFile const& study, std::size_t repeat) {
   return repeat == 0 ? study.seed : repeat_seed(study.seed, repeat) >> 1;
 }
 
-/// Whether the axes' values hold something at a path of keys, by itself or in a table above it.
+/// Returns true if the axes define the value at a key path, directly or in a table that contains it.
 bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std::vector<std::string> const& path) {
   for (std::size_t k = 0; k < values.size(); ++k) {
     std::vector<std::string> const& above = study.axes[k].path;
@@ -41,7 +41,7 @@ bool axes_give(StudyFile const& study, std::vector<AxisValue> const& values, std
   return false;
 }
 
-/// The base with the axes' values and, where they give none, the seeds put in.
+/// Composes a setup from the base and the axes' values, and sets the seeds that no axis defines.
 SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::vector<AxisValue> const& values,
                       std::uint64_t seed) {
   SetupDocument document = base.copy();
@@ -55,15 +55,15 @@ SetupDocument compose(SetupDocument const& base, StudyFile const& study, std::ve
   for (std::vector<std::string> const& path : seeds) {
     if (axes_give(study, values, path)) continue;
     SetupNode const* const table = document.find({path.begin(), path.end() - 1});
-    if (!table && path.size() > 2) continue;  // noise that nobody asked for
-    // what should be a table and is none is told when the setup is read
+    if (!table && path.size() > 2) continue;  // do not add a noise table that the setup does not have
+    // Skip a table that is not a table; reading the setup reports it.
     if (table && table->kind != SetupNode::Kind::table && table->kind != SetupNode::Kind::array) continue;
     document.set(path, number);
   }
   return document;
 }
 
-/// Values of all axes at a point of the study.
+/// Returns the values of all axes at a point of the study.
 std::vector<AxisValue> values_at(StudyFile const& study, std::size_t point) {
   std::vector<AxisValue> values(study.axes.size());
   std::size_t rest = point;
@@ -83,18 +83,18 @@ std::vector<AxisValue> values_at(StudyFile const& study, std::size_t point) {
   return values;
 }
 
-/// Whether an axis has no values of its own, but is sampled between its ends.
+/// Returns true if the axis is a range that is sampled between its ends (sobol mode).
 bool is_sampled(StudyFile const& study, AxisPlan const& axis) {
   return study.mode == StudyMode::sobol && axis.range.has_value();
 }
 
-/// How many values of an axis are tried beyond its first: all, or its other end and a sample.
+/// Returns the number of values to check in addition to the first: all others, or the other end and one sample.
 std::size_t further_values(StudyFile const& study, AxisPlan const& axis) {
   if (!is_sampled(study, axis)) return axis.size() - 1;
   return axis.size() > 1 ? 2 : 1;
 }
 
-/// How many points it takes to have all of these values.
+/// Returns the number of points needed to check all of these values.
 std::size_t points_to_try(StudyFile const& study) {
   if (study.mode == StudyMode::zip) return study.points();
   std::size_t count = 1;
@@ -102,7 +102,8 @@ std::size_t points_to_try(StudyFile const& study) {
   return count;
 }
 
-/// The i-th of them: the first values of all axes, then the further ones of each with the others at their first.
+/// Returns the i-th of these points: first the first values of all axes, then the other values of each axis with the
+/// first values of the others.
 std::vector<AxisValue> point_to_try(StudyFile const& study, std::size_t i) {
   if (study.mode == StudyMode::zip) return values_at(study, i);
   std::vector<AxisValue> point;
@@ -128,7 +129,7 @@ std::string where(StudyFile const& study, SetupPlace const& place) {
   return fmt::format("{}:{}:{}", study.path, place.line, place.column);
 }
 
-/// A key that nobody knows is the axis's mistake, not its values'; whole numbers are not what a range is sampled by.
+/// Assigns an unknown key to the axis instead of its values, and adds a remedy if a sampled range yields no integers.
 void blame_the_axis(StudyFile const& study, std::vector<AxisValue> const& values, SetupProblem& problem) {
   bool const unknown = problem.message.starts_with("unknown ");
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -164,7 +165,7 @@ void try_all(SetupDocument const& base, StudyFile const& study) {
   Progress progress("trying values", tried);
   parallel_chunks(tried, 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // of more than are tried: spread evenly, the first and the last among them
+      // If there are too many points, check evenly spaced ones, including the first and the last.
       std::size_t const point = tried == points ? i : i * (points - 1) / (tried - 1);
       found[i].problems = problems_at(base, study, point_to_try(study, point), found[i].more);
     }
@@ -182,7 +183,7 @@ void try_all(SetupDocument const& base, StudyFile const& study) {
   if (!problems.empty()) throw SetupError(std::move(problems), more);
 }
 
-/// What the names of files in a setup hang on: words and tables, never numbers.
+/// Returns the values that can affect file names in a setup: texts and tables, but not numbers.
 std::string words_of(std::vector<AxisValue> const& values) {
   std::string words;
   for (AxisValue const& value : values) words += (value.node.is_number() ? "" : value.parameter.label) + '\0';
@@ -195,9 +196,10 @@ struct StudyPlan::Parts {
   StudyFile study;
   std::string device;
   SetupDocument base;
-  std::mutex mutex;                                                        ///< of what follows
-  std::map<std::string, std::vector<std::vector<std::string>>> file_keys;  ///< by words_of() the values
-  std::map<std::string, std::string> hashes;                               ///< of files, by name
+  std::mutex mutex;  ///< protects the members below
+  /// Key paths of file names, by words_of() the values.
+  std::map<std::string, std::vector<std::vector<std::string>>> file_keys;
+  std::map<std::string, std::string> hashes;  ///< hash of each file, by name
 
   std::vector<std::vector<std::string>> keys_of_files(std::vector<AxisValue> const& values,
                                                       SetupDocument const& document) {

@@ -8,16 +8,16 @@
 
 namespace gladstone {
 
-/// Every case of a study, each made when it is asked for: repeats outermost, of a grid the last axis fastest, so that
-/// neighbours share most. Seeds of target, pupil and noise derive from the study's seed and the repeat alone; an axis
-/// that names a seed wins.
+/// All cases of a study, generated on access. The order has repeats outermost and, in a grid, the last axis fastest, so
+/// that neighbouring cases share the most. The seeds of target, pupil and noise depend only on the study's seed and the
+/// repeat, unless an axis specifies them.
 class StudyPlan {
  public:
-  /// Tries every value of every axis (of a range that sobol samples: its ends and a sample) by loading its setup whole,
-  /// with the other axes at their first value (zip: every pair); of more than most_tried, as many spread evenly. What
-  /// goes wrong in other combinations only is left to the run.
-  /// @param device "cpu" or "cuda"
-  /// @throws SetupError at the study's and the base's own lines
+  /// Checks values of all axes by loading complete setups. Each value of an axis is combined with the first values of
+  /// the other axes (zip: all pairs); of a range in sobol mode, both ends and one sample are checked. If there are more
+  /// than most_tried, evenly spaced ones are checked. Problems of other combinations only appear in the run.
+  /// @param device  "cpu" or "cuda"
+  /// @throws SetupError at positions in the study file and the base setup
   StudyPlan(StudyFile study, std::string device);
   ~StudyPlan();
   StudyPlan(StudyPlan&&) noexcept;
@@ -25,12 +25,12 @@ class StudyPlan {
   static constexpr std::size_t most_tried = 5'000;
 
   StudyFile const& study() const;
-  /// The setup that every case starts from, as TOML with absolute file names.
+  /// Returns the base setup of all cases, as TOML with absolute file names.
   std::string base() const;
   std::size_t size() const;
-  /// A case, its line_hash included. From any thread. @throws DataError for inputs that cannot be read
+  /// Returns a case including its line_hash. Thread-safe. @throws DataError if an input cannot be read
   ManifestCase operator[](std::size_t index) const;
-  /// Its line in the manifest, without line end.
+  /// Returns the manifest line of a case, without line end.
   std::string line(std::size_t index) const;
 
  private:
@@ -40,7 +40,7 @@ class StudyPlan {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Plans a study. @throws as StudyPlan
+/// Plans a study. @throws as StudyPlan::StudyPlan
 inline StudyPlan plan_study(StudyFile study, std::string device) { return {std::move(study), std::move(device)}; }
 
 }  // namespace gladstone

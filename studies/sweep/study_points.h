@@ -4,18 +4,18 @@
 
 namespace gladstone {
 
-/// The points of a study as a table of their own, a row a point: what its repeats have in common and how far they
-/// scatter. A row's index is that of the point's first case, its status ok where a repeat is finished (the first that
-/// is not, else). Measures:
+/// Computes the table of a study's points, one row per point: statistics over the repeats. A row has the index of the
+/// point's first case, and status ok if at least one repeat is finished (otherwise the status of the first case).
+/// Measures:
 ///
-/// repeats, vectors            finished repeats; vectors that count in all of them
-/// ERROR.systematic_px         of ERROR = ray_truth, eq9: rms of what is the same in every repeat (RepeatSplit)
-/// ERROR.scatter_px            standard deviation between repeats
-/// budget.estimator_px         the budget's estimator term with repeats: the mean over their patterns
-/// budget.pattern_px           and its pattern term: what changes from pattern to pattern, without noise
-/// MEASURE.mean, MEASURE.std   of every measure of the cases: mean and sample standard deviation over the repeats
+///   repeats, vectors            number of finished repeats; number of vectors that count in all of them
+///   ERROR.systematic_px         for ERROR = ray_truth, eq9: rms of the part common to all repeats (RepeatSplit)
+///   ERROR.scatter_px            standard deviation between repeats
+///   budget.estimator_px         estimator term of the budget with repeats: mean over the patterns
+///   budget.pattern_px           pattern term of the budget: variation between patterns, without noise
+///   MEASURE.mean, MEASURE.std   mean and sample standard deviation over the repeats, for every measure of the cases
 ///
-/// What takes two repeats is NaN with one.
+/// Statistics that require two repeats are NaN for a single one.
 StudyTable study_points(StudyTable const& cases);
 
 }  // namespace gladstone

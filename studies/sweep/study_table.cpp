@@ -13,7 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Gathers the distinct values of an axis in the order of appearance.
+/// Collects the distinct values of an axis in order of first appearance.
 class AxisCollector {
  public:
   explicit AxisCollector(std::string key) { axis_.key = std::move(key); }
@@ -86,7 +86,7 @@ std::size_t StudyTable::repeats() const {
 
 namespace {
 
-/// Rows of the manifest without what they came to, and the points that they are repeats of.
+/// Adds the rows of the manifest, without results, and groups them into points.
 void add_rows(Manifest const& cases, std::string const& manifest, StudyTable& table) {
   std::vector<AxisCollector> axes;
   ManifestCase const first = cases[0];
@@ -112,7 +112,7 @@ void add_rows(Manifest const& cases, std::string const& manifest, StudyTable& ta
   for (AxisCollector const& axis : axes) table.axes.push_back(axis.axis());
 }
 
-/// What a case came to, as its row; new measures get the next columns.
+/// Copies a case's result to its row; measures that are not in the table yet become new columns.
 void fill_row(CaseResult const& result, std::unordered_map<std::string, std::size_t>& columns, StudyTable& table,
               StudyRow& row) {
   row.status = result.status;
@@ -140,10 +140,10 @@ StudyTable read_study_table(std::string const& run) {
   std::filesystem::path const folder = std::filesystem::absolute(run).lexically_normal();
   table.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
   add_rows(cases, (folder / run_file::manifest).string(), table);
-  // Point by point, so that no more than one point's vectors are held.
+  // Read point by point to limit the memory for errors of vectors to those of one point.
   std::unordered_map<std::string, std::size_t> columns;
   for (StudyPoint& point : table.points) {
-    std::vector<std::vector<std::vector<Vec2d>>> errors(vector_error_names().size());  // of each kind, repeat, vector
+    std::vector<std::vector<std::vector<Vec2d>>> errors(vector_error_names().size());  // [kind][repeat][vector]
     for (std::size_t const index : point.rows) {
       std::optional<CaseResult> result = read_result(run, index, cases.line_hash(index));
       if (!result) continue;

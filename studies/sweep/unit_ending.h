@@ -6,13 +6,13 @@
 
 namespace gladstone {
 
-/// How a name carries its unit: "_mm", "mm". An empty ending: the name does without.
+/// Unit suffix of a name and the unit that it denotes: "_mm", "mm". Names without suffix have an empty ending.
 struct UnitEnding {
   std::string_view ending;
   std::string_view unit;
 };
 
-/// The unit that a key of the setup or a measure ends in. Nothing: a pure number, or no number at all.
+/// Returns the unit suffix of a setup key or measure, or nullopt if it is dimensionless or not a number.
 constexpr std::optional<UnitEnding> unit_ending(std::string_view name) {
   constexpr std::array<UnitEnding, 11> endings{{{"_px2", "px^2"},
                                                 {"_px", "px"},
@@ -28,7 +28,7 @@ constexpr std::optional<UnitEnding> unit_ending(std::string_view name) {
   for (UnitEnding const& known : endings) {
     if (name.ends_with(known.ending)) return known;
   }
-  if (name.ends_with("gladstone_dale")) return UnitEnding{"", "m^3/kg"};  // the constant has no unit in its name
+  if (name.ends_with("gladstone_dale")) return UnitEnding{"", "m^3/kg"};  // the constant's name contains no unit
   return std::nullopt;
 }
 

@@ -12,7 +12,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool finite(Vec2d a) { return std::isfinite(a.x) && std::isfinite(a.y); }
 double rounded(double error_px) { return std::round(error_px / vector_unit_px) * vector_unit_px; }
 
-/// Which vectors are kept: a lattice of every step-th row and column, or every step-th of scattered ones.
+/// Selects the vectors to store: every step-th row and column of a lattice, or every step-th of scattered vectors.
 std::vector<std::size_t> kept_vectors(DisplacementField const& field) {
   bool const lattice = field.columns > 0 && field.rows > 0;
   std::size_t const columns = lattice ? static_cast<std::size_t>(field.columns) : field.size();

@@ -9,36 +9,40 @@
 
 namespace gladstone {
 
-/// One kind of error at single vectors of a case, kept so that repeats can be compared vector by vector.
+/// Errors of one kind at individual vectors of a case, stored so that repeats can be compared vector by vector.
 struct VectorErrors {
-  std::string name;              ///< of vector_error_names()
-  std::vector<Vec2d> errors_px;  ///< at the same vectors in every repeat, to 1e-6 px; NaN where one does not count
+  std::string name;              ///< one of vector_error_names()
+  std::vector<Vec2d> errors_px;  ///< at the same vectors in every repeat, rounded to 1e-6 px; NaN if not counted
 };
 
-/// "ray_truth", "eq9" (measurement less each) and "estimator" (noise-free measurement less truth on the window).
+/// Returns the kinds of error: "ray_truth", "eq9" (measurement minus each), "estimator" (noise-free measurement minus
+/// window truth).
 std::vector<std::string> const& vector_error_names();
 
-/// Errors of vectors are kept as whole multiples of it [px].
+/// Resolution at which errors are stored [px].
 inline constexpr double vector_unit_px = 1e-6;
-/// Most vectors of a case whose errors are kept; of more, every second, third, ... row and column.
+/// Maximum number of stored vectors per case; of more, every n-th row and column is stored.
 inline constexpr std::size_t most_kept_vectors = 1024;
 
-/// These errors of a comparison, rounded to 1e-6 px.
+/// Returns the errors of a comparison, rounded to vector_unit_px.
 std::vector<VectorErrors> vector_errors(Comparison const& comparison);
 
-/// How an error divides over K repeats of one experiment, per component:
-///   e_r(c) = what every repeat has at vector c + what changes with dots, rays and noise.
-/// With the mean m(c) and the sample variance s^2(c) over repeats, scatter^2 = mean of s^2 and systematic^2 = mean of
-/// m^2 - scatter^2 / K (0 at least), both without bias: systematic^2 + scatter^2 is the mean square of all errors.
+/// Decomposition of an error over K repeats of an experiment into a systematic part, common to all repeats at a vector,
+/// and scatter, which changes with dots, rays and noise. From the mean m and the sample variance s^2 over the repeats
+/// at each vector, scatter^2 = mean of s^2 and systematic^2 = max(0, mean of m^2 - scatter^2 / K), averaged over
+/// vectors and components. Both are unbiased; systematic^2 + scatter^2 estimates the mean square of a single repeat's
+/// errors.
 struct RepeatSplit {
-  std::size_t vectors = 0;  ///< that count in every repeat
-  double systematic_px;     ///< rms of what is the same in every repeat; NaN with fewer than two
-  double scatter_px;        ///< standard deviation between repeats; NaN with fewer than two
+  std::size_t vectors = 0;  ///< number of vectors that count in every repeat
+  double systematic_px;     ///< rms of the common part, per component; NaN with fewer than two repeats
+  double scatter_px;        ///< standard deviation between repeats, per component; NaN with fewer than two repeats
 };
-/// @param repeats of one kind of error; all of one length, or nothing is known
+/// Computes the decomposition.
+/// @param repeats  errors of one kind, one vector per repeat; if their lengths differ, the result is NaN
 RepeatSplit split_repeats(std::span<std::vector<Vec2d> const> repeats);
 
-/// Mean and sample standard deviation over repeats of the values that are finite; NaN of none, and of fewer than two.
+/// Mean and sample standard deviation of the finite values over repeats; NaN for none and for fewer than two,
+/// respectively.
 struct MeanAndSpread {
   double mean, spread;
 };

@@ -22,14 +22,14 @@ namespace {
 
 constexpr char const* executable = "/proc/self/exe";
 
-/// The child's side of a start: nothing but calls that are safe after fork.
+/// Child's side of fork(): only async-signal-safe calls, then exec.
 [[noreturn]] void become_worker(std::vector<char*> const& argv, std::string const& variable, int report, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(126);  // it was gone before
+  if (::getppid() != parent) ::_exit(126);  // the parent has already ended
   int const nowhere = ::open("/dev/null", O_WRONLY);
-  ::dup2(nowhere, STDOUT_FILENO);  // the result is the parent's to print
+  ::dup2(nowhere, STDOUT_FILENO);  // only the parent prints results
   ::fcntl(report, F_SETFD, 0);
-  ::unsetenv(stop_variable);  // tests stop the process that they start
+  ::unsetenv(stop_variable);  // tests stop only the process that they start
   if (!variable.empty()) ::putenv(const_cast<char*>(variable.c_str()));
   ::execv(executable, argv.data());
   ::_exit(126);
@@ -37,7 +37,7 @@ constexpr char const* executable = "/proc/self/exe";
 
 struct Worker {
   pid_t process = -1;
-  int reports = -1;  ///< -1: it has ended
+  int reports = -1;  ///< -1: the worker has ended
   WorkerEnd end;
 };
 
@@ -58,7 +58,7 @@ Worker start_worker(std::vector<std::string> words, std::string const& variable)
   throw OutputError("workers", fmt::format("a process cannot be started ({}); use fewer --jobs", std::strerror(error)));
 }
 
-/// Reads what a worker reports. Reports are written whole, so that they are read whole.
+/// Reads the pending reports of a worker. Reports are written atomically, so that only complete ones are read.
 void hear(Worker& worker, std::function<void()> const& finished) {
   WorkerReport reports[256];
   ssize_t const size = ::read(worker.reports, reports, sizeof reports);
@@ -72,7 +72,7 @@ void hear(Worker& worker, std::function<void()> const& finished) {
     }
   }
   if (size > 0) return;
-  ::close(worker.reports);  // the pipe ends with the worker
+  ::close(worker.reports);  // the pipe is closed when the worker ends
   worker.reports = -1;
   int status = 0;
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
@@ -81,7 +81,7 @@ void hear(Worker& worker, std::function<void()> const& finished) {
   worker.end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
 }
 
-/// Processes side by side, which do not outlive this object.
+/// Parallel processes, terminated on destruction.
 class Workers {
  public:
   Workers() = default;
@@ -126,7 +126,7 @@ std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& 
     for (Worker const& worker : workers.all) wait.push_back({worker.reports, POLLIN, 0});
     if (::poll(wait.data(), wait.size(), 100) <= 0) continue;
     for (std::size_t k = 0; k < wait.size(); ++k) {
-      if (wait[k].revents == 0) continue;  // so it is for those that have ended
+      if (wait[k].revents == 0) continue;  // also true of workers that have ended
       Worker& worker = workers.all[k];
       hear(worker, finished);
       if (worker.reports >= 0 || worker.end.signal == 0 || stopped || !restart(worker.end)) continue;

@@ -8,27 +8,27 @@
 
 namespace gladstone {
 
-/// How a worker process ended.
+/// Final state of a worker process.
 struct WorkerEnd {
-  int exit_code = 0;  ///< -1: a signal ended it
+  int exit_code = 0;  ///< -1: terminated by a signal
   int signal = 0;
-  std::optional<std::size_t> at;  ///< the case that it was at work on
+  std::optional<std::size_t> at;  ///< the case that it was computing
 };
 
-/// What a worker writes to its parent: which case it has begun or finished.
+/// Message from a worker to its parent: a case was begun or finished.
 struct WorkerReport {
   std::uint64_t index = 0;
   std::uint64_t finished = 0;  ///< 0 or 1
 };
 
-/// Runs this executable several times side by side, each with its own arguments, and waits for all.
-/// Every worker is told `--worker FD`, where it is to write a WorkerReport before and after each case. Ctrl-C stops
-/// them all; should this process be killed, they are killed with it.
-/// @param environment added to each worker's own, "NAME=value"; empty strings add nothing
-/// @param finished    called for every finished case
-/// @param restart     asked about each worker that a signal has ended: true starts another one in its place
-/// @return how those ended that were not replaced
-/// @throws OutputError where a process cannot be started, Interrupted once all have stopped
+/// Runs several instances of this executable in parallel, each with its own arguments, and waits for all of them. Each
+/// worker receives the option `--worker FD`, the file descriptor to which it writes a WorkerReport before and after
+/// each case. Ctrl-C stops all workers; if this process is killed, they are killed as well.
+/// @param environment  "NAME=value" to add to each worker's environment; empty: nothing
+/// @param finished     called for every finished case
+/// @param restart      called for each worker that was terminated by a signal; true starts a replacement
+/// @return final states of the workers that were not replaced
+/// @throws OutputError if a process cannot be started; Interrupted after all workers have stopped
 std::vector<WorkerEnd> run_workers(std::vector<std::vector<std::string>> const& arguments,
                                    std::vector<std::string> const& environment, std::function<void()> const& finished,
                                    std::function<bool(WorkerEnd const&)> const& restart);
