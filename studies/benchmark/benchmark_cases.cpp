@@ -12,9 +12,9 @@ namespace gladstone {
 namespace {
 
 constexpr int pixels = 1024;
-constexpr double per_window = 1.0 / 1024.0;  ///< of particles per 32 x 32 px
+constexpr double per_window = 1.0 / 1024.0;  ///< density of one particle per 32 x 32 px [1/px^2]
 
-/// Sum of the letters by their places: a seed of its own for every name.
+/// Derives a seed from a name: sum of the letters weighted by their positions.
 std::uint64_t seed_of(std::string const& name) {
   std::uint64_t seed = 500000;
   for (std::size_t i = 0; i < name.size(); ++i) seed += (i + 1) * static_cast<unsigned char>(name[i]);

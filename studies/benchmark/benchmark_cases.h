@@ -12,46 +12,47 @@
 
 namespace gladstone {
 
-/// Displacement at a place, both in px: what symmetric schemes measure there.
+/// Displacement [px] as a function of position [px], in the central definition that symmetric schemes measure.
 using DisplacementAt = std::function<Vec2d(Vec2d position_px)>;
 
-/// A uniform displacement.
+/// Returns a uniform displacement.
 DisplacementAt uniform_flow(Vec2d displacement_px);
-/// u = rate (y - middle): a flow that shears about the middle of the image.
+/// Returns the shear u = rate (y - y_c), where y_c is the image's centre.
 DisplacementAt shear_flow(double rate, int pixels);
-/// Lamb & Oseen's vortex about the middle of the image, at most 5 px at 1.12 times its radius.
+/// Returns a Lamb-Oseen vortex at the image's centre, with a maximum displacement of 5 px at 1.12 times radius_px.
 DisplacementAt vortex_flow(double radius_px, int pixels);
-/// u = sin(2 pi y/length), v = sin(2 pi x/length) [px].
+/// Returns u = sin(2 pi y/length), v = sin(2 pi x/length) [px].
 DisplacementAt sine_flow(double length_px);
 
-/// One published case: two frames of 8-bit grey levels whose displacement is known everywhere.
+/// Published benchmark case: two 8-bit frames with a displacement that is known everywhere.
 struct BenchmarkCase {
   std::string name;
-  std::string what;            ///< in words
-  ParticleSettings particles;  ///< of ideal images; of the refracted case its size, seed and noise alone
-  DisplacementAt flow = {};    ///< empty: rendered by rays through turbulence
+  std::string what;            ///< description for the user
+  ParticleSettings particles;  ///< settings of synthetic images; of the refracted case, only size, seed and noise apply
+  DisplacementAt flow = {};    ///< empty: images ray-traced through turbulence
   bool refracted() const { return !flow; }
 };
 
-/// Every case, in their order, all of 1024 x 1024 px but turbulence: the one list. Seeds are those of the cases'
-/// names, so that cases neither share particles nor depend on one another.
+/// Returns all cases in their order, of 1024 x 1024 px except turbulence. The seed of a case is derived from its name,
+/// so that cases share no particles and are independent of each other.
 std::vector<BenchmarkCase> const& benchmark_cases();
 
-/// Turbulence as a camera sees it: dots through the field of data/fields, traced by rays (studies/cases/table1.toml,
-/// a layer four times as deep at the earlier instant, 64 nodes across the view).
+/// BOS images of turbulence: dots ray-traced through a field of data/fields (set-up of studies/cases/table1.toml, with
+/// a layer four times as deep at the earlier instant and 64 nodes across the field of view).
 class RefractedTurbulence {
  public:
-  static constexpr int pixels = 512;  ///< along either axis
+  static constexpr int pixels = 512;  ///< image size along either axis
 
-  /// Renders a pair whose dots have this seed. @param renderer of any device
+  /// Renders an image pair. @param seed of the random dots @param renderer on any device
   RefractedTurbulence(std::uint64_t seed, Renderer& renderer);
 
-  /// The frames in whole grey levels of 8 bits, with noise of this standard deviation over the brightest dot's peak.
+  /// Returns 8-bit frames with noise.
+  /// @param noise  standard deviation relative to the peak of the brightest dot [1]
   ParticlePair frames(double noise, std::uint64_t noise_seed) const;
-  /// That of rays at points on a lattice, by cubic convolution between: the light cone passes nothing as fine as the
-  /// lattice. It does not depend on the dots.
+  /// Returns the true displacement: ray-traced at the points of a lattice and interpolated by cubic convolution. The
+  /// lattice is finer than the smallest structures that pass the averaging by the light cone. Independent of the dots.
   DisplacementAt truth() const;
-  /// The setup with all defaults, which renders the frames before they were made 8-bit and noisy.
+  /// Returns the setup with all defaults; it describes the frames before quantisation to 8 bits and noise.
   std::string resolved() const { return loaded_.document.resolved(); }
 
  private:

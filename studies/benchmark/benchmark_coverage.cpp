@@ -14,7 +14,7 @@ namespace {
 
 constexpr int pixels = RefractedTurbulence::pixels;
 constexpr double noises[] = {0.01, 0.05, 0.1};
-/// Seeds from here on are used for nothing else.
+/// First of the seeds that are reserved for the coverage.
 constexpr std::uint64_t first_seed = 7001;
 
 struct TestedFlow {
@@ -22,7 +22,7 @@ struct TestedFlow {
   DisplacementAt displacement;  ///< empty: refracted turbulence
 };
 
-/// What one seed gives.
+/// Coverages and ratios for one seed.
 struct Sample {
   double window, deformed_window, total, rms_ratio, rms_ratio_deformed_window, rms_ratio_total;
 };
@@ -33,7 +33,7 @@ SeedMean mean_of(std::vector<Sample> const& samples, double Sample::*value) {
   for (Sample const& sample : samples) sum += sample.*value;
   double const mean = sum / n;
   for (Sample const& sample : samples) squares += (sample.*value - mean) * (sample.*value - mean);
-  return {mean, std::sqrt(squares / (n - 1.0) / n)};  // of one seed: NaN
+  return {mean, std::sqrt(squares / (n - 1.0) / n)};  // NaN for a single seed
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace gladstone {
 namespace {
 
-/// A code by its noise and its gain.
+/// Noise and gain of one estimator.
 struct Point {
   std::string name;
   double gain = 0.0, rms = 0.0;

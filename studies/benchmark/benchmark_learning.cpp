@@ -12,7 +12,7 @@ namespace gladstone {
 namespace {
 
 constexpr int pixels = 512;
-/// Seeds from here on are used for nothing else.
+/// First of the seeds that are reserved for the training set.
 constexpr std::uint64_t first_seed = 9001;
 
 struct Seeding {
@@ -43,7 +43,7 @@ UncertaintyCombination learn_combination(Device const& device) {
         CorrelationSettings settings;
         HostFrames const frames(std::move(pair.reference), std::move(pair.flow));
         DisplacementField field = correlate_frames(frames, settings, device).field;
-        // these flows are straight lines across a window, which deformed windows measure at their centres
+        // These flows are linear across a window, so that deformed windows measure the displacement at their centres.
         std::vector<Vec2d> const truth = truth_at_vectors(field, flow);
         VectorMask const mask = benchmark_mask(field, pixels, pixels);
         std::vector<std::vector<Vec2d>> sigmas;

@@ -17,7 +17,7 @@ bool is_of_curve(std::string const& name) {
                      [&](BenchmarkEstimator const& one) { return one.name == name && one.of_curve; });
 }
 
-/// Without what is only of the curve of settings.
+/// Returns the estimators except those that are only points of the curve of settings.
 std::vector<std::string> codes_of(BenchmarkResult const& result) {
   std::vector<std::string> codes;
   for (BenchmarkRow const& row : result.rows)
@@ -32,7 +32,7 @@ BenchmarkRow const* find_row(BenchmarkResult const& result, std::string const& c
   return nullptr;
 }
 
-/// One measure of every code on every case it was run on.
+/// Creates a table of one measure: a row per case, a column per estimator.
 TextTable table_of(BenchmarkResult const& result, std::string const& caption,
                    std::function<TableCell(BenchmarkScore const&)> const& cell,
                    std::function<bool(CaseRecord const&)> const& shown = {}) {
@@ -61,7 +61,7 @@ std::string with_error(SeedMean const& mean) {
                                    : fmt::format("{:.3f}", mean.mean);
 }
 
-/// Noise and gain of every code that was run on both of their cases, by gain.
+/// Creates a table of noise and gain of all estimators that ran on both cases, in ascending order of gain.
 std::optional<TextTable> curve_table(BenchmarkResult const& result) {
   TextTable table{"Noise against gain",
                   {"code", fmt::format("rms error in {} [px]", noise_case), fmt::format("gain in {}", gain_case),
@@ -153,7 +153,7 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
   return section;
 }
 
-/// What each code reaches in the vortex, in noise and at fine structures.
+/// Summarises each estimator's error in the vortex and at 5 % noise, and its gain at fine structures.
 std::vector<std::string> findings_of(BenchmarkResult const& result) {
   std::vector<std::string> findings;
   for (std::string const& code : codes_of(result)) {
@@ -162,7 +162,7 @@ std::vector<std::string> findings_of(BenchmarkResult const& result) {
       BenchmarkRow const* const row = find_row(result, code, of_case);
       if (!row) return;
       text += fmt::format("{}{:.4f} px {}", text.empty() ? "" : ", ", row->score.errors.rms_without_gross_px, in_words);
-      // The rms without gross errors hides their number.
+      // Report gross errors as well, since the rms excludes them.
       double const gross = static_cast<double>(row->score.gross) / static_cast<double>(row->score.errors.count);
       if (gross > 0.01) text += fmt::format(" ({:.0f} % of the vectors are gross errors)", 100.0 * gross);
     };

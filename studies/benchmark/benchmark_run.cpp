@@ -27,13 +27,13 @@ namespace fs = std::filesystem;
 constexpr char const* truth_name = "truth.csv";
 constexpr int truth_spacing_px = 8;
 
-/// A case as it is measured.
+/// Images and truth of a case.
 struct MadeCase {
   CaseRecord record;
   HostFrames frames;
-  ParticlePair dots;  ///< without images
+  ParticlePair dots;  ///< particles or dots, without the images
   DisplacementAt truth;
-  std::string setup;  ///< of the refracted case
+  std::string setup;  ///< setup of the refracted case; otherwise empty
 
   int columns() const { return frames.reference().columns(); }
   int rows() const { return frames.reference().rows(); }
@@ -85,7 +85,7 @@ void write_case_folder(MadeCase const& made, std::string const& folder) {
   output.commit();
 }
 
-/// The case whose flow tells axes, signs and offsets of a code best comes first.
+/// Sorts the cases so that those whose flow best determines axes, signs and offsets come first.
 std::vector<BenchmarkCase> in_order_of_telling(std::vector<BenchmarkCase> cases) {
   std::stable_sort(cases.begin(), cases.end(), [](BenchmarkCase const& a, BenchmarkCase const& b) {
     auto const rank = [](BenchmarkCase const& c) { return c.name == "vortex" ? 0 : c.name == "sine_128" ? 1 : 2; };
@@ -188,7 +188,7 @@ BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& dev
     if (!code.reading().empty()) result.conventions.push_back(code.name() + ": " + code.reading());
     if (std::string mistake = code.mistake(); !mistake.empty()) result.mistakes.push_back(std::move(mistake));
   }
-  // as they stand in the list
+  // Restore the order of the list.
   auto const place = [&](std::string const& name) {
     return std::find_if(cases.begin(), cases.end(), [&](BenchmarkCase const& c) { return c.name == name; }) -
            cases.begin();

@@ -13,57 +13,59 @@
 
 namespace gladstone {
 
-/// One of our ways to measure, by its name in the benchmark.
+/// Named correlation settings that the benchmark evaluates.
 struct BenchmarkEstimator {
   std::string name;
   CorrelationSettings settings;
-  /// Part of the curve of settings: run where noise and gain are told from, and nowhere else.
+  /// True for points of the noise-gain curve; they only run on noise_case and gain_case.
   bool of_curve = false;
 };
 
-/// All of ours: the default, one pass, other methods, and the curve of settings from coarse to fine.
+/// Returns all estimators of gladstone: the default, a single pass, other methods, and the curve of settings from
+/// coarse to fine.
 std::vector<BenchmarkEstimator> const& benchmark_estimators();
 
-/// Vectors of another code: a folder of files named after cases, or one such file.
+/// Vectors of external software: a folder of files named after the cases, or one such file.
 struct ForeignVectors {
   std::string name, path;
-  std::optional<std::string> conventions{};  ///< as the user tells them; empty: the format's own
+  std::optional<std::string> conventions{};  ///< words of the user, see parse_conventions(); empty: those of the format
 };
 
 struct BenchmarkOptions {
   std::string folder;
-  std::vector<std::string> cases;       ///< their names; empty: all
-  std::vector<std::string> estimators;  ///< of ours; empty: all
+  std::vector<std::string> cases;       ///< names of the cases to run; empty: all
+  std::vector<std::string> estimators;  ///< names of gladstone's estimators to run; empty: all
   std::vector<ForeignVectors> vectors;
-  int seeds = 0;  ///< of the coverage; 0: it is left out
+  int seeds = 0;  ///< number of seeds for the coverage; 0: skip the coverage
 };
 
-/// A code's vectors against one case.
+/// Score of one estimator on one case.
 struct BenchmarkRow {
   std::string estimator, of_case;
   BenchmarkScore score;
-  std::optional<double> seconds;  ///< that ours took
+  std::optional<double> seconds;  ///< computing time of gladstone's estimators [s]
 };
 
-/// An uncertainty method's sigma against the errors of the default passes.
+/// Quality of an uncertainty method: estimated sigma against the errors of the default passes.
 struct UncertaintyRow {
   std::string method, of_case;
-  /// Against truth on the window, on the deformed window, which is what several passes measure, and at the point: the
-  /// total error.
+  /// Relative to the window truth, to the deformed-window truth, which multi-pass correlation measures, and to the
+  /// truth at the point (total error).
   UncertaintyQuality window, deformed_window, point;
-  std::vector<UncertaintyBin> bins;  ///< against truth at the point
+  std::vector<UncertaintyBin> bins;  ///< relative to the truth at the point
 };
 
-/// A mean over seeds with its standard error.
+/// Mean over seeds and its standard error.
 struct SeedMean {
   double mean = 0.0, error = 0.0;
 };
-/// Coverage of a method's sigma over many seeds.
+/// Coverage of a method's sigma, averaged over seeds.
 struct CoverageRow {
   std::string method, flow;
   double noise = 0.0;
-  SeedMean window, deformed_window, total;                         ///< coverage_1, as in UncertaintyRow
-  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;  ///< likewise
+  /// Coverage_1 relative to the truths of UncertaintyRow.
+  SeedMean window, deformed_window, total;
+  SeedMean rms_ratio, rms_ratio_deformed_window, rms_ratio_total;  ///< rms_ratio relative to the same truths
 };
 
 struct CaseRecord {
@@ -77,17 +79,18 @@ struct BenchmarkResult {
   std::vector<UncertaintyRow> uncertainties;
   std::vector<CoverageRow> coverage;
   int seeds = 0;
-  std::vector<std::string> conventions;  ///< of each foreign code, in words
-  std::vector<std::string> mistakes;     ///< likely ones of foreign codes, a line each
+  std::vector<std::string> conventions;  ///< description of the conventions of each external code
+  std::vector<std::string> mistakes;     ///< probable mistakes in external files, one line each
   std::string device;
 };
 
-/// Makes the cases, FOLDER/CASE/ with reference.tif, flow.tif and truth.csv each, and scores vectors on them: ours, and
-/// those of others.
-/// @throws DataError where a foreign file cannot be read, fits nothing, or has vectors twice or not at all; OutputError
+/// Creates the cases in FOLDER/CASE/, each with reference.tif, flow.tif and truth.csv, and scores vectors of gladstone
+/// and of external software on them.
+/// @throws DataError if an external file is unreadable, fits no conventions, or has repeated or missing vectors;
+///         OutputError
 BenchmarkResult run_benchmark(BenchmarkOptions const& options, Device const& device);
 
-/// Truth on the windows of the last pass, of the dots that both frames show: window_truth() and
+/// True window displacements for the windows of the last pass, from the dots visible in both frames: window_truth() and
 /// deformed_window_truth().
 struct WindowTruths {
   std::vector<Vec2d> window, deformed_window;
@@ -95,24 +98,25 @@ struct WindowTruths {
 WindowTruths window_truths_of(DisplacementField const& field, ParticlePair const& dots,
                               CorrelationSettings const& settings, int columns, int rows);
 
-/// Coverage of every uncertainty method, default passes, over seeds that nothing was chosen on: uniform, shear, vortex
-/// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise.
+/// Measures the coverage of every uncertainty method with the default passes, on uniform displacement, shear, vortex
+/// and refracted turbulence of 512 x 512 px at 1, 5 and 10 % noise. The seeds were not used to choose any parameter.
 std::vector<CoverageRow> measure_coverage(int seeds, Device const& device);
 
-/// The combination of uncertainty methods (analysis/uncertainty/combination.h) that fits the errors of the default
-/// passes best on uniform displacement, shear and stretch, at 1, 2, 5 and 10 % noise, particles of 2.2 to 4.5 px, 12 to
-/// 40 of them in 32 x 32 px: 48 pairs of 512 x 512 px. Vortices and turbulence, on which measure_coverage() judges it
-/// as well, it has never seen.
+/// Fits the combination of uncertainty methods (analysis/uncertainty/combination.h) to the errors of the default
+/// passes. The training set has 48 pairs of 512 x 512 px: uniform displacement, shear and stretch, at 1, 2, 5 and 10 %
+/// noise, with particles of 2.2 to 4.5 px and 12 to 40 of them per 32 x 32 px. It contains no vortices and no
+/// turbulence, on which measure_coverage() also evaluates it.
 UncertaintyCombination learn_combination(Device const& device);
 
-/// The page, and what it tells in numbers.
+/// Formats the results as a report page, as JSON and as CSV.
 ReportPage benchmark_page(BenchmarkResult const& result, std::string const& folder);
 std::string benchmark_json(BenchmarkResult const& result);
 std::string benchmark_csv(BenchmarkResult const& result);
-/// noise_against_gain.png and error_against_uncertainty.png: those that there is something to show in. @return names
+/// Draws noise_against_gain.png and error_against_uncertainty.png, as far as there are data. @return names of the drawn
+/// files
 std::vector<std::string> draw_benchmark(BenchmarkResult const& result, std::string const& folder);
 
-/// Where noise and gain are told from.
+/// Names of the cases from which noise and gain are determined.
 inline constexpr char const* noise_case = "noise_5";
 inline constexpr char const* gain_case = "sine_64";
 

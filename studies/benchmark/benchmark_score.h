@@ -11,28 +11,28 @@
 
 namespace gladstone {
 
-/// Vectors closer to the border than this are left out: codes differ in what they do there [px].
+/// Width of the border in which vectors are ignored, since codes treat it differently [px].
 inline constexpr double benchmark_border_px = 32.0;
 
-/// How vectors compare with a case's truth at their places. NaN where nothing is left to judge by.
+/// Agreement of vectors with the true displacement of a case; NaN if no vector counts.
 struct BenchmarkScore {
-  std::size_t vectors = 0;  ///< in the file, away from the border
-  ErrorSummary errors{};    ///< of those that count (valid or replaced); valid_fraction refers to `vectors`
-  std::size_t gross = 0;    ///< errors above gross_error_px
-  /// Share of the true displacement that the vectors follow: sum m t / sum t^2 over those without gross error.
+  std::size_t vectors = 0;  ///< number of vectors of the file outside of the border
+  ErrorSummary errors{};    ///< of the counted (valid or replaced) vectors; valid_fraction refers to `vectors`
+  std::size_t gross = 0;    ///< number of errors above gross_error_px
+  /// Regression slope of the vectors on the truth, sum m t / sum t^2 over the vectors without gross error [1].
   double gain = 0.0;
 };
 
-/// Which vectors are away from the border, and of those which count.
+/// Selects the vectors outside of the border that are valid or replaced and finite.
 VectorMask benchmark_mask(DisplacementField const& field, int columns, int rows);
 
-/// @param truth displacement at every vector [px]
+/// @param truth  displacement at every vector [px]
 BenchmarkScore score_vectors(DisplacementField const& field, std::vector<Vec2d> const& truth, int columns, int rows);
 
-/// Truth at the vectors' places.
+/// Returns the truth at the positions of the vectors.
 std::vector<Vec2d> truth_at_vectors(DisplacementField const& field, DisplacementAt const& truth);
 
-/// The numbers of a score by their names in benchmark.json and benchmark.csv.
+/// Returns the numbers of a score with their names in benchmark.json and benchmark.csv.
 std::vector<std::pair<std::string_view, double>> score_measures(BenchmarkScore const& score);
 
 }  // namespace gladstone

@@ -17,13 +17,13 @@ namespace fs = std::filesystem;
 
 using Verdict = DetectedConventions::Verdict;
 
-/// The nodes of a lattice along one axis.
+/// Grid nodes along one axis.
 struct Nodes {
-  std::size_t distinct = 0;  ///< coordinates that vectors have
-  double spacing = 0.0;      ///< the usual step between neighbours
+  std::size_t distinct = 0;  ///< number of distinct coordinates
+  double spacing = 0.0;      ///< median distance between neighbouring coordinates [px]
   double low = 0.0, high = 0.0;
 
-  /// Nodes from the lowest to the highest, and further ones as far as `margin` from either border.
+  /// Returns the number of nodes of a complete grid, which extends to within `margin` of either border.
   std::size_t expected(int size, double margin) const {
     double const first = low - spacing * std::max(0.0, std::floor((low - margin) / spacing));
     double const last = high + spacing * std::max(0.0, std::floor((size - 1 - margin - high) / spacing));
@@ -32,7 +32,7 @@ struct Nodes {
 };
 
 Nodes find_nodes(DisplacementField const& field, double Vec2d::*component) {
-  std::set<long long> cells;  // of 0.01 px
+  std::set<long long> cells;  // coordinates in units of 0.01 px
   for (Vec2d const& p : field.position_px) cells.insert(std::llround(100.0 * p.*component));
   std::vector<double> levels, steps;
   for (long long const cell : cells) {
@@ -46,11 +46,11 @@ Nodes find_nodes(DisplacementField const& field, double Vec2d::*component) {
   return {levels.size(), steps[steps.size() / 2], levels.front(), levels.back()};
 }
 
-/// Evidence of all cases together that vectors are read otherwise than they are.
+/// Combined evidence of all cases for an alternative interpretation of the vectors.
 struct Evidence {
   VectorConventions reading;
   double sum = 0.0;
-  std::string strongest;  ///< the case that says most
+  std::string strongest;  ///< the case with the strongest evidence
   double most = 0.0, rms_px = 0.0, rms_as_read = 0.0;
 };
 
@@ -58,8 +58,8 @@ bool same_axes(VectorConventions const& a, VectorConventions const& b) {
   return a.y_up == b.y_up && a.v_up == b.v_up && a.swapped == b.swapped && a.exchange == b.exchange;
 }
 
-/// Every reading of axes, signs and columns that is not the format's own, with the evidence of all cases: what one of
-/// them cannot tell another does.
+/// Computes the combined evidence for every choice of axes, signs and columns that the format does not allow. Combining
+/// the cases resolves ambiguities of individual ones.
 std::vector<Evidence> weigh_readings(std::vector<std::pair<std::string, DetectedConventions>> const& cases,
                                      std::vector<VectorConventions> const& own) {
   std::vector<Evidence> all;
@@ -149,8 +149,8 @@ std::string ForeignCode::mistake() const {
   auto best =
       std::max_element(all.begin(), all.end(), [](Evidence const& a, Evidence const& b) { return a.sum < b.sum; });
   if (best != all.end() && best->sum > 16.0 && best->rms_px < 0.9 * best->rms_as_read) {
-    // of those that fit as well the likeliest; a tenth of the evidence is what an estimator's own errors make of a
-    // flow that looks the same
+    // Choose the likeliest of those that fit about as well: estimator errors in a flow of similar appearance can
+    // account for a tenth of the evidence.
     double const most = best->sum, alike = std::max(9.0, 0.1 * most);
     for (auto one = all.begin(); one != all.end(); ++one) {
       if (most - one->sum <= alike && unlikelihood(one->reading, own) < unlikelihood(best->reading, own)) best = one;
@@ -169,7 +169,8 @@ std::string ForeignCode::mistake() const {
         "by {:.3g} px); mend the files, or accept it with --conventions {}={}",
         name_, text, best->strongest, best->rms_px, best->rms_as_read, name_, describe(best->reading));
   }
-  // What a single case says, of several, may be how an estimator errs where the flow is finer than its windows.
+  // With several cases, an indication from a minority may be due to estimator errors where the flow is finer than the
+  // windows.
   if (2 * mistaken <= judged) return {};
   auto const first =
       std::find_if(detected_.begin(), detected_.end(), [](auto const& one) { return one.second.mistake.found(); });
@@ -181,7 +182,7 @@ std::string refusal_of_gaps(DisplacementField const& field, int columns, int row
   Nodes const x = find_nodes(field, &Vec2d::x), y = find_nodes(field, &Vec2d::y);
   bool const lattice = x.spacing > 0.0 && y.spacing > 0.0 &&
                        static_cast<double>(field.size()) > 0.05 * static_cast<double>(x.distinct * y.distinct);
-  if (!lattice) return {};  // scattered, as particles are
+  if (!lattice) return {};  // scattered, such as vectors of particle tracking
   std::size_t const expected = x.expected(columns, margin_px) * y.expected(rows, margin_px);
   if (field.size() >= expected) return {};
   return fmt::format(

@@ -10,39 +10,40 @@
 
 namespace gladstone {
 
-/// Vectors of another code for several cases: read as its format says, or as the user tells, with the same conventions
-/// for all.
+/// Vectors of external software for several cases, all interpreted by the same conventions: those of the user or, if
+/// none are given, those of the format.
 class ForeignCode {
  public:
-  /// Finds the files of these cases. @throws DataError where there is none
+  /// Finds the files of the cases. @throws DataError if there are none
   ForeignCode(ForeignVectors const& given, std::vector<BenchmarkCase> const& cases);
 
   std::string const& name() const { return name_; }
   bool has(std::string const& of_case) const { return files_.contains(of_case); }
 
-  /// The vectors of a case in our conventions. Of several readings that are the format's own the first file tells
-  /// which.
-  /// @throws DataError where they cannot be scored: see BenchmarkResult, and refusal_of_gaps()
+  /// Reads the vectors of a case and converts them to our conventions. If the format has several possible conventions,
+  /// the first file that is read determines them.
+  /// @throws DataError if the vectors cannot be scored, see run_benchmark() and refusal_of_gaps()
   DisplacementField read(std::string const& of_case, DisplacementAt const& truth, int columns, int rows);
 
-  /// How the files were read, in words; empty where they are ours.
+  /// Returns a description of the conventions; empty for files of gladstone.
   std::string const& reading() const { return reading_; }
-  /// What the files that were read say is wrong with them, all together: the case that can tell decides. Empty:
-  /// nothing.
+  /// Returns the probable mistake in the files read so far, or an empty string. The evidence of all cases is combined,
+  /// so that the cases that distinguish the conventions decide.
   std::string mistake() const;
 
  private:
   std::string name_;
-  std::map<std::string, std::string> files_;  ///< by case
+  std::map<std::string, std::string> files_;  ///< file names by case
   std::optional<std::string> told_;
   std::optional<VectorConventions> conventions_;
-  std::vector<VectorConventions> own_;  ///< every reading that is the format's own
+  std::vector<VectorConventions> own_;  ///< all conventions that the format allows
   std::string reading_;
-  std::vector<std::pair<std::string, DetectedConventions>> detected_;  ///< by case
+  std::vector<std::pair<std::string, DetectedConventions>> detected_;  ///< results by case
 };
 
-/// Why vectors are not the whole grid that a case is scored on: nodes without a vector, between others or further from
-/// the border than 96 px, where windows of 128 px reach. Empty where it is whole.
+/// Returns the reason why vectors do not cover the grid on which a case is scored: missing nodes between others, or no
+/// nodes up to 96 px from the border, which windows of 128 px reach. Returns an empty string if the grid is complete or
+/// the vectors are scattered.
 std::string refusal_of_gaps(DisplacementField const& field, int columns, int rows);
 
 }  // namespace gladstone

@@ -12,12 +12,12 @@
 
 namespace gladstone {
 
-/// Two images of particles with a displacement known everywhere.
+/// Pair of particle images with a displacement that is known everywhere.
 struct ParticlePair {
   Image<double> reference;
   Image<double> flow;
-  /// Of the particles that both frames show, as window_truth() takes them: place in the reference, displacement [px],
-  /// and the peak of either image, in parts of the brightest, as a geometric mean.
+  /// Input of window_truth() for the particles visible in both frames: position in frame A [px], displacement [px], and
+  /// the geometric mean of the peaks in both images, relative to the brightest particle [1].
   std::vector<Vec2d> dot_reference_px = {}, dot_displacement_px = {};
   std::vector<double> dot_light = {};
 };
@@ -25,19 +25,19 @@ struct ParticlePair {
 struct ParticleSettings {
   int columns = 256;
   int rows = 256;
-  double diameter_px = 3.0;  ///< where a particle's image has fallen to e^-2 of its peak
+  double diameter_px = 3.0;  ///< e^-2 diameter of a particle image
   double particles_per_px = 20.0 / 1024.0;
-  double noise = 0.0;  ///< standard deviation over the peak of the brightest particle
+  double noise = 0.0;  ///< standard deviation relative to the peak of the brightest particle [1]
   std::uint64_t seed = 1;
-  double pitch_px = 0.0;  ///< of a square lattice of equal particles in their place; 0: at random, of any brightness
-  double lost = 0.0;      ///< part of the particles of either frame that the other does not show, others in their place
-  double flow_light = 1.0;   ///< of the flow frame over that of the reference, background too
-  double light_slope = 0.0;  ///< by how much that ratio grows from the left to the right, in parts of itself
+  double pitch_px = 0.0;  ///< spacing of a square lattice of equal particles; 0: random positions and intensities
+  /// Fraction of the particles of each frame without a partner in the other, replaced by new ones [1].
+  double lost = 0.0;
+  double flow_light = 1.0;   ///< brightness of frame B relative to frame A, including the background [1]
+  double light_slope = 0.0;  ///< relative increase of that ratio from the left to the right edge [1]
 };
 
-/// 8-bit images of Gaussian particles integrated over the pixels. Particles stand at -d/2 in the reference and +d/2 in
-/// the flow image, d taken at their mid-position: `displacement` is the central displacement, what a symmetric scheme
-/// measures.
+/// Renders 8-bit images of Gaussian particles integrated over the pixels. Particles are at -d/2 in frame A and +d/2 in
+/// frame B, where d is `displacement` at the mid-position: the central displacement, which symmetric schemes measure.
 inline ParticlePair render_particle_pair(ParticleSettings const& settings,
                                          std::function<Vec2d(Vec2d)> const& displacement) {
   constexpr double background = 25.5, peak = 153.0;

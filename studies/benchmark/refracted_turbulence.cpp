@@ -16,7 +16,8 @@
 namespace gladstone {
 namespace {
 
-constexpr int lattice_px = 4;  ///< a seventh of the light cone's width at the medium, as the sensor sees it
+/// Spacing of the truth: a seventh of the light cone's width at the medium, in image coordinates.
+constexpr int lattice_px = 4;
 
 CaseSetup setup_of(std::uint64_t seed) {
   std::string const shared = shared_folder();
@@ -36,7 +37,7 @@ RefractedTurbulence::RefractedTurbulence(std::uint64_t seed, Renderer& renderer)
       rendered_(render_case(prepared_, renderer, RenderTheory::no)) {}
 
 ParticlePair RefractedTurbulence::frames(double noise, std::uint64_t noise_seed) const {
-  constexpr double background = 25.5, peak = 153.0;  // as render_particle_pair()
+  constexpr double background = 25.5, peak = 153.0;  // same values as in render_particle_pair()
   Detector const detector(prepared_.scene.setup.camera, rendered_.exposure_e);
   std::unique_ptr<FramePair const> const ideal = rendered_.rendering->in_place->ideal(detector);
   ParticlePair pair{ideal->reference(), ideal->flow()};
@@ -64,7 +65,7 @@ DisplacementAt RefractedTurbulence::truth() const {
   InterrogationGrid const grid = make_interrogation_grid(pixels, pixels, 2 * lattice_px, 0.5);
   std::vector<Vec2d> centres(grid.size());
   for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = grid.centre(i);
-  Scene scene = prepared_.scene;  // a copy: virtual dots may want a wider pupil than the images were made with
+  Scene scene = prepared_.scene;  // copied, since virtual dots may require a wider pupil than the images
   GroundTruth const points = truth_at_points(scene, renderer_, centres, TruthAt::mid_position, RenderTheory::no);
   auto const map = std::make_shared<DensePredictor const>(grid, points.displacement_px, pixels, pixels);
   return [map](Vec2d p) { return map->at(p); };
