@@ -12,7 +12,7 @@
 namespace gladstone {
 namespace {
 
-/// "sweep run ", of what was parsed so far.
+/// Returns the sub-commands parsed so far, such as "sweep run ".
 std::string command_path(CLI::App const* app) {
   std::string path;
   while (!app->get_subcommands().empty()) {
@@ -22,7 +22,7 @@ std::string command_path(CLI::App const* app) {
   return path;
 }
 
-/// The library's text in our words. It has no other way to tell what it found.
+/// Rewords an error message of CLI11. The kind of error can only be inferred from its name and text.
 std::string in_our_words(std::string const& kind, std::string const& text) {
   if (kind == "ConversionError") {  // "Could not convert: --threads = many"
     std::string_view const start = "Could not convert: ", given = " = ";

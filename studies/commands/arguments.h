@@ -6,12 +6,11 @@
 
 namespace gladstone {
 
-/// Checks of an option's value; what they refuse is told in the words of refusal().
+/// Validators of option values; refusal() formats their messages.
 CLI::Validator one_of(std::vector<std::string> words);
 CLI::Validator whole_number(long long low, long long high);
 
-/// What a command line that cannot be parsed is answered with: one line, with the option, what is wrong with it and
-/// the help to look at.
+/// Formats the error message for an invalid command line: one line with the option, the problem and the help command.
 std::string refusal(CLI::App const* app, CLI::Error const& error);
 
 }  // namespace gladstone

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// NAME=F. @throws DataError
+/// Parses NAME=F. @throws DataError
 ForeignVectors parse_vectors(std::string const& given) {
   auto const equals = given.find('=');
   ForeignVectors vectors{given.substr(0, equals), equals == std::string::npos ? "" : given.substr(equals + 1)};
@@ -42,7 +42,7 @@ ForeignVectors parse_vectors(std::string const& given) {
   return vectors;
 }
 
-/// Assigns words of conventions to the code that they name (NAME=WORDS), or to all. @throws DataError
+/// Assigns conventions to one external code (NAME=WORDS) or to all (WORDS). @throws DataError
 void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const& given) {
   bool used = false;
   auto const named = std::find_if(vectors.begin(), vectors.end(),
@@ -50,7 +50,7 @@ void assign_conventions(std::vector<ForeignVectors>& vectors, std::string const&
   for (ForeignVectors& one : vectors) {
     if (named != vectors.end() && one.name != named->name) continue;
     one.conventions = named != vectors.end() ? given.substr(one.name.size() + 1) : given;
-    parse_conventions(*one.conventions);  // refuses unknown words before anything is computed
+    parse_conventions(*one.conventions);  // throws for unknown words before anything is computed
     used = true;
   }
   if (!used)
@@ -69,7 +69,7 @@ std::vector<std::string> names_of_estimators() {
   return names;
 }
 
-/// The page with its figures as files beside it, where there are any.
+/// Formats the report page; the figures are links to files in its folder.
 std::string page_text(ReportPage page, std::vector<std::string> const& figures, bool markdown) {
   ReportSection drawn{"Curves", {}};
   for (std::string const& name : figures)
@@ -139,7 +139,7 @@ CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options) {
       print_result(options, json_text(json), text);
       return ok;
     }
-    OutputFile html(in_place("benchmark.html"));  // shows that the place can be written
+    OutputFile html(in_place("benchmark.html"));  // checks that the page can be written
     BenchmarkResult const result = run_benchmark(benchmark, device);
     std::vector<std::string> figures;
     if (!arguments->no_figures) {

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folders of a CASE that hold a camera each, by the camera's name; the CASE itself has none.
+/// Returns name and folder of each camera of a case; a case with a single unnamed camera has the name "" and its own
+/// folder.
 std::vector<std::pair<std::string, std::string>> camera_folders(std::string const& folder) {
   require_case(folder);
   std::vector<std::pair<std::string, std::string>> folders;
@@ -29,7 +30,7 @@ std::vector<std::pair<std::string, std::string>> camera_folders(std::string cons
   return folders;
 }
 
-/// @param shown of the files' folder in messages
+/// @param shown  folder of the files in messages
 void write_results(std::string const& folder, Calibration const& calibration, bool figures, std::string const& shown) {
   write_calibration_file((fs::path(folder) / case_file::calibration).string(), calibration);
   if (!figures) return;

@@ -24,18 +24,18 @@ enum ExitCode : int {
   interrupted_by_user = 130
 };
 
-/// Options that every command has.
+/// Options common to all commands.
 struct GlobalOptions {
   bool json = false;
   bool quiet = false;
   int threads = 0;
   std::string device = "auto";
 
-  /// As gladstone::open_device.
+  /// Opens the device of --device, see gladstone::open_device().
   Device open_device() const { return gladstone::open_device(device); }
 };
 
-/// A command adds its options to its sub-application and returns what is to be run: a function giving the exit code.
+/// A command adds its options to its sub-application and returns the function to run, which returns the exit code.
 using CommandBody = std::function<int()>;
 struct Command {
   char const* name;
@@ -59,14 +59,14 @@ CommandBody attach_gallery(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_benchmark(CLI::App& app, GlobalOptions const& options);
 CommandBody attach_report(CLI::App& app, GlobalOptions const& options);
 
-/// Of `gladstone sweep`: its own commands.
+/// Sub-command of `gladstone sweep`.
 CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options);
 
-/// Prints the result of a command: with --json the JSON object, to which the warnings of the run are added; the
-/// readable text otherwise.
+/// Prints the result of a command. With --json, prints the JSON object including the warnings of the run, otherwise the
+/// text.
 void print_result(GlobalOptions const& options, std::string const& json, std::string const& text);
 
-/// Prints a line on stderr. It may be closed or full: then nothing happens.
+/// Prints a line on stderr and ignores errors, such as a closed or full stderr.
 void print_error(std::string const& text);
 
 }  // namespace gladstone

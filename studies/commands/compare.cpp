@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Draws the figures into a folder that moves to its place later. Without gnuplot there are none.
-/// @param place where they will stand, for messages
+/// Draws the figures into a temporary folder; without gnuplot, only warns.
+/// @param place  final folder, for messages
 void draw_if_possible(fs::path const& folder, std::string const& place, Comparison const& comparison) {
   try {
     name_final_place(folder.string(), place, [&] { draw_comparison(folder.string(), comparison); });
@@ -42,15 +42,15 @@ std::vector<fs::path> figures_in(fs::path const& folder) {
   return figures;
 }
 
-/// What was written of a comparison.
+/// Files written for a comparison.
 struct Written {
   std::vector<fs::path> figures;
-  std::string json;  ///< text of errors.json
+  std::string json;  ///< content of errors.json
 };
 
-/// Writes comparison.h5 and the figures into a folder that is not in its place yet, and makes the text of errors.json,
-/// which the former names.
-/// @param place where they will stand, for messages
+/// Writes comparison.h5 and the figures into a temporary folder, and formats errors.json, which is also stored in
+/// comparison.h5.
+/// @param place  final folder, for messages
 Written write_parts(fs::path const& folder, std::string const& place, Comparison const& comparison, bool figures) {
   if (figures) draw_if_possible(folder, place, comparison);
   Written written{figures_in(folder), errors_json(comparison)};
@@ -59,7 +59,8 @@ Written write_parts(fs::path const& folder, std::string const& place, Comparison
   return written;
 }
 
-/// Writes errors.json, comparison.h5 and the figures into the case: all of them or, where one cannot be made, none.
+/// Writes errors.json, comparison.h5 and the figures into the case folder. If creating any of them fails, none is
+/// written.
 Written write_beside(std::string const& place, Comparison const& comparison, bool figures) {
   remove_leftovers(place, stem_beside("comparison"));
   Partial const staging(place, stem_beside("comparison"), Partial::Kind::folder);
@@ -75,7 +76,7 @@ Written write_beside(std::string const& place, Comparison const& comparison, boo
   return written;
 }
 
-/// The same, as a folder of their own.
+/// Writes errors.json, comparison.h5 and the figures into a separate folder.
 Written write_folder(OutputFolder& output, std::string const& place, Comparison const& comparison, bool figures) {
   Written written = write_parts(output.temporary_path(), place, comparison, figures);
   output.fill([&](std::string const& folder) {
@@ -86,7 +87,7 @@ Written write_folder(OutputFolder& output, std::string const& place, Comparison 
   return written;
 }
 
-/// What a folder of results holds besides errors.json.
+/// Returns the files that a folder of results can contain in addition to errors.json.
 std::vector<std::string> other_results() {
   std::vector<std::string> names(case_file::derived.begin(), case_file::derived.end());
   std::erase_if(names, [](std::string const& name) {
@@ -95,7 +96,7 @@ std::vector<std::string> other_results() {
   return names;
 }
 
-/// What write_beside() may write over.
+/// Returns the files that write_beside() may overwrite.
 std::vector<std::string> results_of_comparison(std::string const& folder) {
   std::vector<std::string> paths = derived_files(folder);
   std::erase_if(paths, [](std::string const& path) {
@@ -141,7 +142,7 @@ CommandBody attach_compare(CLI::App& app, GlobalOptions const& options) {
     std::string const& place = apart ? arguments->output : folder;
     refuse_inputs_as_outputs(results_of_comparison(place), inputs);
     std::optional<OutputFolder> output;
-    std::optional<OutputFile> tried;  // shows that the place can be written, until the comparison is done
+    std::optional<OutputFile> tried;  // checks that the folder can be written, before the comparison
     if (apart) {
       output.emplace(place, FolderContent{case_file::errors, other_results()});
     } else {

@@ -23,13 +23,13 @@ nlohmann::json pupil_json(Pupil const& pupil) {
           {"diameter", known_or_null(pupil.diameter / unit::millimetre)}};
 }
 
-/// "on_axis", "10_deg"
+/// Returns the JSON name of a field angle: "on_axis", "10_deg".
 std::string field_name(double angle) {
   double const degrees = angle / unit::degree;
   return degrees == 0 ? "on_axis" : fmt::format("{:.6g}_deg", degrees);
 }
 
-/// A length in millimetres; what rounding leaves of none is none.
+/// Formats a length in millimetres; rounding errors around 0 are displayed as 0.
 std::string length_text(double metres) {
   constexpr double rounding = 1e-12;  // [m]
   if (!std::isfinite(metres)) return "infinite";

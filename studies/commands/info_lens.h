@@ -7,16 +7,16 @@
 
 namespace gladstone {
 
-/// What `gladstone info lens` is asked.
+/// Arguments of `gladstone info lens`.
 struct LensQuestion {
   std::string file;
-  std::vector<std::string> glasses;  ///< catalogues (AGF) beside the shipped ones
-  double wavelength_nm = 0;          ///< 0: the file's primary wavelength, else the d line
-  std::string figure;                ///< picture to draw; empty: none
+  std::vector<std::string> glasses;  ///< glass catalogues (AGF) in addition to the built-in ones
+  double wavelength_nm = 0;          ///< 0: primary wavelength of the file or, if it has none, the d line
+  std::string figure;                ///< path of the figure to draw; empty: none
 };
 
-/// Cardinal points, f-number, pupils and spot sizes of a lens prescription; draws its layout with rays, its spots,
-/// distortion, field curvature and vignetting.
+/// Reports cardinal points, f-number, pupils and spot sizes of a lens prescription; draws its layout with rays, spot
+/// diagrams, distortion, field curvature and vignetting.
 int describe_lens(LensQuestion const& question, GlobalOptions const& options);
 
 }  // namespace gladstone

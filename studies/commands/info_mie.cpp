@@ -20,7 +20,7 @@ namespace gladstone {
 namespace {
 
 constexpr char const* command_name = "info mie";
-constexpr double least_relative_index = 0.01;  // metals have 0.05 and more
+constexpr double least_relative_index = 0.01;  // metals have at least 0.05
 
 std::optional<double> as_number(std::string_view text) {
   double value = 0;
@@ -61,7 +61,8 @@ std::complex<double> relative_index(MieQuestion const& question) {
   return {*real, *imaginary};
 }
 
-/// From forward to backward in degrees: ripples are some 180/x degrees wide and get eight steps.
+/// Returns the angles of the plot in degrees, from forward to backward scattering: eight steps per ripple of about
+/// 180/x degrees, but at least one and at most twenty per degree.
 std::vector<double> drawn_angles(double x) {
   int const per_degree = std::clamp(static_cast<int>(std::ceil(8 * x / 180)), 1, 20);
   std::vector<double> angles;

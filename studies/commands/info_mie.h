@@ -6,15 +6,15 @@
 
 namespace gladstone {
 
-/// What `gladstone info mie` is asked.
+/// Arguments of `gladstone info mie`.
 struct MieQuestion {
   std::string x;       ///< size parameter pi d n / lambda
   std::string m;       ///< relative index, "RE" or "RE,IM"
-  std::string figure;  ///< picture to draw; empty: none
+  std::string figure;  ///< path of the figure to draw; empty: none
 };
 
-/// Efficiencies of a sphere, and the light that it scatters over angle: S11 and polarization in steps of a degree, or
-/// finer where its ripples are; draws it on polar paper with a logarithmic radius.
+/// Reports the efficiencies of a sphere and its scattered light over angle: S11 and polarization in steps of one
+/// degree, or finer if required by the ripples. Draws the scattered light as a polar plot with logarithmic radius.
 int describe_mie(MieQuestion const& question, GlobalOptions const& options);
 
 }  // namespace gladstone

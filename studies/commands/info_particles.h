@@ -6,9 +6,9 @@
 
 namespace gladstone {
 
-/// What to expect of a PIV setup's particles, camera by camera: image diameter, depth of field, particles a window,
-/// photons, electrons at the peak, the smallest particle that is seen.
-/// @param path of the setup
+/// Reports expected properties of the particles in a PIV setup for each camera: image diameter, depth of field,
+/// particles per interrogation window, photons, electrons at the peak, and the smallest visible particle.
+/// @param path  setup file
 int describe_particles(std::string const& path, GlobalOptions const& options);
 
 }  // namespace gladstone

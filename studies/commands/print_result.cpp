@@ -9,14 +9,14 @@
 namespace gladstone {
 namespace {
 
-/// The object with all warnings of the run under "warnings", after those that it has there already.
+/// Appends the warnings of the run to the member "warnings" of a JSON object.
 std::string with_warnings(std::string const& json) {
   nlohmann::ordered_json all = nlohmann::ordered_json::parse(json, nullptr, false);
   if (!all.is_object()) return json;
   nlohmann::ordered_json& warnings = all["warnings"];
   if (!warnings.is_array()) warnings = nlohmann::ordered_json::array();
   for (std::string const& text : recorded_warnings()) {
-    // what a command lists itself may stand on the log behind the name of its file
+    // Skip warnings that the command already lists; in the log, the name of a file may precede them.
     auto const listed = [&text](nlohmann::ordered_json const& one) {
       return one.is_string() && text.ends_with(one.get_ref<std::string const&>());
     };

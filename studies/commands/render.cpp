@@ -24,7 +24,7 @@ constexpr char const* example_setup =
   kind = "uniform_gradient"
   gradient_kg_m4 = [20.0, 10.0, 0.0])";
 
-/// A line on a camera's case.
+/// Returns a one-line summary of a camera's rendered case.
 std::string in_words(RenderedCamera const& camera) {
   std::string text = fmt::format("{}: ", camera.folder);
   if (camera.planes > 0) text += fmt::format("{} planes, ", camera.planes);

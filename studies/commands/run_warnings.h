@@ -9,10 +9,10 @@ class logger;
 
 namespace gladstone {
 
-/// Makes a log keep every warning that passes through it, for `warnings` of --json.
+/// Adds a sink to a logger that records all warnings, for the member `warnings` of --json.
 void record_warnings(spdlog::logger& log);
 
-/// The texts of all warnings so far, in their order, each once.
+/// Returns the distinct warnings recorded so far, in their order.
 std::vector<std::string> recorded_warnings();
 
 }  // namespace gladstone

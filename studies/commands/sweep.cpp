@@ -92,7 +92,7 @@ CommandBody attach_status(CLI::App& app, GlobalOptions const& options) {
   };
 }
 
-/// Draws RUN/figures/, each figure a whole file. @return their paths; none without gnuplot
+/// Draws the figures of RUN/figures/. @return their paths; empty without gnuplot
 std::vector<std::string> draw_figures(std::string const& run, StudyTable const& table) {
   try {
     return draw_study((std::filesystem::path(run) / "figures").string(), table);

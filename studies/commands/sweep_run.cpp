@@ -29,13 +29,13 @@ namespace {
 struct Arguments {
   std::string run, shard;
   RunSelection selection;
-  int jobs = 0;      ///< 0: one, or one a GPU
-  int worker = -1;   ///< where a worker tells of finished cases; -1: this is none
-  double first = 0;  ///< part of the selection that a worker leaves to others at first
+  int jobs = 0;      ///< 0: one process, or one per GPU
+  int worker = -1;   ///< file descriptor to which a worker reports finished cases; -1: not a worker
+  double first = 0;  ///< fraction of the selection at which a worker starts
   SlurmArguments slurm;
 };
 
-/// "I/N"
+/// Parses --shard I/N. @throws DataError
 void read_shard(Arguments& arguments) {
   if (arguments.shard.empty()) return;
   std::istringstream text(arguments.shard);
@@ -50,7 +50,7 @@ void read_shard(Arguments& arguments) {
   arguments.selection.shards = static_cast<std::size_t>(shards);
 }
 
-/// The device that the manifest asks for. @throws DeviceError where the command line asks for another
+/// Returns the device of the manifest. @throws DeviceError if the command line specifies another
 std::string device_of(Manifest const& cases, std::string const& wanted) {
   std::string const planned = cases[0].device;
   if (wanted != "auto" && wanted != planned) {
@@ -62,7 +62,7 @@ std::string device_of(Manifest const& cases, std::string const& wanted) {
   return planned;
 }
 
-/// A GPU for each worker in turn, as an environment variable; empty on the CPU.
+/// Assigns the GPUs to the workers in turn, as an environment variable; empty on the CPU.
 std::string visible_device(std::string const& device, std::size_t worker) {
   if (device != "cuda") return "";
   std::vector<std::string> names;
@@ -75,9 +75,9 @@ std::string visible_device(std::string const& device, std::size_t worker) {
   return names.empty() ? "" : "CUDA_VISIBLE_DEVICES=" + names[worker % names.size()];
 }
 
-/// Runs the cases in processes of their own. A case whose process a signal ends (a crash, the system short of memory)
-/// is tried once more, and then recorded as failed.
-/// @return ok, or what went wrong in one that others cannot make up for
+/// Runs the cases in worker processes. A case whose process was terminated by a signal (crash, insufficient memory) is
+/// repeated once and then recorded as failed.
+/// @return ok, or the exit code of a worker whose error affects the whole run
 int run_in_workers(Arguments const& arguments, Manifest const& cases, std::string const& device, int jobs,
                    std::function<void()> const& finished) {
   std::vector<std::vector<std::string>> words;
@@ -106,7 +106,7 @@ int run_in_workers(Arguments const& arguments, Manifest const& cases, std::strin
     bool const twice = ++deaths[*end.at] >= 2;
     spdlog::warn("a worker was {} at work on case {}; {}", signal, *end.at,
                  twice ? "the case has failed" : "another one tries it once more");
-    // the system ends by SIGKILL what takes too much of its memory
+    // The system terminates processes that use too much memory by SIGKILL.
     if (twice &&
         record_failure(arguments.run, cases, *end.at, "its process was " + signal + ", twice", end.signal == SIGKILL)) {
       finished();
@@ -127,14 +127,14 @@ void run_here(Arguments const& arguments, Manifest const& cases, std::vector<std
   auto const first = static_cast<std::size_t>(arguments.first * static_cast<double>(selected.size()));
   auto const tell = [&](std::size_t index, CaseEvent event) {
     WorkerReport const report{index, event == CaseEvent::finished};
-    // a parent that does not listen any more is no reason to stop
+    // Continue even if the parent does not read the reports any more.
     if (arguments.worker >= 0 && ::write(arguments.worker, &report, sizeof report) < 0) spdlog::debug("not heard");
     if (event == CaseEvent::finished) finished();
   };
   run_cases(arguments.run, cases, selected, arguments.selection, runner, first, tell);
 }
 
-/// Prints how the selected cases stand, with more of JSON and text after it. @return ok, or incomplete
+/// Prints the state of the selected cases, with additional JSON members and text. @return ok or incomplete
 int print_state(Arguments const& arguments, GlobalOptions const& options, Manifest const& cases,
                 std::vector<std::size_t> const& selected, nlohmann::ordered_json const& more_json,
                 std::string const& more_text) {
@@ -145,7 +145,7 @@ int print_state(Arguments const& arguments, GlobalOptions const& options, Manife
   return state.complete() ? ok : incomplete;
 }
 
-/// --slurm: the cases are computed by a cluster.
+/// Implements --slurm: computes the cases on a cluster.
 int submit_study(Arguments const& arguments, GlobalOptions const& options, Manifest const& cases,
                  std::vector<std::size_t> const& selected, std::string const& device) {
   SlurmArguments slurm = arguments.slurm;
@@ -173,14 +173,14 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
   if (arguments.slurm.submit) return submit_study(arguments, options, cases, selected, device);
   bool const worker = arguments.worker >= 0;
   std::size_t due = selected.size();
-  if (!worker) {  // what is tried again is tried once, and not by each worker
+  if (!worker) {  // remove failures once here, so that workers do not repeat them several times
     due = forget_failures(arguments.run, cases, selected, arguments.selection).missing.size();
   }
   int code = ok;
   std::size_t computed = 0;
   if (due > 0) {
     Progress progress("cases", due);
-    Progress::enable(false);  // those of single cases
+    Progress::enable(false);  // no progress bars of individual cases
     auto const finished = [&] {
       ++computed;
       progress.advance();
@@ -188,7 +188,8 @@ int run_study(Arguments const& arguments, GlobalOptions const& options) {
     };
     int jobs = arguments.jobs > 0 ? arguments.jobs : device == "cuda" ? std::max(1, gpu_count()) : 1;
     jobs = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(jobs), due));
-    if (jobs > 1 || arguments.jobs > 1) {  // who asks for several processes is not ended by what ends one of them
+    // worker processes protect this one from crashes, even if only one case remains
+    if (jobs > 1 || arguments.jobs > 1) {
       code = run_in_workers(arguments, cases, device, jobs, finished);
     } else {
       run_here(arguments, cases, selected, device, finished);
@@ -209,7 +210,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
   app.add_option("run", arguments->run, "RUN folder")->required();
   app.add_option("--jobs", arguments->jobs, "Processes side by side, sharing the cores; default: one, or one a GPU")
       ->check(whole_number(1, 4096));
-  // an empty list is a mistake, and not every case
+  // Distinguish an empty list, which is an error, from a missing option, which selects all cases.
   app.add_option_function<std::string>(
       "--case", [arguments](std::string const& list) { arguments->selection.only = list; },
       "These cases alone, by their indices: 17, or 0-3,7");
@@ -225,7 +226,7 @@ CommandBody attach_sweep_run(CLI::App& app, GlobalOptions const& options) {
       read_shard(*arguments);
       return run_study(*arguments, options);
     } catch (Interrupted const&) {
-      if (arguments->slurm.submit) throw;  // it says what becomes of the job
+      if (arguments->slurm.submit) throw;  // its message describes the state of the job
       if (arguments->worker < 0) {
         print_error("gladstone: interrupted; finished cases are kept, and the same command goes on from there");
       }

@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Takes out the cases that need nothing more.
+/// Removes the cases that need no further computation.
 void remove_done(std::string const& run, Manifest const& cases, RunSelection const& selection,
                  std::vector<std::size_t>& remaining) {
-  // one look at the folder instead of one at every file that is not there
+  // List the folder once instead of looking up every result file.
   std::set<std::string> there;
   std::error_code ignored;
   for (auto const& entry : fs::directory_iterator(fs::path(run) / run_file::cases, ignored))
@@ -44,7 +44,7 @@ void print_dry_run(JobArray const& array, GlobalOptions const& options) {
   print_result(options, json_text(json), fmt::format("# {}\n{}\n{}\n", array.script_path, array.script, command));
 }
 
-/// What the tasks that left cases undone said last; the first few of them.
+/// Returns the last log messages of the tasks with unfinished cases, at most five of them.
 std::string words_of_failed_tasks(JobArray const& array, std::string const& job, std::vector<std::size_t> const& due,
                                   std::vector<std::size_t> const& remaining) {
   constexpr std::size_t most_told = 5;

@@ -11,26 +11,26 @@
 
 namespace gladstone {
 
-/// What `sweep run` is told about a cluster.
+/// Arguments of `sweep run` for a Slurm cluster.
 struct SlurmArguments {
   bool submit = false;   ///< --slurm
-  bool dry_run = false;  ///< print what would be submitted
+  bool dry_run = false;  ///< print the job instead of submitting it
   SlurmOptions options;
 };
 
-/// Adds --slurm and what goes with it to `sweep run`.
+/// Adds --slurm and its related options to `sweep run`.
 void add_slurm_options(CLI::App& app, SlurmArguments& arguments);
 
-/// A job that has been waited for: its number and, in text, what is known of the tasks that left cases undone.
+/// Finished job: its number and a report about the tasks with unfinished cases.
 struct JobReport {
-  std::string job;  ///< empty: it was a --dry-run
+  std::string job;  ///< empty: --dry-run
   std::string text;
 };
 
-/// Submits the cases that a selection lacks to Slurm, or finds the study's job at work already, and waits for its end.
-/// With --dry-run prints the script and the command that submits it instead.
-/// @return nothing where no case is due
-/// @throws as run_job_array and make_job_array
+/// Submits the missing cases of a selection to Slurm and waits until the job ends. If a job of the study is already
+/// queued or running, waits for that one. With --dry-run, prints the job script and the command instead.
+/// @return nullopt if no case needs to be computed
+/// @throws as run_job_array() and make_job_array()
 std::optional<JobReport> run_on_cluster(std::string const& run, Manifest const& cases,
                                         std::vector<std::size_t> const& selected, RunSelection const& selection,
                                         SlurmArguments const& arguments, GlobalOptions const& options);

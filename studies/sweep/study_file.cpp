@@ -159,7 +159,7 @@ class StudyReader {
     if (array.elements.empty()) {
       problem(array.place, fmt::format("\"{}\" is empty (a study of no case); give at least one value", axis.key));
     }
-    std::map<std::string, std::string> label_of;  // by what the value is
+    std::map<std::string, std::string> label_of;  // label of each distinct value
     std::set<std::string> labels;
     for (SetupNode const& element : array.elements) {
       AxisValue value = read_value(element, axis.key);
@@ -167,7 +167,7 @@ class StudyReader {
       std::string const what = shown.number ? number_label(*shown.number) : toml_text(value.node);
       auto const [known, fresh] = label_of.try_emplace(what, shown.label);
       bool const renamed = known->second != shown.label;
-      // of a zip the points must differ, not the values of one axis: see refuse_points_twice()
+      // In a zip, values of one axis may repeat, but points may not; see refuse_points_twice().
       if (!fresh && (renamed || study_.mode != StudyMode::zip)) {
         std::string const names = !renamed ? "" : fmt::format(" (as \"{}\" and as \"{}\")", known->second, shown.label);
         problem(element.place, fmt::format("\"{}\" has the value {} twice{}; remove one (repeats = N gives every case "
