@@ -42,7 +42,7 @@ struct AssignedDots {
   int columns = 0, rows = 0;
   /// Detected spots with a grid index that are not dots of the grid, see remove_strangers() [px].
   std::vector<Vec2d> strangers;
-  /// Rms residual per component from a smooth grid: noise and distortions of high order; 0: unknown.
+  /// RMS residual per component from a smooth grid: noise and distortions of high order; 0: unknown.
   double smoothness_px = 0;
 };
 

@@ -31,7 +31,7 @@ struct ErrorSummary {
   std::size_t count = 0;        ///< number of counted vectors
   double valid_fraction;        ///< `count` divided by the number of all vectors of the measurement [1]
   double bias_u_px, bias_v_px;  ///< mean error
-  /// Standard deviation of the error, normalised by N so that rms^2 = bias^2 + random^2.
+  /// Standard deviation of the error, normalised by N so that rms_px^2 is the mean of bias^2 + random^2 over u and v.
   double random_u_px, random_v_px;
   double rms_px;                ///< sqrt(mean(e_u^2 + e_v^2)/2)
   double rms_without_gross_px;  ///< rms_px over the vectors without gross error

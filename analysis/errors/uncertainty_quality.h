@@ -22,7 +22,7 @@ struct UncertaintyQuality {
   double rms_ratio;               ///< rms(sigma)/rms(error): 1 if sigma is correct on average
   /// Correlation coefficient of sigma and |error|: ability to distinguish accurate from inaccurate vectors.
   double correlation;
-  /// Rms(sigma): of two methods with equal coverage, the one with the smaller value is better.
+  /// Value of rms(sigma): of two methods with equal coverage, the one with the smaller value is better.
   double sharpness_px;
 };
 

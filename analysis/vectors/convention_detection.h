@@ -13,7 +13,7 @@ namespace gladstone {
 /// Agreement of vectors, interpreted by given conventions, with the true displacement.
 struct ConventionFit {
   VectorConventions conventions;
-  /// Rms difference from the truth; each difference is limited to 1 px or three times the signal, if larger.
+  /// RMS difference from the truth; each difference is limited to 1 px or three times the signal, if larger.
   double rms_px = 0.0;
   double signal_px = 0.0;  ///< rms of the truth at the vectors, which is the error of zero vectors
   /// Regression slope of the vectors on the truth, sum m t / sum t^2: 1 for unbiased vectors regardless of noise, 0 for
@@ -71,8 +71,8 @@ ConventionFit fit_conventions(DisplacementField const& field, VectorConventions 
 /// Determines the conventions of a file's vectors and detects probable mistakes by comparison with the truth.
 /// - Of the format's own interpretations (VectorFile::also), the first is used unless another fits significantly
 ///   better.
-/// - Alternatives are all combinations of y axis, v sign, frame order, exchanged columns and offset (0, -0.5, -1, -1.5
-///   px), then a common factor of the displacements, a shift and a factor of the positions.
+/// - Alternatives are all combinations of y axis, v sign and frame order, with each offset (0, -0.5, -1, -1.5 px) or
+///   with exchanged columns, then a factor of the displacements, a shift and a factor of the positions.
 /// - An alternative is a probable mistake if it fits significantly better and reduces the rms by 10 % (an offset 5 %,
 ///   factor and shift 30 %).
 /// - A factor of the displacements is considered above 1.1, or below 0.9 times the slope of the truth averaged over

@@ -94,7 +94,7 @@ inline ParticlePair render_particle_pair(ParticleSettings const& settings,
       for (int i = 0; i < settings.columns; ++i) pair.flow(i, j) *= light(i);
   for (Image<double>* image : {&pair.reference, &pair.flow})
     for (double& value : *image) {
-      // Box & Muller
+      // Box-Muller transform
       if (settings.noise > 0.0)
         value += settings.noise * peak * std::sqrt(-2.0 * std::log(1.0 - uniform())) *
                  std::cos(2.0 * std::acos(-1.0) * uniform());

@@ -47,7 +47,7 @@ ParticlePair RefractedTurbulence::frames(double noise, std::uint64_t noise_seed)
   auto const uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   for (Image<double>* image : {&pair.reference, &pair.flow})
     for (double& value : *image) {
-      double const radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));  // Box & Muller
+      double const radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));  // Box-Muller transform
       value = background + peak * (value / brightest + noise * radius * std::cos(2.0 * pi * uniform()));
       value = std::clamp(std::round(value), 0.0, 255.0);
     }

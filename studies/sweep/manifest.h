@@ -37,10 +37,10 @@ struct ManifestCase {
   /// Complete setup (TOML) with absolute file names; "auto" values are not resolved.
   std::string setup;
   std::map<std::string, std::string> inputs;  ///< file_hash() of every file in the setup, by its absolute name
-  /// Content_hash() of the line without its last member, which contains this hash.
+  /// Hash, by content_hash(), of the line without its last member, which contains this hash.
   std::string line_hash;
 
-  /// "case 17 (lens.f_number = 8, geometry.z_d_mm = 250)"
+  /// Returns a title for messages: "case 17 (lens.f_number = 8, geometry.z_d_mm = 250)"
   std::string title() const;
 };
 

@@ -39,7 +39,7 @@ struct TextTable {
   std::optional<std::size_t> find_quantity(std::initializer_list<std::string_view> any_of) const;
   /// Like find_quantity(). @throws DataError with the available column names if there is none
   std::size_t quantity(std::initializer_list<std::string_view> any_of) const;
-  /// @throws DataError naming the columns there are
+  /// Reports a missing column. @throws DataError with the available column names
   [[noreturn]] void refuse_missing(std::string_view wanted) const;
 };
 
