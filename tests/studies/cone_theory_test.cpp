@@ -19,14 +19,14 @@ constexpr double strain = 5e-4;
 constexpr double wavelength = 8e-3;        // of the density [m]
 constexpr double corner = 1.0 * pi / 180;  // angle to the axis, of the outermost dots [rad]
 
-struct Bench {
+struct ThinLensCase {
   double focal_length_mm, f_number, z_d_mm;
 
   std::string text() const { return fmt::format("f = {} mm, f/{}, Z_D = {} mm", focal_length_mm, f_number, z_d_mm); }
 };
 
 /// Table 1 with this lens and distance, points for dots, and a wave of that strain.
-Scene scene_of(Bench const& bench) {
+Scene scene_of(ThinLensCase const& bench) {
   gladstone::Setup setup;
   setup.lens.focal_length = bench.focal_length_mm * 1e-3;
   setup.lens.f_number = bench.f_number;
@@ -176,7 +176,7 @@ TEST_P(ConeTheory, IsWhatRaysDoOverTheWholeGrid) {
   double worst = 0;
   for (double const f_number : {4.0, 8.0, 16.0, 32.0}) {
     for (double const z_d_mm : {100.0, 250.0, 500.0, 1000.0}) {
-      Bench const bench{GetParam(), f_number, z_d_mm};
+      ThinLensCase const bench{GetParam(), f_number, z_d_mm};
       Scene scene = scene_of(bench);
       GroundTruth const truth = renderer.render(scene, scene.dots, RenderImages::no, RenderTheory::no).truth;
       auto const& setup = scene.setup;

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Particles of 1 um through a lens of 105 mm at 0.75 m: M = 105 / 645, an e^-2 diameter of 1.682 N (1 + M) lambda.
-std::string piv_setup(std::string const& lens, double pitch_um, std::string const& scattering = "lambert") {
+std::string one_lens_setup(std::string const& lens, double pitch_um, std::string const& scattering = "lambert") {
   return "schema = 1\nexperiment = \"piv\"\n[camera]\npixels = [64, 64]\npixel_pitch_um = " + std::to_string(pitch_um) +
          "\n[lens]\nfocal_length_mm = 105.0\n" + lens +
          "\n[geometry]\nz_a_mm = 750.0\n[medium.field]\nkind = \"none\"\n[particles]\nnumber = 100\nvolume_mm = [10.0, "
@@ -52,20 +52,20 @@ TEST(PeakLocking, ErrorFallsWithTheDiameterOfTheImage) {
 // 1.682 x 8 x (1 + 105/645) x 0.532 um = 8.326 um over 5.74 um are 1.450 px. The f-number that is named widens exactly
 // to 2 px, since the spot grows in proportion; the focus that is named does so within 1 %, by which it changes M.
 TEST(PeakLocking, NamesTheStopAndTheFocusThatCureIt) {
-  gladstone::Setup const setup = setup_of(piv_setup("f_number = 8.0", 5.742));
+  gladstone::Setup const setup = setup_of(one_lens_setup("f_number = 8.0", 5.742));
   EXPECT_NEAR(expected_images(setup).diameter_px(), 1.45, 1e-3);
   std::string const advice = locking_advice(setup);
   EXPECT_THAT(advice, HasSubstr("particle images are 1.45 px wide (e^-2 diameter): below 2 px"));
   double const factor = expected_images(setup).f_number_factor(2);
-  EXPECT_NEAR(expected_images(setup_of(piv_setup("f_number = " + std::to_string(8 * factor), 5.742))).diameter_px(), 2,
+  EXPECT_NEAR(expected_images(setup_of(one_lens_setup("f_number = " + std::to_string(8 * factor), 5.742))).diameter_px(), 2,
               1e-6);
   EXPECT_NEAR(number_behind(advice, "lens.f_number"), 8 * factor, 0.05);
   std::string const focus = std::to_string(number_behind(advice, "lens.focus_distance_mm"));
-  gladstone::Setup const cured = setup_of(piv_setup("f_number = 8.0\nfocus_distance_mm = " + focus, 5.742));
+  gladstone::Setup const cured = setup_of(one_lens_setup("f_number = 8.0\nfocus_distance_mm = " + focus, 5.742));
   EXPECT_NEAR(expected_images(cured).diameter_px(), 2, 0.02);
-  EXPECT_EQ(locking_advice(setup_of(piv_setup("f_number = 16.0", 5.742))), "");
+  EXPECT_EQ(locking_advice(setup_of(one_lens_setup("f_number = 16.0", 5.742))), "");
   // ideal images are those of particles in focus: there the stop alone cures
-  std::string const ideal = locking_advice(setup_of(piv_setup("f_number = 8.0", 5.742, "gaussian")));
+  std::string const ideal = locking_advice(setup_of(one_lens_setup("f_number = 8.0", 5.742, "gaussian")));
   EXPECT_THAT(ideal, AllOf(HasSubstr("lens.f_number"), Not(HasSubstr("focus_distance_mm"))));
 }
 
