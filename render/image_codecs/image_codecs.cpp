@@ -6,7 +6,7 @@
 namespace gladstone {
 namespace {
 
-SampleType sample_type(OIIO::TypeDesc type) {
+SampleType sample_type(OIIO::TypeDesc const& type) {
   switch (type.basetype) {
     case OIIO::TypeDesc::UINT8:
       return SampleType::uint8;

@@ -1,9 +1,11 @@
 #include "render/rays/ray_planning.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "render/base/parallel.h"
 #include "render/base/progress.h"
@@ -20,11 +22,10 @@ constexpr double not_in_picture = std::numeric_limits<double>::quiet_NaN();
 constexpr double most_window_px = 100;
 
 /// Rays from the centre of a source, as points of the unit disc that is mapped to its entrance pupil.
-std::vector<Vec2d> const chief_ray{{0, 0}};
-std::vector<Vec2d> const cone{{0, 0}, {0.95, 0}, {0, 0.95}, {-0.95, 0}, {0, -0.95}};
+constexpr std::array chief_ray{Vec2d{0, 0}};
+constexpr std::array cone{Vec2d{0, 0}, Vec2d{0.95, 0}, Vec2d{0, 0.95}, Vec2d{-0.95, 0}, Vec2d{0, -0.95}};
 
-Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::vector<Vec2d> const& rays,
-                 double step) {
+Probe probe_dots(Scene const& scene, std::vector<std::size_t> const& dots, std::span<Vec2d const> rays, double step) {
   Probe probe;
   probe.displacement_px.resize(dots.size());
   probe.shift.resize(dots.size());
@@ -234,7 +235,7 @@ StepPlan plan_step_by_rays(Scene& scene) {
       probes.dots = largest_of(changes(coarse, probe_dots(scene, probes.dots, chief_ray, step / 2)));
     }
     probes.at = [&](double at) {
-      return probe_dots(scene, probes.dots, scene.chief_rays_only() ? chief_ray : cone, at);
+      return probe_dots(scene, probes.dots, scene.chief_rays_only() ? std::span<Vec2d const>(chief_ray) : cone, at);
     };
     search(probes);
   });

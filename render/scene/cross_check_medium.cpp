@@ -69,7 +69,7 @@ void cross_check_thickness(Setup const& setup, std::vector<std::string>& warning
   }
 }
 
-void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,
+void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
                          std::string const& of_field) {
   double const K = setup.medium.gladstone_dale, ambient = setup.medium.ambient_density;
   if (!possible_refractivity(K * ambient)) {

@@ -30,7 +30,7 @@ void cross_check_thickness(Setup const& setup, std::vector<std::string>& warning
 /// warning.
 /// @param of_field  key of the field's table: "field", or "second_field" if `setup` contains the second field in its
 ///   place
-void cross_check_density(Setup const& setup, SetupTable medium, std::vector<std::string>& warnings,
+void cross_check_density(Setup const& setup, SetupTable& medium, std::vector<std::string>& warnings,
                          std::string const& of_field = "field");
 
 /// Reports steps, or length scales of the field, that would require more than `most_steps` integration steps across the

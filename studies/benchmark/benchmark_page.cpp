@@ -82,24 +82,27 @@ std::optional<TextTable> curve_table(BenchmarkResult const& result) {
 
 ReportSection error_section(BenchmarkResult const& result) {
   ReportSection section{"Errors", {}};
-  section.blocks.push_back(
+  section.blocks.emplace_back(
       Paragraph{"Errors per component against the displacement at the vector's place, vectors closer than 32 px to the "
                 "border left out. Gross: an error above 1 px. Gain: the share of the displacement that the vectors "
                 "follow. Read rms together with gain: large windows are quiet and blind."});
-  section.blocks.push_back(table_of(result, "rms error without gross ones [px]",
-                                    [](BenchmarkScore const& s) { return fixed(s.errors.rms_without_gross_px, 4); }));
-  section.blocks.push_back(table_of(result, "gross errors, and vectors that are missing or invalid", [](auto const& s) {
-    return TableCell{fmt::format("{} + {} of {}", s.gross, s.vectors - s.errors.count, s.vectors),
-                     static_cast<double>(s.gross + s.vectors - s.errors.count)};
+  section.blocks.emplace_back(table_of(result, "rms error without gross ones [px]", [](BenchmarkScore const& s) {
+    return fixed(s.errors.rms_without_gross_px, 4);
   }));
-  section.blocks.push_back(table_of(
+  section.blocks.emplace_back(
+      table_of(result, "gross errors, and vectors that are missing or invalid", [](auto const& s) {
+        return TableCell{fmt::format("{} + {} of {}", s.gross, s.vectors - s.errors.count, s.vectors),
+                         static_cast<double>(s.gross + s.vectors - s.errors.count)};
+      }));
+  section.blocks.emplace_back(table_of(
       result, "gain", [](BenchmarkScore const& s) { return fixed(s.gain, 4); },
       [](CaseRecord const& one) { return one.of.name.starts_with("sine") || one.of.refracted(); }));
-  section.blocks.push_back(table_of(result, "bias of u / of v, gross errors counted [px]", [](BenchmarkScore const& s) {
-    double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
-    return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
-  }));
-  if (std::optional<TextTable> curve = curve_table(result)) section.blocks.push_back(std::move(*curve));
+  section.blocks.emplace_back(
+      table_of(result, "bias of u / of v, gross errors counted [px]", [](BenchmarkScore const& s) {
+        double const largest = std::max(std::abs(s.errors.bias_u_px), std::abs(s.errors.bias_v_px));
+        return TableCell{fmt::format("{:+.4f} / {:+.4f}", s.errors.bias_u_px, s.errors.bias_v_px), largest};
+      }));
+  if (std::optional<TextTable> curve = curve_table(result)) section.blocks.emplace_back(std::move(*curve));
   return section;
 }
 
@@ -126,13 +129,13 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
                           fixed(row.point.coverage_1, 3),
                           number(row.deformed_window.gross),
                           number(row.deformed_window.without_sigma)});
-  section.blocks.push_back(Paragraph{
+  section.blocks.emplace_back(Paragraph{
       "Both components pooled, gross errors left out, against the truth on the deformed windows, which is "
       "what the passes make of the dots' true displacements without noise. "
       "The two columns after rms(sigma) are against the mean of a window's dots, and against the truth at the "
       "place, whose differences no method knows of. Vectors that are left out, grossly wrong or without sigma, "
       "are counted."});
-  section.blocks.push_back(std::move(table));
+  section.blocks.emplace_back(std::move(table));
   if (!result.coverage.empty()) {
     TextTable coverage{fmt::format("Coverage over {} seeds: mean and its standard error", result.seeds),
                        {"method", "flow", "noise [%]", "within sigma", "of the dots' mean within sigma",
@@ -148,7 +151,7 @@ ReportSection uncertainty_section(BenchmarkResult const& result) {
                                {with_error(row.total), row.total.mean},
                                {with_error(row.rms_ratio_deformed_window), row.rms_ratio_deformed_window.mean},
                                {with_error(row.rms_ratio_total), row.rms_ratio_total.mean}});
-    section.blocks.push_back(std::move(coverage));
+    section.blocks.emplace_back(std::move(coverage));
   }
   return section;
 }
@@ -170,7 +173,7 @@ std::vector<std::string> findings_of(BenchmarkResult const& result) {
     tell(noise_case, "at 5 % noise");
     if (BenchmarkRow const* const row = find_row(result, code, gain_case))
       text += fmt::format("{}a gain of {:.3f} at sines of 64 px", text.empty() ? "" : ", ", row->score.gain);
-    if (!text.empty()) findings.push_back(code + ": " + text + '.');
+    if (!text.empty()) findings.push_back(fmt::format("{}: {}.", code, text));
   }
   return findings;
 }
@@ -190,17 +193,18 @@ ReportPage benchmark_page(BenchmarkResult const& result, std::string const& fold
   for (CaseRecord const& one : result.cases)
     cases.rows.push_back({{one.of.name}, {one.of.what}, {one.reference_sha256}, {one.flow_sha256}});
   ReportSection made{"Cases, and how to score your own code", {std::move(cases)}};
-  made.blocks.push_back(Paragraph{
+  made.blocks.emplace_back(Paragraph{
       "Frames are 8-bit grey levels, mostly of 1024 x 1024 px. Particles stand at -d/2 in the reference and +d/2 in "
       "the "
       "flow frame, d at their mid-position. Measure every pair with your code, write the vectors of each into a file "
       "named after its case (vortex.csv, .txt or .h5: ours, OpenPIV's, PIVlab's, or columns x, y, u, v in px), and "
       "give "
       "the folder. Axes and offsets are found by the vortex, where it is among the files."});
-  made.blocks.push_back(Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
-  if (!result.conventions.empty()) made.blocks.push_back(TextList{result.conventions});
-  if (!result.mistakes.empty()) made.blocks.push_back(TextList{result.mistakes});
-  made.blocks.push_back(Paragraph{"gladstone " + build_text() + ", on " + result.device + "."});
+  made.blocks.emplace_back(
+      Verbatim{"Command", fmt::format("gladstone benchmark -o {} --vectors NAME=FOLDER\n", folder)});
+  if (!result.conventions.empty()) made.blocks.emplace_back(TextList{result.conventions});
+  if (!result.mistakes.empty()) made.blocks.emplace_back(TextList{result.mistakes});
+  made.blocks.emplace_back(Paragraph{"gladstone " + build_text() + ", on " + result.device + "."});
   page.sections.push_back(std::move(made));
   page.data = nlohmann::json::object();
   return page;

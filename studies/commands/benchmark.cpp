@@ -73,7 +73,7 @@ std::vector<std::string> names_of_estimators() {
 std::string page_text(ReportPage page, std::vector<std::string> const& figures, bool markdown) {
   ReportSection drawn{"Curves", {}};
   for (std::string const& name : figures)
-    drawn.blocks.push_back(
+    drawn.blocks.emplace_back(
         FigureFile{name, name.starts_with("noise") ? "noise against gain" : "error against uncertainty"});
   if (!figures.empty()) page.sections.insert(page.sections.begin() + 1, std::move(drawn));
   return markdown ? markdown_page(page) : html_page(page);
